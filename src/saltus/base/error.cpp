@@ -1,0 +1,72 @@
+#include "saltus/base/error.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace saltus {
+namespace {
+
+/// Levenshtein distance, letters compared without case.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const auto same = std::tolower(static_cast<unsigned char>(a[i - 1])) ==
+                        std::tolower(static_cast<unsigned char>(b[j - 1]));
+      const std::size_t replaced = diagonal + (same ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+std::string joined(const std::vector<std::string>& names, const std::string& separator, const std::string& quote) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : separator) + quote + name + quote;
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const Error& error) {
+  std::string text;
+  if (!error.location.file.empty()) {
+    text += error.location.file;
+    if (error.location.line > 0) text += ":" + std::to_string(error.location.line);
+    if (error.location.column > 0) text += ":" + std::to_string(error.location.column);
+    text += ": ";
+  }
+  text += "error: " + error.message;
+  for (const auto& frame : error.context) text += "\n  " + frame;
+  if (!error.remedy.empty()) text += "\n  " + error.remedy;
+  return text;
+}
+
+std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& known) {
+  std::vector<std::pair<std::size_t, std::string>> ranked;
+  for (const auto& candidate : known) {
+    const std::size_t distance = edit_distance(name, candidate);
+    // A third of the letters may differ: "mu" ~ "mue" is a slip, "mu" ~ "x0" is not.
+    const std::size_t allowed = std::max<std::size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    if (distance <= allowed) ranked.emplace_back(distance, candidate);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (const auto& [distance, candidate] : ranked) {
+    if (names.size() < 3) names.push_back(candidate);
+  }
+  return names;
+}
+
+std::string suggest(const std::string& name, const std::vector<std::string>& known) {
+  const auto nearest = nearest_names(name, known);
+  if (!nearest.empty()) return "did you mean " + joined(nearest, " or ", "'") + "?";
+  return known.empty() ? "" : "known: " + joined(known, ", ", "");
+}
+
+}  // namespace saltus

@@ -1,0 +1,56 @@
+// What went wrong with the input, where it stands, and what to do about it.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+namespace saltus {
+
+/// A place in a text file; line and column count from 1, 0 means unknown.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+enum class ErrorCode {
+  parse_failure,     ///< the text is not well formed
+  unknown_name,      ///< a name, table or key nobody declared
+  invalid_model,     ///< well formed, but states no system
+  invalid_option,    ///< an option outside its range
+  not_available,     ///< stated correctly, but this version does not do it
+  io_failure,        ///< a file that cannot be read or written
+};
+
+/// Bad input (lane 2 of the three error lanes): reported to the user, mapped to exit code 2.
+struct Error {
+  ErrorCode code = ErrorCode::invalid_model;
+  std::string message;               ///< what was expected and what was found
+  std::string remedy;                ///< what the user can do; may be empty
+  SourceLocation location;           ///< where; empty file = command line or C++
+  std::vector<std::string> context;  ///< innermost first
+};
+
+template <class T>
+using Expected = tl::expected<T, Error>;
+
+/// Adds one frame ("in table [simulate]") to the trail of an error.
+[[nodiscard]] inline Error with_context(Error error, std::string frame) {
+  error.context.push_back(std::move(frame));
+  return error;
+}
+
+/// "file:line:column: error: message", the context trail and the remedy, one per line, without a final newline.
+[[nodiscard]] std::string to_text(const Error& error);
+
+/// The known names nearest to `name` by edit distance, best first, at most three; for "did you mean" remedies.
+[[nodiscard]] std::vector<std::string> nearest_names(const std::string& name,
+                                                     const std::vector<std::string>& known);
+
+/// "did you mean 'a' or 'b'?" or, if nothing is near, "known: a, b, c"; empty if nothing is known.
+[[nodiscard]] std::string suggest(const std::string& name, const std::vector<std::string>& known);
+
+}  // namespace saltus

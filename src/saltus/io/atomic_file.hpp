@@ -1,0 +1,19 @@
+// Whole files or none: a half-written output never replaces a good one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "saltus/base/error.hpp"
+
+namespace saltus::io {
+
+/// Whether `path` could be written (folder exists and is writable, not a folder itself); found out before computing.
+[[nodiscard]] Expected<void> check_writable(const std::filesystem::path& path);
+/// Writes to a temporary file beside `path`, flushes it to disk, and renames it over `path`.
+[[nodiscard]] Expected<void> write_file(const std::filesystem::path& path, std::string_view content);
+/// The whole content of a file.
+[[nodiscard]] Expected<std::string> read_file(const std::filesystem::path& path);
+
+}  // namespace saltus::io

@@ -1,0 +1,71 @@
+// What the user states, as syntax trees with positions: the value between a model file and a System.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/expression/syntax_tree.hpp"
+
+namespace saltus::model {
+
+enum class Inclusion { filippov, aizerman_pyatnitskii };
+enum class Direction { up, down, both };
+enum class AtEvent { record, stop };
+
+/// name = "expression"; location is that of the name, the expression carries its own positions.
+struct NamedExpression {
+  std::string name;
+  expression::NodePtr expression;
+  SourceLocation location;
+};
+
+/// Bounds are expressions of parameters; absent means unbounded.
+struct StateDescription {
+  std::string name;
+  expression::NodePtr initial;
+  expression::NodePtr lower, upper;  ///< may be null
+  SourceLocation location;
+};
+
+struct ControlDescription {
+  std::string name;
+  expression::NodePtr initial;       ///< null means 0
+  expression::NodePtr lower, upper;  ///< may be null
+  SourceLocation location;
+};
+
+struct UserEventDescription {
+  std::optional<std::string> name;
+  expression::NodePtr when;  ///< an expression (its zeros) or a condition (its edges)
+  Direction direction = Direction::both;
+  AtEvent action = AtEvent::record;
+  SourceLocation location;
+};
+
+/// A model file without its [simulate] table. All vectors are in the order of the file.
+struct Description {
+  std::string file;
+  std::string name;
+  std::string description;
+  Inclusion inclusion = Inclusion::filippov;
+  std::vector<NamedExpression> parameters;
+  std::vector<StateDescription> states;
+  std::vector<ControlDescription> controls;
+  std::vector<NamedExpression> definitions;
+  std::vector<NamedExpression> switching;
+  std::vector<NamedExpression> dynamics;
+  std::vector<NamedExpression> outputs;
+  std::vector<UserEventDescription> events;
+  std::vector<NamedExpression> inputs;  ///< values of controls during a simulation, over t and parameters
+};
+
+/// `--set NAME=VALUE`: replaces a parameter, an initial value or a control's constant value; VALUE is an expression of
+/// constants (numbers, pi, functions). Unknown names are errors with the nearest known ones.
+struct Override {
+  std::string name;
+  expression::NodePtr value;
+};
+
+}  // namespace saltus::model

@@ -1,0 +1,77 @@
+// The model as a value: a piecewise-smooth system over step selections alpha, in CasADi expressions.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <casadi/core/sx.hpp>
+
+#include "saltus/model/description.hpp"
+
+namespace saltus::model {
+
+/// How a switching function takes part in a result.
+enum class SwitchingRole {
+  listed,      ///< makes a jump somewhere, or is named: column in the result
+  kink,        ///< both branches agree on its surface everywhere: restart only
+  time_event,  ///< depends on time only: restart only (column if named)
+};
+
+/// psi_j(t, x, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index (nesting).
+struct SwitchingFunction {
+  std::string name;        ///< declared name, or the argument's text without spaces at its first place
+  casadi::SX psi;          ///< scalar over t, x, p and the alphas of inner surfaces
+  SwitchingRole role = SwitchingRole::listed;
+  bool named = false;      ///< declared in [switching]
+  std::vector<int> inner;  ///< indices of the switching functions whose alpha occurs in psi, ascending
+};
+
+/// A column of the result: a switching function, or an alias of one (the same surface named twice).
+struct SwitchingColumn {
+  std::string name;
+  int function = 0;      ///< index into System::switching
+  int orientation = +1;  ///< -1 if this name's psi is a negative multiple of the function's
+};
+
+/// `when` of [[events]]: value = 0 is the event if `guards` is empty; otherwise a condition whose truth is the polynomial
+/// `value` (0 or 1) in `guard_alpha` (step of each guard, decided as written at equality).
+struct UserEvent {
+  std::string name;        ///< given, or event1, event2, … by position
+  bool named = false;
+  casadi::SX value;        ///< scalar over t, x, p, alpha, and guard_alpha for a condition
+  casadi::SX guards;       ///< differences of the comparisons over t, x, p, alpha; 0 x 1 for an expression
+  casadi::SX guard_alpha;  ///< one symbol per guard
+  std::vector<bool> true_at_equality;  ///< step(guard) counts as 1 where the guard is 0
+  Direction direction = Direction::both;
+  AtEvent action = AtEvent::record;
+};
+
+/// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j). With Inclusion::filippov f is multi-affine in alpha.
+/// All expressions are over the symbols t, x, u, p, alpha of this value. Units are the model's.
+struct System {
+  std::string name;
+  std::string description;
+  Inclusion inclusion = Inclusion::filippov;
+
+  std::vector<std::string> state_names, control_names, parameter_names, output_names;
+  std::vector<double> initial_state;     ///< x(from)
+  std::vector<double> state_lower, state_upper;      ///< +-infinity if absent
+  std::vector<double> control_lower, control_upper;
+  std::vector<double> control_initial;
+  std::vector<double> parameter_values;
+
+  casadi::SX t, x, u, p, alpha;          ///< scalar, n_x, n_u, n_p, n_psi columns of symbols
+  casadi::SX f;                          ///< n_x, as used on surfaces (multi-affine in alpha with filippov)
+  casadi::SX f_as_written;               ///< n_x, alpha as the user wrote it
+  casadi::SX outputs;                    ///< n_y
+  casadi::SX input;                      ///< n_u over t, p, alpha: u during a simulation
+  std::vector<SwitchingFunction> switching;
+  std::vector<SwitchingColumn> columns;  ///< of the result: order of appearance, named ones first in file order
+  std::vector<UserEvent> events;
+
+  bool multi_affine = true;              ///< f_as_written is multi-affine in alpha
+  std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ, empty if none
+  std::vector<std::string> warnings;     ///< unused names, aliases, …
+};
+
+}  // namespace saltus::model

@@ -1,0 +1,48 @@
+// What a person may write under [simulate].
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace saltus::pipeline {
+
+enum class Method { event, fesd, timestepping, smoothed };
+enum class Integrator { dopri5, dop853, radau5 };
+enum class Native { automatic, on, off };
+enum class Selection { active_dominant, passive_dominant, scaled, report };
+
+/// Rows of the trajectory beside the two of every event.
+struct EveryStep {};
+struct EveryInterval { double interval = 0.0; };
+struct NumberOfPoints { int points = 0; };  ///< both ends among them, >= 2
+struct AtTimes { std::vector<double> times; };
+using OutputGrid = std::variant<EveryStep, EveryInterval, NumberOfPoints, AtTimes>;
+
+/// [simulate.event]
+struct EventOptions {
+  Integrator integrator = Integrator::dopri5;
+  std::optional<double> max_step;  ///< none by default
+  Selection selection = Selection::active_dominant;
+  std::vector<std::pair<std::string, double>> scaling;
+  std::string branches = "report";
+};
+
+/// [simulate]; defaults as in interface.md. `until` has none: it must be given in the file or on the command line.
+struct SimulateOptions {
+  std::optional<double> until;
+  double from = 0.0;
+  Method method = Method::event;
+  double rtol = 1e-8;
+  double atol = 1e-10;
+  OutputGrid output = EveryStep{};
+  Native native = Native::automatic;
+  long max_steps = 1000000;
+  long max_events = 100000;
+  std::vector<std::pair<std::string, int>> initial_mode;  ///< switching function -> -1, 0, 1
+  EventOptions event;
+};
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,15 @@
+// A result as one self-contained HTML page that works offline.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "saltus/result/result.hpp"
+
+namespace saltus::report {
+
+/// @param plotly_source  the text of plotly.min.js, embedded into the page
+/// @return a complete HTML document; depends on the result only.
+[[nodiscard]] std::string to_html(const result::Result& result, std::string_view plotly_source);
+
+}  // namespace saltus::report

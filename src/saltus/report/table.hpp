@@ -1,0 +1,13 @@
+// A result as a short readable table for a terminal.
+#pragma once
+
+#include <string>
+
+#include "saltus/result/result.hpp"
+
+namespace saltus::report {
+
+/// Method, status, end state, event list (first and last ten, with the count), statistics.
+[[nodiscard]] std::string to_table(const result::Result& result);
+
+}  // namespace saltus::report

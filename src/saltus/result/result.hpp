@@ -1,0 +1,91 @@
+// One result for every method: plain data, everything a report needs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "saltus/result/status.hpp"
+
+namespace saltus::result {
+
+/// k in {-1, 0, 1}^n_psi: the sign of psi_j, 0 while the solution slides on psi_j = 0.
+using Mode = std::vector<int>;
+
+enum class EventKind { start, crossing, enter_sliding, leave_sliding, change_sliding, accumulation, jump, user };
+[[nodiscard]] std::string_view name(EventKind kind);
+
+/// The kind of a switch from the components of the modes (interface.md section 3).
+[[nodiscard]] EventKind kind_of_switch(const Mode& before, const Mode& after);
+
+struct Alternative {
+  Mode mode;
+  std::vector<double> alpha;  ///< one per switching function; NaN where not determined
+};
+
+/// One change of mode, jump or user event. Vectors over switching functions follow Result::switching_functions.
+struct Event {
+  double t = 0.0;
+  EventKind kind = EventKind::crossing;
+  std::optional<std::string> name;
+  std::vector<std::string> surfaces;
+  std::optional<Mode> mode_before, mode_after;
+  std::optional<std::vector<double>> alpha_before, alpha_after;
+  std::vector<double> x, x_after;
+  std::optional<bool> unique = true;  ///< nullopt: not decided
+  std::vector<Alternative> alternatives;
+  std::string reason;
+};
+
+/// Rows; every event has two rows with the same time, before and behind it.
+struct Trajectory {
+  std::vector<double> t;
+  std::vector<std::vector<double>> x, u, alpha;
+  std::vector<Mode> mode;
+  std::vector<std::vector<double>> outputs;
+};
+
+struct Final {
+  double t = 0.0;
+  std::vector<double> x;
+  Mode mode;
+  std::vector<double> alpha;
+  std::vector<double> outputs;
+};
+
+struct Statistics {
+  std::int64_t steps = 0;
+  std::int64_t rejected = 0;
+  std::int64_t rhs_evaluations = 0;
+  double wall_seconds = 0.0;
+};
+
+struct ModelRecord {
+  std::string name;
+  std::string description;
+  std::string sha256;  ///< of the model file's bytes; empty for a model stated in C++
+  std::vector<std::pair<std::string, double>> parameters;
+};
+
+/// Dotted option name ("simulate.event.integrator") and its value in force; a vector for output times.
+using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+using OptionRecord = std::vector<std::pair<std::string, OptionValue>>;
+
+struct Result {
+  ModelRecord model;
+  std::string command = "simulate";
+  std::string method = "event";
+  Status status;
+  std::vector<std::string> states, controls, switching_functions, outputs;
+  Final final;
+  std::vector<Event> events;
+  Trajectory trajectory;
+  Statistics statistics;
+  OptionRecord options;
+};
+
+}  // namespace saltus::result
