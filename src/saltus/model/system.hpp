@@ -17,10 +17,10 @@ enum class SwitchingRole {
   time_event,  ///< depends on time only: restart only (column if named)
 };
 
-/// psi_j(t, x, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index (nesting).
+/// psi_j(t, x, u, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index (nesting).
 struct SwitchingFunction {
   std::string name;        ///< declared name, or the argument's text without spaces at its first place
-  casadi::SX psi;          ///< scalar over t, x, p and the alphas of inner surfaces
+  casadi::SX psi;          ///< scalar over t, x, u, p and the alphas of inner surfaces
   SwitchingRole role = SwitchingRole::listed;
   bool named = false;      ///< declared in [switching]
   std::vector<int> inner;  ///< indices of the switching functions whose alpha occurs in psi, ascending
@@ -38,8 +38,8 @@ struct SwitchingColumn {
 struct UserEvent {
   std::string name;        ///< given, or event1, event2, … by position
   bool named = false;
-  casadi::SX value;        ///< scalar over t, x, p, alpha, and guard_alpha for a condition
-  casadi::SX guards;       ///< differences of the comparisons over t, x, p, alpha; 0 x 1 for an expression
+  casadi::SX value;        ///< scalar over t, x, u, p, alpha, and guard_alpha for a condition
+  casadi::SX guards;       ///< differences of the comparisons over t, x, u, p, alpha; 0 x 1 for an expression
   casadi::SX guard_alpha;  ///< one symbol per guard
   std::vector<bool> true_at_equality;  ///< step(guard) counts as 1 where the guard is 0
   Direction direction = Direction::both;
