@@ -1,0 +1,62 @@
+// A CasADi function with its work space: call with raw pointers, no allocation per call.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <casadi/core/function.hpp>
+#include <casadi/core/sx.hpp>
+
+namespace saltus::evaluation {
+
+class InterpretedFunction {
+ public:
+  InterpretedFunction() = default;
+  InterpretedFunction(const std::string& name, const std::vector<casadi::SX>& in, std::vector<casadi::SX> out) {
+    for (auto& expression : out) expression = casadi::SX::densify(expression);
+    function_ = casadi::Function(name, in, out);
+    memory_ = static_cast<int>(function_.checkout());
+    arguments_.resize(function_.sz_arg());
+    results_.resize(function_.sz_res());
+    integers_.resize(function_.sz_iw());
+    work_.resize(function_.sz_w());
+  }
+  InterpretedFunction(InterpretedFunction&& other) noexcept { swap(other); }
+  InterpretedFunction& operator=(InterpretedFunction&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  InterpretedFunction(const InterpretedFunction&) = delete;
+  InterpretedFunction& operator=(const InterpretedFunction&) = delete;
+  ~InterpretedFunction() {
+    if (!function_.is_null()) function_.release(memory_);
+  }
+
+  template <std::size_t n_in, std::size_t n_out>
+  void operator()(const std::array<const double*, n_in>& in, const std::array<double*, n_out>& out) {
+    for (std::size_t i = 0; i < n_in; ++i) arguments_[i] = in[i];
+    for (std::size_t i = 0; i < n_out; ++i) results_[i] = out[i];
+    function_(arguments_.data(), results_.data(), integers_.data(), work_.data(), memory_);
+  }
+
+  [[nodiscard]] bool is_null() const { return function_.is_null(); }
+
+ private:
+  void swap(InterpretedFunction& other) noexcept {
+    std::swap(function_, other.function_);
+    std::swap(memory_, other.memory_);
+    std::swap(arguments_, other.arguments_);
+    std::swap(results_, other.results_);
+    std::swap(integers_, other.integers_);
+    std::swap(work_, other.work_);
+  }
+
+  casadi::Function function_;
+  int memory_ = 0;
+  std::vector<const double*> arguments_;
+  std::vector<double*> results_;
+  std::vector<casadi_int> integers_;
+  std::vector<double> work_;
+};
+
+}  // namespace saltus::evaluation

@@ -1,0 +1,227 @@
+#include "saltus/evaluation/model_kernel.hpp"
+
+#include <exception>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/evaluation/interpreted_function_internal.hpp"
+
+namespace saltus::evaluation {
+namespace {
+
+using casadi::SX;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// For every row of `expression`, which entries of `variables` it depends on.
+std::vector<std::vector<int>> dependencies(const SX& expression, const SX& variables) {
+  std::vector<std::vector<int>> rows(index(static_cast<int>(expression.numel())));
+  if (expression.numel() == 0 || variables.numel() == 0) return rows;
+  const auto sparsity = SX::jacobian_sparsity(SX::densify(expression), variables);
+  const casadi_int* column_start = sparsity.colind();
+  const casadi_int* row = sparsity.row();
+  for (casadi_int column = 0; column < sparsity.size2(); ++column) {
+    for (casadi_int k = column_start[column]; k < column_start[column + 1]; ++k) {
+      rows[static_cast<std::size_t>(row[k])].push_back(static_cast<int>(column));
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+struct ModelKernel::Implementation {
+  SX t, x, p, alpha;
+  SX f, phi, outputs, input;
+  std::vector<double> parameters;
+  int n_psi = 0;
+
+  InterpretedFunction field, functions, scales, output_function, input_function;
+  std::vector<InterpretedFunction> conditions;  ///< one per [[events]] entry; null for expressions
+  std::vector<bool> affine, time_only;
+  std::vector<std::vector<int>> inner;
+  std::vector<std::vector<bool>> depends;
+  std::map<int, InterpretedFunction> gradients;
+  std::map<std::pair<int, int>, InterpretedFunction> lie_derivatives;
+  std::map<std::pair<int, int>, SX> lie_expressions;
+  long field_evaluations = 0;
+
+  explicit Implementation(const model::System& system);
+  SX phi_row(int j) const { return phi(j); }
+  SX lie_expression(int j, int order);
+  void find_structure();
+  void compile_conditions(const model::System& system);
+};
+
+ModelKernel::Implementation::Implementation(const model::System& system)
+    : t(system.t), x(system.x), p(system.p), alpha(system.alpha), parameters(system.parameter_values),
+      n_psi(static_cast<int>(system.switching.size())) {
+  input = SX::densify(system.input);
+  const auto with_inputs = [&](const SX& expression) {
+    return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, input);
+  };
+  f = with_inputs(system.f);
+  outputs = with_inputs(system.outputs);
+  std::vector<SX> rows;
+  for (const auto& entry : system.switching) rows.push_back(entry.psi);
+  for (const auto& event : system.events) {
+    if (event.guards.numel() == 0) rows.push_back(event.value);
+  }
+  for (const auto& event : system.events) {
+    if (event.guards.numel() > 0) rows.push_back(SX::vec(event.guards));
+  }
+  phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
+
+  const std::vector<SX> arguments{t, x, p, alpha};
+  field = InterpretedFunction("field", arguments, {f});
+  functions = InterpretedFunction("functions", arguments, {phi});
+  output_function = InterpretedFunction("outputs", arguments, {outputs});
+  input_function = InterpretedFunction("inputs", arguments, {input});
+  const SX slope = SX::jacobian(phi, x);
+  const SX rate = SX::jacobian(phi, t);
+  const SX magnitude = SX::mtimes(fabs(slope), fabs(x)) + fabs(rate * t);
+  scales = InterpretedFunction("scales", arguments, {magnitude, SX::sum2(fabs(slope))});
+  find_structure();
+  compile_conditions(system);
+}
+
+void ModelKernel::Implementation::find_structure() {
+  const int n_phi = static_cast<int>(phi.numel());
+  affine.assign(index(n_phi), true);
+  time_only.assign(index(n_phi), true);
+  inner = dependencies(phi, alpha);
+  const auto on_states = dependencies(phi, x);
+  if (n_phi > 0) {
+    const SX arguments = SX::vertcat({x, t});
+    const auto nonlinear = SX::which_depends(phi, arguments, 2, true);
+    for (int j = 0; j < n_phi; ++j) {
+      affine[index(j)] = !nonlinear[index(j)];
+      time_only[index(j)] = on_states[index(j)].empty();
+    }
+  }
+  const auto field_on_alpha = dependencies(f, alpha);
+  depends.assign(index(n_psi), std::vector<bool>(index(n_psi), false));
+  for (int i = 0; i < n_psi; ++i) {
+    for (const int component : on_states[index(i)]) {
+      for (const int j : field_on_alpha[index(component)]) depends[index(i)][index(j)] = true;
+    }
+    for (const int j : inner[index(i)]) depends[index(i)][index(j)] = true;
+  }
+}
+
+void ModelKernel::Implementation::compile_conditions(const model::System& system) {
+  for (const auto& event : system.events) {
+    if (event.guards.numel() == 0) {
+      conditions.emplace_back();
+      continue;
+    }
+    const SX value = system.u.numel() == 0 ? event.value : SX::substitute(event.value, system.u, input);
+    conditions.emplace_back("condition", std::vector<SX>{t, x, p, alpha, event.guard_alpha}, std::vector<SX>{value});
+  }
+}
+
+SX ModelKernel::Implementation::lie_expression(int j, int order) {
+  if (order == 0) return phi_row(j);
+  const auto key = std::make_pair(j, order);
+  if (const auto found = lie_expressions.find(key); found != lie_expressions.end()) return found->second;
+  const SX previous = lie_expression(j, order - 1);
+  const SX next = SX::mtimes(SX::jacobian(previous, x), f) + SX::jacobian(previous, t);
+  lie_expressions[key] = next;
+  return next;
+}
+
+ModelKernel::ModelKernel(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+ModelKernel::ModelKernel(ModelKernel&&) noexcept = default;
+ModelKernel& ModelKernel::operator=(ModelKernel&&) noexcept = default;
+ModelKernel::~ModelKernel() = default;
+
+Expected<ModelKernel> ModelKernel::compile(const model::System& system) {
+  try {
+    return ModelKernel(std::make_unique<Implementation>(system));
+  } catch (const std::exception& error) {
+    return tl::unexpected(Error{ErrorCode::invalid_model,
+                                std::string("the model's expressions cannot be compiled: ") + error.what(), "", {}, {}});
+  }
+}
+
+int ModelKernel::states() const { return static_cast<int>(implementation_->x.numel()); }
+int ModelKernel::switching_functions() const { return implementation_->n_psi; }
+int ModelKernel::event_functions() const { return static_cast<int>(implementation_->phi.numel()); }
+int ModelKernel::outputs() const { return static_cast<int>(implementation_->outputs.numel()); }
+int ModelKernel::controls() const { return static_cast<int>(implementation_->input.numel()); }
+long ModelKernel::field_evaluations() const { return implementation_->field_evaluations; }
+
+void ModelKernel::field(double t, const double* x, const double* alpha, double* xdot) const {
+  auto& self = *implementation_;
+  ++self.field_evaluations;
+  self.field(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{xdot});
+}
+
+void ModelKernel::functions(double t, const double* x, const double* alpha, double* values) const {
+  auto& self = *implementation_;
+  self.functions(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{values});
+}
+
+void ModelKernel::scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const {
+  auto& self = *implementation_;
+  self.scales(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+              std::array<double*, 2>{magnitude, slope});
+}
+
+void ModelKernel::gradient(int function, double t, const double* x, const double* alpha, double* row,
+                           double* rate) const {
+  SALTUS_ASSERT(0 <= function && function < event_functions());
+  auto& self = *implementation_;
+  auto& compiled = self.gradients[function];
+  if (compiled.is_null()) {
+    const SX phi = self.phi_row(function);
+    compiled = InterpretedFunction("gradient", {self.t, self.x, self.p, self.alpha},
+                                   {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
+  }
+  compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
+}
+
+double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {
+  SALTUS_ASSERT(0 <= function && function < event_functions() && order >= 1);
+  auto& self = *implementation_;
+  auto& compiled = self.lie_derivatives[{function, order}];
+  if (compiled.is_null()) {
+    compiled = InterpretedFunction("lie_derivative", {self.t, self.x, self.p, self.alpha},
+                                   {self.lie_expression(function, order)});
+  }
+  double value = 0.0;
+  compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{&value});
+  return value;
+}
+
+void ModelKernel::outputs(double t, const double* x, const double* alpha, double* values) const {
+  auto& self = *implementation_;
+  self.output_function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+                       std::array<double*, 1>{values});
+}
+
+void ModelKernel::inputs(double t, const double* alpha, double* values) const {
+  auto& self = *implementation_;
+  self.input_function(std::array<const double*, 4>{&t, nullptr, self.parameters.data(), alpha},
+                      std::array<double*, 1>{values});
+}
+
+bool ModelKernel::condition(int event, double t, const double* x, const double* alpha,
+                            const double* guard_alpha) const {
+  auto& self = *implementation_;
+  double value = 0.0;
+  self.conditions[index(event)](std::array<const double*, 5>{&t, x, self.parameters.data(), alpha, guard_alpha},
+                                std::array<double*, 1>{&value});
+  return value > 0.5;
+}
+
+bool ModelKernel::is_affine(int function) const { return implementation_->affine[index(function)]; }
+bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[index(function)]; }
+const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[index(function)]; }
+bool ModelKernel::depends(int surface, int alpha) const {
+  return implementation_->depends[index(surface)][index(alpha)];
+}
+
+}  // namespace saltus::evaluation

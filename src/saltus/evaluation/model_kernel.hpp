@@ -1,0 +1,69 @@
+// The model as plain functions of doubles: fields, switching functions, their derivatives. No CasADi in sight.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::evaluation {
+
+/// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons (guards)
+/// of their conditions.
+///
+/// All functions take t (model time), x (n_x), alpha (n_psi, in [0, 1]) and write to the caller's memory; values that are
+/// not finite mark points where the model is undefined. Controls are replaced by their inputs u(t). Not thread safe: one
+/// kernel per thread (the interpreter's work space is inside).
+class ModelKernel {
+ public:
+  /// Compiles the functions that every run needs; derivatives of single functions are compiled when first asked for.
+  /// Fails (invalid_model) only if the symbolic layer refuses an expression.
+  [[nodiscard]] static Expected<ModelKernel> compile(const model::System& system);
+
+  ModelKernel(ModelKernel&&) noexcept;
+  ModelKernel& operator=(ModelKernel&&) noexcept;
+  ~ModelKernel();
+
+  [[nodiscard]] int states() const;
+  [[nodiscard]] int switching_functions() const;
+  [[nodiscard]] int event_functions() const;  ///< psi, event expressions and guards together
+  [[nodiscard]] int outputs() const;
+  [[nodiscard]] int controls() const;
+
+  /// xdot = f(t, x, u(t), p, alpha).
+  void field(double t, const double* x, const double* alpha, double* xdot) const;
+  /// Values of all event functions.
+  void functions(double t, const double* x, const double* alpha, double* values) const;
+  /// Magnitudes from which rounding and tolerances of event functions follow, each over all event functions:
+  ///   magnitude_j = sum_i |d_i phi_j x_i| + |d_t phi_j t|,   slope_j = sum_i |d_i phi_j|.
+  void scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const;
+  /// Gradient row d phi_j / d x (n_x) and d phi_j / d t.
+  void gradient(int function, double t, const double* x, const double* alpha, double* row, double* rate) const;
+  /// L^order phi_j along f(., alpha) with alpha held, e.g. order 1: grad phi . f + d phi/dt. order >= 1.
+  [[nodiscard]] double lie_derivative(int function, int order, double t, const double* x, const double* alpha) const;
+  void outputs(double t, const double* x, const double* alpha, double* values) const;
+  /// u(t) during the simulation.
+  void inputs(double t, const double* alpha, double* values) const;
+  /// Truth (0 or 1) of the condition of [[events]] entry `event` from the steps of its guards.
+  [[nodiscard]] bool condition(int event, double t, const double* x, const double* alpha,
+                               const double* guard_alpha) const;
+
+  /// Whether phi_j is affine in (t, x) for fixed alpha.
+  [[nodiscard]] bool is_affine(int function) const;
+  /// Whether phi_j depends on t only (for fixed alpha).
+  [[nodiscard]] bool is_time_only(int function) const;
+  /// Switching functions whose alpha occurs in phi_j (after inputs are put in), ascending.
+  [[nodiscard]] const std::vector<int>& inner(int function) const;
+  /// Whether the normal component grad psi_i . f + d psi_i/dt depends on alpha_j (structurally).
+  [[nodiscard]] bool depends(int surface, int alpha) const;
+
+  [[nodiscard]] long field_evaluations() const;
+
+ private:
+  struct Implementation;
+  explicit ModelKernel(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace saltus::evaluation
