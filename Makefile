@@ -1,0 +1,31 @@
+# Two commands for everybody; everything else is a CMake preset (CMakePresets.json) or a script (scripts/).
+.DEFAULT_GOAL := help
+.PHONY: help demo test install format clean
+export OPENBLAS_NUM_THREADS := 1
+
+help:
+	@echo "make demo     install what is missing, build, simulate shipped models, write their reports into demo/"
+	@echo "make test     install what is missing, build, run every test (release and sanitizers)"
+	@echo "make install  build and install to PREFIX (default /usr/local)"
+	@echo "make format   clang-format every source"
+	@echo "make clean    remove build/ and demo/"
+
+demo:
+	@scripts/demo.sh
+
+test:
+	@scripts/test.sh
+
+PREFIX ?= /usr/local
+install:
+	@scripts/install.sh
+	cmake --preset release
+	cmake --build --preset demo
+	cmake --build build/release --target saltus_libraries
+	cmake --install build/release --prefix $(PREFIX)
+
+format:
+	@scripts/format.sh
+
+clean:
+	rm -rf build demo

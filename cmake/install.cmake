@@ -1,0 +1,41 @@
+# What `cmake --install` gives: public headers, libraries, the CMake package `saltus`, the tool, the catalogue.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# saltus::saltus: everything through pipeline. io, report and the other modules are targets of their own.
+add_library(saltus_everything INTERFACE)
+target_link_libraries(saltus_everything INTERFACE saltus_pipeline)
+set_target_properties(saltus_everything PROPERTIES EXPORT_NAME saltus)
+add_library(saltus::saltus ALIAS saltus_everything)
+
+get_property(saltus_modules GLOBAL PROPERTY SALTUS_MODULES)
+install(TARGETS saltus_everything ${saltus_modules} EXPORT saltusTargets FILE_SET HEADERS)
+
+set(saltus_package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/saltus)
+install(EXPORT saltusTargets NAMESPACE saltus:: DESTINATION ${saltus_package_folder})
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/saltusConfig.cmake.in ${PROJECT_BINARY_DIR}/saltusConfig.cmake
+  INSTALL_DESTINATION ${saltus_package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/saltusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/saltusConfig.cmake ${PROJECT_BINARY_DIR}/saltusConfigVersion.cmake
+  DESTINATION ${saltus_package_folder})
+
+if(TARGET saltus_tool)
+  # The tool finds its own copy of CasADi, so that it survives the source tree and a move of the prefix.
+  file(RELATIVE_PATH up_from_bin /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR}/saltus)
+  set_target_properties(saltus_tool PROPERTIES INSTALL_RPATH "$ORIGIN/${up_from_bin}")
+  install(TARGETS saltus_tool RUNTIME)
+  install(FILES $<TARGET_SONAME_FILE:casadi::casadi> DESTINATION ${CMAKE_INSTALL_LIBDIR}/saltus)
+endif()
+
+install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus/models
+  FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")
+find_file(SALTUS_PLOTLY_JS plotly/package_data/plotly.min.js PATHS ${SALTUS_SITE_PACKAGES} NO_DEFAULT_PATH
+  DOC "plotly.min.js of PyPI's plotly package")
+if(SALTUS_PLOTLY_JS)
+  install(FILES ${SALTUS_PLOTLY_JS} DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus)
+endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus)
+
+# All that an installation contains, without the tests.
+add_custom_target(saltus_libraries)
+add_dependencies(saltus_libraries ${saltus_modules})

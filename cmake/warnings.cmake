@@ -1,0 +1,16 @@
+# Flags of our own targets: linked as $<BUILD_INTERFACE:saltus_warnings>, so nothing of this is ever exported.
+add_library(saltus_warnings INTERFACE)
+if(SALTUS_DEVELOPER)
+  target_compile_options(saltus_warnings INTERFACE
+    -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor -Werror)
+endif()
+# Results must be bit-identical between interpreted and native model functions: no contraction to fma.
+target_compile_options(saltus_warnings INTERFACE -ffp-contract=off)
+
+# CasADi's headers take ten seconds a file; a second build folder, or the sanitizers after a small change, need not pay.
+if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(SALTUS_CCACHE ccache)
+  if(SALTUS_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${SALTUS_CCACHE})
+  endif()
+endif()

@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# Installs what is missing to build and test Saltus, and only that: Debian packages with apt-get (as root), CasADi and
+# plotly into ./.venv. Safe to repeat; done in a fraction of a second when there is nothing to do.
+#   scripts/install.sh              what `make demo` and `make test` need
+#   scripts/install.sh developer    also clang-format and clang-tidy
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+packages=(g++ cmake make ninja-build libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
+  libexpected-dev libgtest-dev libbenchmark-dev)
+optional_packages=(ccache)
+if [[ "${1:-}" == developer ]]; then
+  packages+=(clang-format clang-tidy)
+fi
+
+say() { printf '%s\n' "$*" >&2; }
+fail() { say "scripts/install.sh: $*"; exit 1; }
+
+is_installed() { [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
+
+# A tool that came from elsewhere than Debian's package is as good as the package.
+is_present() {
+  case "$1" in
+    cmake | make | g++ | ccache | clang-format | clang-tidy) command -v "$1" >/dev/null || is_installed "$1" ;;
+    ninja-build) command -v ninja >/dev/null || is_installed "$1" ;;
+    *) is_installed "$1" ;;
+  esac
+}
+
+missing_of() {
+  local package
+  for package in "$@"; do
+    is_present "$package" || printf '%s\n' "$package"
+  done
+}
+
+python_can_make_venv() { python3 -c 'import ensurepip, venv' 2>/dev/null; }
+
+# Mirrors hiccup: three attempts, a few seconds apart.
+retry() {
+  local attempt
+  for attempt in 1 2 3; do
+    "$@" && return 0
+    say "attempt $attempt of 3 failed: $*"
+    sleep $((attempt * 5))
+  done
+  return 1
+}
+
+install_debian_packages() {
+  local missing=() optional=()
+  mapfile -t missing < <(missing_of "${packages[@]}")
+  mapfile -t optional < <(missing_of "${optional_packages[@]}")
+  command -v python3 >/dev/null || missing+=(python3)
+  python_can_make_venv || missing+=(python3-venv)
+  [[ ${#missing[@]} -eq 0 ]] && return 0
+
+  if [[ $(id -u) -ne 0 ]]; then
+    say "These Debian packages are missing. Install them and repeat:"
+    say "  sudo apt-get update && sudo apt-get install -y --no-install-recommends ${missing[*]}"
+    exit 1
+  fi
+  say "Installing ${missing[*]} ${optional[*]:-} …"
+  export DEBIAN_FRONTEND=noninteractive
+  retry apt-get update -qq || fail "apt-get update failed: is the network there?"
+  retry apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2 || fail "apt-get could not install ${missing[*]}"
+  if [[ ${#optional[@]} -gt 0 ]]; then
+    apt-get install -y -qq --no-install-recommends "${optional[@]}" >&2 || say "going on without ${optional[*]}"
+  fi
+}
+
+# What the build uses of each wheel; RECORD is the last file that pip writes.
+wheel_is_complete() {
+  local name=${1%%==*} version=${1##*==} site
+  for site in .venv/lib/python3*/site-packages; do
+    [[ -f "$site/$name-$version.dist-info/RECORD" ]] || continue
+    case "$name" in
+      casadi) [[ -f "$site/casadi/cmake/casadi-config.cmake" ]] && return 0 ;;
+      plotly) [[ -f "$site/plotly/package_data/plotly.min.js" ]] && return 0 ;;
+      *) return 0 ;;
+    esac
+  done
+  return 1
+}
+
+install_wheels() {
+  local requirement complete=yes
+  while read -r requirement; do
+    wheel_is_complete "$requirement" || complete=no
+  done < <(grep -v '^#' scripts/requirements.txt)
+  [[ $complete == yes ]] && return 0
+
+  say "Installing CasADi and plotly into .venv …"
+  # A virtual environment whose Python has gone (a moved tree, an upgraded system) cannot be repaired, only made anew.
+  .venv/bin/python3 -m pip --version >/dev/null 2>&1 || { rm -rf .venv && python3 -m venv .venv; }
+  retry .venv/bin/python3 -m pip install --quiet --disable-pip-version-check --retries 5 --timeout 60 \
+    --no-deps --requirement scripts/requirements.txt >&2 || fail "pip could not install scripts/requirements.txt"
+}
+
+if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
+  install_debian_packages
+elif ! python_can_make_venv; then
+  fail "this is not Debian: install python3 with venv, and what cmake/dependencies.cmake lists, by hand"
+fi
+install_wheels

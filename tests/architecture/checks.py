@@ -1,0 +1,174 @@
+"""The checks of the architecture test, each a function of a source tree (a folder) and the table of dependencies.
+
+Every check returns its complaints as lines "file:line: what is wrong"; an empty list means that all is well.
+check_architecture.py runs them on the repository, self_test.py on trees that are wrong on purpose.
+"""
+
+import fnmatch
+import re
+from pathlib import Path
+
+ALWAYS_ALLOWED = {"base", "linalg"}
+SOURCE_SUFFIXES = {".cpp", ".hpp", ".h", ".py", ".sh", ".cmake", ".js", ".css"}
+SKIPPED_FOLDERS = {".git", ".venv", "build", "demo", "__pycache__"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+FORBIDDEN_WORD = re.compile(r"\b(" + "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "HA" + "CK")) + r")\b")
+CITATION = re.compile(r"\[([a-z]+(?:[a-z-]*[a-z])?(?:19|20)\d\d[a-z]?)\]")
+
+
+def all_files(root):
+    """Files of the tree that people write, in a fixed order."""
+    for path in sorted(root.rglob("*")):
+        parts = path.relative_to(root).parts
+        skipped = any(part in SKIPPED_FOLDERS or part.startswith("build-") for part in parts)
+        if not skipped and path.is_file():
+            yield path
+
+
+def source_files(root):
+    return [path for path in all_files(root) if path.suffix in SOURCE_SUFFIXES or path.name == "CMakeLists.txt"]
+
+
+def lines_of(path):
+    return path.read_text(encoding="utf-8", errors="replace").splitlines()
+
+
+def module_of(path, root):
+    """Module of a C++ file below src/saltus, None for any other file."""
+    parts = path.relative_to(root).parts
+    inside = len(parts) > 3 and parts[:2] == ("src", "saltus") and path.suffix in (".cpp", ".hpp", ".h")
+    return parts[2] if inside else None
+
+
+def module_includes(root):
+    """(path, line number, module, kind of brackets, included name) of every #include of the modules."""
+    for path in all_files(root):
+        module = module_of(path, root)
+        if module is None:
+            continue
+        for number, line in enumerate(lines_of(path), 1):
+            match = INCLUDE.match(line)
+            if match:
+                yield path, number, module, match.group(1), match.group(2)
+
+
+def check_include_directions(root, table):
+    """(a) #include "saltus/..." only as the table allows; only full paths; no private header of another module."""
+    complaints = []
+    for path, number, module, bracket, name in module_includes(root):
+        place = f"{path.relative_to(root)}:{number}"
+        if module not in table["modules"]:
+            complaints.append(f"{place}: module {module} is not in the table of dependencies")
+            continue
+        if not name.startswith("saltus/"):
+            if bracket == '"':
+                complaints.append(f'{place}: include "{name}" by its full path, "saltus/{module}/{name}"')
+            continue
+        target = name.split("/")[1]
+        allowed = set(table["modules"][module])
+        if target != module and target not in ALWAYS_ALLOWED | allowed and "*" not in allowed:
+            complaints.append(f"{place}: {module} must not include {target} ({name})")
+        if target != module and name.endswith("_internal.hpp"):
+            complaints.append(f"{place}: {name} is private to {target}")
+    return complaints
+
+
+def check_third_party(root, table):
+    """(a) third-party headers only where the table allows them."""
+    complaints = []
+    for path, number, module, _, name in module_includes(root):
+        is_source = path.suffix == ".cpp" or path.name.endswith("_internal.hpp")
+        for rule in table["third_party"]:
+            if not re.fullmatch(rule["header"], name):
+                continue
+            if module in rule["anywhere"] or (is_source and module in rule["sources"]):
+                continue
+            where = "its public headers" if module in rule["sources"] else module
+            complaints.append(f"{path.relative_to(root)}:{number}: {rule['name']} ({name}) has no place in {where}")
+    return complaints
+
+
+def cmake_modules(text):
+    """Module -> linked modules, from the saltus_module(...) calls of a CMakeLists.txt."""
+    keywords = {"LINKS", "PUBLIC_LIBRARIES", "PRIVATE_LIBRARIES", "HEAVY_HEADERS"}
+    modules = {}
+    for arguments in re.findall(r"^saltus_module\(([^)]*)\)", text, re.MULTILINE):
+        words = re.sub(r"#.*", "", arguments).split()
+        links, reading = set(), False
+        for word in words[1:]:
+            if word in keywords:
+                reading = word == "LINKS"
+            elif reading:
+                links.add(word)
+        modules[words[0]] = links
+    return modules
+
+
+def check_cmake_links(root, table):
+    """(b) saltus_module(...) links exactly what the table allows, as far as those modules exist."""
+    found = cmake_modules((root / "CMakeLists.txt").read_text(encoding="utf-8"))
+    complaints = [] if found else ["CMakeLists.txt:1: no saltus_module(...) found"]
+    for module, links in found.items():
+        if module not in table["modules"]:
+            complaints.append(f"CMakeLists.txt:1: module {module} is not in the table of dependencies")
+            continue
+        wanted = set(table["modules"][module]) & set(found)
+        for extra in sorted(links - wanted - ALWAYS_ALLOWED):
+            complaints.append(f"CMakeLists.txt:1: saltus_module({module}) links {extra}, which the table forbids")
+        for absent in sorted(wanted - links):
+            complaints.append(f"CMakeLists.txt:1: saltus_module({module}) does not link {absent}, which the table lists")
+    for folder in sorted((root / "src" / "saltus").iterdir()):
+        if any(folder.glob("*.hpp")) and folder.name not in found and folder.name != "cli":
+            complaints.append(f"CMakeLists.txt:1: src/saltus/{folder.name} is not declared by saltus_module")
+    return complaints
+
+
+def check_file_length(root, table):
+    """(c) no source beyond the hard limit."""
+    limit, exempt = table["files"]["hard_limit_lines"], table["files"]["exempt"]
+    complaints = []
+    for path in source_files(root):
+        name = str(path.relative_to(root))
+        length = len(lines_of(path))
+        if length > limit and not any(fnmatch.fnmatch(name, pattern) for pattern in exempt):
+            complaints.append(f"{name}:{limit}: {length} lines; split it (hard limit {limit})")
+    return complaints
+
+
+def check_forbidden_words(root, _table):
+    """(d) work that is left belongs into an issue, not into the source."""
+    complaints = []
+    for path in source_files(root):
+        for number, line in enumerate(lines_of(path), 1):
+            match = FORBIDDEN_WORD.search(line)
+            if match:
+                complaints.append(f"{path.relative_to(root)}:{number}: {match.group(1)}: open an issue instead")
+    return complaints
+
+
+def check_citations(root, _table):
+    """(e) every [key2024] in a C++ comment is an entry of docs/references.bib."""
+    bibliography = root / "docs" / "references.bib"
+    if not bibliography.exists():
+        return []
+    keys = set(re.findall(r"@\w+\{\s*([^,\s]+)\s*,", bibliography.read_text(encoding="utf-8")))
+    complaints = []
+    for path in source_files(root):
+        if path.suffix not in (".cpp", ".hpp", ".h"):
+            continue
+        for number, line in enumerate(lines_of(path), 1):
+            comment = line.partition("//")[2]
+            for key in CITATION.findall(comment):
+                if key not in keys:
+                    complaints.append(f"{path.relative_to(root)}:{number}: [{key}] is not in docs/references.bib")
+    return complaints
+
+
+ALL_CHECKS = {
+    "include_directions": check_include_directions,
+    "third_party": check_third_party,
+    "cmake_links": check_cmake_links,
+    "file_length": check_file_length,
+    "forbidden_words": check_forbidden_words,
+    "citations": check_citations,
+}

@@ -1,0 +1,153 @@
+"""Shows that every architecture check accepts a good tree and complains about each kind of bad one."""
+
+import tempfile
+import tomllib
+import unittest
+from pathlib import Path
+
+import checks
+
+TABLE = tomllib.loads((Path(__file__).parent / "dependencies.toml").read_text(encoding="utf-8"))
+GOOD = {
+    "CMakeLists.txt": "saltus_module(base)\nsaltus_module(expression LINKS base)\n"
+    "saltus_module(model HEAVY_HEADERS LINKS base expression PUBLIC_LIBRARIES casadi::casadi)\n"
+    "saltus_module(evaluation LINKS base model\n  PRIVATE_LIBRARIES casadi::casadi)\nsaltus_module(ode LINKS base)\n",
+    "src/saltus/base/error.hpp": "#pragma once\n",
+    "src/saltus/ode/stepper.cpp": '#include "saltus/ode/stepper.hpp"\n#include "saltus/base/error.hpp"\n',
+    "src/saltus/model/system.hpp": '#include <casadi/core/sx.hpp>\n#include "saltus/expression/parser.hpp"\n',
+    "src/saltus/evaluation/kernel.cpp": "#include <casadi/core/sx.hpp>\n",
+    "src/saltus/io/reader.cpp": "#include <toml++/toml.h>\n#include <iostream>\n",
+    "src/saltus/io/hidden_internal.hpp": "#include <nlohmann/json.hpp>\n",
+    "src/saltus/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "saltus/report/html.hpp"\n',
+    "tests/unit/ode/stepper_test.cpp": '#include <gtest/gtest.h>\n#include "saltus/report/html.hpp"\n',
+}
+
+
+class Tree:
+    """A small source tree in a temporary folder: the good one with some files added or replaced."""
+
+    def __init__(self, changes):
+        self.changes = changes
+
+    def __enter__(self):
+        self.folder = tempfile.TemporaryDirectory()
+        root = Path(self.folder.name)
+        for name, text in {**GOOD, **self.changes}.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text, encoding="utf-8")
+        return root
+
+    def __exit__(self, *_):
+        self.folder.cleanup()
+
+
+class SelfTest(unittest.TestCase):
+    def complaints(self, check, changes):
+        with Tree(changes) as root:
+            return checks.ALL_CHECKS[check](root, TABLE)
+
+    def assert_complains(self, check, changes, *expected):
+        found = self.complaints(check, changes)
+        self.assertEqual(len(found), 1, found)
+        for text in expected:
+            self.assertIn(text, found[0])
+
+    def test_good_tree_has_no_complaints(self):
+        modules = "".join(f"saltus_module({name})\n" for name in ("io",))
+        with Tree({"CMakeLists.txt": GOOD["CMakeLists.txt"] + modules.replace("io", "io LINKS base expression model")}) as root:
+            for name, check in checks.ALL_CHECKS.items():
+                self.assertEqual(check(root, TABLE), [], name)
+
+    def test_include_against_the_direction(self):
+        bad = '#pragma once\n\n#include "saltus/model/system.hpp"\n'
+        self.assert_complains("include_directions", {"src/saltus/ode/bad.hpp": bad}, "ode/bad.hpp:3", "must not include")
+
+    def test_engines_never_include_each_other(self):
+        bad = '#include "saltus/event_integrator/integrate.hpp"\n'
+        self.assert_complains("include_directions", {"src/saltus/fesd_integrator/a.cpp": bad}, "event_integrator")
+
+    def test_base_includes_nothing(self):
+        bad = '#include "saltus/result/result.hpp"\n'
+        self.assert_complains("include_directions", {"src/saltus/base/a.cpp": bad}, "must not include result")
+
+    def test_relative_include(self):
+        bad = '#include "stepper.hpp"\n'
+        self.assert_complains("include_directions", {"src/saltus/ode/a.cpp": bad}, "full path")
+
+    def test_private_header_of_another_module(self):
+        bad = '#include "saltus/model/hidden_internal.hpp"\n'
+        self.assert_complains("include_directions", {"src/saltus/evaluation/a.cpp": bad}, "private to model")
+
+    def test_module_that_nobody_listed(self):
+        bad = "#include <vector>\n"
+        self.assert_complains("include_directions", {"src/saltus/novel/a.hpp": bad}, "not in the table")
+
+    def test_casadi_in_a_public_header(self):
+        bad = "#include <casadi/core/sx.hpp>\n"
+        self.assert_complains("third_party", {"src/saltus/evaluation/a.hpp": bad}, "CasADi", "public headers")
+
+    def test_casadi_in_the_engine(self):
+        bad = "#include <casadi/casadi.hpp>\n"
+        self.assert_complains("third_party", {"src/saltus/event_integrator/a.cpp": bad}, "CasADi", "event_integrator")
+
+    def test_toml_outside_io(self):
+        for header in ("<toml++/toml.h>", "<toml++/toml.hpp>"):
+            self.assert_complains("third_party", {"src/saltus/model/a.cpp": f"#include {header}\n"}, "toml++")
+
+    def test_json_in_a_public_header(self):
+        bad = "#include <nlohmann/json.hpp>\n"
+        self.assert_complains("third_party", {"src/saltus/report/a.hpp": bad}, "nlohmann-json")
+
+    def test_command_line_outside_the_tool(self):
+        self.assert_complains("third_party", {"src/saltus/pipeline/a.cpp": "#include <CLI/CLI.hpp>\n"}, "CLI11")
+
+    def test_iostream_in_the_numerics(self):
+        self.assert_complains("third_party", {"src/saltus/ode/a.cpp": "#include <iostream>\n"}, "iostream")
+
+    def test_test_framework_in_the_library(self):
+        self.assert_complains("third_party", {"src/saltus/ode/a.cpp": "#include <gtest/gtest.h>\n"}, "GoogleTest")
+
+    def test_link_that_the_table_forbids(self):
+        bad = GOOD["CMakeLists.txt"].replace("saltus_module(ode LINKS base)", "saltus_module(ode LINKS base model)")
+        self.assert_links_complain(bad, "links model, which the table forbids")
+
+    def test_link_that_is_missing(self):
+        bad = GOOD["CMakeLists.txt"].replace("LINKS base model\n", "LINKS base\n")
+        self.assert_links_complain(bad, "does not link model")
+
+    def test_folder_without_target(self):
+        bad = GOOD["CMakeLists.txt"].replace("saltus_module(ode LINKS base)\n", "")
+        with Tree({"CMakeLists.txt": bad, "src/saltus/ode/stepper.hpp": "#pragma once\n"}) as root:
+            self.assertIn("src/saltus/ode is not declared", "\n".join(checks.check_cmake_links(root, TABLE)))
+
+    def assert_links_complain(self, cmake_lists, expected):
+        found = self.complaints("cmake_links", {"CMakeLists.txt": cmake_lists + "saltus_module(io LINKS expression model)"})
+        self.assertEqual(len(found), 1, found)
+        self.assertIn(expected, found[0])
+
+    def test_long_file(self):
+        limit = TABLE["files"]["hard_limit_lines"]
+        self.assertEqual(self.complaints("file_length", {"src/saltus/ode/a.cpp": "int a;\n" * limit}), [])
+        self.assert_complains("file_length", {"src/saltus/ode/a.cpp": "int a;\n" * (limit + 1)}, f"{limit + 1} lines")
+
+    def test_tableaus_may_be_long(self):
+        self.assertEqual(self.complaints("file_length", {"src/saltus/ode/x_tableau.hpp": "int a;\n" * 2000}), [])
+
+    def test_forbidden_words(self):
+        for word in ("TO" + "DO", "FIX" + "ME", "XX" + "X"):
+            bad = f"int a;  // {word}: later\n"
+            self.assert_complains("forbidden_words", {"src/saltus/ode/a.cpp": bad}, "a.cpp:1", "issue")
+
+    def test_unknown_citation(self):
+        bibliography = "@article{hairer1993,\n title = {x}}\n"
+        source = "// As in [hairer1993], but see [nobody2099].\n"
+        changes = {"docs/references.bib": bibliography, "src/saltus/ode/a.cpp": source}
+        self.assert_complains("citations", changes, "[nobody2099]")
+
+    def test_index_is_no_citation(self):
+        changes = {"docs/references.bib": "", "src/saltus/ode/a.cpp": "int b = a[x2024];  // a[i], [0, 1], [max]\n"}
+        self.assertEqual(self.complaints("citations", changes), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

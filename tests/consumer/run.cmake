@@ -1,0 +1,49 @@
+# Run by CTest with -P: install, move, find_package, build, run. Any step that fails ends the test.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "failed (${result}): ${command}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${work_dir}/first ${work_dir}/prefix ${work_dir}/build)
+run(${CMAKE_COMMAND} --install ${binary_dir} --prefix ${work_dir}/first)
+# A package is relocatable if it still works after a move, and says nothing of the machine that built it.
+file(RENAME ${work_dir}/first ${work_dir}/prefix)
+file(GLOB_RECURSE package_files ${work_dir}/prefix/*.cmake)
+if(NOT package_files)
+  message(FATAL_ERROR "the installation holds no CMake package")
+endif()
+foreach(file IN LISTS package_files)
+  file(READ ${file} text)
+  foreach(folder ${source_dir} ${binary_dir} ${work_dir})
+    string(FIND "${text}" "${folder}" position)
+    if(NOT position EQUAL -1)
+      message(FATAL_ERROR "${file} names ${folder}: not relocatable")
+    endif()
+  endforeach()
+endforeach()
+file(GLOB_RECURSE private_headers ${work_dir}/prefix/*_internal.hpp)
+if(private_headers)
+  message(FATAL_ERROR "private headers were installed: ${private_headers}")
+endif()
+
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${work_dir}/build -G ${generator}
+  -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher}
+  "-DCMAKE_PREFIX_PATH=${work_dir}/prefix\;${casadi_dir}" -D wanted_version=${version})
+run(${CMAKE_COMMAND} --build ${work_dir}/build)
+run(${work_dir}/build/consumer)
+message(STATUS "consumer: ${output}")
+
+# The installed tool has no other library path than its own, and finds the catalogue and plotly beside itself.
+if(EXISTS ${work_dir}/prefix/bin/saltus)
+  set(tool ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH --unset=SALTUS_MODELS --unset=SALTUS_PLOTLY
+    ${work_dir}/prefix/bin/saltus)
+  run(${tool} --version)
+  if(NOT output MATCHES "${version}")
+    message(FATAL_ERROR "saltus --version says '${output}', expected ${version}")
+  endif()
+  run(${tool} simulate stick-slip --quiet --out ${work_dir}/build/result.json --report ${work_dir}/build/report.html)
+endif()
