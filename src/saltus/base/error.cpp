@@ -15,8 +15,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
     std::size_t diagonal = row[0];
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const auto same = std::tolower(static_cast<unsigned char>(a[i - 1])) ==
-                        std::tolower(static_cast<unsigned char>(b[j - 1]));
+      const auto same =
+          std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
       const std::size_t replaced = diagonal + (same ? 0 : 1);
       diagonal = row[j];
       row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
@@ -53,7 +53,9 @@ std::vector<std::string> nearest_names(const std::string& name, const std::vecto
     const std::size_t distance = edit_distance(name, candidate);
     // A third of the letters may differ: "mu" ~ "mue" is a slip, "mu" ~ "x0" is not.
     const std::size_t allowed = std::max<std::size_t>(1, std::max(name.size(), candidate.size()) / 3);
-    if (distance <= allowed) ranked.emplace_back(distance, candidate);
+    // Without a letter in common it is another name: "x" suggests nothing about "t".
+    const bool related = distance < std::max(name.size(), candidate.size());
+    if (related && distance <= allowed) ranked.emplace_back(distance, candidate);
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> names;

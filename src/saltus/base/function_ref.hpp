@@ -16,9 +16,10 @@ class FunctionRef<R(Args...)> {
   template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<R, F&, Args...>)
   FunctionRef(F&& callable)  // NOLINT(google-explicit-constructor): lambdas convert at the call site
-      : object_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))),
+      // reinterpret_cast, since static_cast does not take pointers to plain functions to void* and back.
+      : object_(const_cast<void*>(reinterpret_cast<const volatile void*>(std::addressof(callable)))),
         call_([](void* object, Args... args) -> R {
-          return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);
+          return (*reinterpret_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);
         }) {}
 
   R operator()(Args... args) const { return call_(object_, std::forward<Args>(args)...); }

@@ -11,30 +11,42 @@
 namespace saltus::expression {
 
 /// Parses one expression.
-/// Precedence, loosest first: or, and, not, comparisons (non-associative), + -, * /, unary minus, ^ (right associative).
+/// Precedence, loosest first: or, and, not, comparisons (non-associative), + -, * /, signs, ^ (right associative; 2^-1
+/// is allowed). Numbers and conditions are not told apart here, the model does that.
 /// Checks names of functions and their number of arguments; does not know which names exist otherwise.
-/// @param text   the expression
-/// @param start  position of its first character in its file; offsets within a line add to the column
+/// @param text   the expression; may run over several lines
+/// @param start  position of its first character in its file, unknown (0) counts as 1. Columns count bytes; only the
+///               first line of the text is offset by the column
+/// @param extra_functions  names of tables of the model, which are functions of one argument
 /// @return the tree, or a parse_failure / unknown_name with position, what was expected and a remedy.
-///         Nesting deeper than 200 levels and texts beyond 64 KiB are refused.
-[[nodiscard]] Expected<NodePtr> parse(std::string_view text, const SourceLocation& start);
+///         Refused are texts beyond 64 KiB, nesting deeper than 200 levels and trees higher than 1000 nodes (a sum of
+///         more than 1000 terms without parentheses), so that recursion over a tree is safe.
+[[nodiscard]] Expected<NodePtr> parse(std::string_view text, const SourceLocation& start,
+                                      const std::vector<std::string>& extra_functions = {});
 
-/// A number as a tree, e.g. for a bare number in a model file.
+/// A number as a tree, e.g. for a bare number in a model file; may be negative, as it may not in a parsed tree.
 [[nodiscard]] NodePtr number(double value, const SourceLocation& location);
 
-/// The text of a tree without spaces, with the parentheses that were written (used to name switching functions).
+/// The text of a tree without spaces (but around the words and, or, not), with the parentheses that were written and
+/// those that are needed, and the shortest numbers that read back the same. Names switching functions.
+/// Parsing it gives an equal tree, if the tree was parsed.
 [[nodiscard]] std::string to_text(const Node& node);
 
 /// Names (not functions) that occur in the tree, each once, in order of appearance.
 [[nodiscard]] std::vector<std::string> names_in(const Node& node);
 
-/// All functions of the language: name and number of arguments. `t`, `pi` and these names are reserved.
-struct FunctionSignature { std::string_view name; int arguments; };
+struct FunctionSignature {
+  std::string_view name;
+  int arguments;
+};
+
+/// All functions of the language.
 [[nodiscard]] const std::vector<FunctionSignature>& functions();
 
-/// Whether `name` may be declared by a user: letters, digits, underscore, no leading digit, not reserved
-/// (t, pi, and, or, not, function names, otherwise).
+/// Whether the language keeps `name` for itself: t, pi, and, or, not, otherwise and the names of functions.
 [[nodiscard]] bool is_reserved(std::string_view name);
+
+/// Whether `name` consists of letters, digits and underscores (ASCII) without a leading digit.
 [[nodiscard]] bool is_identifier(std::string_view name);
 
 }  // namespace saltus::expression

@@ -16,20 +16,43 @@ using NodePtr = std::shared_ptr<const Node>;
 
 enum class UnaryOperator { minus, plus, logical_not };
 enum class BinaryOperator {
-  add, subtract, multiply, divide, power,
-  less, less_equal, greater, greater_equal, equal, not_equal,
-  logical_and, logical_or,
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,
+  less,
+  less_equal,
+  greater,
+  greater_equal,
+  equal,
+  not_equal,
+  logical_and,
+  logical_or,
 };
 
-struct Number { double value = 0.0; };
-struct Name { std::string name; };  ///< states, parameters, definitions, `t`, `pi`, `otherwise` …: resolved by the model
-struct Unary { UnaryOperator op; NodePtr operand; };
-struct Binary { BinaryOperator op; NodePtr left, right; };
-struct Call { std::string function; std::vector<NodePtr> arguments; };
+struct Number {
+  double value = 0.0;
+};
+struct Name {
+  std::string name;
+};  ///< states, parameters, definitions, `t`, `pi`, `otherwise` …: resolved by the model
+struct Unary {
+  UnaryOperator op;
+  NodePtr operand;
+};
+struct Binary {
+  BinaryOperator op;
+  NodePtr left, right;
+};
+struct Call {
+  std::string function;
+  std::vector<NodePtr> arguments;
+};
 
 struct Node {
   std::variant<Number, Name, Unary, Binary, Call> value;
-  SourceLocation location;   ///< of the first character of this (sub)expression's own token
+  SourceLocation location;     ///< of the first character of this (sub)expression's own token
   bool parenthesised = false;  ///< written inside its own pair of parentheses
 };
 

@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "saltus/expression/grammar_internal.hpp"
+#include "saltus/expression/parser.hpp"
+
+namespace saltus::expression {
+namespace {
+
+template <class... Fs>
+struct overloaded : Fs... {
+  using Fs::operator()...;
+};
+template <class... Fs>
+overloaded(Fs...) -> overloaded<Fs...>;  // still needed by clang 14
+
+Precedence precedence_of(const Node& node) {
+  if (node.parenthesised) return Precedence::primary;
+  return std::visit(overloaded{
+                        // Only a tree made by number() can hold a negative one.
+                        [](const Number& x) { return std::signbit(x.value) ? Precedence::sign : Precedence::primary; },
+                        [](const Name&) { return Precedence::primary; },
+                        [](const Unary& x) {
+                          return x.op == UnaryOperator::logical_not ? Precedence::logical_not : Precedence::sign;
+                        },
+                        [](const Binary& x) { return grammar_of(x.op).precedence; },
+                        [](const Call&) { return Precedence::primary; },
+                    },
+                    node.value);
+}
+
+/// Shortest decimal text that reads back as the same double; 1e-9, not 1e-09.
+std::string number_text(double value) {
+  std::string text = fmt::format("{}", value);
+  const auto exponent = text.find('e');
+  if (exponent == std::string::npos) return text;
+  const bool negative = text[exponent + 1] == '-';
+  const auto digits = text.find_first_not_of("+-0", exponent + 1);
+  return text.substr(0, exponent) + (negative ? "e-" : "e") + text.substr(digits);
+}
+
+class Writer {
+ public:
+  /// Appends the node, in parentheses if they were written or if `loosest` binds tighter than the node does.
+  void write(const Node& node, Precedence loosest) {
+    const bool enclosed = node.parenthesised || precedence_of(node) < loosest;
+    if (enclosed) text_ += '(';
+    std::visit([this](const auto& value) { write_value(value); }, node.value);
+    if (enclosed) text_ += ')';
+  }
+
+  std::string take() { return std::move(text_); }
+
+ private:
+  void write_value(const Number& number) { text_ += number_text(number.value); }
+
+  void write_value(const Name& name) { text_ += name.name; }
+
+  void write_value(const Unary& unary) {
+    switch (unary.op) {
+      case UnaryOperator::minus:
+        text_ += '-';
+        return write(*unary.operand, Precedence::sign);
+      case UnaryOperator::plus:
+        text_ += '+';
+        return write(*unary.operand, Precedence::sign);
+      case UnaryOperator::logical_not:
+        text_ += "not ";
+        return write(*unary.operand, Precedence::logical_not);
+    }
+  }
+
+  void write_value(const Binary& binary) {
+    const auto& grammar = grammar_of(binary.op);
+    write(*binary.left, left_operand(grammar));
+    const bool is_word = grammar.precedence <= Precedence::logical_and;
+    text_ += is_word ? fmt::format(" {} ", grammar.text) : std::string(grammar.text);
+    // A sign needs no parentheses on the right, however tight the operator: 2^-1.
+    const bool signed_right = precedence_of(*binary.right) == Precedence::sign;
+    write(*binary.right, signed_right ? Precedence::sign : right_operand(grammar));
+  }
+
+  void write_value(const Call& call) {
+    text_ += call.function + '(';
+    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+      if (i > 0) text_ += ',';
+      write(*call.arguments[i], Precedence::logical_or);
+    }
+    text_ += ')';
+  }
+
+  std::string text_;
+};
+
+void collect_names(const Node& node, std::vector<std::string>& names) {
+  std::visit(overloaded{
+                 [](const Number&) {},
+                 [&](const Name& name) {
+                   if (std::find(names.begin(), names.end(), name.name) == names.end()) names.push_back(name.name);
+                 },
+                 [&](const Unary& unary) { collect_names(*unary.operand, names); },
+                 [&](const Binary& binary) {
+                   collect_names(*binary.left, names);
+                   collect_names(*binary.right, names);
+                 },
+                 [&](const Call& call) {
+                   for (const auto& argument : call.arguments) collect_names(*argument, names);
+                 },
+             },
+             node.value);
+}
+
+}  // namespace
+
+std::string to_text(const Node& node) {
+  Writer writer;
+  writer.write(node, Precedence::logical_or);
+  return writer.take();
+}
+
+std::vector<std::string> names_in(const Node& node) {
+  std::vector<std::string> names;
+  collect_names(node, names);
+  return names;
+}
+
+NodePtr number(double value, const SourceLocation& location) {
+  return std::make_shared<const Node>(Node{Number{value}, location, false});
+}
+
+}  // namespace saltus::expression

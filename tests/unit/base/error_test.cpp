@@ -1,0 +1,51 @@
+#include "saltus/base/error.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saltus {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(ErrorText, place_message_trail_and_remedy) {
+  Error error{ErrorCode::parse_failure, "missing ')'", "close it", {"model.toml", 12, 5}, {}};
+  error = with_context(with_context(std::move(error), "in dynamics of 'v'"), "in table [dynamics]");
+  EXPECT_EQ(to_text(error),
+            "model.toml:12:5: error: missing ')'\n  in dynamics of 'v'\n  in table [dynamics]\n  close it");
+}
+
+TEST(ErrorText, leaves_out_what_is_unknown) {
+  EXPECT_EQ(to_text(Error{ErrorCode::io_failure, "no such file", "", {"a.toml", 0, 0}, {}}),
+            "a.toml: error: no such file");
+  EXPECT_EQ(to_text(Error{ErrorCode::io_failure, "bad", "", {"a.toml", 3, 0}, {}}), "a.toml:3: error: bad");
+  EXPECT_EQ(to_text(Error{ErrorCode::invalid_option, "rtol = -1", "need rtol > 0", {}, {}}),
+            "error: rtol = -1\n  need rtol > 0");
+}
+
+TEST(NearestNames, slips_are_near) {
+  EXPECT_EQ(nearest_names("mu", {"x0", "mue", "g"}), Names{"mue"});
+  EXPECT_EQ(nearest_names("tolernace", {"tolerance", "until"}), Names{"tolerance"});
+  EXPECT_EQ(nearest_names("Spring", {"spring", "string"}), (Names{"spring", "string"}));
+  EXPECT_EQ(nearest_names("X", {"x"}), Names{"x"});
+}
+
+TEST(NearestNames, others_are_not) {
+  EXPECT_TRUE(nearest_names("x", {"t", "mu"}).empty());
+  EXPECT_TRUE(nearest_names("position", {"velocity"}).empty());
+  EXPECT_TRUE(nearest_names("", {"a", "ab"}).empty());
+  EXPECT_TRUE(nearest_names("x", {}).empty());
+}
+
+TEST(NearestNames, at_most_three_best_first_ties_in_given_order) {
+  EXPECT_EQ(nearest_names("state1", {"stage1", "state2", "state1", "state3", "state4"}),
+            (Names{"state1", "stage1", "state2"}));
+}
+
+TEST(Suggest, wording) {
+  EXPECT_EQ(suggest("mu", {"mue", "nu"}), "did you mean 'mue' or 'nu'?");
+  EXPECT_EQ(suggest("foo", {"x", "velocity"}), "known: x, velocity");
+  EXPECT_EQ(suggest("foo", {}), "");
+}
+
+}  // namespace
+}  // namespace saltus
