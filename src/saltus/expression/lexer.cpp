@@ -131,11 +131,13 @@ class Lexer {
       if (digits > 0) {
         size += 1 + sign + digits;
       } else if (sign > 0 || !is_name_character(at(size + 1))) {  // else 2exp(x): a missing operator
-        return {0, "the exponent has no digits", "write 1e3 for a power of ten, exp(1) for Euler's number"};
+        return {size + 1 + sign, "the exponent has no digits",
+                "write 1e3 for a power of ten, exp(1) for Euler's number"};
       }
     }
-    if (at(size) == '.') return {0, "a decimal point too many", "a number has one decimal point, an exponent has none"};
-    if (at(size) == '_' && is_digit(at(size + 1))) return {0, "digits are not grouped", "write it without '_'"};
+    if (at(size) == '.')
+      return {size, "a decimal point too many", "a number has one decimal point, an exponent has none"};
+    if (at(size) == '_' && is_digit(at(size + 1))) return {size, "digits are not grouped", "write it without '_'"};
     return {size, "", ""};
   }
 
@@ -153,8 +155,7 @@ class Lexer {
       add(TokenKind::number, scan.size).value = value;
       return;
     }
-    const auto whole = run_length(0, [](char c) { return is_name_character(c) || c == '.'; });
-    const auto shown = std::max(whole, scan.size);
+    const auto shown = scan.size + run_length(scan.size, [](char c) { return is_name_character(c) || c == '.'; });
     refuse(shown, fmt::format("malformed number {}: {}", quoted(rest().substr(0, shown)), scan.message), scan.remedy);
   }
 
