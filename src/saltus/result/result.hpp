@@ -18,6 +18,8 @@ using Mode = std::vector<int>;
 
 enum class EventKind { start, crossing, enter_sliding, leave_sliding, change_sliding, accumulation, jump, user };
 [[nodiscard]] std::string_view name(EventKind kind);
+/// The inverse of name; nullopt if there is none of that name.
+[[nodiscard]] std::optional<EventKind> event_kind_named(std::string_view name);
 
 /// The kind of a switch from the components of the modes (interface.md section 3).
 [[nodiscard]] EventKind kind_of_switch(const Mode& before, const Mode& after);

@@ -1,0 +1,381 @@
+#include "saltus/pipeline/option_fields.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace saltus::pipeline {
+namespace {
+
+using result::OptionRecord;
+using result::OptionValue;
+
+Error out_of_range(std::string_view expected, const OptionValue& found) {
+  return {ErrorCode::invalid_option, fmt::format("expected {}, found {}", expected, to_text(found)), "", {}, {}};
+}
+
+Error later(std::string_view what, std::string_view instead) {
+  return {ErrorCode::not_available,
+          fmt::format("{} is not available in this version; a later one brings it", what),
+          fmt::format("use {}", instead),
+          {},
+          {}};
+}
+
+/// The number a value states, whether it was written 1 or 1.0; NaN if it is none.
+double number_in(const OptionValue& value) {
+  if (const auto* real = std::get_if<double>(&value)) return *real;
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+enum class Range { finite, positive, not_negative };
+
+constexpr std::string_view text(Range range) {
+  switch (range) {
+    case Range::finite:
+      return "a finite number";
+    case Range::positive:
+      return "a finite number > 0";
+    case Range::not_negative:
+      return "a finite number >= 0";
+  }
+  __builtin_unreachable();
+}
+
+Expected<double> number_within(Range range, const OptionValue& value) {
+  const double number = number_in(value);
+  const bool fits = std::isfinite(number) && (range != Range::positive || number > 0.0) &&
+                    (range != Range::not_negative || number >= 0.0);
+  if (!fits) return tl::unexpected(out_of_range(text(range), value));
+  return number;
+}
+
+// Access to a member, for reading and writing alike: the only place that names it.
+constexpr auto until = [](auto& o) -> auto& { return o.until; };
+constexpr auto from = [](auto& o) -> auto& { return o.from; };
+constexpr auto method = [](auto& o) -> auto& { return o.method; };
+constexpr auto rtol = [](auto& o) -> auto& { return o.rtol; };
+constexpr auto atol = [](auto& o) -> auto& { return o.atol; };
+constexpr auto native = [](auto& o) -> auto& { return o.native; };
+constexpr auto max_steps = [](auto& o) -> auto& { return o.max_steps; };
+constexpr auto max_events = [](auto& o) -> auto& { return o.max_events; };
+constexpr auto integrator = [](auto& o) -> auto& { return o.event.integrator; };
+constexpr auto selection = [](auto& o) -> auto& { return o.event.selection; };
+
+template <auto access, Range range>
+Expected<void> set_number(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  return number_within(range, value).map([&](double number) { access(options) = number; });
+}
+
+template <auto access>
+void record_number(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, access(options));
+}
+
+void record_until(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (options.until) record.emplace_back(key, *options.until);
+}
+
+template <auto access>
+Expected<void> set_count(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  // Written 1e6 it is a real number, and still a count.
+  const double number = number_in(value);
+  if (!(number >= 1.0 && number <= 9e15 && number == std::floor(number))) {
+    return tl::unexpected(out_of_range("a whole number >= 1", value));
+  }
+  access(options) = static_cast<long>(number);
+  return {};
+}
+
+template <auto access>
+void record_count(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, std::int64_t{access(options)});
+}
+
+/// The spellings of an enum in the order of its enumerators; the first `available` of them run in this version.
+template <class Enum, std::size_t n>
+struct Choices {
+  std::string_view what;
+  std::array<std::string_view, n> names;
+  std::array<Enum, n> values;
+  std::size_t available;
+};
+
+constexpr Choices<Method, 4> methods{"method",
+                                     {"event", "fesd", "timestepping", "smoothed"},
+                                     {Method::event, Method::fesd, Method::timestepping, Method::smoothed},
+                                     1};
+constexpr Choices<Integrator, 3> integrators{
+    "integrator", {"dopri5", "dop853", "radau5"}, {Integrator::dopri5, Integrator::dop853, Integrator::radau5}, 2};
+constexpr Choices<Native, 3> natives{
+    "native =", {"auto", "off", "on"}, {Native::automatic, Native::off, Native::on}, 2};
+constexpr Choices<Selection, 4> selections{
+    "selection",
+    {"active_dominant", "passive_dominant", "scaled", "report"},
+    {Selection::active_dominant, Selection::passive_dominant, Selection::scaled, Selection::report},
+    1};
+
+template <auto access, const auto& choices>
+Expected<void> set_choice(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  const std::vector<std::string> known(choices.names.begin(), choices.names.end());
+  const auto* word = std::get_if<std::string>(&value);
+  if (word == nullptr) return tl::unexpected(out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value));
+  const auto found = std::find(known.begin(), known.end(), *word);
+  if (found == known.end()) {
+    auto error = out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value);
+    if (!nearest_names(*word, known).empty()) error.remedy = suggest(*word, known);
+    return tl::unexpected(std::move(error));
+  }
+  const auto position = static_cast<std::size_t>(found - known.begin());
+  if (position >= choices.available) {
+    const std::vector<std::string> usable(known.begin(), known.begin() + static_cast<long>(choices.available));
+    return tl::unexpected(
+        later(fmt::format("{} \"{}\"", choices.what, *word), fmt::format("{}", fmt::join(usable, " or "))));
+  }
+  access(options) = choices.values[position];
+  return {};
+}
+
+template <auto access, const auto& choices>
+void record_choice(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  const auto* position = std::find(choices.values.begin(), choices.values.end(), access(options));
+  record.emplace_back(key, std::string(choices.names[static_cast<std::size_t>(position - choices.values.begin())]));
+}
+
+Expected<void> set_output_word(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  if (const auto* word = std::get_if<std::string>(&value); word == nullptr || *word != "steps") {
+    return tl::unexpected(out_of_range(
+        "\"steps\", { every = a number > 0 }, { points = a whole number >= 2 } or { times = [increasing numbers] }",
+        value));
+  }
+  options.output = EveryStep{};
+  return {};
+}
+
+Expected<void> set_output_every(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  return number_within(Range::positive, value).map([&](double interval) { options.output = EveryInterval{interval}; });
+}
+
+Expected<void> set_output_points(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  const double number = number_in(value);
+  if (!(number >= 2.0 && number <= 1e9 && number == std::floor(number))) {
+    return tl::unexpected(out_of_range("a whole number from 2 to 1000000000", value));
+  }
+  options.output = NumberOfPoints{static_cast<int>(number)};
+  return {};
+}
+
+Expected<void> set_output_times(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  constexpr std::string_view expected = "a list of finite, increasing numbers";
+  const auto* times = std::get_if<std::vector<double>>(&value);
+  if (times == nullptr || times->empty()) return tl::unexpected(out_of_range(expected, value));
+  for (std::size_t i = 0; i < times->size(); ++i) {
+    const double time = (*times)[i];
+    if (std::isfinite(time) && (i == 0 || (*times)[i - 1] < time)) continue;
+    return tl::unexpected(Error{ErrorCode::invalid_option,
+                                fmt::format("expected {}, found {} at place {}{}", expected, time, i + 1,
+                                            i == 0 ? "" : fmt::format(", after {}", (*times)[i - 1])),
+                                "sort the times and write each once",
+                                {},
+                                {}});
+  }
+  options.output = AtTimes{*times};
+  return {};
+}
+
+template <class Grid>
+void record_output(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  const auto* grid = std::get_if<Grid>(&options.output);
+  if (grid == nullptr) return;
+  if constexpr (std::is_same_v<Grid, EveryStep>) record.emplace_back(key, std::string("steps"));
+  if constexpr (std::is_same_v<Grid, EveryInterval>) record.emplace_back(key, grid->interval);
+  if constexpr (std::is_same_v<Grid, NumberOfPoints>) record.emplace_back(key, std::int64_t{grid->points});
+  if constexpr (std::is_same_v<Grid, AtTimes>) record.emplace_back(key, grid->times);
+}
+
+template <class Value>
+void put(std::vector<std::pair<std::string, Value>>& entries, std::string_view name, Value value) {
+  const auto same = [&](const auto& entry) { return entry.first == name; };
+  const auto found = std::find_if(entries.begin(), entries.end(), same);
+  if (found == entries.end()) {
+    entries.emplace_back(name, value);
+  } else {
+    found->second = value;
+  }
+}
+
+Expected<void> set_initial_mode(SimulateOptions& options, std::string_view name, const OptionValue& value) {
+  const double number = number_in(value);
+  if (number != -1.0 && number != 0.0 && number != 1.0) return tl::unexpected(out_of_range("-1, 0 or 1", value));
+  put(options.initial_mode, name, static_cast<int>(number));
+  return {};
+}
+
+Expected<void> set_scaling(SimulateOptions& options, std::string_view name, const OptionValue& value) {
+  return number_within(Range::positive, value).map([&](double kappa) { put(options.event.scaling, name, kappa); });
+}
+
+void record_initial_mode(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  const auto prefix = key.substr(0, key.size() - 1);
+  for (const auto& [name, sign] : options.initial_mode) {
+    record.emplace_back(fmt::format("{}{}", prefix, name), std::int64_t{sign});
+  }
+}
+
+void record_scaling(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  const auto prefix = key.substr(0, key.size() - 1);
+  for (const auto& [name, kappa] : options.event.scaling) record.emplace_back(fmt::format("{}{}", prefix, name), kappa);
+}
+
+Expected<void> set_max_step(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  if (const auto* word = std::get_if<std::string>(&value); word != nullptr && *word == "none") {
+    options.event.max_step.reset();
+    return {};
+  }
+  const auto step = number_within(Range::positive, value);
+  if (!step) return tl::unexpected(out_of_range("a finite number > 0 or \"none\"", value));
+  options.event.max_step = *step;
+  return {};
+}
+
+void record_max_step(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (options.event.max_step) {
+    record.emplace_back(key, *options.event.max_step);
+  } else {
+    record.emplace_back(key, std::string("none"));
+  }
+}
+
+Expected<void> set_branches(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  const auto* word = std::get_if<std::string>(&value);
+  const auto* count = std::get_if<std::int64_t>(&value);
+  if ((word != nullptr && *word == "all") || (count != nullptr && *count >= 1)) {
+    return tl::unexpected(later("following other branches", "\"report\", which lists them in every event"));
+  }
+  if (word == nullptr || *word != "report") {
+    return tl::unexpected(out_of_range("\"report\", \"all\" or a whole number >= 1", value));
+  }
+  options.event.branches = *word;
+  return {};
+}
+
+void record_branches(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, options.event.branches);
+}
+
+constexpr std::array fields{
+    OptionField{"until", "a finite number, not `from`", "End of the simulation; there is no default.",
+                set_number<until, Range::finite>, record_until},
+    OptionField{"from", "a finite number", "Start of the simulation.", set_number<from, Range::finite>,
+                record_number<from>},
+    OptionField{"method", "event", "How to integrate; fesd, timestepping and smoothed come with later versions.",
+                set_choice<method, methods>, record_choice<method, methods>},
+    OptionField{"rtol", "a finite number > 0", "Relative error tolerance of a step, per component of the state.",
+                set_number<rtol, Range::positive>, record_number<rtol>},
+    OptionField{"atol", "a finite number >= 0", "Absolute error tolerance of a step, in the units of the states.",
+                set_number<atol, Range::not_negative>, record_number<atol>},
+    OptionField{"output", "steps", "Rows of the trajectory: every accepted step.", set_output_word,
+                record_output<EveryStep>},
+    OptionField{"output.every", "a finite number > 0", "Instead: a row every so often, counted from `from`.",
+                set_output_every, record_output<EveryInterval>},
+    OptionField{"output.points", "a whole number >= 2", "Instead: so many rows, both ends among them.",
+                set_output_points, record_output<NumberOfPoints>},
+    OptionField{"output.times", "increasing numbers", "Instead: rows at these times, all within the span.",
+                set_output_times, record_output<AtTimes>},
+    OptionField{"native", "auto, off", "Compiled model functions; on comes with a later version, both run interpreted.",
+                set_choice<native, natives>, record_choice<native, natives>},
+    OptionField{"max_steps", "a whole number >= 1", "Stop with iteration_limit after so many steps.",
+                set_count<max_steps>, record_count<max_steps>},
+    OptionField{"max_events", "a whole number >= 1", "Stop with iteration_limit after so many events.",
+                set_count<max_events>, record_count<max_events>},
+    OptionField{"initial_mode.*", "-1, 0, 1", "Force the side of a switching function at the start (0: slide on it).",
+                set_initial_mode, record_initial_mode},
+    OptionField{"event.integrator", "dopri5, dop853", "Runge-Kutta pair of order 5 or 8; radau5 comes later.",
+                set_choice<integrator, integrators>, record_choice<integrator, integrators>},
+    OptionField{"event.max_step", "none, or a number > 0", "Longest step.", set_max_step, record_max_step},
+    OptionField{"event.selection", "active_dominant",
+                "What decides where several motions are possible; the other rules come with later versions.",
+                set_choice<selection, selections>, record_choice<selection, selections>},
+    OptionField{"event.scaling.*", "a finite number > 0", "Scale of a surface for selection = \"scaled\".", set_scaling,
+                record_scaling},
+    OptionField{"event.branches", "report", "List other admissible motions; following them comes with a later version.",
+                set_branches, record_branches},
+};
+
+Error unknown_key(std::string_view key) {
+  const auto last = std::string(key.substr(key.rfind('.') + 1));
+  Error error{ErrorCode::unknown_name, fmt::format("unknown option simulate.{}", key), "", {}, {}};
+  std::vector<std::string> nearest = nearest_names(std::string(key), simulate_keys());
+  for (const auto& known : simulate_keys()) {  // the right name in the wrong table: simulate.integrator
+    const auto known_last = known.substr(known.rfind('.') + 1);
+    if (known_last == last && std::find(nearest.begin(), nearest.end(), known) == nearest.end())
+      nearest.push_back(known);
+  }
+  error.remedy = nearest.empty() ? suggest(std::string(key), simulate_keys())
+                                 : fmt::format("did you mean 'simulate.{}'?", fmt::join(nearest, "' or 'simulate."));
+  return error;
+}
+
+}  // namespace
+
+std::span<const OptionField> simulate_fields() { return fields; }
+
+std::vector<std::string> simulate_keys() {
+  std::vector<std::string> keys;
+  for (const auto& field : fields) {
+    if (!field.key.ends_with('*')) keys.emplace_back(field.key);
+  }
+  return keys;
+}
+
+Expected<SimulateOptions> with_value(SimulateOptions options, std::string_view key, const OptionValue& value) {
+  for (const auto& field : fields) {
+    const bool open = field.key.ends_with('*');
+    const auto prefix = field.key.substr(0, field.key.size() - (open ? 1 : 0));
+    const bool fits = open ? key.size() > prefix.size() && key.starts_with(prefix) : key == prefix;
+    if (!fits) continue;
+    return field.set(options, key.substr(prefix.size()), value).map([&] { return std::move(options); });
+  }
+  return tl::unexpected(unknown_key(key));
+}
+
+OptionRecord option_record(const SimulateOptions& options) {
+  OptionRecord record;
+  for (const auto& field : fields) field.record(options, fmt::format("simulate.{}", field.key), record);
+  return record;
+}
+
+std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
+  const auto problem = [](std::string key, std::string message, std::string remedy) {
+    return OptionProblem{std::move(key), {ErrorCode::invalid_option, std::move(message), std::move(remedy), {}, {}}};
+  };
+  if (!options.until) {
+    return problem("until", "no end time", "write until = T in [simulate], or give --until T on the command line");
+  }
+  if (*options.until == options.from) {
+    return problem("until", fmt::format("until equals from ({})", options.from),
+                   "nothing to simulate: move one of them");
+  }
+  if (!(options.rtol + options.atol > 0.0)) {
+    return problem("atol", "rtol and atol are both 0", "one of them must be positive, e.g. rtol = 1e-8");
+  }
+  if (const auto* grid = std::get_if<AtTimes>(&options.output)) {
+    const auto [low, high] = std::minmax(options.from, *options.until);
+    for (const double time : grid->times) {
+      if (low <= time && time <= high) continue;
+      return problem(
+          "output.times",
+          fmt::format("output time {} lies outside the simulation from {} to {}", time, options.from, *options.until),
+          "leave it out, or move `from` or `until`");
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace saltus::pipeline

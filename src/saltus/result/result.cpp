@@ -1,0 +1,55 @@
+#include "saltus/result/result.hpp"
+
+#include <cstddef>
+
+#include "saltus/base/contracts.hpp"
+
+namespace saltus::result {
+
+std::string_view name(EventKind kind) {
+  switch (kind) {
+    case EventKind::start:
+      return "start";
+    case EventKind::crossing:
+      return "crossing";
+    case EventKind::enter_sliding:
+      return "enter_sliding";
+    case EventKind::leave_sliding:
+      return "leave_sliding";
+    case EventKind::change_sliding:
+      return "change_sliding";
+    case EventKind::accumulation:
+      return "accumulation";
+    case EventKind::jump:
+      return "jump";
+    case EventKind::user:
+      return "user";
+  }
+  __builtin_unreachable();
+}
+
+std::optional<EventKind> event_kind_named(std::string_view name_of_one) {
+  constexpr auto last = static_cast<int>(EventKind::user);
+  for (int i = 0; i <= last; ++i) {
+    const auto kind = static_cast<EventKind>(i);
+    if (name(kind) == name_of_one) return kind;
+  }
+  return std::nullopt;
+}
+
+EventKind kind_of_switch(const Mode& before, const Mode& after) {
+  SALTUS_ASSERT(before.size() == after.size());
+  int entered = 0;
+  int left = 0;
+  for (std::size_t j = 0; j < before.size(); ++j) {
+    if (before[j] == after[j]) continue;
+    if (after[j] == 0) ++entered;
+    if (before[j] == 0) ++left;
+  }
+  if (entered > 0 && left > 0) return EventKind::change_sliding;
+  if (entered > 0) return EventKind::enter_sliding;
+  if (left > 0) return EventKind::leave_sliding;
+  return EventKind::crossing;
+}
+
+}  // namespace saltus::result
