@@ -1,0 +1,241 @@
+#include "saltus/event_integrator/event_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace saltus::event_integrator {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr int deepest = 10;  // a step is cut into at most 2^10 pieces before it is shortened instead
+
+int sign_of(double value) { return value > 0.0 ? 1 : value < 0.0 ? -1 : 0; }
+
+/// Size of the last two Chebyshev coefficients of an interpolant: what the next ones may be expected to be.
+double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
+  constexpr int n = ode::event_degree;
+  double tail = 0.0;
+  for (const int degree : {n - 1, n}) {
+    double sum = 0.0;
+    for (int k = 0; k <= n; ++k) {
+      const double weight = (k == 0 || k == n) ? 0.5 : 1.0;
+      sum += weight * values[at(k)] * std::cos(std::numbers::pi * degree * (n - k) / n);
+    }
+    tail += std::abs(sum) * (degree == n ? 1.0 : 2.0) / n;
+  }
+  return tail;
+}
+
+/// d phi / d theta of an interpolant by a central difference: starts a Newton correction, no more.
+double slope_at(const ode::BernsteinCoefficients& coefficients, double theta) {
+  constexpr double width = 1e-4;
+  const double below = std::max(0.0, theta - width);
+  const double above = std::min(1.0, theta + width);
+  return (ode::evaluate(coefficients, above) - ode::evaluate(coefficients, below)) / (above - below);
+}
+
+}  // namespace
+
+EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, const ode::Tolerances& tolerances)
+    : kernel_(kernel), field_(field), tolerances_(tolerances) {
+  const auto n_phi = at(kernel.event_functions());
+  for (auto* vector : {&phi_, &phi_below_, &phi_above_, &magnitude_, &slope_}) vector->resize(n_phi);
+  x_.resize(at(kernel.states()));
+  user_sign_.assign(n_phi - at(kernel.switching_functions()), 0);
+}
+
+void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
+  state_ = state;
+  functions_.clear();
+  const int n_psi = kernel_.switching_functions();
+  for (int j = 0; j < n_psi; ++j) {
+    if (state.mode[at(j)] == 0) continue;
+    const auto& inner = kernel_.inner(j);
+    const bool around_sliding = std::any_of(inner.begin(), inner.end(), [&](int i) { return state.mode[at(i)] == 0; });
+    if (around_sliding && state.sliding.size() == 1) {
+      const int below = state.corner_alpha[0][at(j)] > 0.5 ? 1 : -1;
+      const int above = state.corner_alpha[1][at(j)] > 0.5 ? 1 : -1;
+      functions_.push_back({FunctionKind::nested_below, j, 0, below, zero_order[at(j)]});
+      functions_.push_back({FunctionKind::nested_above, j, 0, above, zero_order[at(j)]});
+    } else {
+      functions_.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
+    }
+  }
+  exits_.resize(state.sliding.size());
+  if (!state.sliding.empty()) field_.exits(t, x, exits_.data());
+  for (std::size_t row = 0; row < state.sliding.size(); ++row) {
+    const int r = static_cast<int>(row);
+    functions_.push_back({FunctionKind::exit_below, state.sliding[row], r, +1, 0});
+    functions_.push_back({FunctionKind::exit_above, state.sliding[row], r, -1, 0});
+    if (field_.solve() == SlidingSolve::nonaffine) {
+      functions_.push_back({FunctionKind::loss, state.sliding[row], r, sign_of(exits_[row].loss), 0});
+    }
+  }
+  for (int u = n_psi; u < kernel_.event_functions(); ++u) functions_.push_back({FunctionKind::user, u, 0, 0, 0});
+  noise_.assign(functions_.size(), 0.0);
+  accuracy_.assign(functions_.size(), 0.0);
+  point_.resize(functions_.size());
+  samples_.resize(functions_.size() * ode::event_nodes);
+  rescale(t, x);
+  read_user_signs(t, x);
+  // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
+  evaluate(t, x, point_);
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    auto& function = functions_[i];
+    const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
+    if (is_exit && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
+  }
+}
+
+void EventSearch::read_user_signs(double t, const double* x) {
+  evaluate(t, x, point_);
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    auto& function = functions_[i];
+    if (function.kind != FunctionKind::user) continue;
+    auto& sign = user_sign_[at(function.index - kernel_.switching_functions())];
+    const bool at_zero = std::abs(point_[i]) <= noise_[i];
+    if (!at_zero) sign = sign_of(point_[i]);
+    function.sign = sign;
+    function.zero_order = at_zero ? 1 : 0;
+  }
+}
+
+void EventSearch::rescale(double t, const double* x) {
+  kernel_.scales(t, x, state_.alpha.data(), magnitude_.data(), slope_.data());
+  if (!exits_.empty()) field_.exits(t, x, exits_.data());
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    const auto& function = functions_[i];
+    if (function.kind == FunctionKind::surface || function.kind == FunctionKind::user ||
+        function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above) {
+      const auto j = at(function.index);
+      // A handful of roundings of terms as large as the magnitude.
+      noise_[i] = 8.0 * epsilon * magnitude_[j];
+      accuracy_[i] = 0.1 * (tolerances_.atol * slope_[j] + tolerances_.rtol * magnitude_[j]);
+    } else {
+      const auto& exit = exits_[at(function.row)];
+      const double size = function.kind == FunctionKind::loss ? std::abs(exit.loss)
+                                                              : std::abs(exit.below) + std::abs(exit.above);
+      noise_[i] = 32.0 * epsilon * size;
+      accuracy_[i] = 0.1 * tolerances_.rtol * size;
+    }
+    if (!std::isfinite(noise_[i])) noise_[i] = 0.0;
+    accuracy_[i] = std::isfinite(accuracy_[i]) ? std::max(accuracy_[i], noise_[i]) : 0.0;
+  }
+}
+
+void EventSearch::evaluate(double t, const double* x, std::vector<double>& values) {
+  kernel_.functions(t, x, state_.alpha.data(), phi_.data());
+  const bool nested = std::any_of(functions_.begin(), functions_.end(), [](const EventFunction& function) {
+    return function.kind == FunctionKind::nested_below;
+  });
+  if (nested) {
+    kernel_.functions(t, x, state_.corner_alpha[0].data(), phi_below_.data());
+    kernel_.functions(t, x, state_.corner_alpha[1].data(), phi_above_.data());
+  }
+  if (!exits_.empty()) field_.exits(t, x, exits_.data());
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    const auto& function = functions_[i];
+    switch (function.kind) {
+      case FunctionKind::surface:
+      case FunctionKind::user:
+        values[i] = phi_[at(function.index)];
+        break;
+      case FunctionKind::nested_below:
+        values[i] = phi_below_[at(function.index)];
+        break;
+      case FunctionKind::nested_above:
+        values[i] = phi_above_[at(function.index)];
+        break;
+      case FunctionKind::exit_below:
+        values[i] = exits_[at(function.row)].below;
+        break;
+      case FunctionKind::exit_above:
+        values[i] = exits_[at(function.row)].above;
+        break;
+      case FunctionKind::loss:
+        values[i] = exits_[at(function.row)].loss;
+        break;
+    }
+  }
+}
+
+void EventSearch::sample(const ode::DenseStep& step, double from, double to) {
+  const auto& nodes = ode::interpolation_nodes();
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const double theta = k + 1 == nodes.size() ? to : from + (to - from) * nodes[k];
+    step.evaluate(theta, x_.data());
+    evaluate(step.t + theta * step.h, x_.data(), point_);
+    std::copy(point_.begin(), point_.end(), samples_.begin() + static_cast<std::ptrdiff_t>(k * functions_.size()));
+  }
+}
+
+SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
+  if (functions_.empty()) return SearchOutcome::none;
+  return search_interval(step, 0.0, 1.0, 0, hit);
+}
+
+SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit) {
+  sample(step, from, to);
+  SearchOutcome outcome = SearchOutcome::none;
+  bool unresolved = false;
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    const auto& function = functions_[i];
+    std::array<double, ode::event_nodes> values;
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
+    if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+      unresolved = true;
+      continue;
+    }
+    const auto coefficients = ode::to_bernstein(values);
+    int sign = function.sign;
+    if (sign == 0) {  // a user function at zero: it gets the sign it moves to
+      const auto first = std::find_if(coefficients.begin(), coefficients.end(),
+                                      [&](double b) { return std::abs(b) > noise_[i]; });
+      if (first == coefficients.end()) continue;
+      sign = sign_of(*first);
+    }
+    const int zero_order = from == 0.0 ? function.zero_order : 0;
+    if (!kernel_.is_affine(function.index) || function.kind >= FunctionKind::exit_below) {
+      const double error = chebyshev_tail(values);
+      const bool far = std::all_of(coefficients.begin(), coefficients.end(), [&](double b) { return sign * b > 8.0 * error; });
+      if (far) continue;
+      unresolved = unresolved || error > accuracy_[i];
+    }
+    if (ode::certainly_no_sign_change(coefficients, sign, zero_order, noise_[i])) continue;
+    const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise_[i]);
+    if (!change) continue;
+    const double local = 0.5 * (change->lower + change->upper);
+    const double theta = from + (to - from) * local;
+    if (outcome == SearchOutcome::none || theta < hit.theta) {
+      hit = {i, theta, slope_at(coefficients, local) / ((to - from) * step.h), sign};
+      outcome = SearchOutcome::hit;
+    }
+  }
+  if (!unresolved) return outcome;
+  if (depth >= deepest) return SearchOutcome::unresolved;
+  const double middle = 0.5 * (from + to);
+  const SearchOutcome left = search_interval(step, from, middle, depth + 1, hit);
+  return left != SearchOutcome::none ? left : search_interval(step, middle, to, depth + 1, hit);
+}
+
+void EventSearch::settle(double t, const double* x) {
+  rescale(t, x);
+  bool unknown = false;
+  for (auto& function : functions_) {
+    function.zero_order = 0;
+    unknown = unknown || function.sign == 0;
+  }
+  if (unknown) read_user_signs(t, x);
+}
+
+void EventSearch::set_user_sign(std::size_t function, int sign) {
+  auto& entry = functions_[function];
+  entry.sign = sign;
+  entry.zero_order = 1;
+  user_sign_[at(entry.index - kernel_.switching_functions())] = sign;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,89 @@
+// The event functions of a mode, and their first zero along a step: none is missed, none is found twice.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/mode_field.hpp"
+#include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/ode/bernstein.hpp"
+#include "saltus/ode/stepper.hpp"
+
+namespace saltus::event_integrator {
+
+enum class FunctionKind {
+  surface,       ///< psi_j of a surface that is not in the mode
+  nested_below,  ///< psi_j nested around the one sliding surface, in the region below it
+  nested_above,  ///< … above it
+  exit_below,    ///< the lower field of a sliding surface stops arriving: alpha = 0
+  exit_above,    ///< … the upper one: alpha = 1
+  loss,          ///< the sliding selection ceases to exist
+  user,          ///< expression or guard of [[events]]
+};
+
+struct EventFunction {
+  FunctionKind kind = FunctionKind::surface;
+  int index = 0;       ///< event function of the kernel; the surface for exits
+  int row = 0;         ///< exits: position in the sliding set
+  int sign = 1;        ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
+  int zero_order = 0;  ///< of the zero at the start of the next step (left behind by an event), 0 = none
+};
+
+/// A sign change along a step of length h: function, place and slope to start the correction with.
+struct Hit {
+  std::size_t function = 0;
+  double theta = 0.0;
+  double slope = 0.0;  ///< d phi / dt there
+  int sign = 1;        ///< of the function before
+};
+
+enum class SearchOutcome {
+  none,
+  hit,
+  unresolved,  ///< an event function is too wild for its interpolants, or undefined: shorten the step
+};
+
+/// Searches one step after the other. Owns the work space; allocates in enter() only.
+class EventSearch {
+ public:
+  EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, const ode::Tolerances& tolerances);
+
+  /// Sets up the functions of a mode at (t, x). `zero_order` (n_psi): zeros that surfaces have at this point.
+  void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
+  /// Rounding and tolerance levels for the step that starts at (t, x).
+  void rescale(double t, const double* x);
+
+  /// The first sign change in (0, 1] of any function.
+  SearchOutcome search(const ode::DenseStep& step, Hit& hit);
+  /// Values of all functions at one point.
+  void evaluate(double t, const double* x, std::vector<double>& values);
+
+  [[nodiscard]] const std::vector<EventFunction>& functions() const { return functions_; }
+  [[nodiscard]] double noise(std::size_t function) const { return noise_[function]; }
+  /// Signs of the user functions in force, 0 where not known yet.
+  [[nodiscard]] const std::vector<int>& user_signs() const { return user_sign_; }
+  /// Behind an accepted step that ends at (t, x): zeros at its start are history, unknown signs can be read.
+  void settle(double t, const double* x);
+  /// Sets the sign of a user function.
+  void set_user_sign(std::size_t function, int sign);
+
+ private:
+  SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
+  void sample(const ode::DenseStep& step, double from, double to);
+  void read_user_signs(double t, const double* x);
+
+  const evaluation::ModelKernel& kernel_;
+  ModeField& field_;
+  ode::Tolerances tolerances_;
+  ModeState state_;
+  std::vector<EventFunction> functions_;
+  std::vector<int> user_sign_;  ///< kept over changes of mode
+  std::vector<double> phi_, phi_below_, phi_above_, magnitude_, slope_;
+  std::vector<ExitValues> exits_;
+  std::vector<double> x_, point_;
+  std::vector<double> samples_;  ///< node by node
+  std::vector<double> noise_, accuracy_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,63 @@
+// The event-driven engine: from an initial state through all switches and sliding phases to the end.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/ode/stepper.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::event_integrator {
+
+/// Rows of the trajectory beside the two of every event and the last one.
+struct OutputTimes {
+  enum class Rows { at_times, at_steps };
+  Rows rows = Rows::at_steps;
+  std::vector<double> times;  ///< ascending, inside [from, until]; for at_times
+};
+
+/// Checked by the pipeline: from < until, rtol > 0, atol >= 0, max_step > 0.
+struct IntegrationOptions {
+  ode::Method method = ode::Method::dopri5;
+  ode::Tolerances tolerances;
+  double from = 0.0;
+  double until = 1.0;
+  std::optional<double> max_step;
+  OutputTimes output;
+  long max_steps = 1000000;
+  long max_events = 100000;
+  std::vector<std::pair<int, int>> initial_mode;  ///< switching function -> forced mode at the start
+};
+
+struct Progress {
+  double t = 0.0;
+  long steps = 0;
+  long events = 0;
+};
+enum class Continue { yes, no };
+using StepObserver = std::function<Continue(const Progress&)>;
+
+/// The parts of a result that an engine computes; `final` is the last row.
+struct Integration {
+  result::Status status;
+  result::Final final;
+  std::vector<result::Event> events;
+  result::Trajectory trajectory;
+  result::Statistics statistics;  ///< wall_seconds is left to the caller
+};
+
+/// Integrates xdot in F(t, x) by classical and sliding motion, mode by mode ([guglielmi2022], sections 3, 4.1, 4.2).
+///
+/// Between events the order is that of the method: a switch is found on the dense output, then the step is retaken to
+/// exactly that time and corrected until the event function is at rounding level.
+/// @return everything computed up to the termination; never throws for numerical reasons. Independent of the output
+///         times bit for bit.
+/// Cost: evaluations of f (m + 1 or m + 2 per evaluation while sliding on m surfaces), 9 of the event functions a step.
+[[nodiscard]] Integration integrate(const evaluation::ModelKernel& kernel, const model::System& system,
+                                    const IntegrationOptions& options, const StepObserver& observer = {});
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,283 @@
+#include "saltus/event_integrator/mode_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "saltus/switching/surface_decision.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// The only column of a row that is not 0, or -1.
+int only_column(const Eigen::MatrixXd& rows, Eigen::Index row) {
+  int column = -1;
+  for (Eigen::Index i = 0; i < rows.cols(); ++i) {
+    if (rows(row, i) == 0.0) continue;
+    if (column >= 0) return -1;
+    column = static_cast<int>(i);
+  }
+  return column;
+}
+
+}  // namespace
+
+ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha)
+    : kernel_(kernel), affine_in_alpha_(affine_in_alpha) {
+  const auto n = at(kernel.states());
+  const auto n_psi = at(kernel.switching_functions());
+  for (auto& f : f_) f.resize(n);
+  for (auto& corner : corner_) corner.resize(n_psi);
+  trial_.resize(n_psi);
+  alpha_.resize(n_psi);
+  values_.resize(at(kernel.event_functions()));
+}
+
+void ModeField::enter(const ModeState& state) {
+  sliding_ = state.sliding;
+  start_alpha_ = state.alpha;
+  alpha_ = state.alpha;
+  const auto m = static_cast<Eigen::Index>(sliding_.size());
+  rows_.resize(m, kernel_.states());
+  rates_.resize(m);
+  residual_.resize(m);
+  normal_matrix_.resize(m, m);
+  exits_.assign(sliding_.size(), {});
+  coordinate_.assign(sliding_.size(), -1);
+  constant_row_.assign(sliding_.size(), false);
+  solve_ = sliding_.empty() ? SlidingSolve::none
+                            : (affine_in_alpha_ ? SlidingSolve::decoupled : SlidingSolve::nonaffine);
+  for (const int i : sliding_) {
+    for (const int j : sliding_) {
+      if (i != j && kernel_.depends(i, j)) solve_ = SlidingSolve::coupled;
+    }
+  }
+  if (sliding_.size() == 1) {
+    corner_[0] = state.corner_alpha[0];
+    corner_[1] = state.corner_alpha[1];
+  }
+}
+
+void ModeField::gradients(double t, const double* x) {
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    if (constant_row_[row]) continue;
+    const int j = sliding_[row];
+    // With the mode's selections, not the last ones: the field must not depend on what was evaluated before.
+    kernel_.gradient(j, t, x, start_alpha_.data(), f_[0].data(), &rates_[static_cast<Eigen::Index>(row)]);
+    for (std::size_t i = 0; i < f_[0].size(); ++i) {
+      rows_(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(i)) = f_[0][i];
+    }
+    coordinate_[row] = only_column(rows_, static_cast<Eigen::Index>(row));
+    constant_row_[row] = kernel_.is_affine(j) && kernel_.inner(j).empty();
+  }
+}
+
+double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f) const {
+  const auto r = static_cast<Eigen::Index>(row);
+  if (const int only = coordinate_[row]; only >= 0) return rows_(r, only) * f[at(only)] + rates_[r];
+  double sum = rates_[r];
+  for (std::size_t i = 0; i < f.size(); ++i) sum += rows_(r, static_cast<Eigen::Index>(i)) * f[i];
+  return sum;
+}
+
+void ModeField::evaluate_one(double t, const double* x) {
+  const auto j = at(sliding_[0]);
+  kernel_.field(t, x, corner_[0].data(), f_[0].data());
+  kernel_.field(t, x, corner_[1].data(), f_[1].data());
+  const double below = normal_velocity(0, f_[0]);
+  const double above = normal_velocity(0, f_[1]);
+  const double selection = switching::sliding_alpha(below, above);
+  exits_[0] = {below, above, 0.0};
+  for (std::size_t i = 0; i < alpha_.size(); ++i) {
+    const double low = corner_[0][i];
+    alpha_[i] = low == corner_[1][i] ? low : low + selection * (corner_[1][i] - low);
+  }
+  alpha_[j] = selection;
+  for (std::size_t i = 0; i < f_[0].size(); ++i) f_[0][i] += selection * (f_[1][i] - f_[0][i]);
+}
+
+void ModeField::evaluate_decoupled(double t, const double* x) {
+  trial_ = start_alpha_;
+  for (const int j : sliding_) trial_[at(j)] = 0.0;
+  kernel_.field(t, x, trial_.data(), f_[0].data());
+  for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row].below = normal_velocity(row, f_[0]);
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    const auto j = at(sliding_[row]);
+    trial_[j] = 1.0;
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    trial_[j] = 0.0;
+    exits_[row].above = normal_velocity(row, f_[1]);
+    alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
+  }
+  kernel_.field(t, x, alpha_.data(), f_[0].data());
+}
+
+void ModeField::evaluate_coupled(double t, const double* x) {
+  trial_ = start_alpha_;
+  bool converged = false;
+  for (int iteration = 0; iteration < 20 && !converged; ++iteration) {
+    // g is multi-affine: the difference of its values at 1 and 0 is the exact partial derivative.
+    for (std::size_t column = 0; column < sliding_.size(); ++column) {
+      const auto j = at(sliding_[column]);
+      const double kept = trial_[j];
+      trial_[j] = 0.0;
+      kernel_.field(t, x, trial_.data(), f_[0].data());
+      trial_[j] = 1.0;
+      kernel_.field(t, x, trial_.data(), f_[1].data());
+      trial_[j] = kept;
+      for (std::size_t row = 0; row < sliding_.size(); ++row) {
+        normal_matrix_(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+            normal_velocity(row, f_[1]) - normal_velocity(row, f_[0]);
+      }
+    }
+    kernel_.field(t, x, trial_.data(), f_[0].data());
+    for (std::size_t row = 0; row < sliding_.size(); ++row) {
+      residual_[static_cast<Eigen::Index>(row)] = normal_velocity(row, f_[0]);
+    }
+    const Eigen::VectorXd step = normal_matrix_.partialPivLu().solve(residual_);
+    converged = step.cwiseAbs().maxCoeff() <= 4.0 * std::numeric_limits<double>::epsilon();
+    for (std::size_t row = 0; row < sliding_.size(); ++row) {
+      trial_[at(sliding_[row])] -= step[static_cast<Eigen::Index>(row)];
+    }
+    if (!step.allFinite()) break;
+    // A step at rounding level twice in a row is as good as it gets.
+    converged = converged || (iteration > 8 && step.cwiseAbs().maxCoeff() <= 1e-13);
+  }
+  if (!converged) trial_.assign(trial_.size(), not_a_number);
+  alpha_ = trial_;
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    const double selection = alpha_[at(sliding_[row])];
+    exits_[row] = {selection, selection - 1.0, 0.0};
+  }
+  kernel_.field(t, x, alpha_.data(), f_[0].data());
+}
+
+double ModeField::selected_velocity(double t, const double* x, std::size_t row, double selection) {
+  trial_[at(sliding_[row])] = selection;
+  kernel_.field(t, x, trial_.data(), f_[1].data());
+  return normal_velocity(row, f_[1]);
+}
+
+void ModeField::evaluate_nonaffine(double t, const double* x) {
+  trial_ = start_alpha_;
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    const auto j = at(sliding_[row]);
+    double a = start_alpha_[j];
+    double b = a > 0.5 ? a - 1e-3 : a + 1e-3;
+    double at_a = selected_velocity(t, x, row, a);
+    double at_b = selected_velocity(t, x, row, b);
+    for (int iteration = 0; iteration < 30 && at_a != 0.0 && at_a != at_b; ++iteration) {
+      const double next = a - at_a * (a - b) / (at_a - at_b);
+      const double change = std::abs(next - a);
+      b = a;
+      at_b = at_a;
+      a = next;
+      at_a = selected_velocity(t, x, row, a);
+      if (change <= 2.0 * std::numeric_limits<double>::epsilon()) break;
+    }
+    const double width = 1e-4;  // central difference: exact for quadratics, 1e-8 relative otherwise
+    const double slope =
+        (selected_velocity(t, x, row, a + width) - selected_velocity(t, x, row, a - width)) / (2.0 * width);
+    // The secant has left the root it started from: this mode has no selection here.
+    if (!(std::abs(a - start_alpha_[j]) < 0.5)) a = not_a_number;
+    trial_[j] = a;
+    alpha_[j] = a;
+    exits_[row] = {a, a - 1.0, slope};
+  }
+  kernel_.field(t, x, alpha_.data(), f_[0].data());
+}
+
+bool ModeField::solve_normal_equations() {
+  normal_matrix_.noalias() = rows_ * rows_.transpose();
+  cholesky_.compute(normal_matrix_);
+  if (cholesky_.info() != Eigen::Success) return false;
+  cholesky_.solveInPlace(residual_);
+  return true;
+}
+
+void ModeField::remove_normal_part(double* xdot) {
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    residual_[static_cast<Eigen::Index>(row)] = normal_velocity(row, f_[0]);
+  }
+  const bool independent = solve_normal_equations();
+  for (std::size_t i = 0; i < f_[0].size(); ++i) {
+    double correction = 0.0;
+    for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
+      correction += rows_(row, static_cast<Eigen::Index>(i)) * residual_[row];
+    }
+    xdot[i] = independent ? f_[0][i] - correction : not_a_number;
+  }
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    const auto r = static_cast<Eigen::Index>(row);
+    if (const int only = coordinate_[row]; only >= 0 && independent && std::isfinite(xdot[only])) {
+      xdot[only] = rates_[r] == 0.0 ? 0.0 : -rates_[r] / rows_(r, only);
+    }
+  }
+}
+
+void ModeField::select(double t, const double* x) {
+  gradients(t, x);
+  switch (solve_) {
+    case SlidingSolve::none:
+      return;
+    case SlidingSolve::decoupled:
+      return sliding_.size() == 1 ? evaluate_one(t, x) : evaluate_decoupled(t, x);
+    case SlidingSolve::coupled:
+      return evaluate_coupled(t, x);
+    case SlidingSolve::nonaffine:
+      return evaluate_nonaffine(t, x);
+  }
+}
+
+void ModeField::operator()(double t, const double* x, double* xdot) {
+  if (solve_ == SlidingSolve::none) {
+    kernel_.field(t, x, alpha_.data(), xdot);
+    return;
+  }
+  select(t, x);
+  remove_normal_part(xdot);
+}
+
+void ModeField::exits(double t, const double* x, ExitValues* values) {
+  if (solve_ == SlidingSolve::none) return;
+  select(t, x);
+  std::copy(exits_.begin(), exits_.end(), values);
+}
+
+bool ModeField::project(double t, double* x) {
+  if (solve_ == SlidingSolve::none) return false;
+  bool changed = false;
+  // Newton converges quadratically from O(tolerance): three steps reach rounding, the fourth proves it.
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    kernel_.functions(t, x, start_alpha_.data(), values_.data());
+    double largest = 0.0;
+    for (std::size_t row = 0; row < sliding_.size(); ++row) {
+      const double psi = values_[at(sliding_[row])];
+      residual_[static_cast<Eigen::Index>(row)] = psi;
+      largest = std::max(largest, std::abs(psi));
+    }
+    if (largest == 0.0 || !std::isfinite(largest)) return changed;
+    gradients(t, x);
+    if (!solve_normal_equations()) return changed;
+    bool moved = false;
+    for (std::size_t i = 0; i < f_[0].size(); ++i) {
+      double correction = 0.0;
+      for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
+        correction += rows_(row, static_cast<Eigen::Index>(i)) * residual_[row];
+      }
+      const double next = x[i] - correction;
+      moved = moved || next != x[i];
+      x[i] = next;
+    }
+    changed = changed || moved;
+    if (!moved) return changed;
+  }
+  return changed;
+}
+
+}  // namespace saltus::event_integrator

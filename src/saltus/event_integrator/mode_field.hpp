@@ -1,0 +1,82 @@
+// The vector field of a mode: the region's own, or the sliding field with its selections.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/mode_state.hpp"
+
+namespace saltus::event_integrator {
+
+/// How the selections of the sliding surfaces follow from grad psi_I . f(alpha) + d psi_I/dt = 0.
+enum class SlidingSolve {
+  none,        ///< no sliding
+  decoupled,   ///< each normal component depends on its own selection only: closed form
+  coupled,     ///< multi-affine in several selections: Newton from the mode's selections
+  nonaffine,   ///< decoupled, but not affine (Aizerman-Pyatnitskii): secant from the mode's selections
+};
+
+/// Exit functions of one sliding surface; the mode ends where one changes its sign.
+struct ExitValues {
+  double below = 0.0;  ///< > 0 while sliding: the lower region's field still arrives (alpha > 0)
+  double above = 0.0;  ///< < 0 while sliding: the upper region's field still arrives (alpha < 1)
+  double loss = 0.0;   ///< nonaffine only: d g / d alpha, keeps its sign while the root exists
+};
+
+/// Right-hand side of the index-2 DAE of a mode turned into an ODE ([guglielmi2022], section 6):
+///   xdot = f(t, x, alpha) - J^+ (J f + d psi_I/dt),  J = grad psi_I,
+/// with alpha_I from the m equations J f + d psi_I/dt = 0. The correction is of rounding size; for a surface that is a
+/// coordinate it makes the component exactly constant.
+/// Owns the work space; allocates in enter() only.
+class ModeField {
+ public:
+  ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha);
+
+  void enter(const ModeState& state);
+  [[nodiscard]] SlidingSolve solve() const { return solve_; }
+  [[nodiscard]] int codimension() const { return static_cast<int>(sliding_.size()); }
+
+  /// xdot (n_x); not finite where the model or the sliding selection is undefined.
+  void operator()(double t, const double* x, double* xdot);
+  /// Selections of the last evaluation, n_psi.
+  [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
+  /// Exit functions at a point, one per sliding surface.
+  void exits(double t, const double* x, ExitValues* values);
+  /// Newton steps onto psi_I(t, x) = 0 along the normals; returns whether x changed.
+  bool project(double t, double* x);
+
+ private:
+  void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]
+  void gradients(double t, const double* x);
+  [[nodiscard]] double normal_velocity(std::size_t row, const std::vector<double>& f) const;
+  void evaluate_one(double t, const double* x);
+  void evaluate_decoupled(double t, const double* x);
+  void evaluate_coupled(double t, const double* x);
+  void evaluate_nonaffine(double t, const double* x);
+  double selected_velocity(double t, const double* x, std::size_t row, double selection);
+  void remove_normal_part(double* xdot);
+  [[nodiscard]] bool solve_normal_equations();
+
+  const evaluation::ModelKernel& kernel_;
+  bool affine_in_alpha_;
+  SlidingSolve solve_ = SlidingSolve::none;
+  std::vector<int> sliding_;
+  std::vector<double> start_alpha_;       ///< of the mode
+  std::vector<double> alpha_;             ///< of the last evaluation
+  std::vector<double> corner_[2];         ///< selections of the two regions (one sliding surface)
+  std::vector<double> trial_;             ///< n_psi
+  std::vector<double> f_[2];              ///< n_x each
+  std::vector<double> values_;            ///< all event functions
+  std::vector<ExitValues> exits_;         ///< of the last evaluation
+  std::vector<bool> constant_row_;        ///< gradient known once and for all in this mode
+  std::vector<int> coordinate_;           ///< the only nonzero column of a row, or -1
+  Eigen::MatrixXd rows_;                  ///< J, m x n_x
+  Eigen::VectorXd rates_, residual_;      ///< d psi_I/dt, m
+  Eigen::MatrixXd normal_matrix_;         ///< J J^T, then G
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+};
+
+}  // namespace saltus::event_integrator

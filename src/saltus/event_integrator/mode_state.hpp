@@ -1,0 +1,23 @@
+// Where the engine is: the mode k and the selections that belong to it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace saltus::event_integrator {
+
+/// k in {-1, 0, 1}^n_psi with its selections. "On the surface" is part of the mode, never a floating-point accident.
+struct ModeState {
+  std::vector<int> mode;      ///< k_j
+  std::vector<double> alpha;  ///< 1, 0 for k_j = 1, -1; the last sliding value for k_j = 0
+  std::vector<int> sliding;   ///< I = { j : k_j = 0 }, ascending
+
+  /// For one sliding surface: the selections of the two regions that meet there. They differ from `alpha` also in
+  /// switching functions nested around the sliding one, whose sign is read in each region.
+  std::array<std::vector<double>, 2> corner_alpha;
+};
+
+/// Sets mode, alpha and sliding of one surface.
+void set_surface(ModeState& state, int surface, int mode, double alpha);
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,159 @@
+#include "saltus/event_integrator/projected_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace saltus::event_integrator {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Sign tests: a quantity below this fraction of its scale counts as 0 (switching.md section 8).
+constexpr double sign_tolerance = 1e-10;
+/// Derivatives looked at before psi is said to stay 0.
+constexpr int highest_order = 5;
+
+bool contains(const std::vector<int>& sorted_or_short, int value) {
+  return std::find(sorted_or_short.begin(), sorted_or_short.end(), value) != sorted_or_short.end();
+}
+
+bool is_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+ProjectedFields::ProjectedFields(const evaluation::ModelKernel& kernel, const Occasion& occasion)
+    : kernel_(kernel), occasion_(occasion), noise_(at(kernel.event_functions())), slope_(noise_.size()) {
+  // Any selections do: scales only bound rounding.
+  const std::vector<double> alpha(at(kernel.switching_functions()), 0.5);
+  kernel.scales(occasion.t, occasion.x, alpha.data(), noise_.data(), slope_.data());
+  // A handful of roundings of terms as large as the magnitude.
+  for (double& value : noise_) value = std::isfinite(value) ? 8.0 * epsilon * value : 0.0;
+}
+
+std::vector<double> ProjectedFields::corner_alpha(const std::vector<double>& base, const std::vector<int>& group,
+                                                  std::size_t corner) const {
+  std::vector<double> alpha = base;
+  for (std::size_t i = 0; i < group.size(); ++i) alpha[at(group[i])] = (corner >> i & 1U) != 0 ? 1.0 : 0.0;
+  std::vector<double> values(at(kernel_.event_functions()));
+  // Inner functions have smaller indices: one ascending pass reads every nested sign with its inner ones settled.
+  for (int j = 0; j < kernel_.switching_functions(); ++j) {
+    if (contains(occasion_.at_zero, j)) continue;
+    const auto& inner = kernel_.inner(j);
+    const auto in_group = [&](int i) { return contains(group, i); };
+    if (std::none_of(inner.begin(), inner.end(), in_group)) continue;
+    kernel_.functions(occasion_.t, occasion_.x, alpha.data(), values.data());
+    if (std::abs(values[at(j)]) > noise_[at(j)]) alpha[at(j)] = values[at(j)] > 0.0 ? 1.0 : 0.0;
+  }
+  return alpha;
+}
+
+std::vector<double> ProjectedFields::point_beside(const std::vector<double>& alpha) const {
+  const auto n = at(kernel_.states());
+  std::vector<double> x(occasion_.x, occasion_.x + n);
+  std::vector<double> row(n);
+  double largest = 0.0;
+  for (const double value : x) largest = std::max(largest, std::abs(value));
+  for (const int j : occasion_.at_zero) {
+    double rate = 0.0;
+    kernel_.gradient(j, occasion_.t, occasion_.x, alpha.data(), row.data(), &rate);
+    double square = 0.0;
+    for (const double d : row) square += d * d;
+    if (!(square > 0.0) || !std::isfinite(square)) continue;
+    // Just enough to be on the right side after rounding.
+    const double distance = 4.0 * std::max({noise_[at(j)], epsilon * slope_[at(j)] * largest, 1e-30 * slope_[at(j)]});
+    const double side = alpha[at(j)] > 0.5 ? 1.0 : -1.0;
+    for (std::size_t i = 0; i < n; ++i) x[i] += side * distance * row[i] / square;
+  }
+  return x;
+}
+
+std::vector<double> ProjectedFields::velocities(const std::vector<double>& alpha, const std::vector<int>& group) const {
+  const auto n = at(kernel_.states());
+  std::vector<double> f(n);
+  std::vector<double> row(n);
+  std::vector<double> x(occasion_.x, occasion_.x + n);
+  kernel_.field(occasion_.t, x.data(), alpha.data(), f.data());
+  if (!is_finite(f)) {
+    x = point_beside(alpha);
+    kernel_.field(occasion_.t, x.data(), alpha.data(), f.data());
+  }
+  std::vector<double> result;
+  result.reserve(group.size());
+  for (const int j : group) {
+    double velocity = 0.0;
+    kernel_.gradient(j, occasion_.t, x.data(), alpha.data(), row.data(), &velocity);
+    for (std::size_t i = 0; i < n; ++i) velocity += row[i] == 0.0 ? 0.0 : row[i] * f[i];
+    result.push_back(velocity);
+  }
+  return result;
+}
+
+Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const {
+  if (std::abs(velocity) > sign_tolerance * scale) {
+    return {{velocity, velocity > 0.0 ? switching::Drift::up : switching::Drift::down}, 1};
+  }
+  const double tau = occasion_.time_scale;
+  const double threshold = std::max(noise_[at(surface)], sign_tolerance * scale * tau);
+  double weight = tau;  // tau^k / k!
+  for (int order = 2; order <= highest_order; ++order) {
+    weight *= tau / order;
+    const double derivative = kernel_.lie_derivative(surface, order, occasion_.t, occasion_.x, alpha.data());
+    if (std::abs(derivative) * weight > threshold) {
+      return {{0.0, derivative > 0.0 ? switching::Drift::up : switching::Drift::down}, order};
+    }
+  }
+  return {};
+}
+
+switching::CornerTable ProjectedFields::table(const ModeState& before, const std::vector<int>& group) const {
+  switching::CornerTable table;
+  table.surfaces = static_cast<int>(group.size());
+  table.sides.resize(group.size() * table.corners());
+  std::vector<std::vector<double>> alphas;
+  for (std::size_t corner = 0; corner < table.corners(); ++corner) {
+    alphas.push_back(corner_alpha(before.alpha, group, corner));
+    const auto velocity = velocities(alphas.back(), group);
+    for (std::size_t j = 0; j < group.size(); ++j) table.sides[j * table.corners() + corner].velocity = velocity[j];
+  }
+  for (std::size_t j = 0; j < group.size(); ++j) {
+    const int surface = group[j];
+    double scale = 0.0;
+    for (std::size_t corner = 0; corner < table.corners(); ++corner) {
+      scale = std::max(scale, std::abs(table.side(static_cast<int>(j), corner).velocity));
+    }
+    for (std::size_t corner = 0; corner < table.corners(); ++corner) {
+      auto& side = table.sides[j * table.corners() + corner];
+      // An exit was located to rounding on this field's tangency: its velocity is 0 whatever its last bits say.
+      const bool above = (corner >> j & 1U) != 0;
+      if (contains(above ? occasion_.exit_above : occasion_.exit_below, surface)) side.velocity = 0.0;
+      side = motion(alphas[corner], surface, side.velocity, scale).side;
+    }
+    const int mode = before.mode[at(surface)];
+    table.arrival.push_back(occasion_.start ? switching::Arrival::at_start
+                            : mode < 0      ? switching::Arrival::from_below
+                            : mode > 0      ? switching::Arrival::from_above
+                                            : switching::Arrival::along);
+  }
+  return table;
+}
+
+bool ProjectedFields::fields_agree(const ModeState& before, const std::vector<int>& group) const {
+  const auto n = at(kernel_.states());
+  std::vector<double> first(n);
+  std::vector<double> other(n);
+  const std::size_t corners = std::size_t{1} << group.size();
+  kernel_.field(occasion_.t, occasion_.x, corner_alpha(before.alpha, group, 0).data(), first.data());
+  for (std::size_t corner = 1; corner < corners; ++corner) {
+    kernel_.field(occasion_.t, occasion_.x, corner_alpha(before.alpha, group, corner).data(), other.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      const double size = std::max(std::abs(first[i]), std::abs(other[i]));
+      if (!(std::abs(first[i] - other[i]) <= 1e-12 * size)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace saltus::event_integrator

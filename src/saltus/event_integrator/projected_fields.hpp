@@ -1,0 +1,51 @@
+// The fields that meet at a point, projected on the normals of the surfaces there.
+#pragma once
+
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/transition.hpp"
+#include "saltus/switching/group_decision.hpp"
+
+namespace saltus::event_integrator {
+
+/// psi_j along a field of fixed selections: first derivative, and which derivative decides where it goes.
+struct Motion {
+  switching::Side side;
+  int order = 0;  ///< of the first derivative that does not vanish; 0 if none was found
+};
+
+/// All values are at one point (occasion.t, occasion.x); not finite where a field is undefined there and also just beside
+/// the surfaces, on the side that belongs to the selections.
+class ProjectedFields {
+ public:
+  ProjectedFields(const evaluation::ModelKernel& kernel, const Occasion& occasion);
+
+  /// Selections of one corner: `base` with the bits of `corner` for the surfaces of `group`, and the functions nested
+  /// around those read anew in that region.
+  [[nodiscard]] std::vector<double> corner_alpha(const std::vector<double>& base, const std::vector<int>& group,
+                                                 std::size_t corner) const;
+  /// Normal components of f(alpha) on the surfaces of `group`.
+  [[nodiscard]] std::vector<double> velocities(const std::vector<double>& alpha, const std::vector<int>& group) const;
+  /// Where psi_surface goes along f(alpha). Velocities up to 1e-10 `scale` count as 0 and the next derivatives decide, of
+  /// which those count that move psi over the occasion's time scale beyond rounding.
+  [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
+
+  /// The table of all 2^m corners of a group.
+  [[nodiscard]] switching::CornerTable table(const ModeState& before, const std::vector<int>& group) const;
+  /// Whether the fields of all corners of the group are one and the same (relative 1e-12).
+  [[nodiscard]] bool fields_agree(const ModeState& before, const std::vector<int>& group) const;
+
+  /// Rounding level of psi at the point.
+  [[nodiscard]] double noise(int surface) const { return noise_[static_cast<std::size_t>(surface)]; }
+
+ private:
+  [[nodiscard]] std::vector<double> point_beside(const std::vector<double>& alpha) const;
+
+  const evaluation::ModelKernel& kernel_;
+  const Occasion& occasion_;
+  std::vector<double> noise_;  ///< per event function
+  std::vector<double> slope_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,123 @@
+#include "saltus/event_integrator/recorder.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace saltus::event_integrator {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& system)
+    : kernel_(kernel), system_(system) {}
+
+result::Mode Recorder::mode_columns(const std::vector<int>& mode) const {
+  result::Mode columns;
+  columns.reserve(system_.columns.size());
+  for (const auto& column : system_.columns) columns.push_back(column.orientation * mode[at(column.function)]);
+  return columns;
+}
+
+std::vector<double> Recorder::alpha_columns(const std::vector<double>& alpha) const {
+  std::vector<double> columns;
+  columns.reserve(system_.columns.size());
+  for (const auto& column : system_.columns) {
+    const double value = alpha[at(column.function)];
+    columns.push_back(column.orientation > 0 ? value : 1.0 - value);
+  }
+  return columns;
+}
+
+void Recorder::row(double t, const std::vector<double>& x, const std::vector<int>& mode,
+                   const std::vector<double>& alpha) {
+  trajectory_.t.push_back(t);
+  trajectory_.x.push_back(x);
+  std::vector<double> u(at(kernel_.controls()));
+  kernel_.inputs(t, alpha.data(), u.data());
+  trajectory_.u.push_back(std::move(u));
+  trajectory_.alpha.push_back(alpha_columns(alpha));
+  trajectory_.mode.push_back(mode_columns(mode));
+  std::vector<double> outputs(at(kernel_.outputs()));
+  kernel_.outputs(t, x.data(), alpha.data(), outputs.data());
+  trajectory_.outputs.push_back(std::move(outputs));
+}
+
+void Recorder::add_transition(result::Event event, const Transition& transition) {
+  event.mode_after = mode_columns(transition.state.mode);
+  event.alpha_after = alpha_columns(transition.state.alpha);
+  event.unique = transition.unique;
+  event.reason = transition.reason;
+  for (const auto& mode : transition.alternatives) {
+    std::vector<double> alpha(mode.size());
+    for (std::size_t j = 0; j < mode.size(); ++j) {
+      // A sliding alternative's selection is not computed where it was not taken.
+      alpha[j] = mode[j] == transition.state.mode[j] ? transition.state.alpha[j]
+                 : mode[j] == 0                      ? std::numeric_limits<double>::quiet_NaN()
+                                                     : (mode[j] > 0 ? 1.0 : 0.0);
+    }
+    event.alternatives.push_back({mode_columns(mode), alpha_columns(alpha)});
+  }
+  events_.push_back(std::move(event));
+}
+
+bool Recorder::switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition) {
+  result::Event event;
+  result::Mode changed_before;
+  result::Mode changed_after;
+  for (const auto& column : system_.columns) {
+    const auto j = at(column.function);
+    if (system_.switching[j].role != model::SwitchingRole::listed) continue;
+    if (before.mode[j] == transition.state.mode[j]) continue;
+    changed_before.push_back(before.mode[j]);
+    changed_after.push_back(transition.state.mode[j]);
+    event.surfaces.push_back(column.name);
+  }
+  if (event.surfaces.empty()) return false;
+  event.t = t;
+  event.kind = result::kind_of_switch(changed_before, changed_after);
+  event.x = x;
+  event.x_after = x;
+  event.mode_before = mode_columns(before.mode);
+  event.alpha_before = alpha_columns(before.alpha);
+  add_transition(std::move(event), transition);
+  return true;
+}
+
+bool Recorder::started(double t, const std::vector<double>& x, const Transition& transition,
+                       const std::vector<int>& surfaces) {
+  result::Event event;
+  for (const auto& column : system_.columns) {
+    const bool at_zero = std::find(surfaces.begin(), surfaces.end(), column.function) != surfaces.end();
+    if (at_zero && system_.switching[at(column.function)].role == model::SwitchingRole::listed) {
+      event.surfaces.push_back(column.name);
+    }
+  }
+  if (event.surfaces.empty()) return false;
+  event.t = t;
+  event.kind = result::EventKind::start;
+  event.x = x;
+  event.x_after = x;
+  add_transition(std::move(event), transition);
+  return true;
+}
+
+void Recorder::user(double t, const std::vector<double>& x, const ModeState& before, const ModeState& after, int event) {
+  result::Event entry;
+  entry.t = t;
+  entry.kind = result::EventKind::user;
+  entry.name = system_.events[at(event)].name;
+  entry.x = x;
+  entry.x_after = x;
+  entry.mode_before = mode_columns(before.mode);
+  entry.mode_after = mode_columns(after.mode);
+  entry.alpha_before = alpha_columns(before.alpha);
+  entry.alpha_after = alpha_columns(after.alpha);
+  entry.reason = "zero of an expression of [[events]]";
+  if (system_.events[at(event)].guards.numel() > 0) entry.reason = "edge of a condition of [[events]]";
+  events_.push_back(std::move(entry));
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,44 @@
+// Rows and events of a run, in the columns of the result.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/event_integrator/transition.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::event_integrator {
+
+class Recorder {
+ public:
+  Recorder(const evaluation::ModelKernel& kernel, const model::System& system);
+
+  /// One row; `alpha` over switching functions (the sliding values at this point).
+  void row(double t, const std::vector<double>& x, const std::vector<int>& mode, const std::vector<double>& alpha);
+  /// A switch, if a listed switching function changes its mode; returns whether it did.
+  bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
+  /// A start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
+  bool started(double t, const std::vector<double>& x, const Transition& transition, const std::vector<int>& surfaces);
+  /// An event of [[events]].
+  void user(double t, const std::vector<double>& x, const ModeState& before, const ModeState& after, int event);
+
+  [[nodiscard]] std::vector<result::Event> take_events() { return std::move(events_); }
+  [[nodiscard]] result::Trajectory take_trajectory() { return std::move(trajectory_); }
+  [[nodiscard]] bool ends_at(double t) const { return !trajectory_.t.empty() && trajectory_.t.back() == t; }
+  [[nodiscard]] long events() const { return static_cast<long>(events_.size()); }
+
+ private:
+  [[nodiscard]] result::Mode mode_columns(const std::vector<int>& mode) const;
+  [[nodiscard]] std::vector<double> alpha_columns(const std::vector<double>& alpha) const;
+  void add_transition(result::Event event, const Transition& transition);
+
+  const evaluation::ModelKernel& kernel_;
+  const model::System& system_;
+  result::Trajectory trajectory_;
+  std::vector<result::Event> events_;
+};
+
+}  // namespace saltus::event_integrator

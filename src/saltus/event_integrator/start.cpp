@@ -1,0 +1,95 @@
+#include "saltus/event_integrator/start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/projected_fields.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Signs of all switching functions, inner ones first; those at zero get 0.
+void read_signs(const Surroundings& s, double t, const double* x, const ProjectedFields& fields, ModeState& state,
+                std::vector<int>& at_zero) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    if (!s.kernel.inner(j).empty()) s.kernel.functions(t, x, state.alpha.data(), values.data());
+    const double psi = values[at(j)];
+    if (std::abs(psi) <= fields.noise(j)) {
+      at_zero.push_back(j);
+      set_surface(state, j, 0, 0.5);
+    } else {
+      set_surface(state, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
+    }
+  }
+}
+
+/// A selection that is not finite marks a switching function that is undefined at the start.
+bool finite_at_start(const Surroundings& s, double t, const double* x, const ModeState& state, Transition& transition) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    if (std::isfinite(values[at(j)])) continue;
+    transition.termination = result::Termination::evaluation_failed;
+    transition.message = fmt::format("the switching function '{}' is not finite at the start t = {}; change the initial "
+                                     "values or its expression", s.system.switching[at(j)].name, t);
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Start decide_start(const Surroundings& s, double t, const double* x, double time_scale,
+                   const std::vector<std::pair<int, int>>& forced) {
+  Start start;
+  Occasion occasion;
+  occasion.t = t;
+  occasion.x = x;
+  occasion.start = true;
+  occasion.time_scale = time_scale;
+  const ProjectedFields fields(s.kernel, occasion);
+  ModeState state;
+  const auto n_psi = at(s.kernel.switching_functions());
+  state.mode.assign(n_psi, 1);
+  state.alpha.assign(n_psi, 1.0);
+  read_signs(s, t, x, fields, state, start.at_zero);
+  if (!finite_at_start(s, t, x, state, start.transition)) return start;
+  occasion.at_zero = start.at_zero;
+  start.transition = decide_mode(s, state, occasion);
+  if (forced.empty()) return start;
+
+  start.forced = true;
+  const auto decided = start.transition;
+  ModeState wanted = decided.termination == result::Termination::completed ? decided.state : state;
+  for (const auto& [surface, mode] : forced) {
+    const bool at_zero = std::find(start.at_zero.begin(), start.at_zero.end(), surface) != start.at_zero.end();
+    if (!at_zero && mode != state.mode[at(surface)]) {
+      start.transition.termination = result::Termination::no_admissible_mode;
+      start.transition.message = fmt::format("initial_mode {} = {} contradicts the sign of the switching function at the start",
+                                             s.system.switching[at(surface)].name, mode);
+      return start;
+    }
+    set_surface(wanted, surface, mode, mode > 0 ? 1.0 : mode < 0 ? 0.0 : 0.5);
+  }
+  start.transition = check_forced_mode(s, wanted, occasion);
+  start.transition.reason = "initial_mode";
+  if (decided.termination == result::Termination::completed && decided.state.mode != start.transition.state.mode) {
+    start.transition.unique = false;
+    start.transition.alternatives = {decided.state.mode};
+    for (const auto& mode : decided.alternatives) {
+      if (mode != start.transition.state.mode) start.transition.alternatives.push_back(mode);
+    }
+  } else {
+    start.transition.unique = decided.unique;
+    start.transition.alternatives = decided.alternatives;
+  }
+  return start;
+}
+
+}  // namespace saltus::event_integrator

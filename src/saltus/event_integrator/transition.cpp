@@ -1,0 +1,302 @@
+#include "saltus/event_integrator/transition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/mode_field.hpp"
+#include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/switching/selection_root.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using switching::Drift;
+using switching::SurfaceDecision;
+using switching::Verdict;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+/// Largest group whose 2^m corners are looked at.
+constexpr std::size_t largest_group = 12;
+
+bool contains(const std::vector<int>& values, int value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+std::string names(const model::System& system, const std::vector<int>& surfaces) {
+  std::string text;
+  for (const int j : surfaces) text += (text.empty() ? "" : ", ") + system.switching[at(j)].name;
+  return text;
+}
+
+/// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
+/// around j.
+bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j) {
+  if (kernel.depends(i, j)) return true;
+  for (int nested = 0; nested < kernel.switching_functions(); ++nested) {
+    if (!contains(occasion.at_zero, nested) && contains(kernel.inner(nested), j) && kernel.depends(i, nested)) return true;
+  }
+  return false;
+}
+
+/// Connected groups of surfaces that influence each other, each ascending.
+std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion) {
+  std::vector<int> open = occasion.at_zero;
+  std::vector<std::vector<int>> groups;
+  while (!open.empty()) {
+    std::vector<int> group{open.front()};
+    open.erase(open.begin());
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      for (std::size_t other = 0; other < open.size();) {
+        if (feels(kernel, occasion, group[k], open[other]) || feels(kernel, occasion, open[other], group[k])) {
+          group.push_back(open[other]);
+          open.erase(open.begin() + static_cast<std::ptrdiff_t>(other));
+        } else {
+          ++other;
+        }
+      }
+    }
+    std::sort(group.begin(), group.end());
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+/// One pass over all groups with the selections of `state` for everything else.
+class Decider {
+ public:
+  Decider(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion)
+      : s_(surroundings), before_(before), occasion_(occasion), fields_(surroundings.kernel, occasion) {
+    transition_.state = before;
+    transition_.zero_order.assign(before.mode.size(), 0);
+  }
+
+  Transition run();
+  Transition run_forced();
+
+ private:
+  bool decide(const std::vector<int>& group);
+  switching::GroupDecision ask(const std::vector<int>& group);
+  SurfaceDecision ask_selection(const switching::CornerTable& table, int surface);
+  bool read_nested_anew();
+  bool set_corners();
+  bool check();
+  bool fail(result::Termination termination, std::string message);
+
+  const Surroundings& s_;
+  const ModeState& before_;
+  const Occasion& occasion_;
+  ProjectedFields fields_;
+  ModeState base_;  ///< selections held while a group is decided
+  Transition transition_;
+  std::vector<std::pair<int, SurfaceDecision>> decisions_;
+  std::vector<int> standing_;  ///< surfaces that psi does not leave, without consequence for the field
+};
+
+bool Decider::fail(result::Termination termination, std::string message) {
+  transition_.termination = termination;
+  transition_.message = std::move(message);
+  return false;
+}
+
+SurfaceDecision Decider::ask_selection(const switching::CornerTable& table, int surface) {
+  std::vector<double> alpha = base_.alpha;
+  const auto g = [&](double selection) {
+    alpha[at(surface)] = selection;
+    return fields_.velocities(alpha, {surface}).front();
+  };
+  const double last = before_.mode[at(surface)] == 0 ? before_.alpha[at(surface)] : 0.0;
+  return switching::decide_selection({table.side(0, 0), table.side(0, 1), table.arrival[0]}, g, last);
+}
+
+switching::GroupDecision Decider::ask(const std::vector<int>& group) {
+  const auto table = fields_.table(base_, group);
+  if (s_.affine_in_alpha || group.size() > 1) return switching::decide_group(table);
+  SurfaceDecision decision = ask_selection(table, group.front());
+  return {decision.verdict, 0, {decision}};
+}
+
+bool Decider::decide(const std::vector<int>& group) {
+  if (group.size() > largest_group || (!s_.affine_in_alpha && group.size() > 1)) {
+    return fail(result::Termination::outside_class,
+                fmt::format("{} surfaces that influence each other meet at t = {}: {}; sliding there needs the general "
+                            "codimension-{} switching of a later version",
+                            group.size(), occasion_.t, names(s_.system, group), group.size()));
+  }
+  const auto decision = ask(group);
+  const auto culprit = [&] { return s_.system.switching[at(group[at(std::max(decision.culprit, 0))])].name; };
+  switch (decision.verdict) {
+    case Verdict::decided:
+      break;
+    case Verdict::stands:
+      // Nothing depends on the selection: any side continues the same solution.
+      if (!fields_.fields_agree(base_, group)) {
+        return fail(result::Termination::outside_class,
+                    fmt::format("'{}' does not leave 0 at t = {} under either field, which differ there (boundary "
+                                "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
+                                culprit(), occasion_.t));
+      }
+      break;
+    case Verdict::two_fold:
+      return fail(result::Termination::outside_class,
+                  fmt::format("both fields are tangent to '{}' at t = {} (two-fold point): the sliding motion is not "
+                              "determined there", culprit(), occasion_.t));
+    case Verdict::coupled:
+      return fail(result::Termination::outside_class,
+                  fmt::format("the surfaces {} meet at t = {} and influence each other: the continuation needs the "
+                              "codimension-{} switching of a later version", names(s_.system, group), occasion_.t,
+                              group.size()));
+  }
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    SurfaceDecision surface = decision.surfaces[k];
+    if (surface.verdict == Verdict::stands) {
+      const int kept = before_.mode[at(group[k])] != 0 && !occasion_.start ? before_.mode[at(group[k])] : 1;
+      surface = {Verdict::decided, kept, kept > 0 ? 1.0 : 0.0, {}, "psi stays 0 and the fields agree"};
+      standing_.push_back(group[k]);
+    }
+    decisions_.emplace_back(group[k], surface);
+  }
+  return true;
+}
+
+/// Reads the sign of functions nested around a changed surface (or around a stepped input); true if one flipped.
+bool Decider::read_nested_anew() {
+  auto& state = transition_.state;
+  bool flipped = false;
+  std::vector<double> values(at(s_.kernel.event_functions()));
+  for (int j = 0; j < s_.kernel.switching_functions(); ++j) {
+    const auto& inner = s_.kernel.inner(j);
+    if (inner.empty() || contains(occasion_.at_zero, j) || state.mode[at(j)] == 0) continue;
+    s_.kernel.functions(occasion_.t, occasion_.x, state.alpha.data(), values.data());
+    const double psi = values[at(j)];
+    if (!(std::abs(psi) > fields_.noise(j)) || (psi > 0.0) == (state.mode[at(j)] > 0)) continue;
+    set_surface(state, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
+    flipped = true;
+  }
+  return flipped;
+}
+
+/// Selections of the regions that meet at the one sliding surface.
+bool Decider::set_corners() {
+  auto& state = transition_.state;
+  if (state.sliding.empty()) return true;
+  for (std::size_t corner = 0; corner < 2; ++corner) {
+    state.corner_alpha[corner] = fields_.corner_alpha(state.alpha, state.sliding, corner);
+  }
+  if (state.sliding.size() == 1) return true;
+  // Several sliding surfaces: a function nested around one of them must have one sign in all regions.
+  for (std::size_t corner = 1; corner < (std::size_t{1} << std::min<std::size_t>(state.sliding.size(), 10)); ++corner) {
+    const auto alpha = fields_.corner_alpha(state.alpha, state.sliding, corner);
+    for (int j = 0; j < s_.kernel.switching_functions(); ++j) {
+      if (!contains(state.sliding, j) && alpha[at(j)] != state.alpha[at(j)]) {
+        return fail(result::Termination::outside_class,
+                    fmt::format("at t = {} the sign of '{}' depends on the selections of several sliding surfaces ({})",
+                                occasion_.t, s_.system.switching[at(j)].name, names(s_.system, state.sliding)));
+      }
+    }
+  }
+  return true;
+}
+
+/// The new mode must move to where it says: signs along its own field, selections inside [0, 1].
+bool Decider::check() {
+  auto& state = transition_.state;
+  ModeField field(s_.kernel, s_.affine_in_alpha);
+  field.enter(state);
+  std::vector<double> xdot(at(s_.kernel.states()));
+  field(occasion_.t, occasion_.x, xdot.data());
+  if (!std::all_of(xdot.begin(), xdot.end(), [](double v) { return std::isfinite(v); })) {
+    // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
+    if (!state.sliding.empty()) {
+      return fail(result::Termination::evaluation_failed,
+                  fmt::format("the sliding field on {} is not finite at t = {}", names(s_.system, state.sliding),
+                              occasion_.t));
+    }
+  }
+  for (const int j : state.sliding) {
+    const double selection = field.alpha()[at(j)];
+    // 1e-9: an exit located to rounding leaves the selection at its bound only to the conditioning of the quotient.
+    if (!(selection >= -1e-9 && selection <= 1.0 + 1e-9)) {
+      return fail(result::Termination::no_admissible_mode,
+                  fmt::format("sliding on '{}' at t = {} would need the selection {}", s_.system.switching[at(j)].name,
+                              occasion_.t, selection));
+    }
+    state.alpha[at(j)] = std::clamp(selection, 0.0, 1.0);
+  }
+  for (const int j : occasion_.at_zero) {
+    const int mode = state.mode[at(j)];
+    if (mode == 0) continue;
+    if (contains(standing_, j)) {
+      transition_.zero_order[at(j)] = 2;
+      continue;
+    }
+    double velocity = fields_.velocities(state.alpha, {j}).front();
+    const auto& tangent = mode > 0 ? occasion_.exit_above : occasion_.exit_below;
+    if (contains(tangent, j)) velocity = 0.0;
+    const double scale = std::max(std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
+                                  std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front()));
+    const Motion motion = fields_.motion(state.alpha, j, velocity, scale);
+    if (static_cast<int>(motion.side.drift) != mode) {
+      return fail(result::Termination::no_admissible_mode,
+                  fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not",
+                              occasion_.t, mode > 0 ? "the positive side" : "the negative side",
+                              s_.system.switching[at(j)].name));
+    }
+    transition_.zero_order[at(j)] = std::min(motion.order, 2);
+  }
+  return true;
+}
+
+Transition Decider::run() {
+  base_ = before_;
+  const auto groups = groups_of(s_.kernel, occasion_);
+  // Nested functions that flip change the fields for everything else: decide again until nothing flips.
+  for (int pass = 0; pass < 8; ++pass) {
+    decisions_.clear();
+    standing_.clear();
+    for (const auto& group : groups) {
+      if (!decide(group)) return transition_;
+    }
+    for (const auto& [surface, decision] : decisions_) {
+      set_surface(transition_.state, surface, decision.mode, decision.alpha);
+    }
+    if (!read_nested_anew()) break;
+    base_ = transition_.state;
+    for (const int j : occasion_.at_zero) set_surface(base_, j, before_.mode[at(j)], before_.alpha[at(j)]);
+  }
+  for (const auto& [surface, decision] : decisions_) {
+    if (contains(standing_, surface)) continue;
+    if (decision.mode != before_.mode[at(surface)] || occasion_.start) {
+      transition_.reason += (transition_.reason.empty() ? "" : "; ") + s_.system.switching[at(surface)].name + ": " +
+                            decision.reason;
+    }
+    for (const int other : decision.other_modes) {
+      transition_.unique = false;
+      transition_.alternatives.push_back(transition_.state.mode);
+      transition_.alternatives.back()[at(surface)] = other;
+    }
+  }
+  if (set_corners()) check();
+  return transition_;
+}
+
+Transition Decider::run_forced() {
+  if (set_corners()) check();
+  return transition_;
+}
+
+}  // namespace
+
+Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion) {
+  return Decider(surroundings, before, occasion).run();
+}
+
+Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced, const Occasion& occasion) {
+  return Decider(surroundings, forced, occasion).run_forced();
+}
+
+}  // namespace saltus::event_integrator

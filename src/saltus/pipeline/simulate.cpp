@@ -1,0 +1,150 @@
+#include "saltus/pipeline/simulate.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/integrate.hpp"
+#include "saltus/pipeline/option_fields.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using event_integrator::IntegrationOptions;
+using event_integrator::OutputTimes;
+
+/// More rows than this do not fit into a result that anybody reads.
+constexpr double most_rows = 2e7;
+
+Error invalid(std::string message, std::string remedy) {
+  return {ErrorCode::invalid_option, std::move(message), std::move(remedy), {}, {}};
+}
+
+Expected<OutputTimes> output_times(const OutputGrid& grid, double from, double until) {
+  OutputTimes output;
+  if (std::holds_alternative<EveryStep>(grid)) return output;
+  output.rows = OutputTimes::Rows::at_times;
+  if (const auto* at = std::get_if<AtTimes>(&grid)) {
+    output.times = at->times;
+    return output;
+  }
+  const auto* points = std::get_if<NumberOfPoints>(&grid);
+  const auto* every = std::get_if<EveryInterval>(&grid);
+  const double count = points ? points->points - 1.0 : std::floor((until - from) / every->interval * (1.0 + 1e-12));
+  if (!(count <= most_rows)) {
+    return tl::unexpected(invalid(fmt::format("simulate.output asks for {:.3g} rows", count + 1.0),
+                                  fmt::format("at most {:.0g} are possible: choose a larger interval", most_rows)));
+  }
+  for (double i = 0.0; i <= count; i += 1.0) {
+    const double t = points ? from + (until - from) * (i / count) : from + i * every->interval;
+    output.times.push_back(std::min(t, until));
+  }
+  return output;
+}
+
+Expected<std::vector<std::pair<int, int>>> forced_modes(const model::System& system, const SimulateOptions& options) {
+  std::vector<std::pair<int, int>> forced;
+  for (const auto& [name, mode] : options.initial_mode) {
+    std::vector<std::string> known;
+    const model::SwitchingColumn* found = nullptr;
+    for (const auto& column : system.columns) {
+      known.push_back(column.name);
+      if (column.name == name) found = &column;
+    }
+    if (found == nullptr) {
+      return tl::unexpected(with_context({ErrorCode::unknown_name, "unknown switching function '" + name + "'",
+                                          suggest(name, known), {}, {}}, "in simulate.initial_mode"));
+    }
+    forced.emplace_back(found->function, found->orientation * mode);
+  }
+  return forced;
+}
+
+Expected<IntegrationOptions> integration_options(const model::System& system, const SimulateOptions& options) {
+  if (const auto problem = find_problem(options)) return tl::unexpected(problem->error);
+  IntegrationOptions integration;
+  switch (options.event.integrator) {
+    case Integrator::dopri5:
+      integration.method = ode::Method::dopri5;
+      break;
+    case Integrator::dop853:
+      integration.method = ode::Method::dop853;
+      break;
+    case Integrator::radau5:
+      return tl::unexpected(Error{ErrorCode::not_available, "integrator 'radau5' is not available in this version",
+                                  "use 'dopri5' or 'dop853'; a later version brings radau5", {}, {}});
+  }
+  integration.from = options.from;
+  integration.until = *options.until;
+  if (!(integration.until > integration.from)) {
+    return tl::unexpected(invalid(fmt::format("simulate.until = {} is not behind simulate.from = {}", integration.until,
+                                              integration.from),
+                                  "choose until > from"));
+  }
+  integration.tolerances = {options.rtol, options.atol};
+  integration.max_step = options.event.max_step;
+  integration.max_steps = options.max_steps;
+  integration.max_events = options.max_events;
+  auto output = output_times(options.output, integration.from, integration.until);
+  if (!output) return tl::unexpected(output.error());
+  integration.output = std::move(*output);
+  auto forced = forced_modes(system, options);
+  if (!forced) return tl::unexpected(forced.error());
+  integration.initial_mode = std::move(*forced);
+  return integration;
+}
+
+result::Result frame(const model::System& system, const SimulateOptions& options) {
+  result::Result result;
+  result.model.name = system.name;
+  result.model.description = system.description;
+  for (std::size_t i = 0; i < system.parameter_names.size(); ++i) {
+    result.model.parameters.emplace_back(system.parameter_names[i], system.parameter_values[i]);
+  }
+  result.states = system.state_names;
+  result.controls = system.control_names;
+  result.outputs = system.output_names;
+  for (const auto& column : system.columns) result.switching_functions.push_back(column.name);
+  result.options = option_record(options);
+  return result;
+}
+
+}  // namespace
+
+Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
+                                  const Observers& observers) {
+  if (options.method != Method::event) {
+    return tl::unexpected(Error{ErrorCode::not_available, "only the method 'event' is available in this version",
+                                "use --method event; a later version brings the others", {}, {}});
+  }
+  const auto integration_or = integration_options(system, options);
+  if (!integration_or) return tl::unexpected(integration_or.error());
+  const auto begin = std::chrono::steady_clock::now();
+  auto kernel = evaluation::ModelKernel::compile(system);
+  if (!kernel) return tl::unexpected(kernel.error());
+
+  event_integrator::StepObserver observer;
+  if (observers.on_step) {
+    observer = [&](const event_integrator::Progress& progress) {
+      const auto answer = observers.on_step(
+          {progress.t, integration_or->from, integration_or->until, progress.steps, progress.events});
+      return answer == Proceed::on ? event_integrator::Continue::yes : event_integrator::Continue::no;
+    };
+  }
+  auto run = event_integrator::integrate(*kernel, system, *integration_or, observer);
+
+  result::Result result = frame(system, options);
+  result.status = std::move(run.status);
+  result.final = std::move(run.final);
+  result.events = std::move(run.events);
+  result.trajectory = std::move(run.trajectory);
+  result.statistics = run.statistics;
+  result.statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace saltus::pipeline
