@@ -1,9 +1,11 @@
 // Model file (TOML) -> Description and options.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saltus/base/error.hpp"
@@ -15,14 +17,30 @@ namespace saltus::io {
 struct ModelFile {
   model::Description description;
   pipeline::SimulateOptions simulate;
-  std::string sha256;
+  std::string sha256;  ///< of the file's bytes
+  /// Where each option was written ("rtol", "output.times"), for errors that show only later.
+  std::vector<std::pair<std::string, SourceLocation>> option_locations;
 };
 
-/// Reads a model file. Every error has file, line, column, what was expected and found, and a remedy; unknown tables and
-/// keys name the nearest known ones; tables that this version does not support are refused (not_available).
+/// Reads a model file. Every error has file, line, column, what was expected and found, and a remedy; unknown tables
+/// and keys name the nearest known ones; tables that this version does not support are refused (not_available).
 [[nodiscard]] Expected<ModelFile> read_model(const std::filesystem::path& file);
 /// The same for text in memory; `file` is used in messages and to resolve nothing else.
 [[nodiscard]] Expected<ModelFile> parse_model(std::string_view text, const std::string& file);
+
+/// Larger files are refused: no model is written by hand at that length.
+inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
+
+/// `--set a.b=value` for any key of the file: options of [simulate], its inputs, the inclusion, and the expressions of
+/// [parameters] [states] [controls] [definitions] [switching] [dynamics] [outputs] that the file already has
+/// ("states.q", "states.q.lower", "dynamics.v").
+/// @param key    dotted path below the file's root
+/// @param value  a number, a list of numbers, an expression, or a bare word
+/// @return the model with that key replaced, or an error that names the nearest known keys.
+[[nodiscard]] Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::string_view value);
+
+/// Checks the options of [simulate] against each other (pipeline::find_problem), and tells where the file states them.
+[[nodiscard]] Expected<void> check_options(const ModelFile& model);
 
 /// `--set a.b=value` for the options of a simulation: KEY is a dotted path below the file's root
 /// ("simulate.rtol", "simulate.event.integrator"); a bare word is a string.

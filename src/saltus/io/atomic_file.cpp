@@ -1,0 +1,158 @@
+#include "saltus/io/atomic_file.hpp"
+
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace saltus::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+tl::unexpected<Error> failure(const fs::path& path, std::string message, std::string remedy = "") {
+  return tl::unexpected(Error{ErrorCode::io_failure, std::move(message), std::move(remedy), {path.string(), 0, 0}, {}});
+}
+
+std::string reason(int error_number) { return std::strerror(error_number); }
+
+/// Closes on every path out of a function.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  [[nodiscard]] int number() const { return number_; }
+  /// 0, or -1 with errno: some file systems report a failed write only here.
+  int close() { return number_ < 0 ? 0 : ::close(std::exchange(number_, -1)); }
+
+ private:
+  int number_;
+};
+
+/// Where the bytes go: the file behind a symbolic link, so that the link stays.
+fs::path target_of(const fs::path& path) {
+  std::error_code ignored;
+  const auto target = fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
+  return ignored ? path : target;
+}
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+/// A temporary file beside the target, removed unless it became the target.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target)
+      : path_((folder_of(target) / ".saltus-XXXXXX.tmp").string()),
+        descriptor_(::mkostemps(path_.data(), 4, O_CLOEXEC)),
+        error_number_(descriptor_.number() < 0 ? errno : 0) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (error_number_ == 0 && !became_target_) ::unlink(path_.c_str());
+  }
+
+  [[nodiscard]] int error_number() const { return error_number_; }
+
+  /// 0 or errno.
+  int write(std::string_view content) {
+    while (!content.empty()) {
+      const auto written = ::write(descriptor_.number(), content.data(), content.size());
+      if (written < 0 && errno != EINTR) return errno;
+      if (written > 0) content.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return 0;
+  }
+
+  /// Flushes to disk, then renames over the target: after a crash there is the old file or the new one. 0 or errno.
+  int replace(const fs::path& target) {
+    struct stat old {};
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    const mode_t mode = ::stat(target.c_str(), &old) == 0 ? (old.st_mode & 07777) : (0666 & ~mask);
+    if (::fchmod(descriptor_.number(), mode) != 0 || ::fsync(descriptor_.number()) != 0 || descriptor_.close() != 0 ||
+        ::rename(path_.c_str(), target.c_str()) != 0) {
+      return errno;
+    }
+    became_target_ = true;
+    const Descriptor folder(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (folder.number() >= 0) ::fsync(folder.number());  // not every file system can; the rename is done anyway
+    return 0;
+  }
+
+ private:
+  std::string path_;
+  Descriptor descriptor_;
+  int error_number_;
+  bool became_target_ = false;
+};
+
+}  // namespace
+
+Expected<void> check_writable(const fs::path& path) {
+  std::error_code ignored;
+  if (!path.has_filename() || fs::is_directory(path, ignored)) {
+    return failure(path, "cannot write: this is a folder", "name a file in it");
+  }
+  const auto target = target_of(path);
+  const auto folder = folder_of(target);
+  if (!fs::exists(folder, ignored)) {
+    return failure(path, fmt::format("cannot write: there is no folder '{}'", folder.string()), "create it first");
+  }
+  if (!fs::is_directory(folder, ignored)) {
+    return failure(path, fmt::format("cannot write: '{}' is not a folder", folder.string()));
+  }
+  if (fs::exists(target, ignored)) {
+    if (!fs::is_regular_file(target, ignored)) return failure(path, "cannot write: not a regular file");
+    if (::access(target.c_str(), W_OK) != 0) {
+      return failure(path, fmt::format("cannot write: {}", reason(errno)), "write-protected? choose another name");
+    }
+  }
+  const TemporaryFile trial(target);  // the surest test: quotas and read-only mounts show here, too
+  if (trial.error_number() != 0) {
+    return failure(path,
+                   fmt::format("cannot write into folder '{}': {}", folder.string(), reason(trial.error_number())),
+                   "choose a folder you may write to");
+  }
+  return {};
+}
+
+Expected<void> write_file(const fs::path& path, std::string_view content) {
+  const auto target = target_of(path);
+  TemporaryFile file(target);
+  int error_number = file.error_number();
+  if (error_number == 0) error_number = file.write(content);
+  if (error_number == 0) error_number = file.replace(target);
+  if (error_number == 0) return {};
+  return failure(path, fmt::format("cannot write: {}", reason(error_number)),
+                 "an earlier file of that name is as it was");
+}
+
+Expected<std::string> read_file(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return failure(path, "cannot read: this is a folder", "name a file in it");
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.number() < 0) {
+    const int error_number = errno;
+    if (error_number == ENOENT) return failure(path, "there is no such file");
+    return failure(path, fmt::format("cannot read: {}", reason(error_number)));
+  }
+  std::string content;
+  std::string buffer(1 << 16, '\0');
+  for (;;) {
+    const auto count = ::read(file.number(), buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return failure(path, fmt::format("cannot read: {}", reason(errno)));
+    if (count == 0) return content;
+    content.append(buffer, 0, static_cast<std::size_t>(count));
+  }
+}
+
+}  // namespace saltus::io

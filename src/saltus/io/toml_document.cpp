@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "saltus/io/toml_document_internal.hpp"
+
+namespace saltus::io {
+namespace {
+
+/// Finds what stands at a position of toml++, whose columns count characters, not bytes.
+class SourceText {
+ public:
+  SourceText(std::string_view text, std::string file) : text_(text), file_(std::move(file)), line_starts_{0} {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '\n') line_starts_.push_back(i + 1);
+    }
+  }
+
+  [[nodiscard]] SourceLocation location(const toml::source_position& position) const {
+    return {file_, static_cast<int>(position.line), static_cast<int>(position.column)};
+  }
+
+  /// The text from a position on; empty if there is none.
+  [[nodiscard]] std::string_view from(const toml::source_position& position) const {
+    if (position.line < 1 || position.line > line_starts_.size()) return {};
+    std::size_t offset = line_starts_[position.line - 1];
+    for (std::size_t column = 1; column < position.column && offset < text_.size(); ++column) {
+      ++offset;
+      while (offset < text_.size() && (static_cast<unsigned char>(text_[offset]) & 0xC0) == 0x80) ++offset;
+    }
+    return text_.substr(std::min(offset, text_.size()));
+  }
+
+  [[nodiscard]] std::string_view line(std::size_t number) const {
+    if (number < 1 || number > line_starts_.size()) return {};
+    const auto rest = text_.substr(line_starts_[number - 1]);
+    return rest.substr(0, rest.find('\n'));
+  }
+
+ private:
+  std::string_view text_;
+  std::string file_;
+  std::vector<std::size_t> line_starts_;
+};
+
+/// The first character of a string's content. Exact for strings without escapes; behind an escape columns are too
+/// small.
+SourceLocation content_start(const SourceText& source, const toml::source_position& begin) {
+  auto location = source.location(begin);
+  const auto raw = source.from(begin);
+  const bool multi_line = raw.starts_with("\"\"\"") || raw.starts_with("'''");
+  if (!multi_line) {
+    location.column += raw.starts_with('"') || raw.starts_with('\'') ? 1 : 0;
+    return location;
+  }
+  const auto content = raw.substr(3);
+  if (content.starts_with('\n') || content.starts_with("\r\n")) {  // TOML drops the first line break
+    return {location.file, location.line + 1, 1};
+  }
+  location.column += 3;
+  return location;
+}
+
+TomlTable converted(const SourceText& source, const toml::table& table);
+
+TomlValue converted(const SourceText& source, const toml::node& node) {
+  TomlValue result{TomlDate{}, source.location(node.source().begin)};
+  if (const auto* truth = node.as_boolean()) {
+    result.value = truth->get();
+  } else if (const auto* integer = node.as_integer()) {
+    result.value = integer->get();
+  } else if (const auto* real = node.as_floating_point()) {
+    result.value = real->get();
+  } else if (const auto* text = node.as_string()) {
+    result.value = TomlString{text->get(), content_start(source, node.source().begin)};
+  } else if (const auto* array = node.as_array()) {
+    TomlArray elements;
+    for (const auto& element : *array) elements.push_back(converted(source, element));
+    result.value = std::move(elements);
+  } else if (const auto* table = node.as_table()) {
+    result.value = converted(source, *table);
+  }
+  return result;
+}
+
+TomlTable converted(const SourceText& source, const toml::table& table) {
+  TomlTable entries;
+  for (const auto& [key, node] : table) {
+    auto position = key.source().begin;
+    if (!position) position = node.source().begin;
+    entries.push_back({std::string(key.str()), source.location(position), converted(source, node)});
+  }
+  std::stable_sort(entries.begin(), entries.end(), [](const TomlEntry& a, const TomlEntry& b) {
+    return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
+  });
+  return entries;
+}
+
+Error not_readable(const std::string& file, std::string message, std::string remedy) {
+  return {ErrorCode::parse_failure, std::move(message), std::move(remedy), {file, 0, 0}, {}};
+}
+
+/// Files that are no text, or not the text they look like.
+Expected<void> check_encoding(std::string_view text, const std::string& file) {
+  const bool blank = std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; });
+  if (blank) {
+    return tl::unexpected(
+        not_readable(file, "the file is empty", "a model needs at least [model] with a name, [states] and [dynamics]"));
+  }
+  if (text.starts_with("\xEF\xBB\xBF")) {
+    return tl::unexpected(not_readable(file, "the file begins with a byte order mark (EF BB BF)",
+                                       "save it as UTF-8 without byte order mark"));
+  }
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    return tl::unexpected(not_readable(file, "the file is UTF-16", "save it as UTF-8"));
+  }
+  if (const auto place = text.find('\0'); place != std::string_view::npos) {
+    return tl::unexpected(not_readable(file, fmt::format("this is no text file: byte {} is 0", place),
+                                       "a model file is TOML: text in UTF-8"));
+  }
+  return {};
+}
+
+/// The habit of leaving the quotes away: x = -x + 1, x = sin(t).
+bool looks_like_bare_expression(std::string_view line) {
+  const auto equal = line.find('=');
+  if (equal == std::string_view::npos) return false;
+  const auto value = line.substr(equal + 1);
+  const auto first = value.find_first_not_of(" \t");
+  if (first == std::string_view::npos || std::string_view("\"'[{").find(value[first]) != std::string_view::npos) {
+    return false;
+  }
+  return std::any_of(value.begin(), value.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) ||
+         value.find_first_of("+-*/^(", first) != std::string_view::npos;
+}
+
+Error syntax_error(const SourceText& source, const toml::parse_error& failure) {
+  const auto& position = failure.source().begin;
+  std::string remedy = "see toml.io for the syntax of TOML";
+  if (looks_like_bare_expression(source.line(position.line))) {
+    remedy = "expressions stand in quotes: x = \"-x + sin(t)\"";
+  }
+  return {ErrorCode::parse_failure,
+          fmt::format("not valid TOML: {}", failure.description()),
+          std::move(remedy),
+          source.location(position),
+          {}};
+}
+
+}  // namespace
+
+Expected<TomlTable> parse_toml(std::string_view text, const std::string& file) {
+  if (auto readable = check_encoding(text, file); !readable) return tl::unexpected(readable.error());
+  const SourceText source(text, file);
+  try {
+    return converted(source, toml::parse(text, file));
+  } catch (const toml::parse_error& failure) {
+    return tl::unexpected(syntax_error(source, failure));
+  }
+}
+
+std::string description_of(const TomlValue& value) {
+  struct Describe {
+    std::string operator()(bool truth) const { return truth ? "true" : "false"; }
+    std::string operator()(std::int64_t number) const { return fmt::format("the number {}", number); }
+    std::string operator()(double number) const { return fmt::format("the number {}", number); }
+    std::string operator()(const TomlString& string) const {
+      constexpr std::size_t shown = 40;
+      const bool whole = string.text.size() <= shown;
+      return fmt::format("the string \"{}{}\"", string.text.substr(0, shown), whole ? "" : "…");
+    }
+    std::string operator()(TomlDate) const { return "a date or time"; }
+    std::string operator()(const TomlArray&) const { return "a list"; }
+    std::string operator()(const TomlTable&) const { return "a table"; }
+  };
+  return std::visit(Describe{}, value.value);
+}
+
+}  // namespace saltus::io

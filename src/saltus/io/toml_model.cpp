@@ -1,0 +1,130 @@
+#include "saltus/io/toml_model.hpp"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/io/atomic_file.hpp"
+#include "saltus/io/sha256.hpp"
+#include "saltus/io/toml_sections_internal.hpp"
+#include "saltus/pipeline/option_fields.hpp"
+
+namespace saltus::io {
+namespace {
+
+using SectionReader = void (*)(TomlReader&, const TomlEntry&, ModelFile&);
+
+/// A table of name = expression that goes into one member of the description.
+template <auto member>
+void read_into(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  read_expressions(reader, entry, model.description.*member);
+}
+
+struct Section {
+  std::string_view name;
+  SectionReader read;
+};
+
+constexpr std::array sections{
+    Section{"model", read_model_table},
+    Section{"parameters", read_parameters},
+    Section{"states", read_states},
+    Section{"controls", read_controls},
+    Section{"definitions", read_into<&model::Description::definitions>},
+    Section{"switching", read_into<&model::Description::switching>},
+    Section{"dynamics", read_into<&model::Description::dynamics>},
+    Section{"outputs", read_into<&model::Description::outputs>},
+    Section{"events", read_events},
+    Section{"simulate", read_simulate},
+};
+
+struct LaterTable {
+  std::string_view name;
+  std::string_view written;
+};
+constexpr std::array later_tables{
+    LaterTable{"modes", "[[modes]]"},           LaterTable{"jumps", "[[jumps]]"},
+    LaterTable{"tables", "[tables]"},           LaterTable{"mechanics", "[mechanics]"},
+    LaterTable{"contacts", "[[contacts]]"},     LaterTable{"optimize", "[optimize]"},
+    LaterTable{"sensitivity", "[sensitivity]"},
+};
+
+std::vector<std::string> known_tables() {
+  std::vector<std::string> names;
+  for (const auto& section : sections) names.emplace_back(section.name);
+  for (const auto& table : later_tables) names.emplace_back(table.name);
+  return names;
+}
+
+void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  for (const auto& section : sections) {
+    if (section.name != entry.key) continue;
+    reader.enter(entry.key == "events" ? "[[events]]" : fmt::format("[{}]", entry.key));
+    section.read(reader, entry, model);
+    reader.enter("");
+    return;
+  }
+  for (const auto& table : later_tables) {
+    if (table.name == entry.key) reader.not_available(entry.location, table.written);
+  }
+  const bool is_table =
+      std::holds_alternative<TomlTable>(entry.value.value) || std::holds_alternative<TomlArray>(entry.value.value);
+  reader.fail({ErrorCode::unknown_name,
+               is_table ? fmt::format("unknown table [{}]", entry.key)
+                        : fmt::format("unknown key '{}' outside of all tables", entry.key),
+               suggest(entry.key, known_tables()),
+               entry.location,
+               {}});
+}
+
+}  // namespace
+
+Expected<ModelFile> parse_model(std::string_view text, const std::string& file) {
+  const auto document = parse_toml(text, file);
+  if (!document) return tl::unexpected(document.error());
+  ModelFile model;
+  model.description.file = file;
+  model.sha256 = sha256(text);
+  TomlReader reader(file);
+  for (const auto& entry : *document) {
+    read_section(reader, entry, model);
+    if (reader.failed()) return tl::unexpected(*reader.error());
+  }
+  if (model.description.name.empty()) {
+    return tl::unexpected(Error{ErrorCode::parse_failure,
+                                "the model has no table [model] with a name",
+                                "begin the file with [model] and name = \"my-model\"",
+                                {file, 1, 1},
+                                {}});
+  }
+  return model;
+}
+
+Expected<ModelFile> read_model(const std::filesystem::path& file) {
+  std::error_code unknown_size;
+  const auto size = std::filesystem::file_size(file, unknown_size);
+  if (!unknown_size && size > max_model_bytes) {
+    return tl::unexpected(Error{ErrorCode::io_failure,
+                                fmt::format("the file is too large for a model: {} bytes", size),
+                                fmt::format("a model file has at most {} bytes", max_model_bytes),
+                                {file.string(), 0, 0},
+                                {}});
+  }
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse_model(*text, file.string());
+}
+
+Expected<void> check_options(const ModelFile& model) {
+  auto problem = pipeline::find_problem(model.simulate);
+  if (!problem) return {};
+  auto& error = problem->error;
+  error.location.file = model.description.file;
+  for (const auto& [key, location] : model.option_locations) {
+    if (key == problem->key) error.location = location;
+  }
+  return tl::unexpected(with_context(std::move(error), "in [simulate]"));
+}
+
+}  // namespace saltus::io

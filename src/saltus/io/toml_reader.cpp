@@ -1,0 +1,93 @@
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/expression/parser.hpp"
+#include "saltus/io/toml_reader_internal.hpp"
+
+namespace saltus::io {
+namespace {
+
+constexpr std::string_view number_or_expression = "a number or an expression in quotes";
+
+std::optional<double> number_in(const TomlValue& value) {
+  if (const auto* real = std::get_if<double>(&value.value)) return *real;
+  if (const auto* integer = std::get_if<std::int64_t>(&value.value)) return static_cast<double>(*integer);
+  return std::nullopt;
+}
+
+}  // namespace
+
+void TomlReader::fail(Error error) {
+  if (error_) return;
+  if (!table_.empty()) error = with_context(std::move(error), "in " + table_);
+  error_ = std::move(error);
+}
+
+void TomlReader::wrong_type(std::string_view expected, const TomlValue& found) {
+  fail({ErrorCode::parse_failure,
+        fmt::format("expected {}, found {}", expected, description_of(found)),
+        "",
+        found.location,
+        {}});
+}
+
+void TomlReader::unknown_key(const TomlEntry& entry, const std::vector<std::string>& known) {
+  fail({ErrorCode::unknown_name,
+        fmt::format("unknown key '{}'", entry.key),
+        suggest(entry.key, known),
+        entry.location,
+        {}});
+}
+
+void TomlReader::not_available(const SourceLocation& location, std::string_view what) {
+  fail({ErrorCode::not_available,
+        fmt::format("{} is not available in this version; a later one brings it", what),
+        "leave it out to run the rest of the model",
+        location,
+        {}});
+}
+
+const TomlTable* TomlReader::table(const TomlValue& value, std::string_view expected) {
+  const auto* table = std::get_if<TomlTable>(&value.value);
+  if (table == nullptr) wrong_type(expected, value);
+  return table;
+}
+
+expression::NodePtr TomlReader::expression(const TomlValue& value) {
+  if (const auto number = number_in(value)) {
+    if (std::isfinite(*number)) return expression::number(*number, value.location);
+    wrong_type("a finite number", value);
+    return nullptr;
+  }
+  const auto* text = std::get_if<TomlString>(&value.value);
+  if (text == nullptr) {
+    wrong_type(number_or_expression, value);
+    return nullptr;
+  }
+  auto tree = expression::parse(text->text, text->start);
+  if (tree) return *tree;
+  fail(tree.error());
+  return nullptr;
+}
+
+expression::NodePtr TomlReader::bound(const TomlValue& value) {
+  const auto number = number_in(value);
+  if (number && std::isinf(*number)) return nullptr;
+  return expression(value);
+}
+
+std::string TomlReader::string(const TomlValue& value, std::string_view expected) {
+  if (const auto* text = std::get_if<TomlString>(&value.value)) return text->text;
+  wrong_type(expected, value);
+  return {};
+}
+
+bool TomlReader::boolean(const TomlValue& value) {
+  if (const auto* truth = std::get_if<bool>(&value.value)) return *truth;
+  wrong_type("true or false", value);
+  return false;
+}
+
+}  // namespace saltus::io

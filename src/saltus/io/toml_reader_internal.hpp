@@ -1,0 +1,50 @@
+// Reads checked values out of a TOML document. Keeps the first error, so that the readers of tables stay straight
+// lines.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/expression/syntax_tree.hpp"
+#include "saltus/io/toml_document_internal.hpp"
+
+namespace saltus::io {
+
+class TomlReader {
+ public:
+  explicit TomlReader(std::string file) : file_(std::move(file)) {}
+
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+  [[nodiscard]] bool failed() const { return error_.has_value(); }
+
+  /// The table that errors are in, as a context frame; empty for none.
+  void enter(std::string table) { table_ = std::move(table); }
+
+  /// Keeps the error unless there is one already; adds the table it is in.
+  void fail(Error error);
+  void wrong_type(std::string_view expected, const TomlValue& found);
+  /// An unknown key, with the nearest of `known`.
+  void unknown_key(const TomlEntry& entry, const std::vector<std::string>& known);
+  void not_available(const SourceLocation& location, std::string_view what);
+
+  /// The value as a table, or null and an error.
+  const TomlTable* table(const TomlValue& value, std::string_view expected);
+  /// A number or an expression in quotes; null after an error.
+  expression::NodePtr expression(const TomlValue& value);
+  /// As `expression`, but plus or minus infinity means no bound: null.
+  expression::NodePtr bound(const TomlValue& value);
+  std::string string(const TomlValue& value, std::string_view expected);
+  bool boolean(const TomlValue& value);
+
+ private:
+  std::string file_;
+  std::string table_;
+  std::optional<Error> error_;
+};
+
+}  // namespace saltus::io

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/io/toml_sections_internal.hpp"
+
+namespace saltus::io {
+namespace {
+
+/// { initial, lower, upper, free } of a state, a parameter or a control.
+struct Quantity {
+  expression::NodePtr initial, lower, upper;
+};
+
+/// Reads `name = value` or `name = { initial = …, … }`.
+Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
+  Quantity quantity;
+  const auto* table = std::get_if<TomlTable>(&entry.value.value);
+  if (table == nullptr) {
+    quantity.initial = reader.expression(entry.value);
+    return quantity;
+  }
+  for (const auto& [key, location, value] : *table) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      reader.unknown_key({key, location, value}, known);
+    } else if (key == "initial") {
+      quantity.initial = reader.expression(value);
+    } else if (key == "lower") {
+      quantity.lower = reader.bound(value);
+    } else if (key == "upper") {
+      quantity.upper = reader.bound(value);
+    } else if (reader.boolean(value)) {
+      reader.not_available(location, fmt::format("'{}' with free = true (optimisation)", entry.key));
+    }
+  }
+  return quantity;
+}
+
+void require_initial(TomlReader& reader, const TomlEntry& entry, const Quantity& quantity) {
+  if (quantity.initial != nullptr || reader.failed()) return;
+  reader.fail({ErrorCode::parse_failure,
+               fmt::format("'{}' has no initial value", entry.key),
+               fmt::format("write {} = {{ initial = 0, … }}", entry.key),
+               entry.location,
+               {}});
+}
+
+const std::vector<std::string> quantity_keys{"initial", "lower", "upper", "free"};
+const std::vector<std::string> control_keys{"initial", "lower", "upper"};
+
+template <class Enum>
+Expected<Enum> enum_named(const std::string& word, const std::vector<std::pair<std::string, Enum>>& choices) {
+  std::vector<std::string> known;
+  for (const auto& [name, value] : choices) {
+    if (name == word) return value;
+    known.push_back(name);
+  }
+  return tl::unexpected(
+      Error{ErrorCode::invalid_option,
+            fmt::format("expected \"{}\", found the string \"{}\"", fmt::join(known, "\" or \""), word),
+            nearest_names(word, known).empty() ? "" : suggest(word, known),
+            {},
+            {}});
+}
+
+/// Reads a word out of a closed set; `fallback` after an error.
+template <class Enum>
+Enum read_enum(TomlReader& reader, const TomlValue& value, const std::vector<std::pair<std::string, Enum>>& choices,
+               Enum fallback) {
+  const auto* word = std::get_if<TomlString>(&value.value);
+  if (word == nullptr) {
+    reader.wrong_type(fmt::format("\"{}\" or another of its words", choices.front().first), value);
+    return fallback;
+  }
+  auto found = enum_named(word->text, choices);
+  if (found) return *found;
+  found.error().location = value.location;
+  reader.fail(found.error());
+  return fallback;
+}
+
+const std::vector<std::pair<std::string, model::Inclusion>> inclusions{
+    {"filippov", model::Inclusion::filippov}, {"aizerman_pyatnitskii", model::Inclusion::aizerman_pyatnitskii}};
+const std::vector<std::pair<std::string, model::Direction>> directions{
+    {"up", model::Direction::up}, {"down", model::Direction::down}, {"both", model::Direction::both}};
+
+void read_event(TomlReader& reader, const TomlValue& value, ModelFile& model) {
+  const auto* table = reader.table(value, "a table with `when`");
+  if (table == nullptr) return;
+  model::UserEventDescription event;
+  event.location = value.location;
+  for (const auto& entry : *table) {
+    if (entry.key == "name") {
+      event.name = reader.string(entry.value, "a name in quotes");
+    } else if (entry.key == "when") {
+      event.when = reader.expression(entry.value);
+    } else if (entry.key == "direction") {
+      event.direction = read_enum(reader, entry.value, directions, model::Direction::both);
+    } else if (entry.key == "stop") {
+      event.action = reader.boolean(entry.value) ? model::AtEvent::stop : model::AtEvent::record;
+    } else {
+      reader.unknown_key(entry, {"name", "when", "direction", "stop"});
+    }
+  }
+  if (event.when == nullptr) {
+    reader.fail({ErrorCode::parse_failure,
+                 "this event has no `when`",
+                 "write when = \"expression\" (its zeros) or a condition (its edges)",
+                 value.location,
+                 {}});
+  }
+  model.description.events.push_back(std::move(event));
+}
+
+}  // namespace
+
+Expected<model::Inclusion> inclusion_named(const std::string& word) { return enum_named(word, inclusions); }
+
+void read_model_table(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [model]");
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    if (field.key == "name") {
+      model.description.name = reader.string(field.value, "a name in quotes");
+      if (model.description.name.empty()) {
+        reader.fail({ErrorCode::parse_failure,
+                     "the model's name is empty",
+                     "write name = \"my-model\"",
+                     field.value.location,
+                     {}});
+      }
+    } else if (field.key == "description") {
+      model.description.description = reader.string(field.value, "a text in quotes");
+    } else if (field.key == "inclusion") {
+      model.description.inclusion = read_enum(reader, field.value, inclusions, model::Inclusion::filippov);
+    } else {
+      reader.unknown_key(field, {"name", "description", "inclusion"});
+    }
+  }
+  if (model.description.name.empty()) {
+    reader.fail({ErrorCode::parse_failure,
+                 "the model has no name",
+                 "write name = \"my-model\" in [model]",
+                 entry.location,
+                 {}});
+  }
+}
+
+void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<model::NamedExpression>& expressions) {
+  const auto* table = reader.table(entry.value, fmt::format("the table [{}] of names and expressions", entry.key));
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    expressions.push_back({field.key, reader.expression(field.value), field.location});
+  }
+}
+
+void read_parameters(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [parameters]");
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    auto quantity = read_quantity(reader, field, quantity_keys);
+    require_initial(reader, field, quantity);
+    model.description.parameters.push_back({field.key, std::move(quantity.initial), field.location});
+  }
+}
+
+void read_states(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [states]");
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    auto [initial, lower, upper] = read_quantity(reader, field, quantity_keys);
+    require_initial(reader, field, {initial, nullptr, nullptr});
+    model.description.states.push_back(
+        {field.key, std::move(initial), std::move(lower), std::move(upper), field.location});
+  }
+}
+
+void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [controls]");
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    auto [initial, lower, upper] = read_quantity(reader, field, control_keys);
+    model.description.controls.push_back(
+        {field.key, std::move(initial), std::move(lower), std::move(upper), field.location});
+  }
+}
+
+void read_events(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* array = std::get_if<TomlArray>(&entry.value.value);
+  if (array == nullptr) {
+    reader.wrong_type("tables that begin with [[events]]", entry.value);
+    return;
+  }
+  for (const auto& value : *array) read_event(reader, value, model);
+}
+
+}  // namespace saltus::io

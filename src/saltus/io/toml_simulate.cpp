@@ -1,0 +1,134 @@
+// [simulate]: flattened into dotted keys, which the option table of the pipeline knows.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/io/toml_sections_internal.hpp"
+#include "saltus/pipeline/option_fields.hpp"
+
+namespace saltus::io {
+namespace {
+
+using result::OptionValue;
+
+/// A list of numbers; nullopt and an error if there is anything else in it.
+std::optional<std::vector<double>> numbers(TomlReader& reader, const TomlArray& array) {
+  std::vector<double> list;
+  for (const auto& element : array) {
+    if (const auto* real = std::get_if<double>(&element.value)) {
+      list.push_back(*real);
+    } else if (const auto* integer = std::get_if<std::int64_t>(&element.value)) {
+      list.push_back(static_cast<double>(*integer));
+    } else {
+      reader.wrong_type("a number", element);
+      return std::nullopt;
+    }
+  }
+  return list;
+}
+
+std::optional<OptionValue> option_value(TomlReader& reader, std::string_view key, const TomlValue& value) {
+  if (const auto* truth = std::get_if<bool>(&value.value)) return OptionValue(*truth);
+  if (const auto* integer = std::get_if<std::int64_t>(&value.value)) return OptionValue(*integer);
+  if (const auto* real = std::get_if<double>(&value.value)) return OptionValue(*real);
+  if (const auto* text = std::get_if<TomlString>(&value.value)) return OptionValue(text->text);
+  if (const auto* array = std::get_if<TomlArray>(&value.value)) {
+    if (auto list = numbers(reader, *array)) return OptionValue(std::move(*list));
+    return std::nullopt;
+  }
+  // No option is a table or a date; whether there is one of that name is for the option table to say.
+  const auto known = pipeline::with_value({}, key, OptionValue(false));
+  if (!known && known.error().code == ErrorCode::unknown_name) return OptionValue(false);
+  reader.wrong_type("a number, a word in quotes or a list of numbers", value);
+  return std::nullopt;
+}
+
+/// Whether some option's key begins with this one and a dot: then it is a table.
+bool is_table_of_options(std::string_view key) {
+  const auto prefix = fmt::format("{}.", key);
+  const auto fields = pipeline::simulate_fields();
+  return std::any_of(fields.begin(), fields.end(), [&](const auto& field) { return field.key.starts_with(prefix); });
+}
+
+bool is_option(std::string_view key) {
+  const auto keys = pipeline::simulate_keys();
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+void read_option(TomlReader& reader, const std::string& key, const TomlEntry& entry, ModelFile& model) {
+  if (is_table_of_options(key) && !is_option(key)) {
+    reader.wrong_type(fmt::format("the table [simulate.{}]", key), entry.value);
+    return;
+  }
+  const auto value = option_value(reader, key, entry.value);
+  if (!value) return;
+  auto options = pipeline::with_value(model.simulate, key, *value);
+  if (options) {
+    model.simulate = std::move(*options);
+    model.option_locations.emplace_back(key, entry.value.location);
+    return;
+  }
+  auto error = options.error();
+  const bool about_key = error.code == ErrorCode::unknown_name;
+  error.location = about_key ? entry.location : entry.value.location;
+  if (!about_key) error.message = fmt::format("{}: {}", entry.key, error.message);
+  reader.fail(std::move(error));
+}
+
+void check_output_table(TomlReader& reader, const TomlEntry& entry, const TomlTable& table) {
+  if (table.size() == 1) return;
+  reader.fail(
+      {ErrorCode::invalid_option,
+       fmt::format("expected one of every, points and times in output, found {}", table.empty() ? "none" : "several"),
+       "write e.g. output = { every = 0.01 }",
+       table.empty() ? entry.value.location : table[1].location,
+       {}});
+}
+
+void read_options(TomlReader& reader, const std::string& prefix, const TomlTable& table, ModelFile& model) {
+  for (const auto& entry : table) {
+    const auto key = prefix + entry.key;
+    const auto* inner = std::get_if<TomlTable>(&entry.value.value);
+    if (inner == nullptr || !is_table_of_options(key)) {
+      read_option(reader, key, entry, model);
+      continue;
+    }
+    if (key == "output") check_output_table(reader, entry, *inner);
+    read_options(reader, key + ".", *inner, model);
+  }
+}
+
+void read_inputs(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "a table like { u = \"sin(t)\" }");
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    if (const auto* source = std::get_if<TomlTable>(&field.value.value)) {
+      const bool known = source->size() == 1 && (source->front().key == "file" || source->front().key == "result");
+      if (known)
+        reader.not_available(field.location, fmt::format("the input '{}' from a {}", field.key, source->front().key));
+      reader.wrong_type("an expression of the time in quotes", field.value);
+      continue;
+    }
+    model.description.inputs.push_back({field.key, reader.expression(field.value), field.location});
+  }
+}
+
+}  // namespace
+
+void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [simulate]");
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    const bool later = field.key == "fesd" || field.key == "timestepping" || field.key == "smoothed";
+    if (later) {
+      reader.not_available(field.location, fmt::format("[simulate.{}]", field.key));
+    } else if (field.key == "inputs") {
+      read_inputs(reader, field, model);
+    } else {
+      read_options(reader, "", {field}, model);
+    }
+  }
+}
+
+}  // namespace saltus::io
