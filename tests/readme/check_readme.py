@@ -1,0 +1,49 @@
+"""Runs what README.md shows: its model and its commands, and compares what it says about the result.
+
+usage: check_readme.py README.md TOOL
+"""
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+
+def blocks(text, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+def run(command, tool, folder):
+    """A command line of the README, with the tool that was built."""
+    words = [tool, *command.split()[1:]]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{command}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def main(readme, tool):
+    text = Path(readme).read_text(encoding="utf-8")
+    model = blocks(text, "toml")[0]
+    name = re.search(r"Save it as `([^`]+)`", text).group(1)
+    commands = [line for block in blocks(text, "") for line in block.splitlines() if line.startswith("saltus ")]
+    if not commands:
+        sys.exit("README.md shows no saltus command")
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / name).write_text(model, encoding="utf-8")
+        for command in commands:
+            run(command, tool, folder)
+        run(f"saltus simulate {name} --quiet --out result.json", tool, folder)
+        result = json.loads((Path(folder) / "result.json").read_text(encoding="utf-8"))
+    claimed = float(re.search(r"stops after ([0-9.]+) time units", text).group(1))
+    events = result["events"]
+    if len(events) != 1 or events[0]["kind"] != "enter_sliding" or abs(events[0]["t"] - claimed) > 0.01:
+        sys.exit(f"README.md claims one event at {claimed}; got {[(e['t'], e['kind']) for e in events]}")
+    if result["final"]["x"][1] != 0.0:
+        sys.exit(f"README.md says that the mass sticks; its velocity is {result['final']['x'][1]}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2])
