@@ -1,0 +1,44 @@
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "saltus/io/json_result.hpp"
+
+namespace saltus::io {
+namespace {
+
+/// RFC 4180: fields with a comma, a quote or a line break stand in quotes, quotes are doubled.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+template <class Row>
+void append(std::string& text, const Row& row) {
+  for (const auto value : row) fmt::format_to(std::back_inserter(text), ",{}", value);
+}
+
+}  // namespace
+
+std::string to_csv(const result::Result& result) {
+  std::string text = "t";
+  for (const auto& state : result.states) text += "," + field(state);
+  for (const auto& control : result.controls) text += "," + field(control);
+  for (const auto& name : result.switching_functions) text += "," + field("alpha(" + name + ")");
+  for (const auto& name : result.switching_functions) text += "," + field("mode(" + name + ")");
+  text += "\n";
+  const auto& trajectory = result.trajectory;
+  for (std::size_t i = 0; i < trajectory.t.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{}", trajectory.t[i]);
+    append(text, trajectory.x[i]);
+    append(text, trajectory.u[i]);
+    append(text, trajectory.alpha[i]);
+    append(text, trajectory.mode[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace saltus::io

@@ -1,0 +1,254 @@
+// JSON -> Result.
+#include <algorithm>
+#include <cstddef>
+
+#include "saltus/io/atomic_file.hpp"
+#include "saltus/io/json_reader_internal.hpp"
+#include "saltus/io/json_result.hpp"
+
+namespace saltus::io {
+namespace {
+
+constexpr std::string_view format_name = "saltus-result/1";
+
+void read_model(JsonReader& reader, const Json& json, const std::string& path, result::ModelRecord& model) {
+  reader.read_member(json, path, "name", model.name);
+  reader.read_member(json, path, "sha256", model.sha256);
+  if (json.is_object() && json.contains("description"))
+    reader.read_member(json, path, "description", model.description);
+  const auto* parameters = reader.member(json, path, "parameters");
+  if (parameters == nullptr) return;
+  if (!parameters->is_object()) {
+    reader.mismatch(path + "/parameters", "an object", *parameters);
+    return;
+  }
+  for (const auto& [name, value] : parameters->items()) {
+    double number = 0.0;
+    reader.read(value, path + "/parameters/" + name, number);
+    model.parameters.emplace_back(name, number);
+  }
+}
+
+void read_status(JsonReader& reader, const Json& json, const std::string& path, result::Status& status) {
+  std::string word;
+  reader.read_member(json, path, "termination", word);
+  const auto termination = result::termination_named(word);
+  if (!termination) reader.fail(path + "/termination", fmt::format("'{}' is no termination", word));
+  status.termination = termination.value_or(result::Termination::completed);
+  reader.read_member(json, path, "message", status.message);
+  reader.read_member(json, path, "time_reached", status.time_reached);
+}
+
+void read_alternatives(JsonReader& reader, const Json& json, const std::string& path, result::Event& event) {
+  if (!json.is_array()) {
+    reader.mismatch(path, "a list", json);
+    return;
+  }
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    result::Alternative alternative;
+    const auto here = fmt::format("{}/{}", path, i);
+    reader.read_member(json[i], here, "mode", alternative.mode);
+    reader.read_member(json[i], here, "alpha", alternative.alpha);
+    event.alternatives.push_back(std::move(alternative));
+  }
+}
+
+result::Event read_event(JsonReader& reader, const Json& json, const std::string& path) {
+  result::Event event;
+  std::string word;
+  reader.read_member(json, path, "t", event.t);
+  reader.read_member(json, path, "kind", word);
+  const auto kind = result::event_kind_named(word);
+  if (!kind) reader.fail(path + "/kind", fmt::format("'{}' is no kind of event", word));
+  event.kind = kind.value_or(result::EventKind::crossing);
+  reader.read_member(json, path, "name", event.name);
+  reader.read_member(json, path, "surfaces", event.surfaces);
+  reader.read_member(json, path, "mode_before", event.mode_before);
+  reader.read_member(json, path, "mode_after", event.mode_after);
+  reader.read_member(json, path, "alpha_before", event.alpha_before);
+  reader.read_member(json, path, "alpha_after", event.alpha_after);
+  reader.read_member(json, path, "x", event.x);
+  reader.read_member(json, path, "x_after", event.x_after);
+  reader.read_member(json, path, "unique", event.unique);
+  if (const auto* others = reader.member(json, path, "alternatives")) {
+    read_alternatives(reader, *others, path + "/alternatives", event);
+  }
+  reader.read_member(json, path, "reason", event.reason);
+  return event;
+}
+
+void read_events(JsonReader& reader, const Json& json, const std::string& path, std::vector<result::Event>& events) {
+  if (!json.is_array()) {
+    reader.mismatch(path, "a list", json);
+    return;
+  }
+  for (std::size_t i = 0; i < json.size(); ++i)
+    events.push_back(read_event(reader, json[i], fmt::format("{}/{}", path, i)));
+}
+
+void read_trajectory(JsonReader& reader, const Json& json, const std::string& path, result::Trajectory& trajectory) {
+  reader.read_member(json, path, "t", trajectory.t);
+  reader.read_member(json, path, "x", trajectory.x);
+  reader.read_member(json, path, "u", trajectory.u);
+  reader.read_member(json, path, "alpha", trajectory.alpha);
+  reader.read_member(json, path, "mode", trajectory.mode);
+  reader.read_member(json, path, "outputs", trajectory.outputs);
+}
+
+void read_final(JsonReader& reader, const Json& json, const std::string& path, result::Final& final) {
+  reader.read_member(json, path, "t", final.t);
+  reader.read_member(json, path, "x", final.x);
+  reader.read_member(json, path, "mode", final.mode);
+  reader.read_member(json, path, "alpha", final.alpha);
+  reader.read_member(json, path, "outputs", final.outputs);
+}
+
+void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics) {
+  reader.read_member(json, path, "steps", statistics.steps);
+  reader.read_member(json, path, "rejected", statistics.rejected);
+  reader.read_member(json, path, "rhs_evaluations", statistics.rhs_evaluations);
+  reader.read_member(json, path, "wall_seconds", statistics.wall_seconds);
+}
+
+void read_options(JsonReader& reader, const Json& json, const std::string& path, result::OptionRecord& options) {
+  if (!json.is_object()) {
+    reader.mismatch(path, "an object", json);
+    return;
+  }
+  for (const auto& [name, value] : json.items()) {
+    const auto here = path + "/" + name;
+    const auto add = [&, &key = name, &content = value](auto target) {
+      reader.read(content, here, target);
+      options.emplace_back(key, std::move(target));
+    };
+    if (value.is_boolean()) {
+      add(bool{});
+    } else if (value.is_number_integer()) {
+      add(std::int64_t{});
+    } else if (value.is_string()) {
+      add(std::string{});
+    } else if (value.is_array()) {
+      add(std::vector<double>{});
+    } else {
+      add(double{});
+    }
+  }
+}
+
+/// Every row of a table must have as many entries as there are names, and every table as many rows as times.
+template <class Rows>
+void check_rows(JsonReader& reader, const char* table, const Rows& rows, std::size_t times, std::size_t names) {
+  const auto path = fmt::format("/trajectory/{}", table);
+  if (rows.size() != times) {
+    reader.fail(path, fmt::format("expected as many rows as times, {}, found {}", times, rows.size()));
+  }
+  const auto wrong = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.size() != names; });
+  if (wrong == rows.end()) return;
+  reader.fail(fmt::format("{}/{}", path, wrong - rows.begin()),
+              fmt::format("expected {} entries, found {}", names, wrong->size()));
+}
+
+template <class Vector>
+void check_length(JsonReader& reader, const std::string& path, const Vector& vector, std::size_t expected) {
+  if (vector.size() == expected) return;
+  reader.fail(path, fmt::format("expected {} entries, found {}", expected, vector.size()));
+}
+
+void check_event_lengths(JsonReader& reader, const result::Event& event, const std::string& path, std::size_t states,
+                         std::size_t columns) {
+  check_length(reader, path + "/x", event.x, states);
+  check_length(reader, path + "/x_after", event.x_after, states);
+  if (event.mode_before) check_length(reader, path + "/mode_before", *event.mode_before, columns);
+  if (event.mode_after) check_length(reader, path + "/mode_after", *event.mode_after, columns);
+  if (event.alpha_before) check_length(reader, path + "/alpha_before", *event.alpha_before, columns);
+  if (event.alpha_after) check_length(reader, path + "/alpha_after", *event.alpha_after, columns);
+}
+
+/// What tables and reports rely on when they index.
+void check_shapes(JsonReader& reader, const result::Result& result) {
+  const auto& trajectory = result.trajectory;
+  const std::size_t times = trajectory.t.size();
+  const std::size_t columns = result.switching_functions.size();
+  check_rows(reader, "x", trajectory.x, times, result.states.size());
+  check_rows(reader, "u", trajectory.u, times, result.controls.size());
+  check_rows(reader, "alpha", trajectory.alpha, times, columns);
+  check_rows(reader, "mode", trajectory.mode, times, columns);
+  check_rows(reader, "outputs", trajectory.outputs, times, result.outputs.size());
+  check_length(reader, "/final/x", result.final.x, result.states.size());
+  check_length(reader, "/final/mode", result.final.mode, columns);
+  check_length(reader, "/final/alpha", result.final.alpha, columns);
+  check_length(reader, "/final/outputs", result.final.outputs, result.outputs.size());
+  for (std::size_t i = 0; i < result.events.size(); ++i) {
+    check_event_lengths(reader, result.events[i], fmt::format("/events/{}", i), result.states.size(), columns);
+  }
+}
+
+void read_format(JsonReader& reader, const Json& json) {
+  std::string format;
+  reader.read_member(json, "", "format", format);
+  if (format == format_name) return;
+  reader.fail("/format", fmt::format("expected \"{}\", found \"{}\": no result of this version", format_name, format));
+}
+
+/// Applies a reader of a part to the member `key`.
+template <class Read, class Part>
+void read_part(JsonReader& reader, const Json& json, const char* key, Read read, Part& part) {
+  if (const auto* member = reader.member(json, "", key)) read(reader, *member, std::string("/") + key, part);
+}
+
+result::Result read_whole(JsonReader& reader, const Json& json) {
+  result::Result result;
+  read_format(reader, json);
+  if (reader.error()) return result;
+  read_part(reader, json, "model", read_model, result.model);
+  reader.read_member(json, "", "command", result.command);
+  reader.read_member(json, "", "method", result.method);
+  read_part(reader, json, "status", read_status, result.status);
+  reader.read_member(json, "", "states", result.states);
+  reader.read_member(json, "", "controls", result.controls);
+  reader.read_member(json, "", "switching_functions", result.switching_functions);
+  reader.read_member(json, "", "outputs", result.outputs);
+  read_part(reader, json, "final", read_final, result.final);
+  read_part(reader, json, "events", read_events, result.events);
+  read_part(reader, json, "trajectory", read_trajectory, result.trajectory);
+  read_part(reader, json, "statistics", read_statistics, result.statistics);
+  read_part(reader, json, "options", read_options, result.options);
+  if (!reader.error()) check_shapes(reader, result);
+  return result;
+}
+
+Error syntax_error(const std::string& text, const std::string& file, std::size_t byte) {
+  const auto before = std::string_view(text).substr(0, byte > 0 ? byte - 1 : 0);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const auto line_start = before.rfind('\n') + 1;  // npos + 1 is 0: the first line
+  return {ErrorCode::parse_failure,
+          text.empty() ? "the file is empty" : "not valid JSON",
+          "expected a result file written by saltus simulate --out FILE.json",
+          {file, static_cast<int>(line), static_cast<int>(before.size() - line_start + 1)},
+          {}};
+}
+
+}  // namespace
+
+Expected<result::Result> parse_result(const std::string& text, const std::string& file) {
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& failure) {
+    return tl::unexpected(syntax_error(text, file, failure.byte));
+  } catch (const Json::exception&) {  // a number beyond the range of a double
+    return tl::unexpected(syntax_error(text, file, 1));
+  }
+  JsonReader reader(file);
+  auto result = read_whole(reader, json);
+  if (reader.error()) return tl::unexpected(*reader.error());
+  return result;
+}
+
+Expected<result::Result> read_result(const std::filesystem::path& file) {
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse_result(*text, file.string());
+}
+
+}  // namespace saltus::io

@@ -1,0 +1,114 @@
+// Reads checked values out of a JSON document; the first mismatch is kept, with its path ("/events/3/kind").
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "saltus/base/error.hpp"
+
+namespace saltus::io {
+
+using Json = nlohmann::ordered_json;
+
+class JsonReader {
+ public:
+  explicit JsonReader(std::string file) : file_(std::move(file)) {}
+
+  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+  void fail(const std::string& path, std::string message) {
+    if (error_) return;
+    error_ = Error{ErrorCode::parse_failure,
+                   fmt::format("at {}: {}", path.empty() ? "/" : path, message),
+                   "is this the whole, unedited result file?",
+                   {file_, 0, 0},
+                   {}};
+  }
+
+  /// The member of an object, or null and an error.
+  const Json* member(const Json& object, const std::string& path, const char* key) {
+    if (!object.is_object()) {
+      mismatch(path, "an object", object);
+      return nullptr;
+    }
+    const auto found = object.find(key);
+    if (found != object.end()) return &*found;
+    fail(path, fmt::format("'{}' is missing", key));
+    return nullptr;
+  }
+
+  /// Reads object[key] into `target`, of any type that read() knows.
+  template <class Target>
+  void read_member(const Json& object, const std::string& path, const char* key, Target& target) {
+    if (const auto* json = member(object, path, key)) read(*json, path + "/" + key, target);
+  }
+
+  void read(const Json& json, const std::string& path, double& target) {
+    if (json.is_number()) {
+      target = json.get<double>();
+    } else if (json.is_null()) {
+      target = std::numeric_limits<double>::quiet_NaN();
+    } else {
+      mismatch(path, "a number or null", json);
+    }
+  }
+  void read(const Json& json, const std::string& path, std::int64_t& target) {
+    json.is_number_integer() ? void(target = json.get<std::int64_t>()) : mismatch(path, "a whole number", json);
+  }
+  void read(const Json& json, const std::string& path, int& target) {
+    // The only integers of a result besides counts are the components of a mode.
+    const bool sign = json.is_number_integer() && std::abs(json.get<std::int64_t>()) <= 1;
+    sign ? void(target = json.get<int>()) : mismatch(path, "-1, 0 or 1", json);
+  }
+  void read(const Json& json, const std::string& path, bool& target) {
+    json.is_boolean() ? void(target = json.get<bool>()) : mismatch(path, "true or false", json);
+  }
+  void read(const Json& json, const std::string& path, std::string& target) {
+    json.is_string() ? void(target = json.get<std::string>()) : mismatch(path, "a text", json);
+  }
+  template <class Element>
+  void read(const Json& json, const std::string& path, std::vector<Element>& target) {
+    if (!json.is_array()) {
+      mismatch(path, "a list", json);
+      return;
+    }
+    target.clear();
+    target.reserve(json.size());
+    for (const auto& element : json) {
+      Element value{};
+      // Paths only where they are needed: a trajectory has millions of numbers.
+      read(element, path, value);
+      if (error_) return;
+      target.push_back(std::move(value));
+    }
+  }
+  template <class Value>
+  void read(const Json& json, const std::string& path, std::optional<Value>& target) {
+    target.reset();
+    if (json.is_null()) return;
+    Value value{};
+    read(json, path, value);
+    target = std::move(value);
+  }
+
+  void mismatch(const std::string& path, std::string_view expected, const Json& found) {
+    constexpr std::size_t shown = 40;
+    const auto text = found.is_structured() ? std::string(found.type_name()) : found.dump();
+    fail(path, fmt::format("expected {}, found {}", expected, text.substr(0, shown)));
+  }
+
+ private:
+  std::string file_;
+  std::optional<Error> error_;
+};
+
+}  // namespace saltus::io

@@ -1,0 +1,148 @@
+// Result -> JSON.
+#include <cmath>
+#include <cstddef>
+
+#include <nlohmann/json.hpp>
+
+#include "saltus/base/version.hpp"
+#include "saltus/io/json_result.hpp"
+
+namespace saltus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json model_json(const result::ModelRecord& model) {
+  Json parameters = Json::object();
+  for (const auto& [name, value] : model.parameters) parameters[name] = value;
+  return {{"name", model.name},
+          {"sha256", model.sha256},
+          {"parameters", std::move(parameters)},
+          {"description", model.description}};
+}
+
+Json event_json(const result::Event& event) {
+  Json alternatives = Json::array();
+  for (const auto& other : event.alternatives) {
+    Json alternative = Json::object();
+    alternative["mode"] = other.mode;
+    alternative["alpha"] = other.alpha;
+    alternatives.push_back(std::move(alternative));
+  }
+  Json json = Json::object();
+  json["t"] = event.t;
+  json["kind"] = name(event.kind);
+  json["name"] = or_null(event.name);
+  json["surfaces"] = event.surfaces;
+  json["mode_before"] = or_null(event.mode_before);
+  json["mode_after"] = or_null(event.mode_after);
+  json["alpha_before"] = or_null(event.alpha_before);
+  json["alpha_after"] = or_null(event.alpha_after);
+  json["x"] = event.x;
+  json["x_after"] = event.x_after;
+  json["unique"] = or_null(event.unique);
+  json["alternatives"] = std::move(alternatives);
+  json["reason"] = event.reason;
+  return json;
+}
+
+Json final_json(const result::Final& final) {
+  Json json = Json::object();
+  json["t"] = final.t;
+  json["x"] = final.x;
+  json["mode"] = final.mode;
+  json["alpha"] = final.alpha;
+  json["outputs"] = final.outputs;
+  return json;
+}
+
+Json trajectory_json(const result::Trajectory& trajectory) {
+  Json json = Json::object();
+  json["t"] = trajectory.t;
+  json["x"] = trajectory.x;
+  json["u"] = trajectory.u;
+  json["alpha"] = trajectory.alpha;
+  json["mode"] = trajectory.mode;
+  json["outputs"] = trajectory.outputs;
+  return json;
+}
+
+Json options_json(const result::OptionRecord& options) {
+  Json json = Json::object();
+  for (const auto& [name, value] : options) {
+    std::visit([&](const auto& content) { json[name] = content; }, value);
+  }
+  return json;
+}
+
+Json whole_json(const result::Result& result) {
+  Json events = Json::array();
+  for (const auto& event : result.events) events.push_back(event_json(event));
+  Json json = Json::object();
+  json["format"] = "saltus-result/1";
+  json["saltus"] = version;
+  json["model"] = model_json(result.model);
+  json["command"] = result.command;
+  json["method"] = result.method;
+  json["status"] = {{"termination", name(result.status.termination)},
+                    {"message", result.status.message},
+                    {"time_reached", result.status.time_reached}};
+  json["states"] = result.states;
+  json["controls"] = result.controls;
+  json["switching_functions"] = result.switching_functions;
+  json["outputs"] = result.outputs;
+  json["final"] = final_json(result.final);
+  json["events"] = std::move(events);
+  json["trajectory"] = trajectory_json(result.trajectory);
+  json["statistics"] = {{"steps", result.statistics.steps},
+                        {"rejected", result.statistics.rejected},
+                        {"rhs_evaluations", result.statistics.rhs_evaluations},
+                        {"wall_seconds", result.statistics.wall_seconds}};
+  json["options"] = options_json(result.options);
+  return json;
+}
+
+/// Texts of a result may come from anywhere; what is no UTF-8 in them is replaced, not thrown at the user.
+std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+bool fits_on_a_line(const Json& json) {
+  if (!json.is_structured()) return true;
+  for (const auto& element : json) {
+    if (element.is_structured()) return false;
+  }
+  return json.is_array() || json.size() <= 2;
+}
+
+/// One name, one row of a table, one event field per line: small to store and still to be read by people.
+void write(const Json& json, std::size_t indent, std::string& text) {
+  if (fits_on_a_line(json)) {
+    text += compact(json);
+    return;
+  }
+  const std::string margin(indent + 2, ' ');
+  const bool is_object = json.is_object();
+  text += is_object ? "{\n" : "[\n";
+  std::size_t written = 0;
+  for (auto element = json.begin(); element != json.end(); ++element) {
+    text += margin;
+    if (is_object) text += compact(Json(element.key())) + ": ";
+    write(*element, indent + 2, text);
+    text += ++written < json.size() ? ",\n" : "\n";
+  }
+  text += std::string(indent, ' ') + (is_object ? "}" : "]");
+}
+
+}  // namespace
+
+std::string to_json(const result::Result& result) {
+  std::string text;
+  write(whole_json(result), 0, text);
+  return text + "\n";
+}
+
+}  // namespace saltus::io
