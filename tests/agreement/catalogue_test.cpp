@@ -1,0 +1,167 @@
+// Every model of the catalogue against its reference: event times, kinds, surfaces, modes, end state.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "problems/references.hpp"
+#include "problems/simulator.hpp"
+
+namespace saltus::problems {
+namespace {
+
+using result::Event;
+using result::Result;
+
+// Relative above 1: the states of the catalogue are of order one, the times reach 1000 (irma), where an error of the
+// state of order atol moves an event by atol divided by a speed of 1e-3 and less.
+void expect_near(double found, double reference, double tolerance, const std::string& what) {
+  EXPECT_NEAR(found, reference, tolerance * std::max(1.0, std::abs(reference))) << what;
+}
+
+void expect_near(const std::vector<double>& found, const std::vector<double>& reference, double tolerance,
+                 const std::string& what) {
+  ASSERT_EQ(found.size(), reference.size()) << what;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    expect_near(found[i], reference[i], tolerance, what + ", component " + std::to_string(i + 1));
+  }
+}
+
+void expect_alternatives(const Event& event, const ReferenceEvent& reference, const std::string& what) {
+  EXPECT_EQ(event.unique, reference.unique) << what;
+  std::set<std::vector<int>> found, expected;
+  for (const result::Alternative& other : event.alternatives) found.insert(other.mode);
+  for (const ReferenceAlternative& other : reference.alternatives) expected.insert(other.mode);
+  EXPECT_EQ(found, expected) << what;
+  EXPECT_EQ(event.alternatives.size(), reference.alternatives.size()) << what;
+}
+
+void expect_event(const Event& event, const ReferenceEvent& reference, double tolerance, const std::string& what) {
+  EXPECT_EQ(std::string(result::name(event.kind)), reference.kind) << what;
+  EXPECT_EQ(event.surfaces, reference.surfaces) << what;
+  EXPECT_EQ(event.mode_before, reference.mode_before) << what;
+  ASSERT_TRUE(event.mode_after.has_value()) << what;
+  EXPECT_EQ(*event.mode_after, reference.mode_after) << what;
+  EXPECT_FALSE(event.reason.empty()) << what;
+  expect_near(event.t, reference.t, tolerance, what + ", time");
+  expect_near(event.x, reference.x, tolerance, what + ", state");
+  EXPECT_EQ(event.x, event.x_after) << what << ": nothing jumps in the catalogue";
+  expect_alternatives(event, reference, what);
+}
+
+void expect_reference(const Result& result, const ReferenceProblem& problem, double tolerance) {
+  ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), problem.events.size());
+  for (std::size_t i = 0; i < problem.events.size(); ++i) {
+    expect_event(result.events[i], problem.events[i], tolerance, "event " + std::to_string(i + 1));
+  }
+  EXPECT_EQ(result.final.t, problem.until);
+  EXPECT_EQ(result.final.mode, problem.final_mode);
+  expect_near(result.final.x, problem.final_x, tolerance, "end state");
+  expect_near(result.final.alpha, problem.final_alpha, tolerance, "alpha at the end");
+}
+
+void expect_identical(const Result& a, const Result& b) {
+  ASSERT_EQ(a.status.termination, b.status.termination);
+  ASSERT_EQ(a.events.size(), b.events.size());
+  for (std::size_t i = 0; i < a.events.size(); ++i) {
+    const Event &left = a.events[i], &right = b.events[i];
+    EXPECT_EQ(left.t, right.t) << "event " << i + 1;
+    EXPECT_EQ(left.kind, right.kind) << "event " << i + 1;
+    EXPECT_EQ(left.mode_after, right.mode_after) << "event " << i + 1;
+    EXPECT_EQ(left.alpha_after, right.alpha_after) << "event " << i + 1;
+    EXPECT_EQ(left.x, right.x) << "event " << i + 1;
+    EXPECT_EQ(left.x_after, right.x_after) << "event " << i + 1;
+  }
+  EXPECT_EQ(a.final.t, b.final.t);
+  EXPECT_EQ(a.final.x, b.final.x);
+  EXPECT_EQ(a.final.mode, b.final.mode);
+  EXPECT_EQ(a.final.alpha, b.final.alpha);
+}
+
+class Catalogue : public testing::TestWithParam<ReferenceProblem> {};
+
+TEST_P(Catalogue, AgreesToNineDigitsWithDop853) {
+  const Simulator model = Simulator::from_reference(GetParam());
+  ASSERT_GE(GetParam().digits, 14);
+  expect_reference(model.run(with(model.options(), fine)), GetParam(), 1e-9);
+}
+
+TEST_P(Catalogue, AgreesToSixDigitsWithDefaults) {
+  const Simulator model = Simulator::from_reference(GetParam());
+  EXPECT_EQ(model.options().rtol, standard.rtol);
+  EXPECT_EQ(model.options().event.integrator, standard.integrator);
+  expect_reference(model.run(model.options()), GetParam(), 1e-6);
+}
+
+TEST_P(Catalogue, OutputGridChangesNothing) {
+  const Simulator model = Simulator::from_reference(GetParam());
+  for (const Accuracy& accuracy : {standard, fine}) {
+    pipeline::SimulateOptions options = with(model.options(), accuracy);
+    options.output = pipeline::EveryStep{};
+    const Result every_step = model.run(options);
+    const double until = GetParam().until;
+    for (const pipeline::OutputGrid& grid :
+         {pipeline::OutputGrid{pipeline::NumberOfPoints{2}}, pipeline::OutputGrid{pipeline::NumberOfPoints{1237}},
+          pipeline::OutputGrid{pipeline::EveryInterval{until / 77.3}},
+          pipeline::OutputGrid{pipeline::AtTimes{{0.1 * until, 0.1 * until + 1e-9, until}}}}) {
+      options.output = grid;
+      expect_identical(model.run(options), every_step);
+    }
+  }
+}
+
+TEST_P(Catalogue, ScalingPsiByAPowerOfTwoChangesNothing) {
+  const Simulator model = Simulator::from_reference(GetParam());
+  for (const double factor : {0x1p26, 0x1p-26}) {
+    const Simulator scaled = Simulator::from_reference(GetParam(), factor);
+    for (const Accuracy& accuracy : {standard, fine}) {
+      expect_identical(scaled.run(with(scaled.options(), accuracy)), model.run(with(model.options(), accuracy)));
+    }
+  }
+}
+
+TEST_P(Catalogue, ScalingPsiByOtherFactorsStaysWithinTenTolerances) {
+  const Simulator model = Simulator::from_reference(GetParam());
+  const Result unscaled = model.run(model.options());
+  const double tolerance = 10 * (model.options().rtol + model.options().atol);
+  for (const double factor : {1e8, 1e-8}) {
+    const Simulator scaled = Simulator::from_reference(GetParam(), factor);
+    const Result result = scaled.run(scaled.options());
+    ASSERT_EQ(result.events.size(), unscaled.events.size());
+    for (std::size_t i = 0; i < result.events.size(); ++i) {
+      EXPECT_EQ(result.events[i].kind, unscaled.events[i].kind) << "event " << i + 1;
+      EXPECT_EQ(result.events[i].mode_after, unscaled.events[i].mode_after) << "event " << i + 1;
+      expect_near(result.events[i].t, unscaled.events[i].t, tolerance, "event " + std::to_string(i + 1));
+    }
+    expect_near(result.final.x, unscaled.final.x, tolerance, "end state");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, Catalogue, testing::ValuesIn(references()),
+                         [](const auto& instance) { return test_name(instance.param); });
+
+TEST(CatalogueFiles, EveryModelHasAReference) {
+  std::set<std::string> referenced;
+  for (const ReferenceProblem& problem : references()) referenced.insert(problem.model);
+  const std::vector<std::string> shipped = catalogue();
+  EXPECT_EQ(std::set<std::string>(shipped.begin(), shipped.end()), referenced);
+  EXPECT_GE(shipped.size(), 15u);
+}
+
+TEST(CatalogueFiles, NameIsTheFileNameAndEveryModelRunsAsItIs) {
+  for (const std::string& name : catalogue()) {
+    const Simulator model = Simulator::from_catalogue(name);
+    ASSERT_TRUE(model.options().until.has_value()) << name;
+    const Result result = model.run(model.options());
+    EXPECT_EQ(result.model.name, name);
+    EXPECT_FALSE(result.model.description.empty()) << name;
+    EXPECT_EQ(result.model.description.find('\n'), std::string::npos) << name;
+    EXPECT_EQ(result.final.t, *model.options().until) << name;
+  }
+}
+
+}  // namespace
+}  // namespace saltus::problems

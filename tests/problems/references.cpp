@@ -1,0 +1,90 @@
+#include "problems/references.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+namespace saltus::problems {
+namespace {
+
+using nlohmann::json;
+
+ReferenceEvent event_of(const json& entry) {
+  ReferenceEvent event{.t = entry.at("t"),
+                       .kind = entry.at("kind"),
+                       .surfaces = entry.at("surfaces"),
+                       .mode_before = std::nullopt,
+                       .mode_after = entry.at("mode_after"),
+                       .x = entry.at("x"),
+                       .unique = true,
+                       .alternatives = {}};
+  if (!entry.at("mode_before").is_null()) event.mode_before = entry.at("mode_before").get<std::vector<int>>();
+  if (entry.contains("unique")) event.unique = entry.at("unique").get<bool>();
+  for (const json& other : entry.value("alternatives", json::array())) {
+    event.alternatives.push_back({.mode = other.at("mode"), .alpha = other.at("alpha")});
+  }
+  return event;
+}
+
+ReferenceProblem problem_of(const json& entry) {
+  ReferenceProblem problem;
+  problem.model = entry.at("model");
+  problem.variant = entry.value("case", "");
+  problem.until = entry.at("until");
+  problem.digits = entry.at("digits");
+  for (const auto& [name, value] : entry.value("overrides", json::object()).items()) {
+    problem.overrides.emplace_back(name, value.get<double>());
+  }
+  for (const auto& [name, value] : entry.value("initial_mode", json::object()).items()) {
+    problem.initial_mode.emplace_back(name, value.get<int>());
+  }
+  for (const json& event : entry.at("events")) problem.events.push_back(event_of(event));
+  problem.final_x = entry.at("final").at("x").get<std::vector<double>>();
+  problem.final_mode = entry.at("final").at("mode").get<std::vector<int>>();
+  problem.final_alpha = entry.at("final").at("alpha").get<std::vector<double>>();
+  return problem;
+}
+
+std::vector<ReferenceProblem> read() {
+  std::ifstream file(SALTUS_SOURCE_DIR "/tests/problems/references.json");
+  if (!file) throw std::runtime_error("cannot open tests/problems/references.json");
+  std::vector<ReferenceProblem> problems;
+  for (const json& entry : json::parse(file).at("problems")) problems.push_back(problem_of(entry));
+  return problems;
+}
+
+}  // namespace
+
+const std::vector<ReferenceProblem>& references() {
+  static const std::vector<ReferenceProblem> problems = read();
+  return problems;
+}
+
+const ReferenceProblem& reference(const std::string& model) {
+  const auto is_plain = [&](const ReferenceProblem& p) { return p.model == model && p.variant.empty(); };
+  const auto found = std::find_if(references().begin(), references().end(), is_plain);
+  if (found == references().end()) throw std::runtime_error("no reference for model " + model);
+  return *found;
+}
+
+std::string test_name(const ReferenceProblem& problem) {
+  std::string name = problem.variant.empty() ? problem.model : problem.model + " " + problem.variant;
+  const auto is_other = [](unsigned char c) { return std::isalnum(c) == 0; };
+  std::replace_if(name.begin(), name.end(), is_other, '_');
+  return name;
+}
+
+std::vector<std::string> catalogue() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(SALTUS_SOURCE_DIR "/models")) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace saltus::problems

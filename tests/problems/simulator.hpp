@@ -1,0 +1,58 @@
+// A model ready to be simulated many times; keeps CasADi's headers out of the tests.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "problems/references.hpp"
+#include "saltus/io/toml_model.hpp"
+#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::problems {
+
+/// Errors of any stage are thrown as std::runtime_error with their text: in these tests every model is meant to be
+/// good.
+class Simulator {
+ public:
+  /// A model of the catalogue as it is shipped.
+  [[nodiscard]] static Simulator from_catalogue(const std::string& name);
+  /// The model file of a reference with its overrides, initial mode and end. Every switching function is multiplied by
+  /// `psi_scale` if that is not 1: named ones in their definition, the others by an equal named one (named scaled1, …),
+  /// whose scaling the engine keeps.
+  [[nodiscard]] static Simulator from_reference(const ReferenceProblem& problem, double psi_scale = 1.0);
+  /// A model file as text.
+  [[nodiscard]] static Simulator from_text(std::string_view toml);
+
+  Simulator(Simulator&&) noexcept;
+  Simulator& operator=(Simulator&&) noexcept;
+  ~Simulator();
+
+  /// The options of the model file, with native code off: compiling would take longer than these runs.
+  [[nodiscard]] const pipeline::SimulateOptions& options() const;
+  void set_initial_state(const std::vector<double>& x);
+  [[nodiscard]] result::Result run(const pipeline::SimulateOptions& options) const;
+
+ private:
+  struct Parts;
+  explicit Simulator(std::unique_ptr<Parts> parts);
+  [[nodiscard]] static Simulator from_file(const io::ModelFile& file);
+  std::unique_ptr<Parts> parts_;
+};
+
+struct Accuracy {
+  pipeline::Integrator integrator = pipeline::Integrator::dopri5;
+  double rtol = 1e-8;
+  double atol = 1e-10;
+};
+inline constexpr Accuracy fine{pipeline::Integrator::dop853, 1e-12, 1e-14};
+inline constexpr Accuracy standard{};
+
+[[nodiscard]] pipeline::SimulateOptions with(pipeline::SimulateOptions options, const Accuracy& accuracy);
+
+/// Events without a leading `start`.
+[[nodiscard]] std::vector<result::Event> switches_of(const result::Result& result);
+
+}  // namespace saltus::problems
