@@ -49,19 +49,49 @@ std::string function_list(const std::vector<std::string>& extra_functions) {
   return list;
 }
 
-}  // namespace
-
-Error Complaints::failure(const Token& token, std::string message, std::string remedy) const {
-  return {ErrorCode::parse_failure, std::move(message), std::move(remedy), at(token), {}};
+/// x(t), as it stands in textbooks: a state or control with its time.
+bool has_time_as_argument(const Tokens& tokens, std::size_t index) {
+  return index + 3 < tokens.list.size() && tokens.list[index + 2].is(TokenKind::name, "t") &&
+         tokens.list[index + 3].is(TokenKind::symbol, ")");
 }
 
-Error Complaints::empty(const Token& end) const {
+std::string remedy_for_unknown_function(const Tokens& tokens, std::size_t index,
+                                        const std::vector<std::string>& extra_functions) {
+  const std::string name(tokens.list[index].text);
+  if (const auto remedy = remedy_for_function(name); !remedy.empty()) return std::string(remedy);
+  std::vector<std::string> known = extra_functions;
+  for (const auto& function : functions()) known.emplace_back(function.name);
+  if (!nearest_names(name, known).empty()) return suggest(name, known);
+  const auto shown_name = name.substr(0, 40);
+  if (has_time_as_argument(tokens, index)) return fmt::format("names stand without their time: write {}", shown_name);
+  return fmt::format("for a product write {}*(…); the functions are: {}", shown_name, function_list(extra_functions));
+}
+
+/// Where the operator goes; a product is what is meant most often.
+std::string product_of(const Token& before, const Token& found) {
+  if (before.kind == TokenKind::symbol || before.text.size() + found.text.size() > 40) return "'*' between them";
+  return fmt::format("{}*{}", before.text, found.kind == TokenKind::symbol ? "(…)" : found.text);
+}
+
+}  // namespace
+
+std::nullopt_t Complaints::failure(const Token& token, std::string message, std::string remedy) {
+  error_ = {ErrorCode::parse_failure, std::move(message), std::move(remedy), at(token), {}};
+  return std::nullopt;
+}
+
+std::nullopt_t Complaints::invalid_token() {
+  error_ = *tokens_.invalid;
+  return std::nullopt;
+}
+
+std::nullopt_t Complaints::empty(const Token& end) {
   return failure(end, "empty expression", "write a number or a formula, for example 0");
 }
 
-Error Complaints::missing_operand(std::size_t index) const {
+std::nullopt_t Complaints::missing_operand(std::size_t index) {
   const Token& found = tokens_.list[index];
-  if (found.kind == TokenKind::invalid) return *tokens_.invalid;
+  if (found.kind == TokenKind::invalid) return invalid_token();
   if (index == 0) {
     return failure(found, fmt::format("expected a number, a name or '(', found {}", shown(found)),
                    "begin with an operand; only '+', '-' and 'not' stand before one");
@@ -76,9 +106,9 @@ Error Complaints::missing_operand(std::size_t index) const {
                  remedy);
 }
 
-Error Complaints::after_operand(std::size_t index, const Token* opening) const {
+std::nullopt_t Complaints::after_operand(std::size_t index, const Token* opening) {
   const Token& found = tokens_.list[index];
-  if (found.kind == TokenKind::invalid) return *tokens_.invalid;
+  if (found.kind == TokenKind::invalid) return invalid_token();
   if (begins_operand(found)) return missing_operator(tokens_.list[index - 1], found);
   if (opening != nullptr && found.kind == TokenKind::end) {
     return failure(found, fmt::format("missing ')' for the '(' at line {}, column {}", opening->line, opening->column),
@@ -91,7 +121,7 @@ Error Complaints::after_operand(std::size_t index, const Token* opening) const {
                  "decimal numbers are written with a point, as in 1.5; ',' separates the arguments of a function");
 }
 
-Error Complaints::missing_operator(const Token& before, const Token& found) const {
+std::nullopt_t Complaints::missing_operator(const Token& before, const Token& found) {
   auto message = fmt::format("missing operator between {} and {}", shown(before), shown(found));
   if (is_word_of_other_conditionals(before) || is_word_of_other_conditionals(found)) {
     return failure(found, std::move(message), "write if(condition, a, b)");
@@ -105,36 +135,29 @@ Error Complaints::missing_operator(const Token& before, const Token& found) cons
       if (same) return failure(found, std::move(message), fmt::format("write '{}' in lower case", word));
     }
   }
-  const auto product = fmt::format("{}*{}", before.text, found.text);
-  return failure(found, std::move(message),
-                 product.size() <= 40 ? fmt::format("for a product write {}", product) : "for a product write '*'");
+  return failure(found, std::move(message), "for a product write " + product_of(before, found));
 }
 
-Error Complaints::chained_comparison(const Token& token, const Node& left, const Node& right) const {
+std::nullopt_t Complaints::chained_comparison(const Token& token, const Node& left, const Node& right) {
   const auto& first = std::get<Binary>(left.value);
   auto pair = fmt::format("{} and {}{}{}", to_text(left), to_text(*first.right), token.text, to_text(right));
   if (pair.size() > 80) pair = "a<b and b<c";
   return failure(token, "comparisons do not chain", fmt::format("write '{}'", pair));
 }
 
-Error Complaints::misplaced_not(const Token& token) const {
+std::nullopt_t Complaints::misplaced_not(const Token& token) {
   return failure(token, "'not' binds looser than what stands before it", "put it in parentheses: (not …)");
 }
 
-Error Complaints::unknown_function(const Token& name, const std::vector<std::string>& extra_functions) const {
-  std::vector<std::string> known = extra_functions;
-  for (const auto& function : functions()) known.emplace_back(function.name);
-  std::string remedy(remedy_for_function(name.text));
-  const std::string function(name.text);
-  if (remedy.empty() && !nearest_names(function, known).empty()) remedy = suggest(function, known);
-  if (remedy.empty()) {
-    remedy = fmt::format("for a product write {}*(…); the functions are: {}", function.substr(0, 40),
-                         function_list(extra_functions));
-  }
-  return {ErrorCode::unknown_name, fmt::format("unknown function {}", quoted(name.text)), remedy, at(name), {}};
+std::nullopt_t Complaints::unknown_function(std::size_t index, const std::vector<std::string>& extra_functions) {
+  const Token& name = tokens_.list[index];
+  failure(name, fmt::format("unknown function {}", quoted(name.text)),
+          remedy_for_unknown_function(tokens_, index, extra_functions));
+  error_.code = ErrorCode::unknown_name;
+  return std::nullopt;
 }
 
-Error Complaints::function_without_arguments(const Token& name) const {
+std::nullopt_t Complaints::function_without_arguments(const Token& name) {
   int arguments = 1;
   for (const auto& function : functions()) {
     if (function.name == name.text) arguments = function.arguments;
@@ -143,18 +166,18 @@ Error Complaints::function_without_arguments(const Token& name) const {
                  fmt::format("write {}", usage(name.text, arguments)));
 }
 
-Error Complaints::wrong_arguments(const Token& name, int expected, int found) const {
+std::nullopt_t Complaints::wrong_arguments(const Token& name, int expected, int found) {
   return failure(
       name,
       fmt::format("{} takes {} argument{}, found {}", quoted(name.text), expected, expected == 1 ? "" : "s", found),
       remedy_for_arguments(name.text, expected, found));
 }
 
-Error Complaints::too_nested(const Token& token) const {
+std::nullopt_t Complaints::too_nested(const Token& token) {
   return failure(token, fmt::format("nested deeper than {} levels", max_nesting), "name parts of it in [definitions]");
 }
 
-Error Complaints::too_high(const Token& token) const {
+std::nullopt_t Complaints::too_high(const Token& token) {
   return failure(token, fmt::format("a chain of more than {} operands", max_height),
                  "group its terms in parentheses or name parts of it in [definitions]");
 }

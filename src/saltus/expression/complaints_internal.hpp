@@ -1,7 +1,10 @@
 // The messages of the parser: what was expected, what was found, what to write instead.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "saltus/base/error.hpp"
@@ -10,36 +13,42 @@
 
 namespace saltus::expression {
 
-/// Makes errors about tokens of one expression; refers to its arguments and lives no longer than they do.
+/// Keeps the error about one expression; refers to its arguments and lives no longer than they do.
+/// Every complaint is the result of a parser function that failed: nothing.
 class Complaints {
  public:
   Complaints(const Tokens& tokens, const std::string& file) : tokens_(tokens), file_(file) {}
 
   [[nodiscard]] SourceLocation at(const Token& token) const { return {file_, token.line, token.column}; }
 
-  [[nodiscard]] Error empty(const Token& end) const;
+  /// The error; there has been a complaint.
+  [[nodiscard]] Error take() { return std::move(error_); }
+
+  std::nullopt_t empty(const Token& end);
 
   /// An operand has to begin at the token with this index, and none does.
-  [[nodiscard]] Error missing_operand(std::size_t index) const;
+  std::nullopt_t missing_operand(std::size_t index);
 
   /// After a complete operand, the token with this index neither goes on nor closes what is open.
   /// @param opening  the innermost open parenthesis, null outside of all
-  [[nodiscard]] Error after_operand(std::size_t index, const Token* opening) const;
+  std::nullopt_t after_operand(std::size_t index, const Token* opening);
 
-  [[nodiscard]] Error chained_comparison(const Token& token, const Node& left, const Node& right) const;
-  [[nodiscard]] Error misplaced_not(const Token& token) const;
-  [[nodiscard]] Error unknown_function(const Token& name, const std::vector<std::string>& extra_functions) const;
-  [[nodiscard]] Error function_without_arguments(const Token& name) const;
-  [[nodiscard]] Error wrong_arguments(const Token& name, int expected, int found) const;
-  [[nodiscard]] Error too_nested(const Token& token) const;
-  [[nodiscard]] Error too_high(const Token& token) const;
+  std::nullopt_t chained_comparison(const Token& token, const Node& left, const Node& right);
+  std::nullopt_t misplaced_not(const Token& token);
+  std::nullopt_t unknown_function(std::size_t index, const std::vector<std::string>& extra_functions);
+  std::nullopt_t function_without_arguments(const Token& name);
+  std::nullopt_t wrong_arguments(const Token& name, int expected, int found);
+  std::nullopt_t too_nested(const Token& token);
+  std::nullopt_t too_high(const Token& token);
 
  private:
-  Error failure(const Token& token, std::string message, std::string remedy) const;
-  Error missing_operator(const Token& before, const Token& found) const;
+  std::nullopt_t failure(const Token& token, std::string message, std::string remedy);
+  std::nullopt_t invalid_token();
+  std::nullopt_t missing_operator(const Token& before, const Token& found);
 
   const Tokens& tokens_;
   const std::string& file_;
+  Error error_;
 };
 
 }  // namespace saltus::expression

@@ -136,7 +136,7 @@ class Lexer {
       }
     }
     if (at(size) == '.')
-      return {size, "a decimal point too many", "a number has one decimal point, an exponent has none"};
+      return {size, "one decimal point too many", "a number has one decimal point, an exponent has none"};
     if (at(size) == '_' && is_digit(at(size + 1))) return {size, "digits are not grouped", "write it without '_'"};
     return {size, "", ""};
   }

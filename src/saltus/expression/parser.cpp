@@ -35,16 +35,16 @@ bool is_open_comparison(const Node& node) {
 
 /// Operator precedence parser (V. R. Pratt, Top down operator precedence, POPL 1973).
 /// `level` counts what nests: parentheses, calls, signs, nots and exponents.
+/// The functions that recurse return nothing on failure and leave the Error with the complaints: a dozen Errors that
+/// each of them might return would make their frames ten times larger.
 class Parser {
  public:
   Parser(const Tokens& tokens, const std::string& file, const std::vector<std::string>& extra_functions)
       : tokens_(tokens), complain_{tokens, file}, extra_functions_(extra_functions) {}
 
   Expected<NodePtr> run() {
-    if (current().kind == TokenKind::end) return tl::unexpected(complain_.empty(current()));
-    auto whole = parse_binary(Precedence::logical_or, 0);
-    if (!whole) return tl::unexpected(std::move(whole.error()));
-    if (current().kind != TokenKind::end) return tl::unexpected(complain_.after_operand(position_, nullptr));
+    auto whole = parse_whole();
+    if (!whole) return tl::unexpected(complain_.take());
     return NodePtr(std::move(whole->node));
   }
 
@@ -53,8 +53,15 @@ class Parser {
   bool at_symbol(std::string_view text) const { return current().is(TokenKind::symbol, text); }
   const Token& take() { return tokens_.list[position_++]; }
 
+  std::optional<Parsed> parse_whole() {
+    if (current().kind == TokenKind::end) return complain_.empty(current());
+    auto whole = parse_binary(Precedence::logical_or, 0);
+    if (whole && current().kind != TokenKind::end) return complain_.after_operand(position_, nullptr);
+    return whole;
+  }
+
   /// Operands joined by operators that bind at least as tightly as `loosest`.
-  Expected<Parsed> parse_binary(Precedence loosest, int level) {
+  std::optional<Parsed> parse_binary(Precedence loosest, int level) {
     auto left = parse_operand(loosest, level);
     while (left) {
       const auto* grammar = as_binary_operator(current());
@@ -64,61 +71,62 @@ class Parser {
     return left;
   }
 
-  Expected<Parsed> extend(Parsed left, const BinaryGrammar& grammar, int level) {
+  std::optional<Parsed> extend(Parsed left, const BinaryGrammar& grammar, int level) {
     const Token& token = take();
     auto right = parse_binary(right_operand(grammar), grammar.op == BinaryOperator::power ? level + 1 : level);
     if (!right) return right;
     if (grammar.precedence == Precedence::comparison && is_open_comparison(*left.node)) {
-      return tl::unexpected(complain_.chained_comparison(token, *left.node, *right->node));
+      return complain_.chained_comparison(token, *left.node, *right->node);
     }
     const int height = std::max(left.height, right->height);
     return make(Binary{grammar.op, std::move(left.node), std::move(right->node)}, token, height);
   }
 
-  Expected<Parsed> parse_operand(Precedence loosest, int level) {
+  /// Not inlined into parse_binary, which recurses through all precedences before it comes here.
+  [[gnu::noinline]] std::optional<Parsed> parse_operand(Precedence loosest, int level) {
     const Token& token = current();
-    if (level > max_nesting) return tl::unexpected(complain_.too_nested(token));
+    if (level > max_nesting) return complain_.too_nested(token);
     if (token.kind == TokenKind::number) return make(Number{token.value}, take(), 0);
     if (at_symbol("-")) return parse_unary(UnaryOperator::minus, Precedence::sign, level);
     if (at_symbol("+")) return parse_unary(UnaryOperator::plus, Precedence::sign, level);
     if (at_symbol("(")) return parse_parenthesised(level);
     if (token.is(TokenKind::name, "not")) {
-      if (loosest > Precedence::logical_not) return tl::unexpected(complain_.misplaced_not(token));
+      if (loosest > Precedence::logical_not) return complain_.misplaced_not(token);
       return parse_unary(UnaryOperator::logical_not, Precedence::logical_not, level);
     }
     if (token.kind == TokenKind::name && !as_binary_operator(token)) return parse_name(level);
-    return tl::unexpected(complain_.missing_operand(position_));
+    return complain_.missing_operand(position_);
   }
 
-  Expected<Parsed> parse_unary(UnaryOperator op, Precedence loosest, int level) {
+  std::optional<Parsed> parse_unary(UnaryOperator op, Precedence loosest, int level) {
     const Token& token = take();
     auto operand = parse_binary(loosest, level + 1);
     if (!operand) return operand;
     return make(Unary{op, std::move(operand->node)}, token, operand->height);
   }
 
-  Expected<Parsed> parse_parenthesised(int level) {
+  std::optional<Parsed> parse_parenthesised(int level) {
     const Token& opening = take();
     auto inner = parse_binary(Precedence::logical_or, level + 1);
     if (!inner) return inner;
-    if (!at_symbol(")")) return tl::unexpected(complain_.after_operand(position_, &opening));
+    if (!at_symbol(")")) return complain_.after_operand(position_, &opening);
     take();
     inner->node->parenthesised = true;
     return inner;
   }
 
-  Expected<Parsed> parse_name(int level) {
+  std::optional<Parsed> parse_name(int level) {
     const Token& token = take();
     const auto arguments = number_of_arguments(token.text);
     if (at_symbol("(")) {
-      if (!arguments) return tl::unexpected(complain_.unknown_function(token, extra_functions_));
+      if (!arguments) return complain_.unknown_function(position_ - 1, extra_functions_);
       return parse_call(token, *arguments, level);
     }
-    if (arguments) return tl::unexpected(complain_.function_without_arguments(token));
+    if (arguments) return complain_.function_without_arguments(token);
     return make(Name{std::string(token.text)}, token, 0);
   }
 
-  Expected<Parsed> parse_call(const Token& name, int expected, int level) {
+  std::optional<Parsed> parse_call(const Token& name, int expected, int level) {
     const Token& opening = take();
     Call call{std::string(name.text), {}};
     int height = 0;
@@ -129,10 +137,10 @@ class Parser {
       height = std::max(height, argument->height);
       call.arguments.push_back(std::move(argument->node));
     }
-    if (!at_symbol(")")) return tl::unexpected(complain_.after_operand(position_, &opening));
+    if (!at_symbol(")")) return complain_.after_operand(position_, &opening);
     take();
     const int found = static_cast<int>(call.arguments.size());
-    if (found != expected) return tl::unexpected(complain_.wrong_arguments(name, expected, found));
+    if (found != expected) return complain_.wrong_arguments(name, expected, found);
     return make(std::move(call), name, height);
   }
 
@@ -144,9 +152,10 @@ class Parser {
     return extra ? std::optional(1) : std::nullopt;
   }
 
+  /// Never inlined, for the same reason.
   template <class Value>
-  Expected<Parsed> make(Value value, const Token& token, int height_below) {
-    if (height_below >= max_height) return tl::unexpected(complain_.too_high(token));
+  [[gnu::noinline]] std::optional<Parsed> make(Value value, const Token& token, int height_below) {
+    if (height_below >= max_height) return complain_.too_high(token);
     return Parsed{std::make_shared<Node>(Node{std::move(value), complain_.at(token), false}), height_below + 1};
   }
 

@@ -33,7 +33,8 @@ Precedence precedence_of(const Node& node) {
 }
 
 /// Shortest decimal text that reads back as the same double; 1e-9, not 1e-09.
-std::string number_text(double value) {
+/// Never inlined: it would enlarge the frames of the recursion.
+[[gnu::noinline]] std::string number_text(double value) {
   std::string text = fmt::format("{}", value);
   const auto exponent = text.find('e');
   if (exponent == std::string::npos) return text;
@@ -77,14 +78,17 @@ class Writer {
     const auto& grammar = grammar_of(binary.op);
     write(*binary.left, left_operand(grammar));
     const bool is_word = grammar.precedence <= Precedence::logical_and;
-    text_ += is_word ? fmt::format(" {} ", grammar.text) : std::string(grammar.text);
+    if (is_word) text_ += ' ';
+    text_ += grammar.text;
+    if (is_word) text_ += ' ';
     // A sign needs no parentheses on the right, however tight the operator: 2^-1.
     const bool signed_right = precedence_of(*binary.right) == Precedence::sign;
     write(*binary.right, signed_right ? Precedence::sign : right_operand(grammar));
   }
 
   void write_value(const Call& call) {
-    text_ += call.function + '(';
+    text_ += call.function;
+    text_ += '(';
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
       if (i > 0) text_ += ',';
       write(*call.arguments[i], Precedence::logical_or);

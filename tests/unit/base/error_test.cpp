@@ -27,6 +27,7 @@ TEST(NearestNames, slips_are_near) {
   EXPECT_EQ(nearest_names("tolernace", {"tolerance", "until"}), Names{"tolerance"});
   EXPECT_EQ(nearest_names("Spring", {"spring", "string"}), (Names{"spring", "string"}));
   EXPECT_EQ(nearest_names("X", {"x"}), Names{"x"});
+  EXPECT_EQ(nearest_names("raod", {"road"}), Names{"road"});  // neighbours swapped: one slip, not two
 }
 
 TEST(NearestNames, others_are_not) {
