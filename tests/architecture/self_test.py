@@ -71,8 +71,12 @@ class SelfTest(unittest.TestCase):
         self.assert_complains("include_directions", {"src/saltus/base/a.cpp": bad}, "must not include result")
 
     def test_relative_include(self):
-        bad = '#include "stepper.hpp"\n'
-        self.assert_complains("include_directions", {"src/saltus/ode/a.cpp": bad}, "full path")
+        changes = {"src/saltus/ode/stepper.hpp": "#pragma once\n", "src/saltus/ode/a.cpp": '#include "stepper.hpp"\n'}
+        self.assert_complains("include_directions", changes, "full path")
+
+    def test_generated_header(self):
+        changes = {"src/saltus/report/a.cpp": '#include "script_of_the_page.hpp"\n'}
+        self.assertEqual(self.complaints("include_directions", changes), [])
 
     def test_private_header_of_another_module(self):
         bad = '#include "saltus/model/hidden_internal.hpp"\n'
