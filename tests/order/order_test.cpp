@@ -1,0 +1,118 @@
+// Errors fall with the order of the integrator through crossings, sliding on lines and on curves, and exits.
+//
+// The error control is switched off by tolerances that accept every step; max_step then sets the step length h. The
+// steps that end at an event are shorter, so the errors scatter around C h^p: the slope is a least-squares fit of
+// log(error) over log(h). Points near rounding are left out.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "problems/references.hpp"
+#include "problems/simulator.hpp"
+
+namespace saltus::problems {
+namespace {
+
+using pipeline::Integrator;
+
+struct Measurement {
+  double h = 0.0;
+  double error = 0.0;
+};
+
+struct OrderCase {
+  std::string model;
+  Integrator integrator;
+  double order;
+  double coarsest;  ///< largest step: small enough that the leading term of the error dominates
+  double ratio;     ///< of successive steps
+  int levels;
+};
+
+constexpr double accept_everything = 1e6;
+
+double error_of(const Simulator& model, const ReferenceProblem& problem, Integrator integrator, double h) {
+  pipeline::SimulateOptions options = with(model.options(), {integrator, accept_everything, accept_everything});
+  options.event.max_step = h;
+  options.output = pipeline::EveryStep{};
+  const result::Result result = model.run(options);
+  EXPECT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+  EXPECT_EQ(result.events.size(), problem.events.size()) << "h = " << h;
+  EXPECT_GE(static_cast<double>(result.statistics.steps) * h, 0.99 * problem.until) << "steps longer than max_step";
+  double error = 0.0;
+  for (std::size_t i = 0; i < problem.final_x.size(); ++i) {
+    error = std::max(error, std::abs(result.final.x[i] - problem.final_x[i]));
+  }
+  for (std::size_t i = 0; i < std::min(result.events.size(), problem.events.size()); ++i) {
+    error = std::max(error, std::abs(result.events[i].t - problem.events[i].t));
+  }
+  return error;
+}
+
+double fitted_slope(const std::vector<Measurement>& points) {
+  double mean_x = 0.0, mean_y = 0.0;
+  for (const Measurement& p : points) {
+    mean_x += std::log(p.h) / static_cast<double>(points.size());
+    mean_y += std::log(p.error) / static_cast<double>(points.size());
+  }
+  double covariance = 0.0, variance = 0.0;
+  for (const Measurement& p : points) {
+    covariance += (std::log(p.h) - mean_x) * (std::log(p.error) - mean_y);
+    variance += (std::log(p.h) - mean_x) * (std::log(p.h) - mean_x);
+  }
+  return covariance / variance;
+}
+
+std::string table(const std::vector<Measurement>& points) {
+  std::string text;
+  for (const Measurement& p : points) {
+    text += "h = " + std::to_string(p.h) + ", log10(error) = " + std::to_string(std::log10(p.error)) + "\n";
+  }
+  return text;
+}
+
+class Order : public testing::TestWithParam<OrderCase> {};
+
+TEST_P(Order, SlopeIsNominal) {
+  const OrderCase& c = GetParam();
+  const ReferenceProblem& problem = reference(c.model);
+  const Simulator model = Simulator::from_reference(problem);
+  constexpr double rounding = 3e-14;  // accumulated over some hundred steps of states of order one
+  std::vector<Measurement> points;
+  double h = c.coarsest;
+  for (int level = 0; level < c.levels; ++level, h /= c.ratio) {
+    const double error = error_of(model, problem, c.integrator, h);
+    if (error > rounding) points.push_back({h, error});
+  }
+  ASSERT_GE(points.size(), 5u) << table(points);
+  const double slope = fitted_slope(points);
+  RecordProperty("slope", std::to_string(slope));
+  // A method of the order below would give a slope of order - 1; the scatter of the fit is below a quarter.
+  EXPECT_GT(slope, c.order - 0.4) << table(points);
+  EXPECT_LT(points.back().error, points.front().error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Order,
+                         testing::Values(OrderCase{"rotating-oscillator", Integrator::dopri5, 5, 0.05, 1.3, 10},
+                                         OrderCase{"rotating-oscillator", Integrator::dop853, 8, 0.12, 1.15, 10},
+                                         OrderCase{"stick-slip", Integrator::dopri5, 5, 0.2, 1.3, 10},
+                                         OrderCase{"stick-slip", Integrator::dop853, 8, 0.35, 1.15, 10},
+                                         OrderCase{"dry-friction-oscillator", Integrator::dopri5, 5, 0.4, 1.3, 10},
+                                         OrderCase{"dry-friction-oscillator", Integrator::dop853, 8, 1.0, 1.15, 10},
+                                         OrderCase{"circle", Integrator::dopri5, 5, 0.2, 1.3, 10},
+                                         OrderCase{"circle", Integrator::dop853, 8, 0.4, 1.15, 10},
+                                         OrderCase{"sweeping-disc", Integrator::dopri5, 5, 0.3, 1.3, 10},
+                                         OrderCase{"sweeping-disc", Integrator::dop853, 8, 0.5, 1.15, 10},
+                                         OrderCase{"friction-blocks", Integrator::dopri5, 5, 0.3, 1.3, 10},
+                                         OrderCase{"friction-blocks", Integrator::dop853, 8, 0.6, 1.15, 10}),
+                         [](const auto& instance) {
+                           std::string name =
+                               instance.param.model + (instance.param.integrator == Integrator::dopri5 ? "_5" : "_8");
+                           for (char& c : name) c = c == '-' ? '_' : c;
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace saltus::problems

@@ -1,0 +1,125 @@
+// No root is missed, none is found twice, at any tolerance.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "problems/references.hpp"
+#include "problems/simulator.hpp"
+
+namespace saltus::problems {
+namespace {
+
+using pipeline::Integrator;
+using result::EventKind;
+
+constexpr Integrator integrators[] = {Integrator::dopri5, Integrator::dop853};
+
+/// 10^-3 … 10^-12 in steps of a factor 10^(9/(count - 1)).
+std::vector<double> tolerances(int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(std::pow(10.0, -3.0 - 9.0 * i / (count - 1)));
+  return values;
+}
+
+std::string setting(Integrator integrator, double rtol) {
+  return (integrator == Integrator::dopri5 ? "dopri5, rtol = " : "dop853, rtol = ") + std::to_string(std::log10(rtol));
+}
+
+// https://github.com/scipy/scipy/issues/9228: y = (t + 6)(t + 2)(t - 2) in one or two steps of a high order method.
+constexpr const char* cubic = R"toml(
+[model]
+name = "cubic"
+[states]
+y = -120
+[dynamics]
+y = "3*t^2 + 12*t - 4"
+[[events]]
+name = "zero"
+when = "y"
+[simulate]
+from = -8
+until = 10
+)toml";
+
+TEST(Roots, ScipyIssue9228FindsThreeRootsAtEveryTolerance) {
+  const Simulator model = Simulator::from_text(cubic);
+  for (const Integrator integrator : integrators) {
+    for (const double rtol : tolerances(41)) {
+      SCOPED_TRACE(setting(integrator, rtol));
+      const result::Result result = model.run(with(model.options(), {integrator, rtol, rtol / 100}));
+      ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+      ASSERT_EQ(result.events.size(), 3u);
+      const double roots[] = {-6, -2, 2};
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(result.events[i].kind, EventKind::user);
+        EXPECT_EQ(result.events[i].name, "zero");
+        // both methods integrate a cubic exactly; rounding of |y| <= 120 at slopes of 16 and more
+        EXPECT_NEAR(result.events[i].t, roots[i], 1e-11);
+      }
+    }
+  }
+}
+
+TEST(Roots, RelayHas34EventsAtEveryTolerance) {
+  const ReferenceProblem& problem = reference("relay-feedback");
+  const Simulator model = Simulator::from_reference(problem);
+  for (const Integrator integrator : integrators) {
+    for (const double rtol : tolerances(41)) {
+      SCOPED_TRACE(setting(integrator, rtol));
+      const result::Result result = model.run(with(model.options(), {integrator, rtol, rtol / 100}));
+      ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+      const std::vector<result::Event> switches = switches_of(result);
+      EXPECT_EQ(switches.size(), 34u);
+      for (std::size_t i = 0; i < switches.size(); ++i) {
+        EXPECT_EQ(switches[i].kind, i % 2 == 0 ? EventKind::leave_sliding : EventKind::enter_sliding) << i + 1;
+      }
+    }
+  }
+}
+
+// Two roots of psi in one step, with equal signs at its ends: 1e-3 deep, which no check of end signs sees.
+constexpr const char* dip = R"toml(
+[model]
+name = "dip"
+[states]
+s = -2
+x = 0
+[switching]
+surface = "s^2 - 0.001"
+[dynamics]
+s = "1"
+x = "if(surface > 0, 1, 3)"
+[simulate]
+until = 4
+)toml";
+
+TEST(Roots, TwoRootsInOneStepAreFound) {
+  const Simulator model = Simulator::from_text(dip);
+  const double half_width = std::sqrt(0.001);
+  for (const Integrator integrator : integrators) {
+    for (const double rtol : tolerances(10)) {
+      SCOPED_TRACE(setting(integrator, rtol));
+      const result::Result result = model.run(with(model.options(), {integrator, rtol, rtol / 100}));
+      ASSERT_EQ(result.events.size(), 2u);
+      EXPECT_NEAR(result.events[0].t, 2 - half_width, 1e-12);
+      EXPECT_NEAR(result.events[1].t, 2 + half_width, 1e-12);
+      EXPECT_NEAR(result.final.x[1], 4 + 2 * 2 * half_width, 1e-12);
+    }
+  }
+}
+
+TEST(Roots, TwoLinesTakeAHandfulOfSteps) {
+  const ReferenceProblem& problem = reference("two-lines");
+  const Simulator model = Simulator::from_reference(problem);
+  for (const Integrator integrator : integrators) {
+    const result::Result result = model.run(with(model.options(), {integrator, 1e-8, 1e-10}));
+    ASSERT_EQ(result.events.size(), 1u);
+    // the growth of the step is limited by the controller, and it starts anew behind the event
+    EXPECT_LE(result.statistics.steps + result.statistics.rejected, 20);
+  }
+}
+
+}  // namespace
+}  // namespace saltus::problems
