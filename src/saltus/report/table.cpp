@@ -1,0 +1,197 @@
+#include "saltus/report/table.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace saltus::report {
+namespace {
+
+constexpr std::size_t page_width = 100;
+constexpr std::size_t label_width = 12;
+constexpr std::size_t shown_at_each_end = 10;
+/// Wider tables of signs than this say less than they hide.
+constexpr std::size_t most_signs = 16;
+
+/// Number of characters, not bytes: continuation bytes of UTF-8 take no place.
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string padded(std::string text, std::size_t to) {
+  const auto taken = width(text);
+  return text.append(to > taken ? to - taken : 0, ' ');
+}
+
+std::string shortened(const std::string& text, std::size_t to) {
+  if (width(text) <= to) return text;
+  std::size_t end = 0;
+  for (std::size_t characters = 0; end < text.size() && characters < to; ++end) {
+    if ((static_cast<unsigned char>(text[end]) & 0xC0) != 0x80 && ++characters == to) break;
+  }
+  return text.substr(0, end) + "…";
+}
+
+/// Pieces one after the other, broken into lines of the page, behind a label.
+std::string wrapped(std::string_view label, const std::vector<std::string>& pieces) {
+  std::string text = padded(std::string(label), label_width);
+  std::size_t column = label_width;
+  for (const auto& piece : pieces) {
+    if (column > label_width && column + width(piece) > page_width) {
+      while (text.back() == ' ') text.pop_back();
+      text += "\n" + std::string(label_width, ' ');
+      column = label_width;
+    }
+    text += piece + "  ";
+    column += width(piece) + 2;
+  }
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text + "\n";
+}
+
+/// Words broken into lines of the page, behind a label.
+std::string paragraph(std::string_view label, std::string_view words) {
+  std::string text = padded(std::string(label), label_width);
+  std::size_t column = label_width;
+  while (!words.empty()) {
+    const auto end = std::min(words.find_first_of(" \n"), words.size());
+    const auto word = words.substr(0, end);
+    words.remove_prefix(std::min(end + 1, words.size()));
+    if (word.empty()) continue;
+    if (column > label_width && column + 1 + width(word) > page_width) {
+      text += "\n" + std::string(label_width, ' ');
+      column = label_width;
+    }
+    if (column > label_width) text += ' ';
+    text += word;
+    column += width(word) + 1;
+  }
+  return text + "\n";
+}
+
+std::string signs(const std::optional<result::Mode>& mode) {
+  if (!mode) return "?";
+  std::string text;
+  for (const int k : *mode) text += k > 0 ? '+' : k < 0 ? '-' : '0';
+  return text;
+}
+
+/// The modes before and behind an event, one sign per switching function; only the one behind a start.
+std::string modes(const result::Event& event) {
+  if (!event.mode_before || event.mode_before == event.mode_after) return signs(event.mode_after);
+  return fmt::format("{} > {}", signs(event.mode_before), signs(event.mode_after));
+}
+
+std::string what(const result::Event& event) {
+  std::string text = event.name.value_or("");
+  for (const auto& surface : event.surfaces) {
+    if (surface != text) text += (text.empty() ? "" : ", ") + surface;
+  }
+  return text;
+}
+
+std::string remark(const result::Event& event) {
+  if (!event.unique) return "uniqueness not decided";
+  return *event.unique ? "" : "not unique";
+}
+
+using Row = std::vector<std::string>;
+
+Row event_row(std::size_t number, const result::Event& event, std::size_t columns) {
+  const bool with_modes = columns > 0 && columns <= most_signs;
+  return {fmt::format("{}", number),  fmt::format("{:.12g}", event.t), std::string(name(event.kind)),
+          shortened(what(event), 24), with_modes ? modes(event) : "",  remark(event)};
+}
+
+std::string aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (widths[i] > 0) line += "  " + padded(row[i], widths[i]);
+    }
+    while (!line.empty() && line.back() == ' ') line.pop_back();
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string event_table(const result::Result& result) {
+  const auto& events = result.events;
+  if (events.empty()) return "events      none\n";
+  const std::size_t columns = result.switching_functions.size();
+  const bool all = events.size() <= 2 * shown_at_each_end;
+  std::vector<Row> rows{{"#", "t", "kind", "surfaces", columns > 0 && columns <= most_signs ? "mode" : "", ""}};
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (all || i < shown_at_each_end || i + shown_at_each_end >= events.size()) {
+      rows.push_back(event_row(i + 1, events[i], columns));
+    } else if (i == shown_at_each_end) {
+      rows.push_back({"…", "", "", "", "", ""});
+    }
+  }
+  const auto count = all ? fmt::format("events      {}\n", events.size())
+                         : fmt::format("events      {}, the first and the last {}\n", events.size(), shown_at_each_end);
+  return count + aligned(rows);
+}
+
+std::string method_text(const result::Result& result) {
+  std::vector<std::string> details;
+  for (const auto& [name, value] : result.options) {
+    const auto* word = std::get_if<std::string>(&value);
+    const auto* number = std::get_if<double>(&value);
+    if (name == "simulate.event.integrator" && word != nullptr) details.push_back(*word);
+    if (name == "simulate.rtol" && number != nullptr) details.push_back(fmt::format("rtol {:g}", *number));
+    if (name == "simulate.atol" && number != nullptr) details.push_back(fmt::format("atol {:g}", *number));
+  }
+  return details.empty() ? result.method : fmt::format("{} ({})", result.method, fmt::join(details, ", "));
+}
+
+std::string end_state(const result::Result& result) {
+  std::vector<std::string> pieces;
+  for (std::size_t i = 0; i < result.states.size() && i < result.final.x.size(); ++i) {
+    pieces.push_back(fmt::format("{} = {:.12g}", result.states[i], result.final.x[i]));
+  }
+  std::string text = wrapped("end state", pieces);
+  pieces.clear();
+  for (std::size_t j = 0; j < result.switching_functions.size() && j < result.final.mode.size(); ++j) {
+    if (result.final.mode[j] != 0) continue;
+    pieces.push_back(fmt::format("{} = 0 (alpha {:.6g})", shortened(result.switching_functions[j], 40),
+                                 j < result.final.alpha.size() ? result.final.alpha[j] : 0.0));
+  }
+  if (!pieces.empty()) text += wrapped("sliding on", pieces);
+  pieces.clear();
+  for (std::size_t i = 0; i < result.outputs.size() && i < result.final.outputs.size(); ++i) {
+    pieces.push_back(fmt::format("{} = {:.12g}", result.outputs[i], result.final.outputs[i]));
+  }
+  if (!pieces.empty()) text += wrapped("outputs", pieces);
+  return text;
+}
+
+}  // namespace
+
+std::string to_table(const result::Result& result) {
+  std::string text = paragraph("model", result.model.description.empty()
+                                            ? result.model.name
+                                            : fmt::format("{}: {}", result.model.name, result.model.description));
+  text += paragraph("method", method_text(result));
+  text += paragraph("status",
+                    fmt::format("{} at t = {:.12g}", name(result.status.termination), result.status.time_reached));
+  if (!result.status.message.empty()) text += paragraph("", result.status.message);
+  text += end_state(result);
+  text += event_table(result);
+  const auto& statistics = result.statistics;
+  text += paragraph("statistics", fmt::format("{} steps, {} rejected, {} evaluations of the right-hand side, {:.3g} s",
+                                              statistics.steps, statistics.rejected, statistics.rhs_evaluations,
+                                              statistics.wall_seconds));
+  return text;
+}
+
+}  // namespace saltus::report
