@@ -1,0 +1,140 @@
+#include "saltus/evaluation/model_kernel.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace saltus::evaluation {
+namespace {
+
+using casadi::SX;
+
+model::SwitchingFunction surface(const std::string& name, const SX& psi) {
+  model::SwitchingFunction function;
+  function.name = name;
+  function.psi = psi;
+  return function;
+}
+
+/// Two states, an input u = p t, a curved, a nested and a time surface, one event expression and one condition.
+model::System example() {
+  model::System s;
+  s.t = SX::sym("t");
+  s.x = SX::sym("x", 2);
+  s.u = SX::sym("u", 1);
+  s.p = SX::sym("p", 1);
+  s.alpha = SX::sym("alpha", 3);
+  s.parameter_names = {"rate"};
+  s.parameter_values = {0.75};
+  s.state_names = {"a", "b"};
+  s.control_names = {"u"};
+  s.initial_state = {0.1, 0.2};
+  s.input = s.p * s.t;
+  const SX a = s.x(0);
+  const SX b = s.x(1);
+  s.switching = {surface("circle", a * a + b * b - 1.0), surface("nested", b + a * s.alpha(0) - s.u),
+                 surface("clock", sin(s.t) - 0.5)};
+  s.f = SX::vertcat({b + s.alpha(0) * sin(s.t), -a + s.u * s.alpha(1) - s.alpha(2)});
+  s.f_as_written = s.f;
+  s.outputs = SX::vertcat({a * s.alpha(0)});
+  model::UserEvent zero;
+  zero.name = "zero";
+  zero.value = a - 3.0 * b;
+  zero.guards = SX(0, 1);
+  model::UserEvent condition;
+  condition.name = "condition";
+  condition.guards = SX::vertcat({a - 1.0, b + 2.0});
+  condition.guard_alpha = SX::sym("g", 2);
+  condition.value = condition.guard_alpha(0) * (1.0 - condition.guard_alpha(1));
+  condition.true_at_equality = {false, true};
+  s.events = {condition, zero};
+  return s;
+}
+
+TEST(ModelKernel, NumbersFunctionsAndEvaluatesThem) {
+  const auto kernel = ModelKernel::compile(example());
+  ASSERT_TRUE(kernel.has_value());
+  EXPECT_EQ(kernel->states(), 2);
+  EXPECT_EQ(kernel->switching_functions(), 3);
+  EXPECT_EQ(kernel->event_functions(), 6);
+  const double t = 0.5;
+  const double x[] = {0.3, -0.4};
+  const double alpha[] = {0.25, 1.0, 0.0};
+  double values[6];
+  kernel->functions(t, x, alpha, values);
+  EXPECT_DOUBLE_EQ(values[0], 0.09 + 0.16 - 1.0);
+  EXPECT_DOUBLE_EQ(values[1], -0.4 + 0.3 * 0.25 - 0.375);
+  EXPECT_DOUBLE_EQ(values[3], 0.3 + 1.2);  // expressions come before guards
+  EXPECT_DOUBLE_EQ(values[4], 0.3 - 1.0);
+  double f[2];
+  kernel->field(t, x, alpha, f);
+  EXPECT_DOUBLE_EQ(f[1], -0.3 + 0.375);
+  double u = 0.0;
+  kernel->inputs(t, alpha, &u);
+  EXPECT_DOUBLE_EQ(u, 0.375);
+  const double guards_true[] = {1.0, 0.0};
+  const double guards_false[] = {1.0, 1.0};
+  EXPECT_TRUE(kernel->condition(0, t, x, alpha, guards_true));
+  EXPECT_FALSE(kernel->condition(0, t, x, alpha, guards_false));
+  EXPECT_EQ(kernel->field_evaluations(), 1);
+}
+
+TEST(ModelKernel, KnowsTheStructure) {
+  const auto kernel = ModelKernel::compile(example());
+  ASSERT_TRUE(kernel.has_value());
+  EXPECT_FALSE(kernel->is_affine(0));
+  EXPECT_TRUE(kernel->is_affine(1));
+  EXPECT_TRUE(kernel->is_time_only(2));
+  EXPECT_FALSE(kernel->is_time_only(0));
+  EXPECT_EQ(kernel->inner(1), (std::vector<int>{0}));
+  EXPECT_TRUE(kernel->depends(0, 0));
+  EXPECT_TRUE(kernel->depends(0, 2));
+  EXPECT_FALSE(kernel->depends(2, 0));
+}
+
+TEST(ModelKernel, DerivativesAgreeWithFiniteDifferences) {
+  const auto kernel = ModelKernel::compile(example());
+  ASSERT_TRUE(kernel.has_value());
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int trial = 0; trial < 20; ++trial) {
+    const double t = uniform(random);
+    const double x[] = {uniform(random), uniform(random)};
+    const double alpha[] = {std::abs(uniform(random)), std::abs(uniform(random)), std::abs(uniform(random))};
+    double f[2];
+    kernel->field(t, x, alpha, f);
+    const double h = 1e-6;  // central difference: error h^2 |third derivative| + eps/h, both below 1e-9
+    for (int j = 0; j < 6; ++j) {
+      double row[2];
+      double rate = 0.0;
+      kernel->gradient(j, t, x, alpha, row, &rate);
+      const auto value = [&](double dt, double d0, double d1) {
+        const double moved[] = {x[0] + d0, x[1] + d1};
+        double values[6];
+        kernel->functions(t + dt, moved, alpha, values);
+        return values[j];
+      };
+      EXPECT_NEAR(row[0], (value(0, h, 0) - value(0, -h, 0)) / (2 * h), 1e-8);
+      EXPECT_NEAR(row[1], (value(0, 0, h) - value(0, 0, -h)) / (2 * h), 1e-8);
+      EXPECT_NEAR(rate, (value(h, 0, 0) - value(-h, 0, 0)) / (2 * h), 1e-8);
+      EXPECT_NEAR(kernel->lie_derivative(j, 1, t, x, alpha), row[0] * f[0] + row[1] * f[1] + rate, 1e-14);
+      const auto first = [&](double s) {
+        const double moved[] = {x[0] + s * f[0], x[1] + s * f[1]};
+        return kernel->lie_derivative(j, 1, t + s, moved, alpha);
+      };
+      EXPECT_NEAR(kernel->lie_derivative(j, 2, t, x, alpha), (first(h) - first(-h)) / (2 * h), 1e-7);
+    }
+    double magnitude[6];
+    double slope[6];
+    kernel->scales(t, x, alpha, magnitude, slope);
+    double row[2];
+    double rate = 0.0;
+    kernel->gradient(0, t, x, alpha, row, &rate);
+    EXPECT_NEAR(magnitude[0], std::abs(row[0] * x[0]) + std::abs(row[1] * x[1]) + std::abs(rate * t), 1e-14);
+    EXPECT_NEAR(slope[0], std::abs(row[0]) + std::abs(row[1]), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace saltus::evaluation
