@@ -1,0 +1,100 @@
+#include "saltus/report/html.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "report_script.hpp"
+#include "report_style.hpp"
+#include "saltus/report/page_data_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+std::string escape_html(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+/// Inside the strings of a script, the only places where these can stand, the backslash changes nothing; for the HTML
+/// parser it hides the end of the element.
+std::string escape_script(std::string_view script) {
+  constexpr std::string_view closing = "</script";
+  const auto same_letter = [](char a, char b) { return a == b || (a >= 'A' && a <= 'Z' && a - 'A' + 'a' == b); };
+  std::string safe;
+  safe.reserve(script.size());
+  for (std::size_t i = 0; i < script.size(); ++i) {
+    safe += script[i];
+    if (script[i] != '<') continue;
+    const auto rest = script.substr(i, closing.size());
+    const bool closes = std::equal(rest.begin(), rest.end(), closing.begin(), closing.end(), same_letter);
+    if (closes || rest.starts_with("<!--")) safe += '\\';
+  }
+  return safe;
+}
+
+/// FNV-1a: the page allows only scripts that carry this number, which text inside the data cannot know beforehand.
+std::uint64_t fingerprint(std::string_view text) {
+  std::uint64_t hash = 14695981039346656037U;
+  for (const char c : text) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 1099511628211U;
+  }
+  return hash;
+}
+
+}  // namespace
+
+std::string to_html(const result::Result& result, std::string_view plotly_source) {
+  const std::string data = to_script_text(page_data(result));
+  const std::string nonce = fmt::format("{:016x}", fingerprint(data));
+  const std::string title = escape_html(result.model.name.empty() ? "simulation" : result.model.name);
+  std::string page;
+  page.reserve(data.size() + plotly_source.size() + 200000);
+  page += "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  // Nothing may be fetched from anywhere; plotly needs style attributes and pictures made in the page.
+  page += fmt::format(
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'nonce-{}'; "
+      "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'\">\n",
+      nonce);
+  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  page += fmt::format("<title>{} - Saltus</title>\n<style>\n", title);
+  page += embedded::report_style;
+  page += "</style>\n</head>\n<body>\n";
+  page +=
+      fmt::format("<noscript><p>Report of the simulation of {}: {}. {} The pictures need JavaScript.</p></noscript>\n",
+                  title, result::name(result.status.termination), escape_html(result.status.message));
+  page += "<main id=\"report\"></main>\n";
+  page += fmt::format("<script type=\"application/json\" id=\"result\">{}</script>\n", data);
+  const auto add_script = [&](std::string_view script) {
+    page += fmt::format("<script nonce=\"{}\">\n", nonce);
+    page += escape_script(script);
+    page += "\n</script>\n";
+  };
+  add_script(plotly_source);
+  add_script(embedded::report_script);
+  page += "</body>\n</html>\n";
+  return page;
+}
+
+}  // namespace saltus::report

@@ -1,0 +1,124 @@
+// The cursor: one line through all panels, a dot on every curve, all values at that time beside it.
+"use strict";
+
+saltus.svgElement = (tag, attributes) => {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
+};
+
+/** How near, in pixels, the pointer must be to an event for the cursor to stand on it. */
+saltus.catchPixels = 6;
+/** More values than this beside the pointer would cover the drawing. */
+saltus.readoutRows = 36;
+
+saltus.nearestShownEvent = (result, shown, t) => {
+  const times = shown.map((i) => result.events[i].t);
+  return shown.length === 0 ? null : shown[saltus.nearestRow(times, t)];
+};
+
+saltus.readoutValues = (result, row, t) => {
+  const { trajectory } = result;
+  const values = [];
+  const add = (names, columns, wrap) =>
+    names.forEach((name, i) => values.push([wrap(name), saltus.brief(columns[i][row], 8)]));
+  add(result.states, trajectory.x, (name) => name);
+  add(result.output_names, trajectory.outputs, (name) => name);
+  add(result.controls, trajectory.u, (name) => name);
+  result.switching_functions.forEach((name, i) => {
+    const mode = saltus.valueAt(trajectory.modes[i], t);
+    values.push([`mode(${name})`, saltus.modeWord(mode)]);
+    values.push([`α(${name})`, saltus.brief(trajectory.alpha[i][row], 8)]);
+  });
+  return values;
+};
+
+saltus.readoutEvent = (result, index) => {
+  const event = result.events[index];
+  const modes = saltus.element("span", {}, saltus.modeBoxes(event.mode_before), " → ", saltus.modeBoxes(event.mode_after));
+  const uncertain = { true: null, false: "solution not unique", null: "uniqueness not decided" }[String(event.unique)];
+  return saltus.element("div", { class: "readout-event" },
+    saltus.element("strong", {}, `${index + 1}. ${saltus.kindLabel(event.kind)}`),
+    ` ${event.name ?? ""} ${event.surfaces.join(", ")} `, modes,
+    uncertain && saltus.element("div", { class: "alarm-text" }, uncertain),
+    event.reason === "" ? null : saltus.element("div", { class: "quiet" }, event.reason));
+};
+
+saltus.cursor = (result, frame, holder, timeline, select) => {
+  const overlay = saltus.svgElement("svg", { class: "cursor" });
+  const readout = saltus.element("div", { class: "readout", hidden: "" });
+  frame.append(overlay, readout);
+  const { t } = result.trajectory;
+
+  const place = (clientX) => {
+    const { l, w } = holder._fullLayout._size;
+    const pixel = clientX - holder.getBoundingClientRect().left - l;
+    if (pixel < 0 || pixel > w || t.length === 0) return null;
+    const axis = holder._fullLayout.xaxis;
+    const time = axis.p2d(pixel);
+    const index = saltus.nearestShownEvent(result, timeline.shown(), time);
+    const caught = index !== null && Math.abs(axis.d2p(result.events[index].t) - pixel) <= saltus.catchPixels;
+    const row = saltus.nearestRow(t, caught ? result.events[index].t : time);
+    return { row, event: caught ? index : null };
+  };
+
+  const drawOverlay = (row) => {
+    const size = holder._fullLayout._size;
+    const x = size.l + holder._fullLayout.xaxis.d2p(t[row]);
+    overlay.replaceChildren(
+      saltus.svgElement("line", { x1: x, x2: x, y1: size.t, y2: size.t + size.h, class: "cursor-line" }));
+    timeline.panels().panels.forEach((panel, i) => {
+      if (panel.kind !== "curves") return;
+      const axis = holder._fullLayout[saltus.axisKey(i)];
+      panel.curves.forEach((curve, k) => {
+        const value = curve.values[row];
+        const y = value === null ? NaN : axis.d2p(value);
+        if (!(y >= 0 && y <= axis._length)) return;
+        const fill = saltus.curveColour(panel, k, saltus.palette());
+        overlay.append(saltus.svgElement("circle", { cx: x, cy: axis._offset + y, r: 3.5, fill, class: "cursor-dot" }));
+      });
+    });
+    return x;
+  };
+
+  const drawReadout = (x, place_, clientY) => {
+    const values = saltus.readoutValues(result, place_.row, t[place_.row]);
+    const cells = values.slice(0, saltus.readoutRows).flatMap(([name, value]) => [
+      saltus.element("span", { class: "name" }, saltus.shorten(name, 24)), saltus.element("span", { class: "value" }, value)]);
+    const left = values.length - saltus.readoutRows;
+    readout.replaceChildren(
+      saltus.element("div", { class: "readout-time" }, `t = ${saltus.exact(t[place_.row])}`),
+      saltus.element("div", { class: values.length > 12 ? "readout-grid wide" : "readout-grid" }, ...cells),
+      ...(left > 0 ? [saltus.element("div", { class: "quiet" }, `and ${left} more`)] : []),
+      ...(place_.event === null ? [] : [saltus.readoutEvent(result, place_.event)]));
+    readout.hidden = false;
+    const box = readout.getBoundingClientRect();
+    const width = holder.clientWidth;
+    const toRight = x + 14 + box.width < width;
+    readout.style.left = `${toRight ? x + 14 : Math.max(0, x - 14 - box.width)}px`;
+    const top = clientY - frame.getBoundingClientRect().top + 12;
+    readout.style.top = `${Math.max(0, Math.min(top, frame.clientHeight - box.height - 4))}px`;
+  };
+
+  const hide = () => {
+    overlay.replaceChildren();
+    readout.hidden = true;
+  };
+
+  const move = (event) => {
+    const found = event.buttons === 0 ? place(event.clientX) : null;
+    if (found === null) return hide();
+    return drawReadout(drawOverlay(found.row), found, event.clientY);
+  };
+
+  let pressed = null;
+  frame.addEventListener("pointermove", move, true);
+  frame.addEventListener("pointerleave", hide);
+  frame.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]), true);
+  window.addEventListener("pointerup", (event) => {
+    const still = pressed !== null && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 3;
+    pressed = null;
+    const found = still ? place(event.clientX) : null;
+    if (found !== null && found.event !== null) select(found.event);
+  }, true);
+};

@@ -1,0 +1,66 @@
+// Events in the drawing: a marker in the strip on top and a thin line through all panels.
+"use strict";
+
+/** More lines than this in one view could not be told apart: one per bin then, uncertain ones first. */
+saltus.maximumMarks = 400;
+
+saltus.isAlarming = (event) => event.unique === false;
+
+/** Events of the window to draw, at most one per bin if there are too many; indices into result.events. */
+saltus.visibleMarks = (result, shown, [from, to]) => {
+  const inside = shown.filter((i) => result.events[i].t >= from && result.events[i].t <= to);
+  if (inside.length <= saltus.maximumMarks) return { marks: inside, thinned: false };
+  const bins = new Map();
+  for (const i of inside) {
+    const bin = Math.floor(((result.events[i].t - from) / (to - from)) * saltus.maximumMarks);
+    const held = bins.get(bin);
+    if (held === undefined || (saltus.isAlarming(result.events[i]) && !saltus.isAlarming(result.events[held]))) bins.set(bin, i);
+  }
+  return { marks: [...bins.values()], thinned: true };
+};
+
+saltus.markShapes = (result, marks, selected, palette) => {
+  const line = (i, style) => ({
+    type: "line", xref: "x", yref: "paper", x0: result.events[i].t, x1: result.events[i].t, y0: 0, y1: 1, ...style,
+  });
+  const dense = marks.length > 120;
+  const shapes = marks.map((i) =>
+    saltus.isAlarming(result.events[i])
+      ? line(i, { layer: "above", line: { color: palette.alarm, width: 2, dash: "dash" } })
+      : line(i, { layer: "below", line: { color: palette.mark, width: dense ? 0.5 : 1 } }),
+  );
+  if (selected !== null) shapes.push(line(selected, { layer: "above", line: { color: palette.select, width: 2 } }));
+  return shapes;
+};
+
+/** Background of the intervals of sliding, behind every panel of curves. */
+saltus.slidingShapes = (intervals, panels, totalHeight, [from, to], palette) => {
+  const visible = intervals.filter((interval) => interval[1] >= from && interval[0] <= to);
+  if (visible.length > saltus.maximumMarks) return [];
+  const first = panels.find((panel) => panel.kind === "curves");
+  if (first === undefined) return [];
+  return visible.map(([x0, x1]) => ({
+    type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1 - first.top / totalHeight,
+    layer: "below", line: { width: 0 }, fillcolor: palette.slidingShade,
+  }));
+};
+
+saltus.markTrace = (result, marks, selected, palette) => {
+  const colour = (i) => {
+    if (i === selected) return palette.select;
+    return saltus.isAlarming(result.events[i]) ? palette.alarm : palette.text;
+  };
+  const alarming = (i) => saltus.isAlarming(result.events[i]);
+  return {
+    type: "scatter", mode: "markers", xaxis: "x", yaxis: "y", hoverinfo: "none", cliponaxis: false,
+    x: marks.map((i) => result.events[i].t),
+    y: marks.map(() => 0.5),
+    customdata: marks,
+    marker: {
+      symbol: marks.map((i) => (alarming(i) ? "x" : (saltus.kinds[result.events[i].kind]?.symbol ?? "circle"))),
+      size: marks.map((i) => (alarming(i) ? 13 : 9)),
+      color: marks.map(colour),
+      line: { width: 1.5, color: marks.map(colour) },
+    },
+  };
+};

@@ -1,0 +1,37 @@
+// Colours: the style sheet owns them (light and dark), plotly gets copies.
+"use strict";
+
+saltus.palette = () => {
+  const style = getComputedStyle(document.documentElement);
+  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  return {
+    text: colour("text"),
+    quiet: colour("quiet"),
+    panel: colour("panel"),
+    grid: colour("grid"),
+    axis: colour("axis"),
+    mark: colour("mark"),
+    alarm: colour("alarm"),
+    select: colour("select"),
+    sliding: colour("sliding"),
+    slidingShade: colour("sliding-shade"),
+    minus: colour("minus"),
+    plus: colour("plus"),
+    curves: [1, 2, 3, 4, 5, 6].map((i) => colour(`curve-${i}`)),
+  };
+};
+
+saltus.currentTheme = () => document.documentElement.dataset.theme;
+
+/** #dark or #light in the address, else what the system prefers. `changed` is called after every change. */
+saltus.followTheme = (changed) => {
+  const system = window.matchMedia("(prefers-color-scheme: dark)");
+  const asked = /[#&](dark|light)\b/.exec(window.location.hash);
+  const apply = (theme) => {
+    document.documentElement.dataset.theme = theme;
+    changed();
+  };
+  document.documentElement.dataset.theme = asked ? asked[1] : system.matches ? "dark" : "light";
+  system.addEventListener("change", () => apply(system.matches ? "dark" : "light"));
+  return { toggle: () => apply(saltus.currentTheme() === "dark" ? "light" : "dark") };
+};

@@ -1,0 +1,86 @@
+// The drawing over time as a thing with a state: the window of time, the flagged event, the shown kinds.
+"use strict";
+
+/**
+ * @param listeners  windowChanged(window) after every change of the window
+ * @return           what other parts of the page may do with the drawing
+ */
+saltus.timeline = (result, holder, listeners) => {
+  const full = saltus.fullWindow(result);
+  const sliding = saltus.slidingIntervals(result.trajectory.modes);
+  let shown = result.events.map((_, i) => i);
+  let selected = null;
+  let window_ = full;
+  let ranges = {};
+  let stack = null;
+
+  const view = () => {
+    const { marks, thinned } = saltus.visibleMarks(result, shown, window_);
+    const pixels = 2 * Math.max(200, holder.clientWidth);
+    return { window: window_, ranges, selected, sliding, marks, thinned, pixels, palette: saltus.palette() };
+  };
+
+  const draw = () => {
+    stack = saltus.stackPanels(result, Math.max(380, window.innerHeight - 150));
+    const current = view();
+    const layout = { ...saltus.figureLayout(result, stack, current), width: holder.clientWidth };
+    holder.classList.toggle("thinned-marks", current.thinned);
+    return Plotly.react(holder, saltus.figureTraces(result, stack, current), layout, saltus.plotConfig);
+  };
+
+  const setWindow = (next) => {
+    window_ = next;
+    ranges = {};
+    draw();
+    listeners.windowChanged(window_);
+  };
+
+  const relayout = (change) => {
+    for (const [key, value] of Object.entries(change)) {
+      const match = /^yaxis(\d*)\.range\[([01])\]$/.exec(key);
+      if (match === null) continue;
+      const panel = match[1] === "" ? 0 : Number(match[1]) - 1;
+      ranges[panel] ??= { range: [0, 0] };
+      ranges[panel].range[Number(match[2])] = value;
+    }
+    const [from, to] = [change["xaxis.range[0]"], change["xaxis.range[1]"]];
+    if (from !== undefined && to !== undefined && to > from) window_ = [from, to];
+    draw();
+    listeners.windowChanged(window_);
+  };
+
+  /** A window around an event, as wide as its distance to the second neighbour on either side. */
+  const windowAround = (i) => {
+    const at = (k) => result.events[Math.min(Math.max(k, 0), result.events.length - 1)].t;
+    const { t } = result.events[i];
+    const reach = Math.max(t - at(i - 2), at(i + 2) - t) || (full[1] - full[0]) / 20;
+    return [t - reach, t + reach];
+  };
+
+  const flag = (i) => {
+    selected = i;
+    if (i !== null) {
+      const { t } = result.events[i];
+      const half = (window_[1] - window_[0]) / 2;
+      // Out of sight: the window moves there with its width.
+      if (t < window_[0] || t > window_[1]) return setWindow([t - half, t + half]);
+    }
+    return draw();
+  };
+
+  draw();
+  holder.on("plotly_relayout", relayout);
+  holder.on("plotly_doubleclick", () => setWindow(full));
+  return {
+    draw, flag, setWindow,
+    reset: () => setWindow(full),
+    zoomTo: (i) => setWindow(windowAround(i)),
+    show: (indices) => {
+      shown = indices;
+      draw();
+    },
+    window: () => window_,
+    shown: () => shown,
+    panels: () => stack,
+  };
+};

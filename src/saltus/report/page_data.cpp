@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+
+#include "saltus/base/version.hpp"
+#include "saltus/report/page_data_internal.hpp"
+#include "saltus/report/thinning_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+using nlohmann::json;
+using Rows = std::vector<std::vector<double>>;
+
+template <class T>
+json or_null(const std::optional<T>& value) {
+  return value ? json(*value) : json(nullptr);
+}
+
+/// One array per column; a row that is too short counts as not a number there.
+json columns(const Rows& rows, const std::vector<std::size_t>& chosen, std::size_t width) {
+  json result = json::array();
+  for (std::size_t column = 0; column < width; ++column) {
+    json::array_t values;
+    values.reserve(chosen.size());
+    for (const std::size_t i : chosen) {
+      const bool there = i < rows.size() && column < rows[i].size();
+      values.emplace_back(there ? rows[i][column] : std::numeric_limits<double>::quiet_NaN());
+    }
+    result.push_back(std::move(values));
+  }
+  return result;
+}
+
+/// Intervals of constant mode of one switching function: edges t_0 < … < t_n and the n values between them.
+json mode_intervals(const result::Trajectory& trajectory, std::size_t surface) {
+  json::array_t edges, values;
+  const auto mode_at = [&](std::size_t i) -> json {
+    const bool there = i < trajectory.mode.size() && surface < trajectory.mode[i].size();
+    return there ? json(trajectory.mode[i][surface]) : json(nullptr);
+  };
+  for (std::size_t i = 1; i < trajectory.t.size(); ++i) {
+    if (trajectory.t[i - 1] == trajectory.t[i]) continue;
+    const json mode = mode_at(i - 1);
+    if (edges.empty()) edges.emplace_back(trajectory.t[i - 1]);
+    if (!values.empty() && values.back() == mode) {
+      edges.back() = trajectory.t[i];
+    } else {
+      values.push_back(mode);
+      edges.emplace_back(trajectory.t[i]);
+    }
+  }
+  return {{"edges", edges}, {"values", values}};
+}
+
+json event_data(const result::Event& event) {
+  json alternatives = json::array();
+  for (const auto& other : event.alternatives) alternatives.push_back({{"mode", other.mode}, {"alpha", other.alpha}});
+  return {{"t", event.t},
+          {"kind", result::name(event.kind)},
+          {"name", or_null(event.name)},
+          {"surfaces", event.surfaces},
+          {"mode_before", or_null(event.mode_before)},
+          {"mode_after", or_null(event.mode_after)},
+          {"alpha_before", or_null(event.alpha_before)},
+          {"alpha_after", or_null(event.alpha_after)},
+          {"x", event.x},
+          {"x_after", event.x_after},
+          {"unique", or_null(event.unique)},
+          {"alternatives", std::move(alternatives)},
+          {"reason", event.reason}};
+}
+
+json option_value(const result::OptionValue& value) {
+  return std::visit([](const auto& v) { return json(v); }, value);
+}
+
+/// Names with their values, in the order given (an object would be sorted).
+template <class Pairs>
+json pairs(const Pairs& list) {
+  json result = json::array();
+  for (const auto& [name, value] : list) {
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) {
+      result.push_back(json::array({name, value}));
+    } else {
+      result.push_back(json::array({name, option_value(value)}));
+    }
+  }
+  return result;
+}
+
+json trajectory_data(const result::Result& result, std::size_t limit) {
+  const auto& trajectory = result.trajectory;
+  const std::size_t columns_drawn = 1 + number_of_columns(trajectory);
+  const auto chosen = rows_to_draw(trajectory, std::max<std::size_t>(1, limit / columns_drawn));
+  json::array_t t, modes;
+  t.reserve(chosen.size());
+  for (const std::size_t i : chosen) t.emplace_back(trajectory.t[i]);
+  for (std::size_t j = 0; j < result.switching_functions.size(); ++j) modes.push_back(mode_intervals(trajectory, j));
+  return {{"rows", trajectory.t.size()},
+          {"t", std::move(t)},
+          {"x", columns(trajectory.x, chosen, result.states.size())},
+          {"u", columns(trajectory.u, chosen, result.controls.size())},
+          {"alpha", columns(trajectory.alpha, chosen, result.switching_functions.size())},
+          {"outputs", columns(trajectory.outputs, chosen, result.outputs.size())},
+          {"modes", std::move(modes)}};
+}
+
+}  // namespace
+
+json page_data(const result::Result& result, std::size_t limit) {
+  json events = json::array();
+  for (const auto& event : result.events) events.push_back(event_data(event));
+  return {{"saltus", version},
+          {"model",
+           {{"name", result.model.name},
+            {"description", result.model.description},
+            {"sha256", result.model.sha256},
+            {"parameters", pairs(result.model.parameters)}}},
+          {"command", result.command},
+          {"method", result.method},
+          {"status",
+           {{"termination", result::name(result.status.termination)},
+            {"done", result::is_done(result.status.termination)},
+            {"message", result.status.message},
+            {"time_reached", result.status.time_reached}}},
+          {"states", result.states},
+          {"controls", result.controls},
+          {"switching_functions", result.switching_functions},
+          {"output_names", result.outputs},
+          {"final",
+           {{"t", result.final.t},
+            {"x", result.final.x},
+            {"mode", result.final.mode},
+            {"alpha", result.final.alpha},
+            {"outputs", result.final.outputs}}},
+          {"events", std::move(events)},
+          {"trajectory", trajectory_data(result, limit)},
+          {"statistics",
+           {{"steps", result.statistics.steps},
+            {"rejected", result.statistics.rejected},
+            {"rhs_evaluations", result.statistics.rhs_evaluations},
+            {"wall_seconds", result.statistics.wall_seconds}}},
+          {"options", pairs(result.options)}};
+}
+
+std::string to_script_text(const json& data) {
+  // Names come from files of others: bytes that are no UTF-8 are replaced instead of thrown at the user.
+  const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size() + 1024);
+  for (const char c : text) {
+    // '<' occurs in strings only; without it neither </script> nor <!-- can end the element early.
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace saltus::report

@@ -1,0 +1,23 @@
+// What the page of a report shows, as JSON.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "saltus/result/result.hpp"
+
+namespace saltus::report {
+
+/// Numbers of the trajectory that a page holds at most (about 18 characters each); a longer one is thinned.
+inline constexpr std::size_t numbers_in_page = 1500000;
+
+/// The result column by column, modes as intervals; non-finite numbers become null when written.
+/// @param limit  numbers of the trajectory to aim at; see rows_to_draw.
+[[nodiscard]] nlohmann::json page_data(const result::Result& result, std::size_t limit = numbers_in_page);
+
+/// The JSON text in a form that can stand inside a <script> element whatever its strings contain.
+[[nodiscard]] std::string to_script_text(const nlohmann::json& data);
+
+}  // namespace saltus::report

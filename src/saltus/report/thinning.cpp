@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "saltus/report/thinning_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+using Rows = std::vector<std::vector<double>>;
+
+std::array<const Rows*, 4> tables(const result::Trajectory& trajectory) {
+  return {&trajectory.x, &trajectory.u, &trajectory.alpha, &trajectory.outputs};
+}
+
+void keep_always(const result::Trajectory& trajectory, std::vector<char>& keep) {
+  const auto& t = trajectory.t;
+  keep.front() = keep.back() = 1;
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    const bool mode_changes = i < trajectory.mode.size() && trajectory.mode[i - 1] != trajectory.mode[i];
+    if (t[i - 1] == t[i] || mode_changes) keep[i - 1] = keep[i] = 1;
+  }
+}
+
+struct Run {
+  std::size_t begin, end;
+};
+
+/// Marks the extremes of one column within a run, and where it first has no finite value.
+void keep_extremes(const Rows& rows, std::size_t column, Run run, std::vector<char>& keep) {
+  std::size_t least = run.end, greatest = run.end, missing = run.end;
+  for (std::size_t i = run.begin; i < run.end; ++i) {
+    const double value = rows[i][column];
+    if (!std::isfinite(value)) {
+      if (missing == run.end) missing = i;
+    } else {
+      if (least == run.end || value < rows[least][column]) least = i;
+      if (greatest == run.end || value > rows[greatest][column]) greatest = i;
+    }
+  }
+  for (const std::size_t i : {least, greatest, missing}) {
+    if (i < run.end) keep[i] = 1;
+  }
+}
+
+}  // namespace
+
+std::size_t number_of_columns(const result::Trajectory& trajectory) {
+  std::size_t count = 0;
+  for (const Rows* rows : tables(trajectory)) count += rows->empty() ? 0 : rows->front().size();
+  return count;
+}
+
+std::vector<std::size_t> rows_to_draw(const result::Trajectory& trajectory, std::size_t limit) {
+  const std::size_t size = trajectory.t.size();
+  std::vector<std::size_t> chosen(size);
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  if (size <= limit) return chosen;
+
+  std::vector<char> keep(size, 0);
+  keep_always(trajectory, keep);
+  // Least and greatest of every column: two rows per column and run.
+  const std::size_t runs = std::max<std::size_t>(1, limit / (2 * number_of_columns(trajectory) + 1));
+  const std::size_t length = (size + runs - 1) / runs;
+  for (const Rows* rows : tables(trajectory)) {
+    if (rows->size() != size) continue;
+    for (std::size_t column = 0; column < rows->front().size(); ++column) {
+      for (std::size_t begin = 0; begin < size; begin += length) {
+        keep_extremes(*rows, column, {begin, std::min(size, begin + length)}, keep);
+      }
+    }
+  }
+  std::erase_if(chosen, [&](std::size_t i) { return keep[i] == 0; });
+  return chosen;
+}
+
+}  // namespace saltus::report

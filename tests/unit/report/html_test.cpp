@@ -1,0 +1,91 @@
+#include "saltus/report/html.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "sample_results.hpp"
+
+namespace saltus::report {
+namespace {
+
+constexpr const char* plotly = "/*the plotting library*/ const s = \"</SCRIPT>\";";
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+TEST(Html, IsOneDocumentWithTheLibraryTheDataAndTheScript) {
+  const std::string page = to_html(report_samples::stick_slip(40, 50), plotly);
+  EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
+  EXPECT_TRUE(page.ends_with("</html>\n"));
+  EXPECT_NE(page.find("/*the plotting library*/"), std::string::npos);
+  EXPECT_NE(page.find("id=\"result\">{"), std::string::npos);
+  EXPECT_NE(page.find("saltus.start();"), std::string::npos);
+  EXPECT_NE(page.find("<title>stick-slip - Saltus</title>"), std::string::npos);
+}
+
+TEST(Html, DependsOnTheResultOnly) {
+  const auto result = report_samples::twelve_states();
+  EXPECT_EQ(to_html(result, plotly), to_html(result, plotly));
+}
+
+TEST(Html, NothingInTheResultOrTheLibraryEndsAnElementEarly) {
+  const std::string page = lower(to_html(report_samples::failed(), plotly));
+  // Three scripts: the data, the library, ours. Every opening has exactly one closing tag.
+  EXPECT_EQ(count(page, "<script"), 3U);
+  EXPECT_EQ(count(page, "</script"), 3U);
+  EXPECT_EQ(count(page, "<!--"), 0U);
+  EXPECT_EQ(count(page, "<img"), 0U);
+  EXPECT_EQ(count(page, "<b>"), 0U);
+  EXPECT_NE(page.find("<title>&lt;b&gt;bad&lt;/b&gt; &amp; &quot;odd&quot;"), std::string::npos);
+}
+
+TEST(Html, ForbidsRequestsAndScriptsOfOthers) {
+  const std::string page = to_html(report_samples::decay(), plotly);
+  EXPECT_NE(page.find("default-src 'none'; script-src 'nonce-"), std::string::npos);
+  for (const char* outside : {"src=\"", "href=", "@import", "url(", "fetch(", "XMLHttpRequest"}) {
+    EXPECT_EQ(count(page, outside), 0U) << outside;
+  }
+}
+
+TEST(Html, NonceFollowsTheData) {
+  const auto nonce = [](const std::string& page) { return page.substr(page.find("nonce-"), 22); };
+  const std::string first = to_html(report_samples::decay(), plotly);
+  EXPECT_NE(nonce(first), nonce(to_html(report_samples::failed(), plotly)));
+  EXPECT_EQ(count(first, "<script nonce=\"" + nonce(first).substr(6) + "\">"), 2U);
+}
+
+/// Not a check but a tool: writes pages to look at when scripts/look_at_report.sh asks for them.
+TEST(Html, WritesSamplesOnRequest) {
+  const char* folder = std::getenv("SALTUS_REPORT_SAMPLES");
+  const char* library = std::getenv("SALTUS_PLOTLY_JS");
+  if (folder == nullptr || library == nullptr) GTEST_SKIP() << "SALTUS_REPORT_SAMPLES and SALTUS_PLOTLY_JS are not set";
+  std::ifstream stream(library, std::ios::binary);
+  const std::string source{std::istreambuf_iterator<char>(stream), {}};
+  ASSERT_FALSE(source.empty()) << library;
+  const std::vector<std::pair<std::string, result::Result>> samples{
+      {"stick-slip", report_samples::stick_slip(40, 50)}, {"no-events", report_samples::decay()},
+      {"twelve-states", report_samples::twelve_states()}, {"failed", report_samples::failed()},
+      {"many-rows", report_samples::many_rows(1000000)},  {"many-events", report_samples::many_events(20000)}};
+  for (const auto& [name, sample] : samples) {
+    const auto file = std::filesystem::path(folder) / (name + ".html");
+    std::ofstream(file, std::ios::binary) << to_html(sample, source);
+    EXPECT_GT(std::filesystem::file_size(file), source.size());
+  }
+}
+
+}  // namespace
+}  // namespace saltus::report

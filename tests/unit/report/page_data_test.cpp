@@ -1,0 +1,114 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "saltus/report/page_data_internal.hpp"
+#include "sample_results.hpp"
+
+namespace saltus::report {
+namespace {
+
+using nlohmann::json;
+
+TEST(PageData, HoldsTheTrajectoryByColumnsExactly) {
+  const auto result = report_samples::stick_slip(4, 7);
+  const json data = json::parse(to_script_text(page_data(result)));
+  const auto& rows = result.trajectory;
+  ASSERT_EQ(data["trajectory"]["t"].size(), rows.t.size());
+  EXPECT_EQ(data["trajectory"]["rows"], rows.t.size());
+  for (std::size_t i = 0; i < rows.t.size(); ++i) {
+    EXPECT_EQ(data["trajectory"]["t"][i].get<double>(), rows.t[i]);
+    EXPECT_EQ(data["trajectory"]["x"][1][i].get<double>(), rows.x[i][1]);
+    EXPECT_EQ(data["trajectory"]["alpha"][0][i].get<double>(), rows.alpha[i][0]);
+  }
+}
+
+TEST(PageData, ModesAreTheIntervalsBetweenEvents) {
+  const auto result = report_samples::stick_slip(4, 7);
+  const json modes = page_data(result)["trajectory"]["modes"][0];
+  EXPECT_EQ(modes["values"], (json{0, -1, 0, -1, 0}));
+  ASSERT_EQ(modes["edges"].size(), 6U);
+  EXPECT_EQ(modes["edges"][0], result.trajectory.t.front());
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(modes["edges"][i + 1], result.events[i].t);
+  EXPECT_EQ(modes["edges"][5], result.trajectory.t.back());
+}
+
+TEST(PageData, SeveralRowsAtOneTimeMakeNoInterval) {
+  result::Result result;
+  result.states = {"x"};
+  result.switching_functions = {"psi"};
+  for (const auto& [t, k] : {std::pair{0.0, -1}, {1.0, -1}, {1.0, 0}, {1.0, 1}, {2.0, 1}}) {
+    report_samples::add_row(result, {t, {0.0}, {k}, {0.0}});
+  }
+  const json modes = page_data(result)["trajectory"]["modes"][0];
+  EXPECT_EQ(modes["edges"], (json{0.0, 1.0, 2.0}));
+  EXPECT_EQ(modes["values"], (json{-1, 1}));
+}
+
+TEST(PageData, NonFiniteNumbersAndMissingModesAreNull) {
+  auto result = report_samples::failed();
+  result.events.front().mode_before.reset();
+  const json data = json::parse(to_script_text(page_data(result)));
+  EXPECT_TRUE(data["trajectory"]["x"][0].back().is_null());
+  EXPECT_TRUE(data["trajectory"]["x"][1].back().is_null());
+  EXPECT_TRUE(data["final"]["x"][0].is_null());
+  EXPECT_TRUE(data["events"][0]["mode_before"].is_null());
+  EXPECT_TRUE(data["events"][0]["name"].is_null());
+  EXPECT_EQ(data["status"]["done"], false);
+}
+
+TEST(PageData, TextSurvivesEscaping) {
+  auto result = report_samples::failed();
+  result.model.description = "a </script> <!-- b";
+  const std::string text = to_script_text(page_data(result));
+  EXPECT_EQ(text.find('<'), std::string::npos);
+  const json data = json::parse(text);
+  EXPECT_EQ(data["model"]["description"], result.model.description);
+  EXPECT_EQ(data["states"][0], result.states[0]);
+  EXPECT_EQ(data["switching_functions"][0], result.switching_functions[0]);
+}
+
+TEST(PageData, EventsKeepUniquenessWithAlternatives) {
+  const json data = json::parse(to_script_text(page_data(report_samples::failed())));
+  int refused = 0, undecided = 0;
+  for (const auto& event : data["events"]) {
+    if (event["unique"].is_null()) ++undecided;
+    if (event["unique"] == false) {
+      ++refused;
+      EXPECT_EQ(event["alternatives"][0]["mode"], (json{1, -1}));
+      EXPECT_TRUE(event["alternatives"][1]["alpha"][1].is_null());
+    }
+  }
+  EXPECT_EQ(refused, 1);
+  EXPECT_EQ(undecided, 1);
+}
+
+TEST(PageData, OptionsAndParametersKeepTheirOrderAndType) {
+  const json data = page_data(report_samples::stick_slip(2, 3));
+  EXPECT_EQ(data["model"]["parameters"], (json::array({{"mu_s", 1.0}, {"mu_d", 0.4}})));
+  EXPECT_EQ(data["options"][2], (json::array({"simulate.method", "event"})));
+  EXPECT_EQ(data["options"][5][1].size(), 8U);
+}
+
+TEST(PageData, LongTrajectoriesAreThinnedAndSayHowManyRowsThereWere) {
+  const auto result = report_samples::many_rows(40000);
+  const json data = page_data(result, 8000);
+  const std::size_t kept = data["trajectory"]["t"].size();
+  EXPECT_EQ(data["trajectory"]["rows"], result.trajectory.t.size());
+  // Four columns and 40 events: at most the limit and the rows that are always kept.
+  EXPECT_LE(kept, 8000 / 4 + 2 * 40 + 2);
+  EXPECT_GE(kept, 200U);
+  double greatest = -1.0;
+  for (const auto& value : data["trajectory"]["x"][1]) greatest = std::max(greatest, value.get<double>());
+  EXPECT_EQ(greatest, 25.0);
+}
+
+TEST(PageData, AnEmptyResultIsNoError) {
+  const json data = json::parse(to_script_text(page_data(result::Result{})));
+  EXPECT_EQ(data["trajectory"]["t"].size(), 0U);
+  EXPECT_EQ(data["events"].size(), 0U);
+}
+
+}  // namespace
+}  // namespace saltus::report
