@@ -8,10 +8,7 @@ scripts/install.sh
 cmake --preset release --log-level=NOTICE
 cmake --build --preset demo --parallel "$(nproc)"
 
-# The tool lies at the same place of the build tree whatever its folder of sources is called.
-tool=$(find build/release -type f -name saltus -perm -u+x | head -n 1)
-[[ -n "$tool" ]] || { echo "scripts/demo.sh: the build made no tool named saltus" >&2; exit 1; }
-
+tool=build/release/bin/saltus
 mkdir -p demo
 simulate() {
   printf '\n$ %s\n' "$tool simulate $1 --out demo/$1.json --report demo/$1.html"
