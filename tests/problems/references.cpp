@@ -36,10 +36,12 @@ ReferenceProblem problem_of(const json& entry) {
   problem.variant = entry.value("case", "");
   problem.until = entry.at("until");
   problem.digits = entry.at("digits");
-  for (const auto& [name, value] : entry.value("overrides", json::object()).items()) {
+  const json overrides = entry.value("overrides", json::object());
+  for (const auto& [name, value] : overrides.items()) {
     problem.overrides.emplace_back(name, value.get<double>());
   }
-  for (const auto& [name, value] : entry.value("initial_mode", json::object()).items()) {
+  const json initial_mode = entry.value("initial_mode", json::object());
+  for (const auto& [name, value] : initial_mode.items()) {
     problem.initial_mode.emplace_back(name, value.get<int>());
   }
   for (const json& event : entry.at("events")) problem.events.push_back(event_of(event));
