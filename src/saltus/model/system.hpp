@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <casadi/core/sx.hpp>
+#include <casadi/core/sx_elem.hpp>
 
 #include "saltus/model/description.hpp"
 
@@ -19,8 +20,8 @@ enum class SwitchingRole {
 
 /// psi_j(t, x, u, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index (nesting).
 struct SwitchingFunction {
-  std::string name;        ///< declared name, or the argument's text without spaces at its first place
-  casadi::SX psi;          ///< scalar over t, x, u, p and the alphas of inner surfaces
+  std::string name;  ///< declared name, or the argument's text without spaces at its first place
+  casadi::SX psi;    ///< scalar over t, x, u, p and the alphas of inner surfaces
   SwitchingRole role = SwitchingRole::listed;
   bool named = false;      ///< declared in [switching]
   std::vector<int> inner;  ///< indices of the switching functions whose alpha occurs in psi, ascending
@@ -33,10 +34,10 @@ struct SwitchingColumn {
   int orientation = +1;  ///< -1 if this name's psi is a negative multiple of the function's
 };
 
-/// `when` of [[events]]: value = 0 is the event if `guards` is empty; otherwise a condition whose truth is the polynomial
-/// `value` (0 or 1) in `guard_alpha` (step of each guard, decided as written at equality).
+/// `when` of [[events]]: value = 0 is the event if `guards` is empty; otherwise a condition whose truth is the
+/// polynomial `value` (0 or 1) in `guard_alpha` (step of each guard, decided as written at equality).
 struct UserEvent {
-  std::string name;        ///< given, or event1, event2, … by position
+  std::string name;  ///< given, or event1, event2, … by position
   bool named = false;
   casadi::SX value;        ///< scalar over t, x, u, p, alpha, and guard_alpha for a condition
   casadi::SX guards;       ///< differences of the comparisons over t, x, u, p, alpha; 0 x 1 for an expression
@@ -54,24 +55,24 @@ struct System {
   Inclusion inclusion = Inclusion::filippov;
 
   std::vector<std::string> state_names, control_names, parameter_names, output_names;
-  std::vector<double> initial_state;     ///< x(from)
-  std::vector<double> state_lower, state_upper;      ///< +-infinity if absent
+  std::vector<double> initial_state;             ///< x(from)
+  std::vector<double> state_lower, state_upper;  ///< +-infinity if absent
   std::vector<double> control_lower, control_upper;
   std::vector<double> control_initial;
   std::vector<double> parameter_values;
 
-  casadi::SX t, x, u, p, alpha;          ///< scalar, n_x, n_u, n_p, n_psi columns of symbols
-  casadi::SX f;                          ///< n_x, as used on surfaces (multi-affine in alpha with filippov)
-  casadi::SX f_as_written;               ///< n_x, alpha as the user wrote it
-  casadi::SX outputs;                    ///< n_y
-  casadi::SX input;                      ///< n_u over t, p, alpha: u during a simulation
+  casadi::SX t, x, u, p, alpha;  ///< scalar, n_x, n_u, n_p, n_psi columns of symbols
+  casadi::SX f;                  ///< n_x, as used on surfaces (multi-affine in alpha with filippov)
+  casadi::SX f_as_written;       ///< n_x, alpha as the user wrote it
+  casadi::SX outputs;            ///< n_y
+  casadi::SX input;              ///< n_u over t, p, alpha: u during a simulation
   std::vector<SwitchingFunction> switching;
   std::vector<SwitchingColumn> columns;  ///< of the result: order of appearance, named ones first in file order
   std::vector<UserEvent> events;
 
-  bool multi_affine = true;              ///< f_as_written is multi-affine in alpha
+  bool multi_affine = true;                        ///< f_as_written is multi-affine in alpha
   std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ, empty if none
-  std::vector<std::string> warnings;     ///< unused names, aliases, …
+  std::vector<std::string> warnings;               ///< unused names, aliases, …
 };
 
 }  // namespace saltus::model

@@ -1,0 +1,402 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/model/reduction_internal.hpp"
+#include "saltus/model/statement_internal.hpp"
+#include "saltus/model/surfaces_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+/// The comparisons of an event's condition become its guards; the others fold.
+class Guards {
+ public:
+  explicit Guards(Recognition& recognition) : recognition_(recognition) {}
+
+  [[nodiscard]] Expected<Truth> truth(const Condition& condition) {
+    switch (condition.kind()) {
+      case Condition::Kind::constant:
+        return condition.truth() > 0.0 ? 1 : 0;
+      case Condition::Kind::comparison:
+        return comparison_truth(condition.comparison());
+      case Condition::Kind::negation:
+        return truth(condition.left()).map([&](Truth a) { return diagram_.negation(a); });
+      case Condition::Kind::conjunction:
+      case Condition::Kind::disjunction:
+        break;
+    }
+    const auto a = truth(condition.left());
+    if (!a) return a;
+    const auto b = truth(condition.right());
+    if (!b) return b;
+    return condition.kind() == Condition::Kind::conjunction ? diagram_.conjunction(*a, *b)
+                                                            : diagram_.disjunction(*a, *b);
+  }
+
+  /// A condition that folded still is one: it gets a guard that never changes.
+  void fill(UserEvent& event, Truth truth) {
+    if (guards_.empty()) static_cast<void>(guard(recognition_.graph.node(SXElem(1.0)), AtEquality::is_false));
+    std::vector<SXElem> symbols, differences;
+    for (std::size_t i = 0; i < guards_.size(); ++i) {
+      symbols.push_back(SXElem::sym(fmt::format("guard_alpha_{}", i)));
+      differences.push_back(recognition_.graph.expression(guards_[i].node));
+      event.true_at_equality.push_back(guards_[i].at_equality == AtEquality::is_true);
+    }
+    event.guards = column(differences);
+    event.guard_alpha = column(symbols);
+    event.value = recognition_.graph.polynomial(diagram_, truth, symbols);
+  }
+
+  [[nodiscard]] bool overflowed() const { return diagram_.overflowed(); }
+
+ private:
+  struct Guard {
+    int node;
+    AtEquality at_equality;
+  };
+
+  int guard(int node, AtEquality at_equality) {
+    for (std::size_t i = 0; i < guards_.size(); ++i) {
+      if (guards_[i].node == node && guards_[i].at_equality == at_equality) return static_cast<int>(i);
+    }
+    guards_.push_back({node, at_equality});
+    return static_cast<int>(guards_.size()) - 1;
+  }
+
+  Expected<Truth> comparison_truth(const Comparison& comparison) {
+    const auto difference = scalar(comparison.difference);
+    if (!difference) {
+      return tl::unexpected(
+          Error{ErrorCode::invalid_model, "a comparison of vectors", "compare their entries one by one", {}, {}});
+    }
+    const auto node = recognition_.graph.add(*difference);
+    if (!node) return tl::unexpected(node.error());
+    const auto constant = constant_value(recognition_.graph.tape(), *node);
+    if (!constant) return diagram_.literal(guard(*node, comparison.at_equality));
+    const bool holds = *constant > 0.0 || (*constant == 0.0 && comparison.at_equality == AtEquality::is_true);
+    return holds ? TruthDiagram::constant_true() : TruthDiagram::constant_false();
+  }
+
+  Recognition& recognition_;
+  TruthDiagram diagram_;
+  std::vector<Guard> guards_;
+};
+
+/// The steps from a statement to a system, each of which fills some of its fields.
+class Assembly {
+ public:
+  Assembly(Recognition& recognition, const Statement& statement)
+      : recognition_(recognition), graph_(recognition.graph), statement_(statement) {}
+
+  [[nodiscard]] Expected<System> run() {
+    if (auto error = take_values()) return tl::unexpected(*error);
+    if (auto error = take_expressions()) return tl::unexpected(*error);
+    if (auto error = take_events()) return tl::unexpected(*error);
+    keep_used_functions();
+    classify_functions();
+    if (auto error = take_right_hand_side()) return tl::unexpected(*error);
+    take_switching();
+    take_columns();
+    system_.warnings = statement_.warnings;
+    add_switching_warnings();
+    return std::move(system_);
+  }
+
+ private:
+  std::optional<Error> take_values() {
+    if (statement_.states.empty()) {
+      return Error{ErrorCode::invalid_model,
+                   "the model has no states",
+                   "declare at least one in [states], with its right-hand side in [dynamics]",
+                   {},
+                   {}};
+    }
+    system_.name = statement_.name;
+    system_.description = statement_.description;
+    system_.inclusion = statement_.inclusion;
+    for (const auto& parameter : statement_.parameters) {
+      system_.parameter_names.push_back(parameter.name);
+      system_.parameter_values.push_back(parameter.value);
+    }
+    for (const auto& state : statement_.states) {
+      system_.state_names.push_back(state.name);
+      system_.initial_state.push_back(state.initial);
+      system_.state_lower.push_back(state.bounds.lower);
+      system_.state_upper.push_back(state.bounds.upper);
+      if (!state.dynamics) {
+        return Error{ErrorCode::invalid_model,
+                     fmt::format("the state '{}' has no right-hand side", state.name),
+                     fmt::format("add {} = \"…\" to [dynamics]; a constant state gets 0", state.name),
+                     state.location,
+                     {}};
+      }
+    }
+    for (const auto& control : statement_.controls) {
+      system_.control_names.push_back(control.name);
+      system_.control_initial.push_back(control.initial);
+      system_.control_lower.push_back(control.bounds.lower);
+      system_.control_upper.push_back(control.bounds.upper);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> take_expressions() {
+    std::vector<SXElem> x, u, p, outputs;
+    for (const auto& parameter : statement_.parameters) p.push_back(parameter.symbol);
+    for (const auto& state : statement_.states) {
+      x.push_back(state.symbol);
+      if (auto error = take_root(*state.dynamics, f_)) return located_error(*error, state.dynamics_location);
+    }
+    for (const auto& output : statement_.outputs) {
+      system_.output_names.push_back(output.name);
+      outputs.push_back(output.expression);
+      if (auto error = take_root(output.expression, others_)) return error;
+    }
+    system_.t = statement_.time;
+    system_.x = column(x);
+    system_.p = column(p);
+    system_.outputs = column(outputs);
+    std::vector<SXElem> input;
+    for (const auto& control : statement_.controls) {
+      u.push_back(control.symbol);
+      input.push_back(control.input ? *control.input : SXElem(control.initial));
+      std::vector<int> node;
+      if (auto error = take_root(input.back(), node)) return located_error(*error, control.input_location);
+      constexpr KindSet forbidden = kind_bit(VariableKind::state) | kind_bit(VariableKind::control);
+      if ((graph_.tape()[node.front()].reached & forbidden) != 0) {
+        return Error{ErrorCode::invalid_model,
+                     fmt::format("the input of '{}' depends on a state or a control", control.name),
+                     "inputs are expressions of t and parameters; put a feedback law into [definitions] instead",
+                     control.input_location,
+                     {}};
+      }
+      inputs_.push_back(node.front());
+    }
+    system_.u = column(u);
+    system_.input = column(input);
+    return std::nullopt;
+  }
+
+  std::optional<Error> take_root(const SXElem& expression, std::vector<int>& nodes) {
+    const auto node = graph_.add(expression);
+    if (!node) return node.error();
+    nodes.push_back(*node);
+    return std::nullopt;
+  }
+
+  static Error located_error(Error error, const SourceLocation& location) {
+    if (error.location.line == 0) error.location = location;
+    return error;
+  }
+
+  std::optional<Error> take_events() {
+    int position = 0;
+    for (const auto& stated : statement_.events) {
+      ++position;
+      UserEvent event;
+      event.named = stated.name.has_value();
+      event.name = stated.name.value_or(fmt::format("event{}", position));
+      event.direction = stated.direction;
+      event.action = stated.action;
+      if (auto error = fill_event(stated, event)) return located_error(*error, stated.location);
+      system_.events.push_back(std::move(event));
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> fill_event(const EventStatement& stated, UserEvent& event) {
+    bool constant = false;
+    if (stated.expression) {
+      if (auto error = take_root(*stated.expression, others_)) return error;
+      event.value = *stated.expression;
+      event.guards = column({});
+      event.guard_alpha = column({});
+      constant = constant_value(graph_.tape(), others_.back()).has_value();
+    } else {
+      Guards guards(recognition_);
+      const auto truth = guards.truth(*stated.condition);
+      if (!truth) return truth.error();
+      if (guards.overflowed()) return chain_too_long("the condition of event " + event.name);
+      guards.fill(event, *truth);
+      constant = *truth <= 1;
+      for (const SXElem& guard : event.guards.nonzeros()) others_.push_back(graph_.node(guard));
+    }
+    if (constant) {
+      event_warnings_.push_back(
+          located(stated.location, fmt::format("event '{}' never happens: its 'when' is constant", event.name)));
+    }
+    return std::nullopt;
+  }
+
+  /// Unnamed functions that occur in nothing but definitions nobody uses are dropped.
+  void keep_used_functions() {
+    const auto& met = recognition_.functions();
+    std::vector<int> roots = f_;
+    roots.insert(roots.end(), others_.begin(), others_.end());
+    roots.insert(roots.end(), inputs_.begin(), inputs_.end());
+    used_.assign(met.size(), false);
+    for (const int node : graph_.tape().cone(roots, Links::through_alpha)) {
+      if (graph_.tape()[node].psi >= 0) used_[alpha_index(node)] = true;
+    }
+    for (const auto& function : met) {
+      if (function.named) roots.push_back(function.psi_node);
+    }
+    std::vector<bool> kept(met.size(), false);
+    for (const int node : graph_.tape().cone(roots, Links::through_alpha)) {
+      if (graph_.tape()[node].psi >= 0) kept[alpha_index(node)] = true;
+    }
+    new_index_.assign(met.size(), -1);
+    for (std::size_t i = 0; i < met.size(); ++i) {
+      if (!met[i].named && !kept[i]) continue;
+      new_index_[i] = static_cast<int>(kept_.size());
+      kept_.push_back(static_cast<int>(i));
+    }
+  }
+
+  [[nodiscard]] std::size_t alpha_index(int node) const {
+    const int variable = graph_.tape()[node].variable;
+    return static_cast<std::size_t>(graph_.tape().variables()[static_cast<std::size_t>(variable)].index);
+  }
+
+  [[nodiscard]] const MetFunction& met(int index) const {
+    return recognition_.functions()[static_cast<std::size_t>(index)];
+  }
+
+  void classify_functions() {
+    std::vector<int> targets = f_;
+    targets.insert(targets.end(), others_.begin(), others_.end());
+    for (const int index : kept_) {
+      surfaces_.push_back({met(index).psi_node, met(index).alpha_node});
+      targets.push_back(met(index).psi_node);
+    }
+    roles_ = classify(graph_.tape(), surfaces_, targets);
+  }
+
+  std::optional<Error> take_right_hand_side() {
+    // Only the alphas of listed surfaces can stay between 0 and 1 where their value matters.
+    std::set<int> sliding;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      if (roles_[i] == SwitchingRole::listed) sliding.insert(surfaces_[i].alpha);
+    }
+    std::vector<SXElem> as_written, reduced;
+    for (std::size_t i = 0; i < f_.size(); ++i) {
+      const auto& state = statement_.states[i];
+      as_written.push_back(*state.dynamics);
+      if (bends(f_[i], sliding)) system_.inclusion_differences.push_back(state.name);
+      if (statement_.inclusion == Inclusion::aizerman_pyatnitskii) {
+        reduced.push_back(*state.dynamics);
+        continue;
+      }
+      auto component = interpolate(graph_, f_[i], sliding, state.name);
+      if (!component) return located_error(component.error(), state.dynamics_location);
+      reduced.push_back(*component);
+    }
+    system_.f_as_written = column(as_written);
+    system_.f = column(reduced);
+    return std::nullopt;
+  }
+
+  bool bends(int node, const std::set<int>& sliding) {
+    bool found = false;
+    for (const int alpha : nonaffine_alphas(graph_.tape(), node)) {
+      if (!sliding.contains(alpha)) continue;
+      system_.multi_affine = false;
+      found = found || bends_on_surface(graph_.tape(), {graph_.tape()[alpha].psi, alpha}, node);
+    }
+    return found;
+  }
+
+  void take_switching() {
+    std::vector<SXElem> alphas;
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      const MetFunction& function = met(kept_[i]);
+      alphas.push_back(function.alpha);
+      SwitchingFunction switching{function.name, function.psi, roles_[i], function.named, {}};
+      for (const int node : graph_.tape().cone(std::span(&function.psi_node, 1), Links::written)) {
+        if (graph_.tape()[node].psi >= 0) switching.inner.push_back(new_index_[alpha_index(node)]);
+      }
+      system_.switching.push_back(std::move(switching));
+    }
+    system_.alpha = column(alphas);
+  }
+
+  void take_columns() {
+    for (const auto& stated : statement_.switching) {
+      const SharedFunction& function = stated.declared.function;
+      const int index = new_index_[static_cast<std::size_t>(function.function)];
+      system_.columns.push_back({stated.declared.name, index, function.orientation});
+    }
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      const auto& function = system_.switching[i];
+      if (function.named || function.role != SwitchingRole::listed) continue;
+      system_.columns.push_back({function.name, static_cast<int>(i), +1});
+    }
+  }
+
+  void add_switching_warnings() {
+    for (const auto& stated : statement_.switching) {
+      const auto& declared = stated.declared;
+      if (!declared.alias_of.empty()) {
+        const std::string multiple = declared.function.orientation > 0 ? "" : "a negative multiple of ";
+        system_.warnings.push_back(
+            located(stated.location, fmt::format("switching function '{}' is {}'{}' under another name", declared.name,
+                                                 multiple.empty() ? "a multiple of " : multiple, declared.alias_of)));
+      } else if (!stated.referenced && !used_[static_cast<std::size_t>(declared.function.function)]) {
+        system_.warnings.push_back(
+            located(stated.location, fmt::format("switching function '{}' is never used", declared.name)));
+      }
+    }
+    system_.warnings.insert(system_.warnings.end(), event_warnings_.begin(), event_warnings_.end());
+  }
+
+  Recognition& recognition_;
+  SxGraph& graph_;
+  const Statement& statement_;
+  System system_;
+  std::vector<int> f_, others_, inputs_;  ///< nodes: right-hand sides; outputs and events; inputs
+  std::vector<bool> used_;                ///< by met function: something but a named psi needs it
+  std::vector<int> kept_, new_index_;     ///< met functions that stay, and the new number of every one
+  std::vector<Surface> surfaces_;
+  std::vector<SwitchingRole> roles_;
+  std::vector<std::string> event_warnings_;
+};
+
+}  // namespace
+
+std::string located(const SourceLocation& location, const std::string& text) {
+  if (location.line == 0) return text;
+  const std::string file = location.file.empty() ? "" : location.file + ":";
+  return fmt::format("{}{}: {}", file, location.line, text);
+}
+
+std::optional<Error> check_values(const std::string& what, double initial, const Bounds& bounds,
+                                  const SourceLocation& location, std::vector<std::string>& warnings) {
+  if (!std::isfinite(initial)) {
+    return Error{ErrorCode::invalid_model,
+                 fmt::format("the initial value of {} is {}, not a finite number", what, initial),
+                 "check the expression and the parameters in it",
+                 location,
+                 {}};
+  }
+  if (!(bounds.lower <= bounds.upper)) {
+    return Error{
+        ErrorCode::invalid_model,
+        fmt::format("the bounds of {} exclude each other: lower = {}, upper = {}", what, bounds.lower, bounds.upper),
+        "lower must not exceed upper",
+        location,
+        {}};
+  }
+  if (initial < bounds.lower || initial > bounds.upper) {
+    warnings.push_back(located(location, fmt::format("the initial value {} of {} lies outside its bounds [{}, {}]",
+                                                     initial, what, bounds.lower, bounds.upper)));
+  }
+  return std::nullopt;
+}
+
+Expected<System> assemble(Recognition& recognition, const Statement& statement) {
+  return Assembly(recognition, statement).run();
+}
+
+}  // namespace saltus::model

@@ -1,0 +1,308 @@
+#include "saltus/model/build.hpp"
+
+#include <cmath>
+#include <exception>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "saltus/expression/parser.hpp"
+#include "saltus/model/model_scope_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+using expression::NodePtr;
+using MaybeError = std::optional<Error>;
+
+/// A description and its overrides on the way to a statement; one step per table.
+class Build {
+ public:
+  Build(const Description& description, const std::vector<Override>& overrides)
+      : description_(description), overrides_(overrides), scope_(description, recognition_, statement_) {}
+
+  [[nodiscard]] Expected<System> run() {
+    statement_.name = description_.name;
+    statement_.description = description_.description;
+    statement_.inclusion = description_.inclusion;
+    statement_.time = recognition_.graph.symbol("t", {.kind = VariableKind::time});
+    note_all_names();
+    using Step = MaybeError (Build::*)();
+    constexpr Step steps[] = {&Build::names,   &Build::overrides, &Build::parameters, &Build::controls,
+                              &Build::states,  &Build::bounds,    &Build::switching,  &Build::dynamics,
+                              &Build::outputs, &Build::events,    &Build::inputs,     &Build::definitions};
+    for (const Step step : steps) {
+      if (auto error = (this->*step)()) return tl::unexpected(*error);
+    }
+    warn_of_unused();
+    return assemble(recognition_, statement_);
+  }
+
+ private:
+  MaybeError names() { return scope_.declare_names(); }
+
+  MaybeError overrides() {
+    for (const auto& entry : overrides_) {
+      const Meaning* meaning = scope_.names().find(entry.name);
+      const bool settable =
+          meaning != nullptr && (meaning->kind == NameKind::parameter || meaning->kind == NameKind::state ||
+                                 meaning->kind == NameKind::control);
+      if (!settable) return not_settable(entry, meaning);
+      const auto value = scope_.value(*entry.value, Reach::constants, fmt::format("the value of '{}'", entry.name));
+      if (!value) return with_context(value.error(), fmt::format("in --set {}", entry.name));
+      if (!std::isfinite(*value)) {
+        return Error{ErrorCode::invalid_model,
+                     fmt::format("the value of '{}' is {}, not a finite number", entry.name, *value),
+                     "check the expression",
+                     entry.value->location,
+                     {fmt::format("in --set {}", entry.name)}};
+      }
+      set_values_[entry.name] = *value;
+    }
+    return std::nullopt;
+  }
+
+  Error not_settable(const Override& entry, const Meaning* meaning) const {
+    const auto known = scope_.names().of({NameKind::parameter, NameKind::state, NameKind::control});
+    const std::string found =
+        meaning == nullptr ? "which is not in the model" : fmt::format("which is {}", with_article(meaning->kind));
+    return {meaning == nullptr ? ErrorCode::unknown_name : ErrorCode::invalid_option,
+            fmt::format("expected the name of a parameter, a state or a control, found '{}', {}", entry.name, found),
+            suggest(entry.name, known),
+            entry.value ? entry.value->location : SourceLocation{},
+            {fmt::format("in --set {}", entry.name)}};
+  }
+
+  /// The overriding value of a name, else that of its expression; `absent` without one.
+  Expected<double> value_of(const std::string& name, const NodePtr& node, Reach reach, const std::string& what,
+                            double absent) {
+    if (const auto it = set_values_.find(name); it != set_values_.end()) return it->second;
+    if (!node) return absent;
+    return scope_.value(*node, reach, what);
+  }
+
+  MaybeError parameters() {
+    int index = 0;
+    for (const auto& entry : description_.parameters) {
+      const auto value = value_of(entry.name, entry.expression, Reach::earlier_parameters,
+                                  fmt::format("the parameter '{}'", entry.name), 0.0);
+      if (!value) return value.error();
+      if (!std::isfinite(*value)) {
+        return Error{ErrorCode::invalid_model,
+                     fmt::format("the parameter '{}' is {}, not a finite number", entry.name, *value),
+                     "check its expression and the parameters in it",
+                     entry.expression->location,
+                     {}};
+      }
+      const SXElem symbol =
+          recognition_.graph.symbol(entry.name, {.kind = VariableKind::parameter, .index = index++, .value = *value});
+      statement_.parameters.push_back({entry.name, symbol, *value});
+    }
+    return std::nullopt;
+  }
+
+  MaybeError controls() {
+    int index = 0;
+    for (const auto& entry : description_.controls) {
+      const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = VariableKind::control, .index = index++});
+      statement_.controls.push_back({.name = entry.name, .symbol = symbol, .location = entry.location});
+    }
+    return std::nullopt;
+  }
+
+  MaybeError states() {
+    int index = 0;
+    for (const auto& entry : description_.states) {
+      const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = VariableKind::state, .index = index++});
+      statement_.states.push_back({.name = entry.name, .symbol = symbol, .location = entry.location});
+    }
+    statement_.switching.resize(description_.switching.size());
+    return std::nullopt;
+  }
+
+  /// Initial values and bounds; they may use parameters, so all names must mean something first.
+  MaybeError bounds() {
+    for (std::size_t i = 0; i < description_.states.size(); ++i) {
+      auto& state = statement_.states[i];
+      if (auto error = range(description_.states[i], "state", state.initial, state.bounds)) return error;
+      recognition_.graph.set_value(state_variable(state.symbol), state.initial);
+    }
+    for (std::size_t i = 0; i < description_.controls.size(); ++i) {
+      auto& control = statement_.controls[i];
+      if (auto error = range(description_.controls[i], "control", control.initial, control.bounds)) return error;
+      recognition_.graph.set_value(state_variable(control.symbol), control.initial);
+    }
+    return std::nullopt;
+  }
+
+  int state_variable(const SXElem& symbol) {
+    return recognition_.graph.tape()[recognition_.graph.node(symbol)].variable;
+  }
+
+  template <class Entry>
+  MaybeError range(const Entry& entry, const std::string& kind, double& initial, Bounds& bounds) {
+    const std::string what = fmt::format("{} '{}'", kind, entry.name);
+    const auto value =
+        value_of(entry.name, entry.initial, Reach::everything, fmt::format("the initial value of {}", what), 0.0);
+    if (!value) return value.error();
+    initial = *value;
+    for (const auto& [node, bound, side] :
+         {std::tuple{&entry.lower, &bounds.lower, "lower"}, std::tuple{&entry.upper, &bounds.upper, "upper"}}) {
+      if (!*node) continue;
+      const auto limit = scope_.value(**node, Reach::everything, fmt::format("the {} bound of {}", side, what));
+      if (!limit) return limit.error();
+      *bound = *limit;
+    }
+    const SourceLocation& place = entry.initial ? entry.initial->location : entry.location;
+    return check_values(what, initial, bounds, place, statement_.warnings);
+  }
+
+  MaybeError switching() {
+    for (std::size_t i = 0; i < description_.switching.size(); ++i) {
+      const auto& entry = description_.switching[i];
+      statement_.switching[i].location = entry.location;
+      statement_.switching[i].referenced = scope_.is_used(entry.name);
+      if (auto error = scope_.resolve_switching(static_cast<int>(i))) {
+        return with_context(*error, fmt::format("in [switching] {}", entry.name));
+      }
+    }
+    return std::nullopt;
+  }
+
+  MaybeError dynamics() {
+    for (const auto& entry : description_.dynamics) {
+      const Meaning* meaning = scope_.names().find(entry.name);
+      if (meaning == nullptr || meaning->kind != NameKind::state) return no_such_state(entry, meaning);
+      auto& state = statement_.states[static_cast<std::size_t>(meaning->index)];
+      if (state.dynamics) {
+        return Error{ErrorCode::invalid_model,
+                     fmt::format("the state '{}' has two right-hand sides", entry.name),
+                     "keep one of them, or write their sum",
+                     entry.location,
+                     {}};
+      }
+      auto f = scope_.expression(*entry.expression);
+      if (!f) return with_context(f.error(), fmt::format("in [dynamics] {}", entry.name));
+      state.dynamics = *f;
+      state.dynamics_location = entry.expression->location;
+    }
+    return std::nullopt;
+  }
+
+  Error no_such_state(const NamedExpression& entry, const Meaning* meaning) const {
+    const std::string found = meaning == nullptr ? "" : fmt::format(", which is {}", with_article(meaning->kind));
+    return {ErrorCode::unknown_name,
+            fmt::format("expected the name of a state, found '{}'{}", entry.name, found),
+            suggest(entry.name, scope_.names().of({NameKind::state})),
+            entry.location,
+            {"in [dynamics]"}};
+  }
+
+  MaybeError outputs() {
+    for (const auto& entry : description_.outputs) {
+      auto output = scope_.expression(*entry.expression);
+      if (!output) return with_context(output.error(), fmt::format("in [outputs] {}", entry.name));
+      statement_.outputs.push_back({entry.name, *output});
+    }
+    return std::nullopt;
+  }
+
+  MaybeError events() {
+    for (const auto& entry : description_.events) {
+      EventStatement event{
+          .name = entry.name, .direction = entry.direction, .action = entry.action, .location = entry.when->location};
+      if (scope_.translation().is_condition(*entry.when)) {
+        auto condition = scope_.translation().condition(*entry.when);
+        if (!condition) return with_context(condition.error(), "in [[events]]");
+        event.condition = *condition;
+      } else {
+        auto value = scope_.expression(*entry.when);
+        if (!value) return with_context(value.error(), "in [[events]]");
+        event.expression = *value;
+      }
+      statement_.events.push_back(std::move(event));
+    }
+    return std::nullopt;
+  }
+
+  MaybeError inputs() {
+    for (const auto& entry : description_.inputs) {
+      const Meaning* meaning = scope_.names().find(entry.name);
+      if (meaning == nullptr || meaning->kind != NameKind::control) {
+        return Error{ErrorCode::unknown_name,
+                     fmt::format("expected the name of a control, found '{}'", entry.name),
+                     suggest(entry.name, scope_.names().of({NameKind::control})),
+                     entry.location,
+                     {"in inputs"}};
+      }
+      auto input = scope_.expression(*entry.expression);
+      if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
+      if (set_values_.contains(entry.name)) continue;  // a constant from --set replaces it
+      auto& control = statement_.controls[static_cast<std::size_t>(meaning->index)];
+      control.input = *input;
+      control.input_location = entry.expression->location;
+    }
+    return std::nullopt;
+  }
+
+  MaybeError definitions() {
+    for (std::size_t i = 0; i < description_.definitions.size(); ++i) {
+      if (auto error = scope_.resolve_definition(static_cast<int>(i))) {
+        return with_context(*error, fmt::format("in [definitions] {}", description_.definitions[i].name));
+      }
+    }
+    return std::nullopt;
+  }
+
+  void note_all_names() {
+    for (const auto* table : {&description_.parameters, &description_.definitions, &description_.switching,
+                              &description_.dynamics, &description_.outputs, &description_.inputs}) {
+      for (const auto& entry : *table) scope_.note_names(entry.expression);
+    }
+    for (const auto& state : description_.states) {
+      for (const auto* node : {&state.initial, &state.lower, &state.upper}) scope_.note_names(*node);
+    }
+    for (const auto& control : description_.controls) {
+      for (const auto* node : {&control.initial, &control.lower, &control.upper}) scope_.note_names(*node);
+    }
+    for (const auto& event : description_.events) scope_.note_names(event.when);
+  }
+
+  template <class Entries>
+  void warn_of_unused(const Entries& entries, const std::string& kind) {
+    for (const auto& entry : entries) {
+      if (scope_.is_used(entry.name)) continue;
+      statement_.warnings.push_back(located(entry.location, fmt::format("{} '{}' is never used", kind, entry.name)));
+    }
+  }
+
+  void warn_of_unused() {
+    warn_of_unused(description_.parameters, "parameter");
+    warn_of_unused(description_.controls, "control");
+    warn_of_unused(description_.definitions, "definition");
+  }
+
+  const Description& description_;
+  const std::vector<Override>& overrides_;
+  Recognition recognition_;
+  Statement statement_;
+  ModelScope scope_;
+  std::map<std::string, double> set_values_;
+};
+
+}  // namespace
+
+Expected<System> build(const Description& description, const std::vector<Override>& overrides) {
+  try {
+    return Build(description, overrides).run();
+  } catch (const std::exception& exception) {
+    // CasADi throws on what it cannot do; everything known is checked before, so say what it said.
+    return tl::unexpected(Error{ErrorCode::invalid_model,
+                                fmt::format("CasADi refused the model '{}': {}", description.name, exception.what()),
+                                "simplify the expression it names",
+                                {description.file, 0, 0},
+                                {}});
+  }
+}
+
+}  // namespace saltus::model

@@ -1,0 +1,220 @@
+#include "saltus/model/builder.hpp"
+
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/base/function_ref.hpp"
+#include "saltus/model/names_internal.hpp"
+#include "saltus/model/statement_internal.hpp"
+
+namespace saltus::model {
+
+using casadi::SX;
+
+struct Builder::Parts {
+  Recognition recognition;
+  Statement statement;
+  NameTable names;
+  std::optional<Error> error;
+
+  void fail(Error mistake) {
+    if (!error) error = std::move(mistake);
+  }
+
+  bool declare(const std::string& name, NameKind kind, std::size_t index) {
+    auto mistake = names.declare(name, {kind, static_cast<int>(index), {}});
+    if (mistake) fail(*mistake);
+    return !mistake;
+  }
+
+  SXElem entry(const SX& expression, const std::string& where) {
+    if (const auto e = scalar(expression)) return *e;
+    fail({ErrorCode::invalid_model,
+          fmt::format("{}: expected a scalar, found a {} x {} matrix", where, expression.size1(), expression.size2()),
+          "state the entries one by one",
+          {},
+          {}});
+    return SXElem(0.0);
+  }
+
+  /// The result of a recognition, or 0 and the mistake kept. Nothing is tried after the first one.
+  SX kept(FunctionRef<Expected<SXElem>()> recognise) {
+    if (error) return SX(0.0);
+    try {
+      auto result = recognise();
+      if (result) return SX(*result);
+      fail(result.error());
+    } catch (const std::exception& exception) {
+      fail({ErrorCode::invalid_model, fmt::format("CasADi refused an expression: {}", exception.what()), "", {}, {}});
+    }
+    return SX(0.0);
+  }
+
+  SX symbol(const std::string& name, const Variable& variable) { return SX(recognition.graph.symbol(name, variable)); }
+
+  template <class Entries>
+  typename Entries::value_type* find(Entries& entries, const std::string& name, NameKind kind) {
+    const Meaning* meaning = names.find(name);
+    if (meaning != nullptr && meaning->kind == kind) return &entries[static_cast<std::size_t>(meaning->index)];
+    fail({ErrorCode::unknown_name,
+          fmt::format("'{}' is not {} of this model", name, with_article(kind)),
+          suggest(name, names.of({kind})),
+          {},
+          {}});
+    return nullptr;
+  }
+};
+
+Builder::Builder(std::string name) : parts_(std::make_unique<Parts>()) {
+  parts_->statement.name = std::move(name);
+  parts_->statement.time = parts_->recognition.graph.symbol("t", {.kind = VariableKind::time});
+}
+
+Builder::~Builder() = default;
+Builder::Builder(Builder&&) noexcept = default;
+Builder& Builder::operator=(Builder&&) noexcept = default;
+
+void Builder::set_description(std::string text) { parts_->statement.description = std::move(text); }
+void Builder::set_inclusion(Inclusion inclusion) { parts_->statement.inclusion = inclusion; }
+
+SX Builder::time() const { return SX(parts_->statement.time); }
+
+SX Builder::parameter(const std::string& name, double value) {
+  auto& parameters = parts_->statement.parameters;
+  if (!parts_->declare(name, NameKind::parameter, parameters.size())) return SX(0.0);
+  if (!std::isfinite(value)) {
+    parts_->fail({ErrorCode::invalid_model,
+                  fmt::format("the parameter '{}' is {}, not a finite number", name, value),
+                  "check where its value comes from",
+                  {},
+                  {}});
+  }
+  const SX symbol = parts_->symbol(
+      name, {.kind = VariableKind::parameter, .index = static_cast<int>(parameters.size()), .value = value});
+  parameters.push_back({name, symbol.scalar(), value});
+  return symbol;
+}
+
+SX Builder::state(const std::string& name, const Values& values) {
+  auto& states = parts_->statement.states;
+  if (!parts_->declare(name, NameKind::state, states.size())) return SX(0.0);
+  const Bounds bounds{values.lower, values.upper};
+  if (auto error =
+          check_values(fmt::format("state '{}'", name), values.initial, bounds, {}, parts_->statement.warnings)) {
+    parts_->fail(*error);
+  }
+  const SX symbol = parts_->symbol(
+      name, {.kind = VariableKind::state, .index = static_cast<int>(states.size()), .value = values.initial});
+  states.push_back({.name = name, .symbol = symbol.scalar(), .initial = values.initial, .bounds = bounds});
+  return symbol;
+}
+
+SX Builder::control(const std::string& name, const Values& values) {
+  auto& controls = parts_->statement.controls;
+  if (!parts_->declare(name, NameKind::control, controls.size())) return SX(0.0);
+  const Bounds bounds{values.lower, values.upper};
+  if (auto error =
+          check_values(fmt::format("control '{}'", name), values.initial, bounds, {}, parts_->statement.warnings)) {
+    parts_->fail(*error);
+  }
+  const SX symbol = parts_->symbol(
+      name, {.kind = VariableKind::control, .index = static_cast<int>(controls.size()), .value = values.initial});
+  controls.push_back({.name = name, .symbol = symbol.scalar(), .initial = values.initial, .bounds = bounds});
+  return symbol;
+}
+
+SX Builder::switching(const std::string& name, const SX& psi) {
+  auto& switching = parts_->statement.switching;
+  const SXElem e = parts_->entry(psi, "switching function " + name);
+  if (!parts_->declare(name, NameKind::switching, switching.size())) return psi;
+  return parts_->kept([&]() -> Expected<SXElem> {
+    const auto declared = parts_->recognition.declare(name, e);
+    if (!declared) return tl::unexpected(declared.error());
+    switching.push_back({.declared = *declared});
+    return e;
+  });
+}
+
+SX Builder::step(const SX& e, const std::string& name) {
+  return parts_->kept([&] { return parts_->recognition.step(parts_->entry(e, "step"), name); });
+}
+
+SX Builder::sign(const SX& e, const std::string& name) {
+  return parts_->kept([&] { return parts_->recognition.sign(parts_->entry(e, "sign"), name); });
+}
+
+SX Builder::abs(const SX& e, const std::string& name) {
+  return parts_->kept([&] { return parts_->recognition.abs(parts_->entry(e, "abs"), name); });
+}
+
+SX Builder::max(const SX& a, const SX& b, const std::string& name) {
+  return parts_->kept([&] { return parts_->recognition.max(parts_->entry(a, "max"), parts_->entry(b, "max"), name); });
+}
+
+SX Builder::min(const SX& a, const SX& b, const std::string& name) {
+  return parts_->kept([&] { return parts_->recognition.min(parts_->entry(a, "min"), parts_->entry(b, "min"), name); });
+}
+
+SX Builder::if_(const Condition& condition, const SX& a, const SX& b) {
+  return parts_->kept(
+      [&] { return parts_->recognition.select(condition, parts_->entry(a, "if"), parts_->entry(b, "if")); });
+}
+
+void Builder::dynamics(const std::string& state, const SX& rate) {
+  const SXElem e = parts_->entry(rate, "dynamics of " + state);
+  auto* entry = parts_->find(parts_->statement.states, state, NameKind::state);
+  if (entry == nullptr) return;
+  if (entry->dynamics) {
+    parts_->fail({ErrorCode::invalid_model,
+                  fmt::format("the state '{}' has two right-hand sides", state),
+                  "keep one of them, or add their sum",
+                  {},
+                  {}});
+  }
+  entry->dynamics = e;
+}
+
+void Builder::output(const std::string& name, const SX& expression) {
+  auto& outputs = parts_->statement.outputs;
+  if (!parts_->declare(name, NameKind::output, outputs.size())) return;
+  outputs.push_back({name, parts_->entry(expression, "output " + name)});
+}
+
+void Builder::event(const SX& expression, const EventOptions& options) {
+  auto& events = parts_->statement.events;
+  const std::string name = options.name.value_or(fmt::format("event{}", events.size() + 1));
+  if (!parts_->declare(name, NameKind::event, events.size())) return;
+  events.push_back({.name = options.name,
+                    .expression = parts_->entry(expression, "event " + name),
+                    .direction = options.direction,
+                    .action = options.action});
+}
+
+void Builder::event(const Condition& condition, const EventOptions& options) {
+  auto& events = parts_->statement.events;
+  const std::string name = options.name.value_or(fmt::format("event{}", events.size() + 1));
+  if (!parts_->declare(name, NameKind::event, events.size())) return;
+  events.push_back(
+      {.name = options.name, .condition = condition, .direction = options.direction, .action = options.action});
+}
+
+void Builder::input(const std::string& control, const SX& expression) {
+  const SXElem e = parts_->entry(expression, "input of " + control);
+  if (auto* entry = parts_->find(parts_->statement.controls, control, NameKind::control)) entry->input = e;
+}
+
+Expected<System> Builder::build() {
+  if (parts_->error) return tl::unexpected(*parts_->error);
+  try {
+    return assemble(parts_->recognition, parts_->statement);
+  } catch (const std::exception& exception) {
+    return tl::unexpected(
+        Error{ErrorCode::invalid_model, fmt::format("CasADi refused the model: {}", exception.what()), "", {}, {}});
+  }
+}
+
+}  // namespace saltus::model

@@ -1,0 +1,90 @@
+// A system stated in C++, in CasADi expressions.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <casadi/core/sx.hpp>
+#include <casadi/core/sx_elem.hpp>
+
+#include "saltus/model/condition.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::model {
+
+/// Initial value and bounds (for optimisation) of a state or control, in model units.
+struct Values {
+  double initial = 0.0;
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// What is done at an event of the user, and which crossings count.
+struct EventOptions {
+  std::optional<std::string> name{};  ///< event1, event2, … by position if absent
+  Direction direction = Direction::both;
+  AtEvent action = AtEvent::record;
+};
+
+/// Builds a System step by step; the names, the rules and the errors are those of the model file.
+///
+///   Builder model("stick-slip");
+///   const SX mu = model.parameter("mu", 0.8), q = model.state("q", {0.04}), v = model.state("v", {-0.01});
+///   const SX slip = model.switching("slip", v - 0.2);
+///   model.dynamics("q", v);
+///   model.dynamics("v", -q - mu * model.sign(slip));
+///   Expected<System> system = model.build();
+///
+/// All expressions are scalar and made of the symbols this builder returned. Nonsmooth functions must be the builder's:
+/// CasADi's own (sign, fabs, fmin, if_else, comparisons) would hide their switches and are refused by build().
+/// Functions never throw: the first mistake is kept and returned by build(), and what follows it is ignored.
+class Builder {
+ public:
+  explicit Builder(std::string name);
+  ~Builder();
+  Builder(Builder&&) noexcept;
+  Builder& operator=(Builder&&) noexcept;
+
+  void set_description(std::string text);
+  void set_inclusion(Inclusion inclusion);
+
+  /// The time t.
+  [[nodiscard]] casadi::SX time() const;
+  /// @param value  finite; shared switching functions, folding and kinks are decided for it
+  casadi::SX parameter(const std::string& name, double value);
+  casadi::SX state(const std::string& name, const Values& values);
+  casadi::SX control(const std::string& name, const Values& values);
+  /// Declares the switching function psi under a name and returns psi itself.
+  casadi::SX switching(const std::string& name, const casadi::SX& psi);
+
+  /// step(e) = alpha, in [0, 1] on e = 0; `name` for the switching function, by default the text of e.
+  casadi::SX step(const casadi::SX& e, const std::string& name = "");
+  casadi::SX sign(const casadi::SX& e, const std::string& name = "");
+  casadi::SX abs(const casadi::SX& e, const std::string& name = "");
+  /// Switching function a - b.
+  casadi::SX max(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
+  casadi::SX min(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
+  /// a where the condition holds, else b; NaN of the branch not taken does not spread.
+  casadi::SX if_(const Condition& condition, const casadi::SX& a, const casadi::SX& b);
+
+  /// d state / dt; exactly once for every state.
+  void dynamics(const std::string& state, const casadi::SX& rate);
+  void output(const std::string& name, const casadi::SX& expression);
+  /// Zeros of an expression, or edges of a condition.
+  void event(const casadi::SX& expression, const EventOptions& options = {});
+  void event(const Condition& condition, const EventOptions& options = {});
+  /// The control during a simulation, an expression of time and parameters; its initial value otherwise.
+  void input(const std::string& control, const casadi::SX& expression);
+
+  /// @return the system, or the first mistake. May be called again after more has been stated.
+  [[nodiscard]] Expected<System> build();
+
+ private:
+  struct Parts;
+  // Keeps the recognition of nonsmooth terms out of the header.
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace saltus::model

@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/expression/parser.hpp"
+#include "saltus/model/model_scope_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+template <class Entries>
+void collect(const Entries& entries, NameKind kind, std::vector<std::pair<std::string, Meaning>>& found) {
+  int index = 0;
+  for (const auto& entry : entries) found.push_back({entry.name, {kind, index++, entry.location}});
+}
+
+}  // namespace
+
+ModelScope::ModelScope(const Description& description, Recognition& recognition, Statement& statement)
+    : description_(description), recognition_(recognition), statement_(statement), translation_(recognition, *this) {}
+
+std::optional<Error> ModelScope::declare_names() {
+  std::vector<std::pair<std::string, Meaning>> found;
+  collect(description_.parameters, NameKind::parameter, found);
+  collect(description_.states, NameKind::state, found);
+  collect(description_.controls, NameKind::control, found);
+  collect(description_.definitions, NameKind::definition, found);
+  collect(description_.switching, NameKind::switching, found);
+  collect(description_.outputs, NameKind::output, found);
+  int position = 0;
+  for (const auto& event : description_.events) {
+    const std::string name = event.name.value_or(fmt::format("event{}", position + 1));
+    found.push_back({name, {NameKind::event, position++, event.location}});
+  }
+  // The later one of two equal names is the wrong one.
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.second.location.line < b.second.location.line; });
+  for (const auto& [name, meaning] : found) {
+    if (auto error = names_.declare(name, meaning)) return error;
+  }
+  return std::nullopt;
+}
+
+Error ModelScope::unknown(const std::string& name, const SourceLocation& location) const {
+  std::vector<std::string> known;
+  if (reach_ == Reach::everything) {
+    known =
+        names_.of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::definition, NameKind::switching});
+    known.insert(known.end(), {"t", "pi"});
+  } else {
+    if (reach_ == Reach::earlier_parameters) {
+      for (const auto& parameter : statement_.parameters) known.push_back(parameter.name);
+    }
+    known.push_back("pi");
+  }
+  return {ErrorCode::unknown_name, fmt::format("unknown name '{}'", name), suggest(name, known), location, {}};
+}
+
+Error ModelScope::out_of_reach(const std::string& name, const Meaning& meaning, const SourceLocation& location) const {
+  if (reach_ == Reach::constants) {
+    return {ErrorCode::invalid_model,
+            fmt::format("expected constants, found '{}', which is {}", name, with_article(meaning.kind)),
+            "a value on the command line consists of numbers, pi and functions",
+            location,
+            {}};
+  }
+  if (meaning.kind == NameKind::parameter) {
+    return {ErrorCode::invalid_model,
+            fmt::format("the parameter '{}' is used before it is declared", name),
+            "a parameter's expression may use earlier parameters only; change their order",
+            location,
+            {}};
+  }
+  return {
+      ErrorCode::invalid_model,
+      fmt::format("a parameter is a constant and cannot depend on '{}', which is {}", name, with_article(meaning.kind)),
+      "use numbers and earlier parameters, or make it a definition",
+      location,
+      {}};
+}
+
+Expected<SXElem> ModelScope::number(const std::string& name, const SourceLocation& location) {
+  if (name == "t") {
+    if (reach_ == Reach::everything) return statement_.time;
+    return tl::unexpected(Error{ErrorCode::invalid_model,
+                                "a constant cannot depend on the time t",
+                                "use numbers, pi and functions of them",
+                                location,
+                                {}});
+  }
+  const Meaning* meaning = names_.find(name);
+  if (meaning == nullptr) return tl::unexpected(unknown(name, location));
+  const bool known_parameter =
+      meaning->kind == NameKind::parameter && meaning->index < static_cast<int>(statement_.parameters.size());
+  if (reach_ == Reach::constants || (reach_ == Reach::earlier_parameters && !known_parameter)) {
+    return tl::unexpected(out_of_reach(name, *meaning, location));
+  }
+  return meant(name, *meaning, location);
+}
+
+Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meaning, const SourceLocation& location) {
+  const auto index = static_cast<std::size_t>(meaning.index);
+  switch (meaning.kind) {
+    case NameKind::parameter:
+      return statement_.parameters[index].symbol;
+    case NameKind::state:
+      return statement_.states[index].symbol;
+    case NameKind::control:
+      return statement_.controls[index].symbol;
+    case NameKind::definition:
+      return definition(meaning.index, location);
+    case NameKind::switching: {
+      if (!switching_.contains(meaning.index)) {
+        if (auto error = enter(name, location)) return tl::unexpected(*error);
+        open_.pop_back();  // only the check for cycles: resolving enters it again
+        if (auto error = resolve_switching(meaning.index)) return tl::unexpected(*error);
+      }
+      return switching_.at(meaning.index);
+    }
+    case NameKind::output:
+    case NameKind::event:
+      break;
+  }
+  return tl::unexpected(
+      Error{ErrorCode::invalid_model,
+            fmt::format("'{}' is {} and cannot be used in an expression", name, with_article(meaning.kind)),
+            "make it a definition and use that in both places",
+            location,
+            {}});
+}
+
+std::optional<Error> ModelScope::enter(const std::string& name, const SourceLocation& location) {
+  const auto first = std::find(open_.begin(), open_.end(), name);
+  if (first == open_.end()) {
+    open_.push_back(name);
+    return std::nullopt;
+  }
+  std::string cycle;
+  for (auto it = first; it != open_.end(); ++it) cycle += *it + " -> ";
+  return Error{ErrorCode::invalid_model,
+               fmt::format("'{}' is defined by itself: {}{}", name, cycle, name),
+               "break the cycle; a quantity that feeds back on itself is a state",
+               location,
+               {}};
+}
+
+Expected<SXElem> ModelScope::definition(int index, const SourceLocation& location) {
+  if (const auto known = definitions_.find(index); known != definitions_.end()) return known->second;
+  const NamedExpression& entry = description_.definitions[static_cast<std::size_t>(index)];
+  if (auto error = enter(entry.name, location)) return tl::unexpected(*error);
+  auto result = translation_.number(*entry.expression);
+  open_.pop_back();
+  if (result) definitions_.emplace(index, *result);
+  return result;
+}
+
+Expected<Condition> ModelScope::condition(const std::string& name, const SourceLocation& location) {
+  const auto index = static_cast<std::size_t>(names_.find(name)->index);
+  if (reach_ != Reach::everything) return tl::unexpected(out_of_reach(name, *names_.find(name), location));
+  if (auto error = enter(name, location)) return tl::unexpected(*error);
+  auto result = translation_.condition(*description_.definitions[index].expression);
+  open_.pop_back();
+  return result;
+}
+
+bool ModelScope::is_condition(const std::string& name) const {
+  const Meaning* meaning = names_.find(name);
+  // Follows definitions that are mere names of others; a cycle of them is reported as one elsewhere.
+  for (std::size_t hops = 0; hops <= description_.definitions.size(); ++hops) {
+    if (meaning == nullptr || meaning->kind != NameKind::definition) return false;
+    const auto& node = *description_.definitions[static_cast<std::size_t>(meaning->index)].expression;
+    const auto* other = std::get_if<saltus::expression::Name>(&node.value);
+    if (other == nullptr) return translation_.is_condition(node);
+    meaning = names_.find(other->name);
+  }
+  return false;
+}
+
+Expected<SXElem> ModelScope::expression(const saltus::expression::Node& node, Reach reach) {
+  const Reach before = std::exchange(reach_, reach);
+  auto result = translation_.number(node);
+  reach_ = before;
+  if (!result) return result;
+  if (const auto added = recognition_.graph.add(*result); !added) return tl::unexpected(added.error());
+  return result;
+}
+
+Expected<double> ModelScope::value(const saltus::expression::Node& node, Reach reach, const std::string& what) {
+  const auto translated = expression(node, reach);
+  if (!translated) return tl::unexpected(translated.error());
+  if (const auto constant = recognition_.parameter_value(*translated)) return *constant;
+  return tl::unexpected(Error{ErrorCode::invalid_model,
+                              fmt::format("{} must be a constant, found '{}'", what, saltus::expression::to_text(node)),
+                              "use numbers and parameters",
+                              node.location,
+                              {}});
+}
+
+std::optional<Error> ModelScope::resolve_switching(int index) {
+  if (switching_.contains(index)) return std::nullopt;
+  const NamedExpression& entry = description_.switching[static_cast<std::size_t>(index)];
+  if (auto error = enter(entry.name, entry.location)) return error;
+  auto psi = expression(*entry.expression);
+  open_.pop_back();
+  if (!psi) return psi.error();
+  auto declared = recognition_.declare(entry.name, *psi);
+  if (!declared) {
+    declared.error().location = entry.expression->location;
+    return declared.error();
+  }
+  switching_.emplace(index, *psi);
+  statement_.switching[static_cast<std::size_t>(index)].declared = *declared;
+  return std::nullopt;
+}
+
+std::optional<Error> ModelScope::resolve_definition(int index) {
+  const NamedExpression& entry = description_.definitions[static_cast<std::size_t>(index)];
+  if (is_condition(entry.name)) {
+    const auto result = condition(entry.name, entry.location);
+    return result ? std::nullopt : std::optional(result.error());
+  }
+  const auto result = definition(index, entry.location);
+  return result ? std::nullopt : std::optional(result.error());
+}
+
+void ModelScope::note_names(const saltus::expression::NodePtr& node) {
+  if (!node) return;
+  for (auto& name : saltus::expression::names_in(*node)) used_.insert(std::move(name));
+}
+
+}  // namespace saltus::model

@@ -1,0 +1,71 @@
+// The names of a description and what they stand for; definitions and switching functions are worked out when first
+// used.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "saltus/model/names_internal.hpp"
+#include "saltus/model/statement_internal.hpp"
+#include "saltus/model/translation_internal.hpp"
+
+namespace saltus::model {
+
+/// What an expression may speak of.
+enum class Reach {
+  constants,           ///< numbers and pi (--set)
+  earlier_parameters,  ///< parameters declared so far, too
+  everything,
+};
+
+class ModelScope final : public Scope {
+ public:
+  ModelScope(const Description& description, Recognition& recognition, Statement& statement);
+
+  /// All names of the description, in the order of the file; the first clash is an error.
+  [[nodiscard]] std::optional<Error> declare_names();
+
+  [[nodiscard]] Expected<SXElem> number(const std::string& name, const SourceLocation& location) override;
+  [[nodiscard]] Expected<Condition> condition(const std::string& name, const SourceLocation& location) override;
+  [[nodiscard]] bool is_condition(const std::string& name) const override;
+
+  /// The whole expression of an entry.
+  [[nodiscard]] Expected<SXElem> expression(const saltus::expression::Node& node, Reach reach = Reach::everything);
+  /// The value of an expression of constants and parameters.
+  /// @param what  "the initial value of 'q'", for the error
+  [[nodiscard]] Expected<double> value(const saltus::expression::Node& node, Reach reach, const std::string& what);
+
+  /// Works out entry number `index` of [switching] unless that has happened, and declares it.
+  [[nodiscard]] std::optional<Error> resolve_switching(int index);
+  /// Works out a definition that nothing has used, for its errors.
+  [[nodiscard]] std::optional<Error> resolve_definition(int index);
+
+  /// Names that occur in some expression of the description, replaced ones (--set) included.
+  void note_names(const saltus::expression::NodePtr& node);
+  [[nodiscard]] bool is_used(const std::string& name) const { return used_.contains(name); }
+  [[nodiscard]] const NameTable& names() const { return names_; }
+  Translation& translation() { return translation_; }
+
+ private:
+  [[nodiscard]] Error unknown(const std::string& name, const SourceLocation& location) const;
+  [[nodiscard]] Error out_of_reach(const std::string& name, const Meaning& meaning,
+                                   const SourceLocation& location) const;
+  [[nodiscard]] Expected<SXElem> meant(const std::string& name, const Meaning& meaning, const SourceLocation& location);
+  [[nodiscard]] Expected<SXElem> definition(int index, const SourceLocation& location);
+  [[nodiscard]] std::optional<Error> enter(const std::string& name, const SourceLocation& location);
+
+  const Description& description_;
+  Recognition& recognition_;
+  Statement& statement_;
+  Translation translation_;
+  NameTable names_;
+  Reach reach_ = Reach::everything;
+  std::vector<std::string> open_;  ///< definitions and switching functions being worked out
+  std::map<int, SXElem> definitions_;
+  std::map<int, SXElem> switching_;
+  std::set<std::string> used_;
+};
+
+}  // namespace saltus::model

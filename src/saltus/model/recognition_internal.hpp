@@ -1,0 +1,83 @@
+// Nonsmooth terms -> switching functions and selections alpha.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saltus/model/condition.hpp"
+#include "saltus/model/sharing_internal.hpp"
+#include "saltus/model/sx_graph_internal.hpp"
+
+namespace saltus::model {
+
+/// A switching function in the order it was met; the alphas in psi belong to smaller numbers.
+struct MetFunction {
+  std::string name;
+  SXElem psi;
+  int psi_node = 0;
+  SXElem alpha;
+  int alpha_node = 0;
+  bool named = false;
+};
+
+/// A name of [switching]: a function, seen with this orientation.
+struct DeclaredFunction {
+  std::string name;
+  SharedFunction function;
+  std::string alias_of;  ///< empty unless the function had a declared name before
+};
+
+/// Largest number of smooth branches a chain of nested nonsmooth terms may unfold into.
+inline constexpr int branch_limit = 64;
+
+/// Collects the switching functions of one model. All results are expressions over the graph's symbols.
+/// Errors carry no location; whoever knows the text adds it.
+class Recognition {
+ public:
+  SxGraph graph;
+
+  [[nodiscard]] Expected<SXElem> step(const SXElem& e, const std::string& name);
+  [[nodiscard]] Expected<SXElem> sign(const SXElem& e, const std::string& name);
+  [[nodiscard]] Expected<SXElem> abs(const SXElem& e, const std::string& name);
+  /// `name` is the text of a - b.
+  [[nodiscard]] Expected<SXElem> max(const SXElem& a, const SXElem& b, const std::string& name);
+  [[nodiscard]] Expected<SXElem> min(const SXElem& a, const SXElem& b, const std::string& name);
+  [[nodiscard]] Expected<SXElem> select(const Condition& condition, const SXElem& a, const SXElem& b);
+
+  /// Declares a named switching function. Its scaling is kept, even if an unnamed multiple was met before.
+  [[nodiscard]] Expected<DeclaredFunction> declare(const std::string& name, const SXElem& psi);
+
+  [[nodiscard]] const std::vector<MetFunction>& functions() const { return functions_; }
+  /// The value of an expression of constants and parameters; nothing if it is none.
+  [[nodiscard]] std::optional<double> parameter_value(const SXElem& expression);
+
+ private:
+  /// What step(e) turns out to be.
+  struct Selection {
+    enum class Kind { constant, alpha, polynomial } kind = Kind::constant;
+    double constant = 0.0;          ///< the value of e, not of its step
+    SharedFunction function{};      ///< of kind alpha
+    std::vector<int> literals{};    ///< of kind polynomial: e depends on nothing but these functions' alphas …
+    std::vector<double> corners{};  ///< … and has these values at their corners
+  };
+  [[nodiscard]] Expected<Selection> selection(const SXElem& e, const std::string& name);
+  [[nodiscard]] Expected<Selection> corner_selection(int node, const std::vector<int>& literals);
+  [[nodiscard]] Expected<SXElem> choose(const SXElem& difference, const std::string& name, const SXElem& a,
+                                        const SXElem& b);
+  [[nodiscard]] SXElem value(const Selection& selection);
+  [[nodiscard]] Expected<Truth> truth(TruthDiagram& diagram, const Condition& condition);
+  [[nodiscard]] Expected<Truth> comparison_truth(TruthDiagram& diagram, const Comparison& comparison);
+  int append(const std::string& name, const SXElem& psi, int psi_node);
+  [[nodiscard]] std::vector<int> alphas_in(int node) const;
+
+  std::vector<MetFunction> functions_;
+  SharingIndex index_;
+};
+
+/// Number of smooth branches an expression unfolds into when the alphas in it and in their switching functions are
+/// decided one after the other, each that has become constant not counting; stops counting above the limit.
+[[nodiscard]] int count_branches(const Tape& tape, int node, int limit);
+
+[[nodiscard]] Error chain_too_long(const std::string& name);
+
+}  // namespace saltus::model

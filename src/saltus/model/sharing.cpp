@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saltus/model/sharing_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr std::uint64_t seed = 0x5a17'0001ULL;
+
+std::uint64_t splitmix(std::uint64_t state) {
+  state += 0x9e3779b97f4a7c15ULL;
+  state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  state = (state ^ (state >> 27)) * 0x94d049bb133111ebULL;
+  return state ^ (state >> 31);
+}
+
+}  // namespace
+
+double seeded_draw(std::uint64_t point, std::uint64_t variable) {
+  const std::uint64_t bits = splitmix(splitmix(seed + point) ^ (variable * 0xd1342543de82ef95ULL));
+  const double unit = static_cast<double>(bits >> 12) * 0x1p-52;  // [0, 1)
+  // Magnitudes below a tenth are left out: they would make a point look like a smaller one.
+  const double size = 0.1 + 0.9 * unit;
+  return (bits & 1U) != 0 ? -size : size;
+}
+
+void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& point) {
+  // Small points separate thresholds that large ones cannot tell apart, and the other way round.
+  constexpr std::array<double, 16> magnitudes{1.0,  1.0, 1e-2, 1e2,  1.0, 1e-5, 10.0, 1e-9,
+                                              1e-1, 1.0, 1e2,  1e-3, 1.0, 1e-7, 0.3,  30.0};
+  const double magnitude = magnitudes[static_cast<std::size_t>(k) % magnitudes.size()];
+  for (const int node : cone) {
+    if (tape[node].variable < 0) continue;
+    const auto i = static_cast<std::size_t>(tape[node].variable);
+    const VariableKind kind = tape.variables()[i].kind;
+    if (kind == VariableKind::parameter || kind == VariableKind::alpha) continue;
+    const double draw = magnitude * seeded_draw(static_cast<std::uint64_t>(k), i);
+    point[i] = k < 4 ? std::abs(draw) : draw;
+  }
+}
+
+std::optional<double> constant_value(const Tape& tape, int node) {
+  const auto cone = tape.cone(std::span(&node, 1), Links::written);
+  TapeValues values;
+  Point point = blank_point(tape);
+  if (tape[node].written == 0 || tape[node].written == kind_bit(VariableKind::parameter)) {
+    evaluate(tape, cone, point, values);
+    return values.value[static_cast<std::size_t>(node)];
+  }
+  // Two values differ if they differ by more than rounding; 24 points with the alphas at random corners.
+  std::optional<double> first;
+  int finite = 0;
+  for (int k = 0; k < 24; ++k) {
+    draw_pool_point(tape, cone, k, point);
+    for (const int leaf : cone) {
+      if (tape[leaf].psi < 0) continue;
+      const auto i = static_cast<std::size_t>(tape[leaf].variable);
+      point[i] = seeded_draw(static_cast<std::uint64_t>(k) + 1000, i) > 0.0 ? 1.0 : 0.0;
+    }
+    evaluate_with_bounds(tape, cone, point, {}, epsilon, values);
+    const double value = values.value[static_cast<std::size_t>(node)];
+    const double error = values.bound[static_cast<std::size_t>(node)];
+    if (!std::isfinite(value) || !std::isfinite(error)) continue;
+    const double cleaned = std::abs(value) <= error ? 0.0 : value;
+    if (!first) first = cleaned;
+    if (std::abs(cleaned - *first) > 2.0 * error + 4.0 * epsilon * std::abs(*first)) return std::nullopt;
+    ++finite;
+  }
+  return finite >= 8 ? first : std::nullopt;
+}
+
+SharingIndex::Samples SharingIndex::sample(const Tape& tape, int psi) {
+  Samples samples;
+  samples.psi = psi;
+  const auto cone = tape.cone(std::span(&psi, 1), Links::through_alpha);
+  TapeValues values;
+  Point point = blank_point(tape);
+  for (int k = 0; k < pool_size; ++k) {
+    draw_pool_point(tape, cone, k, point);
+    evaluate_with_bounds(tape, cone, point, {}, epsilon, values);
+    samples.value[static_cast<std::size_t>(k)] = values.value[static_cast<std::size_t>(psi)];
+    samples.error[static_cast<std::size_t>(k)] = values.bound[static_cast<std::size_t>(psi)];
+  }
+  return samples;
+}
+
+std::optional<double> SharingIndex::key(const Samples& samples) {
+  const double ratio = samples.value[1] / samples.value[0];
+  const bool accurate =
+      samples.error[0] < 1e-12 * std::abs(samples.value[0]) && samples.error[1] < 1e-12 * std::abs(samples.value[1]);
+  return std::isfinite(ratio) && ratio != 0.0 && accurate ? std::optional(ratio) : std::nullopt;
+}
+
+/// +1 or -1 if `asked` is a positive or negative multiple of `known`, else 0.
+int SharingIndex::same(const Samples& known, const Samples& asked) {
+  if (known.psi == asked.psi) return 1;
+  double factor = 0.0;
+  int compared = 0;
+  for (std::size_t k = 0; k < pool_size && compared < 16; ++k) {
+    const double a = known.value[k], b = asked.value[k];
+    if (!std::isfinite(a) || !std::isfinite(b)) continue;
+    const double noise_a = 8.0 * known.error[k], noise_b = 8.0 * asked.error[k];
+    const bool zero_a = std::abs(a) <= noise_a, zero_b = std::abs(b) <= noise_b;
+    if (zero_a != zero_b) return 0;
+    ++compared;
+    if (zero_a) continue;
+    if (factor == 0.0) factor = b / a;
+    if (std::abs(b - factor * a) > 1e-12 * std::abs(b) + noise_b + std::abs(factor) * noise_a) return 0;
+  }
+  if (compared < 16) return 0;
+  return factor > 0.0 ? 1 : (factor < 0.0 ? -1 : 0);
+}
+
+void SharingIndex::insert(const Tape& tape, int psi, int function) {
+  Samples samples = sample(tape, psi);
+  samples.function = function;
+  const auto position = static_cast<int>(known_.size());
+  if (const auto ratio = key(samples)) {
+    by_ratio_.emplace(*ratio, position);
+  } else {
+    irregular_.push_back(position);
+  }
+  known_.push_back(samples);
+}
+
+std::optional<SharedFunction> SharingIndex::find(const Tape& tape, int psi) const {
+  const Samples asked = sample(tape, psi);
+  std::vector<int> candidates = irregular_;
+  if (const auto ratio = key(asked)) {
+    const double margin = 1e-9 * std::abs(*ratio);
+    const auto end = by_ratio_.upper_bound(*ratio + margin);
+    for (auto it = by_ratio_.lower_bound(*ratio - margin); it != end; ++it) candidates.push_back(it->second);
+  } else {
+    for (const auto& [value, position] : by_ratio_) candidates.push_back(position);
+  }
+  std::sort(candidates.begin(), candidates.end());  // the first-met one wins
+  for (const int candidate : candidates) {
+    const Samples& known = known_[static_cast<std::size_t>(candidate)];
+    if (const int orientation = same(known, asked); orientation != 0)
+      return SharedFunction{known.function, orientation};
+  }
+  return std::nullopt;
+}
+
+}  // namespace saltus::model

@@ -1,0 +1,53 @@
+// Which switching functions are the same: equal up to a constant factor at seeded points.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "saltus/model/tape_internal.hpp"
+
+namespace saltus::model {
+
+/// A repeatable number in (-1, 1) for every (point, variable): splitmix64, so that no state is kept and results never
+/// depend on the order of declarations.
+[[nodiscard]] double seeded_draw(std::uint64_t point, std::uint64_t variable);
+
+/// Sets the variables of a cone to those of point number k of the pool: several magnitudes, the first four with
+/// positive coordinates (where logarithms and roots are defined). Parameters and alphas stay as they are.
+void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& point);
+
+/// The value of an expression that does not change with t, x, u, whatever its alphas (corners) are; with the
+/// parameters' values, to rounding. A value that is 0 to rounding is 0.
+[[nodiscard]] std::optional<double> constant_value(const Tape& tape, int node);
+
+struct SharedFunction {
+  int function = 0;
+  int orientation = +1;  ///< -1: the factor is negative
+};
+
+/// The switching functions met so far, found again by their values.
+/// Cost: logarithmic in their number for functions that are finite at the first two points, else linear.
+class SharingIndex {
+ public:
+  void insert(const Tape& tape, int psi, int function);
+  [[nodiscard]] std::optional<SharedFunction> find(const Tape& tape, int psi) const;
+
+ private:
+  static constexpr int pool_size = 64;  ///< 16 common finite points are found among them for all but contrived domains
+  struct Samples {
+    int psi = 0;
+    int function = 0;
+    std::array<double, pool_size> value{}, error{};
+  };
+  [[nodiscard]] static Samples sample(const Tape& tape, int psi);
+  [[nodiscard]] static std::optional<double> key(const Samples& samples);
+  [[nodiscard]] static int same(const Samples& known, const Samples& asked);
+
+  std::vector<Samples> known_;
+  std::multimap<double, int> by_ratio_;  ///< value at the second point over value at the first
+  std::vector<int> irregular_;           ///< those without such a ratio
+};
+
+}  // namespace saltus::model

@@ -1,0 +1,95 @@
+// Everything a model states, in CasADi expressions, before it is made a System.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "saltus/model/recognition_internal.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::model {
+
+/// Lower and upper bound; infinite if absent.
+struct Bounds {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+struct ParameterStatement {
+  std::string name;
+  SXElem symbol;
+  double value = 0.0;
+};
+
+struct StateStatement {
+  std::string name;
+  SXElem symbol;
+  double initial = 0.0;
+  Bounds bounds{};
+  std::optional<SXElem> dynamics{};
+  SourceLocation location{};  ///< of its declaration
+  SourceLocation dynamics_location{};
+};
+
+struct ControlStatement {
+  std::string name;
+  SXElem symbol;
+  double initial = 0.0;
+  Bounds bounds{};
+  std::optional<SXElem> input{};
+  SourceLocation location{};
+  SourceLocation input_location{};
+};
+
+struct OutputStatement {
+  std::string name;
+  SXElem expression;
+};
+
+/// Either an expression (its zeros) or a condition (its edges).
+struct EventStatement {
+  std::optional<std::string> name;
+  std::optional<SXElem> expression{};
+  std::optional<Condition> condition{};
+  Direction direction = Direction::both;
+  AtEvent action = AtEvent::record;
+  SourceLocation location{};
+};
+
+struct SwitchingStatement {
+  DeclaredFunction declared;
+  SourceLocation location{};
+  bool referenced = false;  ///< by its name
+};
+
+struct Statement {
+  std::string name;
+  std::string description;
+  Inclusion inclusion = Inclusion::filippov;
+  SXElem time;
+  std::vector<ParameterStatement> parameters;
+  std::vector<StateStatement> states;
+  std::vector<ControlStatement> controls;
+  std::vector<SwitchingStatement> switching;  ///< in the order of the file
+  std::vector<OutputStatement> outputs;
+  std::vector<EventStatement> events;
+  std::vector<std::string> warnings;
+};
+
+/// Classifies the switching functions, reduces the right-hand side, drops what nothing uses and numbers the rest.
+/// @return the system, or an error: no states, a state without dynamics, values that are not finite, a right-hand side
+///         whose interpolation has too many corners.
+[[nodiscard]] Expected<System> assemble(Recognition& recognition, const Statement& statement);
+
+/// Refuses an initial value that is not finite and bounds that exclude each other; warns where the value lies outside.
+/// @param what  "state 'q'"
+[[nodiscard]] std::optional<Error> check_values(const std::string& what, double initial, const Bounds& bounds,
+                                                const SourceLocation& location, std::vector<std::string>& warnings);
+
+/// "file:line: text", as far as the place is known.
+[[nodiscard]] std::string located(const SourceLocation& location, const std::string& text);
+
+}  // namespace saltus::model

@@ -1,0 +1,32 @@
+// What happens on the surfaces psi_j = 0, found out at seeded points on them: kinks, and where the two inclusions
+// differ.
+#pragma once
+
+#include <vector>
+
+#include "saltus/model/system.hpp"
+#include "saltus/model/tape_internal.hpp"
+
+namespace saltus::model {
+
+/// One switching function, by node numbers.
+struct Surface {
+  int psi = 0;
+  int alpha = 0;
+};
+
+/// Which surfaces are kinks, which depend on time only, and which make something jump.
+///
+/// Everything that can jump is in `targets`, the other psi among them. At up to 64 points on psi_j = 0, around the
+/// initial state and far from it, the targets that contain alpha_j are evaluated for alpha_j = 0 and 1, the other
+/// alphas being the signs there; a difference beyond 1e-9 relative to the size of the terms is a jump. A surface
+/// without jump is a kink; one on which no point is found counts as listed.
+/// @param surfaces  in the order of their alphas
+/// @return one role per surface
+[[nodiscard]] std::vector<SwitchingRole> classify(const Tape& tape, const std::vector<Surface>& surfaces,
+                                                  const std::vector<int>& targets);
+
+/// Whether the value of `target` on psi_j = 0 at alpha_j = 1/2 is other than the mean of those at 0 and 1.
+[[nodiscard]] bool bends_on_surface(const Tape& tape, const Surface& surface, int target);
+
+}  // namespace saltus::model

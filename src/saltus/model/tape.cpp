@@ -1,0 +1,217 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <casadi/core/sx_elem.hpp>
+
+// Needs names that only the header above brings.
+#include <casadi/core/calculus.hpp>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/model/tape_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+/// Operations that give finite results for finite arguments of moderate size.
+bool stays_finite(int operation) {
+  switch (operation) {
+    case casadi::OP_ADD:
+    case casadi::OP_SUB:
+    case casadi::OP_MUL:
+    case casadi::OP_NEG:
+    case casadi::OP_SQ:
+    case casadi::OP_TWICE:
+    case casadi::OP_SIN:
+    case casadi::OP_COS:
+    case casadi::OP_ATAN:
+    case casadi::OP_TANH:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::uint64_t operation_key(int operation, int left, int right) {
+  constexpr std::uint64_t a = 0x9e3779b97f4a7c15, b = 0xbf58476d1ce4e5b9, c = 0x94d049bb133111eb;
+  const std::uint64_t hash = (static_cast<std::uint64_t>(operation) * a) ^ (static_cast<std::uint64_t>(left + 2) * b) ^
+                             (static_cast<std::uint64_t>(right + 2) * c);
+  return hash ^ (hash >> 29U);
+}
+
+bool same_operation(const TapeNode& a, const TapeNode& b) {
+  return a.operation == b.operation && a.left == b.left && a.right == b.right && a.variable < 0 && b.variable < 0 &&
+         std::bit_cast<std::uint64_t>(a.constant) == std::bit_cast<std::uint64_t>(b.constant);
+}
+
+double operand(const TapeValues& values, int node) {
+  return node < 0 ? 0.0 : values.value[static_cast<std::size_t>(node)];
+}
+
+double leaf_value(const TapeNode& node, const Point& point, const TapeValues& values) {
+  if (node.variable < 0) return node.constant;
+  const double given = point[static_cast<std::size_t>(node.variable)];
+  return node.psi >= 0 && std::isnan(given) ? step_value(operand(values, node.psi)) : given;
+}
+
+bool is_leaf(const TapeNode& node) {
+  return node.operation == casadi::OP_CONST || node.operation == casadi::OP_PARAMETER;
+}
+
+/// |d| b, where a derivative that does not matter (b = 0) may be infinite or NaN.
+double share(double derivative, double bound) { return bound == 0.0 ? 0.0 : std::abs(derivative) * bound; }
+
+}  // namespace
+
+int Tape::append(TapeNode node) {
+  if (node.variable < 0) {
+    auto& candidates =
+        by_key_[operation_key(node.operation, node.left, node.right) ^ std::bit_cast<std::uint64_t>(node.constant)];
+    for (const int candidate : candidates) {
+      if (same_operation((*this)[candidate], node)) return candidate;
+    }
+    candidates.push_back(size());
+  }
+  nodes_.push_back(node);
+  return size() - 1;
+}
+
+int Tape::constant(double value) {
+  return append({.operation = casadi::OP_CONST, .constant = value, .may_be_nonfinite = !std::isfinite(value)});
+}
+
+int Tape::variable(const Variable& variable) {
+  SALTUS_ASSERT(variable.kind != VariableKind::alpha);
+  variables_.push_back(variable);
+  return append({.operation = casadi::OP_PARAMETER,
+                 .variable = static_cast<int>(variables_.size()) - 1,
+                 .written = kind_bit(variable.kind),
+                 .reached = kind_bit(variable.kind)});
+}
+
+int Tape::alpha(int index, int psi) {
+  variables_.push_back({VariableKind::alpha, index, std::numeric_limits<double>::quiet_NaN()});
+  return append({.operation = casadi::OP_PARAMETER,
+                 .variable = static_cast<int>(variables_.size()) - 1,
+                 .psi = psi,
+                 .written = kind_bit(VariableKind::alpha),
+                 .reached = kind_bit(VariableKind::alpha) | (*this)[psi].reached});
+}
+
+int Tape::operation(int operation, int left, int right) {
+  TapeNode node{.operation = operation, .left = left, .right = right};
+  node.may_be_nonfinite = !stays_finite(operation);
+  for (const int child : {left, right}) {
+    if (child < 0) continue;
+    node.written |= (*this)[child].written;
+    node.reached |= (*this)[child].reached;
+    node.may_be_nonfinite = node.may_be_nonfinite || (*this)[child].may_be_nonfinite;
+  }
+  return append(node);
+}
+
+std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
+  std::vector<int> nodes;
+  std::unordered_map<int, bool> seen;
+  std::vector<int> open(roots.begin(), roots.end());
+  while (!open.empty()) {
+    const int current = open.back();
+    open.pop_back();
+    if (current < 0 || !seen.emplace(current, true).second) continue;
+    nodes.push_back(current);
+    const TapeNode& node = (*this)[current];
+    open.push_back(node.left);
+    open.push_back(node.right);
+    if (links == Links::through_alpha) open.push_back(node.psi);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+Point blank_point(const Tape& tape) {
+  Point point;
+  point.reserve(tape.variables().size());
+  for (const auto& variable : tape.variables()) {
+    switch (variable.kind) {
+      case VariableKind::parameter:
+        point.push_back(variable.value);
+        break;
+      case VariableKind::alpha:
+        point.push_back(std::numeric_limits<double>::quiet_NaN());
+        break;
+      case VariableKind::time:
+      case VariableKind::state:
+      case VariableKind::control:
+        point.push_back(0.0);
+        break;
+    }
+  }
+  return point;
+}
+
+double step_value(double psi) {
+  if (std::isnan(psi)) return psi;
+  return psi > 0.0 ? 1.0 : (psi < 0.0 ? 0.0 : 0.5);
+}
+
+void evaluate(const Tape& tape, std::span<const int> cone, const Point& point, TapeValues& values) {
+  values.value.resize(static_cast<std::size_t>(tape.size()));
+  for (const int current : cone) {
+    const TapeNode& node = tape[current];
+    double& value = values.value[static_cast<std::size_t>(current)];
+    if (is_leaf(node)) {
+      value = leaf_value(node, point, values);
+    } else {
+      casadi::casadi_math<double>::fun(static_cast<unsigned char>(node.operation), operand(values, node.left),
+                                       operand(values, node.right), value);
+    }
+  }
+}
+
+void evaluate_with_bounds(const Tape& tape, std::span<const int> cone, const Point& point,
+                          std::span<const double> scale, double local, TapeValues& values) {
+  values.value.resize(static_cast<std::size_t>(tape.size()));
+  values.bound.resize(static_cast<std::size_t>(tape.size()));
+  for (const int current : cone) {
+    const TapeNode& node = tape[current];
+    double& value = values.value[static_cast<std::size_t>(current)];
+    double& bound = values.bound[static_cast<std::size_t>(current)];
+    if (is_leaf(node)) {
+      value = leaf_value(node, point, values);
+      const bool moves = node.variable >= 0 && !scale.empty() && node.psi < 0;
+      bound = node.psi < 0 ? local * std::abs(value) : 0.0;
+      if (moves) bound += scale[static_cast<std::size_t>(node.variable)];
+      continue;
+    }
+    double derivative[2] = {0.0, 0.0};
+    casadi::casadi_math<double>::derF(static_cast<unsigned char>(node.operation), operand(values, node.left),
+                                      operand(values, node.right), value, derivative);
+    bound = share(derivative[0], values.bound[static_cast<std::size_t>(node.left)]) + local * std::abs(value);
+    if (node.right >= 0) bound += share(derivative[1], values.bound[static_cast<std::size_t>(node.right)]);
+  }
+}
+
+std::vector<double> gradient(const Tape& tape, const TapeValues& values, int root) {
+  std::vector<double> result(tape.variables().size(), 0.0);
+  const auto cone = tape.cone(std::span(&root, 1), Links::written);
+  std::unordered_map<int, double> adjoint{{root, 1.0}};
+  for (auto it = cone.rbegin(); it != cone.rend(); ++it) {
+    const TapeNode& node = tape[*it];
+    const double seed = adjoint[*it];
+    if (is_leaf(node)) {
+      if (node.variable >= 0) result[static_cast<std::size_t>(node.variable)] = seed;
+      continue;
+    }
+    if (seed == 0.0) continue;  // 0 times an infinite slope of a branch not taken must stay 0
+    double derivative[2] = {0.0, 0.0};
+    casadi::casadi_math<double>::der(static_cast<unsigned char>(node.operation), operand(values, node.left),
+                                     operand(values, node.right), values.value[static_cast<std::size_t>(*it)],
+                                     derivative);
+    adjoint[node.left] += seed * derivative[0];
+    if (node.right >= 0) adjoint[node.right] += seed * derivative[1];
+  }
+  return result;
+}
+
+}  // namespace saltus::model

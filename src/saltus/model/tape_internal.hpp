@@ -1,0 +1,89 @@
+// The numeric side of the model's expressions: one numbered list of operations, shared by all of them. Sharing of
+// switching functions, constancy, kinks and chains are decided on it; it knows CasADi's operation codes and nothing
+// else of CasADi.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace saltus::model {
+
+enum class VariableKind { time, state, control, parameter, alpha };
+
+/// Set of variable kinds, one bit each.
+using KindSet = unsigned;
+[[nodiscard]] constexpr KindSet kind_bit(VariableKind kind) { return 1U << static_cast<unsigned>(kind); }
+
+struct Variable {
+  VariableKind kind = VariableKind::time;
+  int index = 0;       ///< among those of its kind
+  double value = 0.0;  ///< of a parameter; the initial one of a state or control
+};
+
+struct TapeNode {
+  int operation = 0;          ///< casadi::Operation; OP_CONST and OP_PARAMETER for the leaves
+  int left = -1, right = -1;  ///< smaller node numbers; right is -1 for one operand
+  int variable = -1;          ///< of a leaf
+  int psi = -1;               ///< of an alpha: the node of its switching function, a smaller number
+  double constant = 0.0;
+  KindSet written = 0;            ///< kinds of the variables in the expression
+  KindSet reached = 0;            ///< the same, with those in the switching functions of its alphas
+  bool may_be_nonfinite = false;  ///< can overflow or be NaN for moderate arguments
+};
+
+/// Whether the walk down an expression stops at an alpha or goes on into its switching function.
+enum class Links { written, through_alpha };
+
+/// Operations in topological order; equal ones (same operation, same operands) get the same number.
+class Tape {
+ public:
+  int constant(double value);
+  int variable(const Variable& variable);
+  int alpha(int index, int psi);
+  int operation(int operation, int left, int right);
+
+  [[nodiscard]] const TapeNode& operator[](int node) const { return nodes_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
+  [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
+  void set_value(int variable, double value) { variables_[static_cast<std::size_t>(variable)].value = value; }
+
+  /// All nodes the roots consist of, ascending (hence in order of evaluation). Negative roots are skipped.
+  [[nodiscard]] std::vector<int> cone(std::span<const int> roots, Links links) const;
+
+ private:
+  int append(TapeNode node);
+
+  std::vector<TapeNode> nodes_;
+  std::vector<Variable> variables_;
+  std::unordered_map<std::uint64_t, std::vector<int>> by_key_;
+};
+
+/// One value per variable of a tape. NaN for an alpha means: the step of its switching function at this point.
+using Point = std::vector<double>;
+
+/// Parameters at their values, alphas by the sign of their psi, everything else 0.
+[[nodiscard]] Point blank_point(const Tape& tape);
+
+/// Values by node number; meaningful for the nodes of the cone evaluated last.
+struct TapeValues {
+  std::vector<double> value;
+  std::vector<double> bound;  ///< first-order bound, see evaluate_with_bounds
+};
+
+void evaluate(const Tape& tape, std::span<const int> cone, const Point& point, TapeValues& values);
+
+/// Values, and bounds b = sum |d node / d operand| b_operand + local |value|, plus `scale` at a variable (empty: 0).
+/// No scale and local = machine epsilon bound the rounding error; a scale of the variables' size bounds what an error
+/// in the position does. The bound of an alpha is 0.
+void evaluate_with_bounds(const Tape& tape, std::span<const int> cone, const Point& point,
+                          std::span<const double> scale, double local, TapeValues& values);
+
+/// d root / d variable, one entry per variable, alphas held fixed; `values` must be those of a cone that contains root.
+[[nodiscard]] std::vector<double> gradient(const Tape& tape, const TapeValues& values, int root);
+
+/// step of the paper's Table 1 at a point: 1, 1/2, 0 (NaN stays NaN).
+[[nodiscard]] double step_value(double psi);
+
+}  // namespace saltus::model
