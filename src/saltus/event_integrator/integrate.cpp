@@ -54,6 +54,7 @@ class Run {
   Step accept(double t_new);
   Step handle(Located located);
   bool change_mode(const Located& located);
+  bool continuous_across(int nested);
   bool enter(const Transition& transition);
   bool fire_user_events(const ModeState& before);
   bool too_many_events();
@@ -302,6 +303,19 @@ bool Run::too_many_events() {
   return true;
 }
 
+/// Whether a function nested around the one sliding surface has the same value on both sides of it here.
+bool Run::continuous_across(int nested) {
+  std::vector<double> below(at(kernel_.event_functions()));
+  std::vector<double> above(below.size());
+  std::vector<double> magnitude(below.size());
+  std::vector<double> slope(below.size());
+  kernel_.functions(t_, x_.data(), state_.corner_alpha[0].data(), below.data());
+  kernel_.functions(t_, x_.data(), state_.corner_alpha[1].data(), above.data());
+  kernel_.scales(t_, x_.data(), state_.corner_alpha[1].data(), magnitude.data(), slope.data());
+  // Four digits above rounding: the point is on the surface to rounding, a jump is not of that size.
+  return std::abs(below[at(nested)] - above[at(nested)]) <= 1e5 * epsilon * magnitude[at(nested)];
+}
+
 bool Run::change_mode(const Located& located) {
   Occasion occasion;
   occasion.t = t_;
@@ -315,7 +329,15 @@ bool Run::change_mode(const Located& located) {
     any = true;
     if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
     if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
-    if (function.kind == FunctionKind::loss) occasion.lost.push_back(function.index);
+    const bool nested = function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
+    if (nested && !continuous_across(function.index)) {
+      fail(Termination::outside_class,
+           fmt::format("'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
+                       "it at t = {:.17g}: rewrite the nested term with named switching functions",
+                       surroundings_.system.switching[at(function.index)].name,
+                       surroundings_.system.switching[at(state_.sliding.front())].name, t_));
+      return false;
+    }
     occasion.at_zero.push_back(function.index);
   }
   if (!any) return true;

@@ -37,6 +37,8 @@ class Locator {
   }
   /// Steps that differ by less than this end at the same time.
   [[nodiscard]] double time_resolution() const { return 2.0 * epsilon * (std::abs(start_.t) + std::abs(trial_.h)); }
+  /// Newton steps before a slow correction (a multiple zero) is left to bisection.
+  static constexpr int newton_steps = 8;
 
   ode::Stepper& stepper_;
   ModeField& field_;
@@ -50,6 +52,13 @@ class Locator {
 };
 
 bool Locator::take(double h) {
+  if (h <= time_resolution()) {
+    // The event is where the step starts: time cannot resolve the difference.
+    trial_.h = 0.0;
+    trial_.x.assign(start_.x, start_.x + n_);
+    search_.evaluate(start_.t, start_.x, trial_.values);
+    return std::isfinite(trial_.values[hit_.function]);
+  }
   const auto f = [this](double t, const double* x, double* xdot) { field_(t, x, xdot); };
   trial_.h = h;
   if (stepper_.attempt(f, start_.t, start_.x, start_.slope, h, tolerances_) == ode::Attempt::undefined) return false;
@@ -77,7 +86,7 @@ bool Locator::correct(const Hit& hit) {
       continue;
     }
     const double value = trial_.values[hit.function];
-    if (value == 0.0 || std::abs(value) <= 0.125 * search_.noise(hit.function)) return true;
+    if (value == 0.0 || std::abs(value) <= 0.125 * search_.noise(hit.function) || trial_.h == 0.0) return true;
     (value * hit.sign > 0.0 ? before : beyond) = h;
     // The interpolant's slope is good to many digits; only where it fails (near a double zero) is a secant better.
     if (iteration > 0 && std::abs(value) > 0.1 * std::abs(previous_value) && h != previous_h && value != previous_value) {
@@ -91,6 +100,7 @@ bool Locator::correct(const Hit& hit) {
       if (std::abs(value / slope) <= time_resolution()) return true;
       next = 0.5 * (before + beyond);
     }
+    if (iteration >= newton_steps) next = 0.5 * (before + beyond);
     if (std::abs(next - h) <= time_resolution() || beyond - before <= time_resolution()) return true;
     h = next;
   }
@@ -112,6 +122,7 @@ std::vector<std::size_t> Locator::vanishing_with(std::size_t located) {
   std::vector<double> x(n_);
   std::vector<double> earlier(trial_.values.size());
   const double back = 1e-3 * trial_.h;
+  if (back == 0.0) return together;
   dense_.evaluate((trial_.h - back) / dense_.h, x.data());
   search_.evaluate(start_.t + trial_.h - back, x.data(), earlier);
   for (std::size_t i = 0; i < trial_.values.size(); ++i) {

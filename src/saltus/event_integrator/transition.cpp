@@ -187,7 +187,10 @@ bool Decider::set_corners() {
   for (std::size_t corner = 0; corner < 2; ++corner) {
     state.corner_alpha[corner] = fields_.corner_alpha(state.alpha, state.sliding, corner);
   }
-  if (state.sliding.size() == 1) return true;
+  const auto is_nested = [&](int j) { return !s_.kernel.inner(j).empty(); };
+  std::vector<int> nested(state.mode.size());
+  std::iota(nested.begin(), nested.end(), 0);
+  if (state.sliding.size() == 1 || std::none_of(nested.begin(), nested.end(), is_nested)) return true;
   // Several sliding surfaces: a function nested around one of them must have one sign in all regions.
   for (std::size_t corner = 1; corner < (std::size_t{1} << std::min<std::size_t>(state.sliding.size(), 10)); ++corner) {
     const auto alpha = fields_.corner_alpha(state.alpha, state.sliding, corner);

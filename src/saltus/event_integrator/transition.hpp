@@ -19,7 +19,6 @@ struct Occasion {
   std::vector<int> at_zero;        ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
   std::vector<int> exit_below;     ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
   std::vector<int> exit_above;     ///< … upper field (alpha = 1)
-  std::vector<int> lost;           ///< sliding surfaces whose selection ceased to exist (nonaffine)
   bool start = false;              ///< no mode before
   double time_scale = 1.0;         ///< a step of the integrator: derivatives that do not move psi over it vanish
 };

@@ -1,0 +1,143 @@
+#include "saltus/event_integrator/integrate.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "systems.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+using result::EventKind;
+using result::Termination;
+
+Integration run(const model::System& system, double until, double rtol = 1e-10,
+                ode::Method method = ode::Method::dop853) {
+  auto kernel = evaluation::ModelKernel::compile(system);
+  EXPECT_TRUE(kernel.has_value());
+  IntegrationOptions options;
+  options.method = method;
+  options.tolerances = {rtol, rtol / 100};
+  options.until = until;
+  return integrate(*kernel, system, options);
+}
+
+TEST(Integrate, CrossesAtTheExactTime) {
+  const auto result = run(testing::sign_system(2, -1, -1), 1.0);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, EventKind::crossing);
+  EXPECT_NEAR(result.events[0].t, 1.0 / 3.0, 1e-15);
+  EXPECT_NEAR(result.final.x[0], 2.0 / 3.0, 1e-15);
+}
+
+TEST(Integrate, EntersSlidingAndStaysExactlyAtZero) {
+  const auto result = run(testing::sign_system(0, -1, -1), 2.0);
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, EventKind::enter_sliding);
+  EXPECT_EQ(result.final.x[0], 0.0);
+  EXPECT_EQ(result.final.mode, (result::Mode{0}));
+  EXPECT_DOUBLE_EQ(result.final.alpha[0], 0.5);
+}
+
+TEST(Integrate, LeavesSlidingTangentially) {
+  auto system = testing::sign_system(0, -1, 0);
+  system.f = system.f + system.t;
+  system.f_as_written = system.f;
+  const auto result = run(system, 1.5);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_EQ(result.events[0].kind, EventKind::start);
+  EXPECT_EQ(result.events[1].kind, EventKind::leave_sliding);
+  EXPECT_NEAR(result.events[1].t, 1.0, 1e-15);
+  EXPECT_NEAR(result.final.x[0], 0.125, 1e-15);
+}
+
+TEST(Integrate, SpontaneousSwitchIsReportedAsNotUnique) {
+  const auto result = run(testing::sign_system(0, 1, 0), 1.0);
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, EventKind::start);
+  EXPECT_EQ(result.events[0].unique, std::optional<bool>(false));
+  EXPECT_EQ(result.events[0].alternatives.size(), 2U);
+  EXPECT_NEAR(result.final.x[0], 1.0, 1e-14);
+}
+
+TEST(Integrate, StickSlipMatchesTheReference) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+    const auto result = run(testing::stick_slip(), 40, 1e-12, method);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    ASSERT_GE(result.events.size(), 4U);
+    EXPECT_NEAR(result.events[0].t, 0.2446888017833, 1e-11);
+    EXPECT_NEAR(result.events[1].t, 4.9321999843006, 1e-11);
+    EXPECT_NEAR(result.events[1].x[0], 1.0, 1e-11);
+    EXPECT_NEAR(result.events[3].t, 14.1629704423835, 1e-10);
+    EXPECT_NEAR(result.final.x[0], 0.62894363667354, 1e-10);
+    EXPECT_EQ(result.final.x[1], 0.2);
+  }
+}
+
+TEST(Integrate, ScalingPsiByPowersOfTwoChangesNoBit) {
+  const auto one = run(testing::stick_slip(), 20);
+  for (const double scale : {std::ldexp(1.0, 26), std::ldexp(1.0, -26)}) {
+    const auto scaled = run(testing::stick_slip(scale), 20);
+    ASSERT_EQ(one.events.size(), scaled.events.size());
+    for (std::size_t i = 0; i < one.events.size(); ++i) EXPECT_EQ(one.events[i].t, scaled.events[i].t);
+    EXPECT_EQ(one.final.x, scaled.final.x);
+    EXPECT_EQ(one.final.alpha, scaled.final.alpha);
+  }
+}
+
+TEST(Integrate, RelayHas34EventsAtEveryTolerance) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+    for (int k = 0; k <= 40; ++k) {
+      const double rtol = std::pow(10.0, -3.0 - 9.0 * k / 40.0);
+      const auto result = run(testing::relay(), 10, rtol, method);
+      EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message << " rtol " << rtol;
+      // The start lies on the surface: its start event comes on top of the 34 switches.
+      EXPECT_EQ(result.events.size(), 35U) << "rtol " << rtol << " method " << static_cast<int>(method);
+    }
+  }
+}
+
+TEST(Integrate, ThreeFrictionLawsStickOneAfterTheOther) {
+  const auto result = run(testing::friction_blocks(), 12, 1e-12);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 8U);
+  const double times[] = {0.204751747825, 0.248703849480, 1.788631301583, 1.902911374264,
+                          2.144794496510, 3.491633368473, 3.641696748668, 3.927104415444};
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(result.events[i].t, times[i], 2e-12);
+  EXPECT_EQ(result.final.mode, (result::Mode{0, 0, 0}));
+  for (int i = 3; i < 6; ++i) EXPECT_EQ(result.final.x[static_cast<std::size_t>(i)], 0.0);
+  EXPECT_NEAR(result.final.x[0], 0.1130808353911, 1e-12);
+}
+
+TEST(Integrate, FieldUndefinedBeyondItsOwnSurfaceIsApproachedFromItsSide) {
+  // x' = -sqrt(x) above, +1 below: reaches 0 at t = 2 from x = 1 and slides.
+  auto system = testing::blank(1, 1);
+  testing::add_surface(system, "x", system.x(0));
+  const SX upper = casadi::SX::if_else(system.alpha(0) != 0, -sqrt(system.x(0)), 0) * system.alpha(0);
+  testing::set_field(system, {upper + (1 - system.alpha(0))}, {1.0});
+  const auto result = run(system, 3.0);
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_GE(result.events.size(), 1U);
+  EXPECT_NEAR(result.events[0].t, 2.0, 1e-7);
+}
+
+TEST(Integrate, SpiralStopsWithAStatusAndEverythingComputed) {
+  auto system = testing::blank(2, 2);
+  testing::add_surface(system, "x1", system.x(0));
+  testing::add_surface(system, "x2", system.x(1));
+  const SX s1 = 2 * system.alpha(0) - 1;
+  const SX s2 = 2 * system.alpha(1) - 1;
+  testing::set_field(system, {-s1 + 2 * s2, -2 * s1 - s2}, {0.3, 1});
+  const auto result = run(system, 1.0);
+  EXPECT_EQ(result.status.termination, Termination::outside_class);
+  EXPECT_FALSE(result.status.message.empty());
+  EXPECT_GT(result.events.size(), 8U);
+  EXPECT_LT(result.status.time_reached, 0.7);
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
