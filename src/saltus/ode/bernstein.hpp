@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -13,33 +14,59 @@ inline constexpr int event_degree = 8;
 inline constexpr int event_nodes = event_degree + 1;
 using BernsteinCoefficients = std::array<double, event_nodes>;
 
-/// Interpolation nodes in [0, 1], ascending, both ends among them (Chebyshev-Lobatto), and the nodes between them at which
-/// an interpolant is checked.
+/// Interpolation nodes in [0, 1], ascending, both ends among them (Chebyshev-Lobatto), and the nodes between them at
+/// which an interpolant is checked.
 [[nodiscard]] const std::array<double, event_nodes>& interpolation_nodes();
 [[nodiscard]] const std::array<double, event_degree>& check_nodes();
 
-/// Bernstein coefficients of the interpolant with the given values at interpolation_nodes(). The end coefficients are the
-/// end values bit for bit; scaling the values by a power of two scales the coefficients exactly.
+/// Bernstein coefficients of the interpolant with the given values at interpolation_nodes(). The end coefficients are
+/// the end values bit for bit; scaling the values by a power of two scales the coefficients exactly.
+///
+/// Accuracy: the result is the exact interpolant of values changed by a few roundings of the largest coefficient;
+/// single coefficients amplify errors of the values by up to 184, values of the polynomial by less than 3.
 [[nodiscard]] BernsteinCoefficients to_bernstein(std::span<const double, event_nodes> values);
 
 /// Value at theta (de Casteljau).
 [[nodiscard]] double evaluate(const BernsteinCoefficients& coefficients, double theta);
 
-/// A bracket [lower, upper] of one sign change: the value's sign is that at 0+ just below `lower`, the other above `upper`.
+/// A bracket [lower, upper] of one sign change: the value's sign is that at 0+ just below `lower`, the other above
+/// `upper`.
 struct SignChange {
   double lower = 0.0;
   double upper = 0.0;
 };
 
+/// True only if first_sign_change finds nothing with the same arguments: no coefficient is beyond the noise on the
+/// other side. The cheap way out for almost every event function in almost every step; false for NaN.
+[[nodiscard]] inline bool certainly_no_sign_change(const BernsteinCoefficients& coefficients, int sign, int zero_order,
+                                                   double noise) {
+  const double side = sign > 0 ? 1.0 : -1.0;
+  int beyond = 0;  // not a bool with early exit: nine comparisons without a branch
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const int counts = static_cast<int>(i) >= zero_order ? 1 : 0;
+    beyond |= side * coefficients[i] >= -noise ? 0 : counts;
+  }
+  return beyond == 0;
+}
+
 /// The first sign change in (0, 1] of a polynomial whose sign just behind 0 is `sign` (+1 or -1).
 ///
-/// @param coefficients  Bernstein coefficients on [0, 1]
-/// @param zero_order    0: the value at 0 is away from zero; 1, 2: the polynomial has a zero of this order at 0, which is
-///                      removed exactly (the corresponding leading coefficients are taken as 0) and not found again
-/// @param noise         absolute rounding level of the values; anything within it counts as having the expected sign
-/// @return the bracket (width <= 2^-40, or the resolution that the noise permits), nullopt if there is none. A touch
-///         without a sign change beyond the noise is none.
-/// Method: variation diminishing property; subdivision where the coefficients change sign more than once.
+/// A sign change is a zero behind which the value is beyond the noise on the other side before it is beyond it on the
+/// first side again. So a touch is none, nor is a value at 1 within the noise: the next step, which starts there with
+/// the same expected sign, finds that one.
+///
+/// @param coefficients  Bernstein coefficients on [0, 1], finite
+/// @param zero_order    0: the value at 0 has the expected sign or is within the noise; 1, 2: the polynomial has a zero
+///                      of this order at 0, which is removed exactly (the corresponding leading coefficients are taken
+///                      as 0) and not found again
+/// @param noise         absolute rounding level of the values, >= 0; anything within it counts as having the expected
+///                      sign (a dip that exceeds it by less than a sixteenth may count as within it)
+/// @return the bracket (width <= 2^-40, or the resolution that the noise permits), nullopt if there is none. It begins
+/// at
+///         0 where the value there is on the other side already (within the noise, or beyond it: {0, 0}). Scaling
+///         coefficients and noise by a power of two changes no bit.
+/// Cost: no allocation; a few microseconds where there is a sign change.
+/// Method: variation diminishing property; bisection where the coefficients change sign more than once.
 [[nodiscard]] std::optional<SignChange> first_sign_change(const BernsteinCoefficients& coefficients, int sign,
                                                           int zero_order, double noise);
 

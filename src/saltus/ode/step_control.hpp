@@ -9,20 +9,29 @@ namespace saltus::ode {
 class StepControl {
  public:
   explicit StepControl(Method method);
-  /// Factor h_new / h after an accepted step with this error norm (<= 1).
+  /// Factor h_new / h after an accepted step with this error norm (<= 1). At most 1 right after a rejection.
   [[nodiscard]] double accepted(double error_norm);
-  /// Factor (< 1) after a rejected step (error norm > 1).
+  /// Factor (< 1) after a rejected step (error norm > 1, infinity included).
   [[nodiscard]] double rejected(double error_norm);
   void reset();
 
  private:
   Method method_;
-  double previous_error_ = 1e-4;
+  double previous_error_;
   bool last_rejected_ = false;
 };
 
-/// First step size (Hairer, Norsett & Wanner, II.4), signed like `direction`, at most |span|. One evaluation of f.
-/// Independent of the scaling of t up to rounding; 0 slopes give a fraction of the span.
+/// First step size, signed like `span` and at most as long (Hairer, Norsett & Wanner, II.4, algorithm 4.14), from the
+/// sizes of x, of its slope and of the change of the slope along an explicit Euler step.
+///
+/// Here the unit of time, which is 1 in that algorithm, is the time in which x would change by its own size (|span|
+/// where x is negligible): scaling t and span, or x and atol, scales the result (exactly for powers of two).
+///
+/// @param x      state, n doubles
+/// @param slope  f(t, x), n doubles; slopes that are 0 and stay 0 give a small fraction of the span
+/// @param span   signed length of the interval of integration, not 0
+/// Cost: one evaluation of f; where f is undefined behind the Euler step, it is shortened and evaluated again.
+/// Allocates: meant for starts and restarts.
 [[nodiscard]] double initial_step(Method method, RightHandSide f, double t, const double* x, const double* slope, int n,
                                   double span, const Tolerances& tolerances);
 

@@ -1,6 +1,7 @@
 // One explicit Runge-Kutta step with error estimate and dense output. Knows no modes and no events.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "saltus/base/function_ref.hpp"
@@ -13,30 +14,33 @@ enum class Method { dopri5, dop853 };
 [[nodiscard]] int order(Method method);
 [[nodiscard]] int dense_degree(Method method);
 
-/// xdot = f(t, x); x and xdot are n doubles. A value that is not finite marks a point where f is undefined.
+/// xdot = f(t, x); x and xdot are n doubles, which do not overlap. A value that is not finite marks a point where f is
+/// undefined.
 using RightHandSide = FunctionRef<void(double t, const double* x, double* xdot)>;
 
-/// Error weights: atol + rtol |x_i|. Components of `weight_mask` (empty = all) that are 0 take no part.
+/// Error weights: atol + rtol |x_i|, both >= 0 and not both 0.
 struct Tolerances {
   double rtol = 1e-8;
   double atol = 1e-10;
 };
 
-/// Continuous extension of one accepted step, x(t + theta h), theta in [0, 1]; exact at theta = 0 and 1 (bit for bit), and
-/// a component whose slopes are all 0 is exactly constant.
+/// Continuous extension of one accepted step, x(t + theta h), theta in [0, 1]; exact at theta = 0 and 1 (bit for bit),
+/// and a component whose slopes are all 0 is exactly constant.
+///
+/// A value: later steps of the Stepper leave it as it is. Filled again by Stepper::dense it reuses its storage.
 class DenseStep {
  public:
   double t = 0.0;
   double h = 0.0;
-  void evaluate(double theta, double* x) const;         ///< n doubles
-  void derivative(double theta, double* xdot) const;    ///< dx/dt of the polynomial, n doubles
-  [[nodiscard]] int size() const;
+  void evaluate(double theta, double* x) const;       ///< n doubles
+  void derivative(double theta, double* xdot) const;  ///< dx/dt of the polynomial, n doubles
+  [[nodiscard]] int size() const { return n_; }
 
  private:
   friend class Stepper;
   Method method_ = Method::dopri5;
   int n_ = 0;
-  std::vector<double> coefficients_;  ///< of the nested form of Hairer, Norsett & Wanner, II.6
+  std::vector<double> coefficients_;  ///< of the nested form of Hairer, Norsett & Wanner, II.6, one after the other
   std::vector<double> end_;           ///< x(t + h)
 };
 
@@ -45,28 +49,43 @@ enum class Attempt {
   undefined,  ///< some stage, or the result, is not finite: shorten the step
 };
 
-/// Workspace of one method for n states; allocates in the constructor only.
+/// Workspace of one method for n states; allocates in the constructor only (and for a DenseStep filled the first time).
 class Stepper {
  public:
+  /// @param n  number of states, >= 0
   Stepper(Method method, int n);
 
   /// Tries a step of length h != 0 from (t, x) with slope = f(t, x).
-  Attempt attempt(RightHandSide f, double t, const double* x, const double* slope, double h, const Tolerances& tolerances);
+  ///
+  /// x and slope are copied first: they may be x_new() and slope_new() of the attempt before.
+  /// @return `undefined` at the first stage that is not finite, without evaluating the others.
+  Attempt attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
+                  const Tolerances& tolerances);
 
-  /// Root mean square of the local error estimate over atol + rtol max(|x|, |x_new|); <= 1 is acceptable.
-  [[nodiscard]] double error_norm() const;
-  [[nodiscard]] const double* x_new() const;
-  [[nodiscard]] const double* slope_new() const;  ///< f(t + h, x_new): dopri5's last stage, computed by dop853 too
+  /// Root mean square of the local error estimate over atol + rtol max(|x|, |x_new|); <= 1 is acceptable, infinite if
+  /// it overflows, never NaN. Valid after a finite attempt.
+  [[nodiscard]] double error_norm() const { return error_norm_; }
+  [[nodiscard]] const double* x_new() const { return x_new_.data(); }
+  /// f(t + h, x_new), n doubles: dopri5's last stage, computed by dop853 too.
+  [[nodiscard]] const double* slope_new() const;
 
-  /// Dense output of the last attempt (dop853: three more evaluations of f; `undefined` if one is not finite).
+  /// Dense output of the last attempt, which was finite (dop853: three more evaluations of f; `undefined` if one is not
+  /// finite, and `output` is then not to be used).
   Attempt dense(RightHandSide f, DenseStep& output);
 
-  [[nodiscard]] long evaluations() const;  ///< of f, since construction
+  [[nodiscard]] long evaluations() const { return evaluations_; }  ///< of f, since construction
 
  private:
   Method method_;
   int n_;
-  // stages, error, result …
+  double t_ = 0.0;
+  double h_ = 0.0;
+  double error_norm_ = 0.0;
+  long evaluations_ = 0;
+  std::vector<double> start_;  ///< x
+  std::vector<double> x_new_;
+  std::vector<double> argument_;  ///< of the stage being evaluated
+  std::vector<double> stages_;    ///< k_1, k_2, ..., n doubles each
 };
 
 }  // namespace saltus::ode

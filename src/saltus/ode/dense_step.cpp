@@ -1,0 +1,103 @@
+// The dense output in its nested form, with s = theta and r = 1 - theta:
+//   x(t + theta h) = c0 + s (c1 + r (c2 + s (c3 + r (c4 + ...)))).
+#include <algorithm>
+#include <cstddef>
+
+#include "saltus/ode/stepper.hpp"
+
+namespace saltus::ode {
+namespace {
+
+/// Value and derivative with respect to theta.
+struct Jet {
+  double value;
+  double slope;
+};
+
+/// c_first + factor (c_first+1 + ...), factors s and r in turn: s behind even coefficients, r behind odd ones.
+template <std::size_t first, std::size_t last>
+inline double nested(const double* coefficients, std::size_t n, std::size_t i, double s, double r) {
+  const double own = coefficients[first * n + i];
+  if constexpr (first == last) {
+    return own;
+  } else {
+    return own + (first % 2 == 0 ? s : r) * nested<first + 1, last>(coefficients, n, i, s, r);
+  }
+}
+
+template <std::size_t first, std::size_t last>
+inline Jet nested_jet(const double* coefficients, std::size_t n, std::size_t i, double s, double r) {
+  const double own = coefficients[first * n + i];
+  if constexpr (first == last) {
+    return {own, 0.0};
+  } else {
+    const Jet inner = nested_jet<first + 1, last>(coefficients, n, i, s, r);
+    if constexpr (first % 2 == 0) {
+      return {own + s * inner.value, inner.value + s * inner.slope};
+    } else {
+      return {own + r * inner.value, r * inner.slope - inner.value};
+    }
+  }
+}
+
+template <std::size_t degree>
+void evaluate_from_start(const double* coefficients, std::size_t n, double theta, double* __restrict x) {
+  for (std::size_t i = 0; i < n; ++i) x[i] = nested<0, degree>(coefficients, n, i, theta, 1.0 - theta);
+}
+
+/// The same polynomial written from its other end, x(t + h) - r (c1 - s (c2 + ...)): rounding vanishes towards that
+/// end.
+template <std::size_t degree>
+void evaluate_from_end(const double* coefficients, const double* end, std::size_t n, double theta,
+                       double* __restrict x) {
+  const double s = theta;
+  const double r = 1.0 - theta;
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = end[i] - r * (coefficients[n + i] - s * nested<2, degree>(coefficients, n, i, s, r));
+  }
+}
+
+template <std::size_t degree>
+void evaluate_slope(const double* coefficients, std::size_t n, double theta, double h, double* __restrict xdot) {
+  for (std::size_t i = 0; i < n; ++i) {
+    xdot[i] = nested_jet<0, degree>(coefficients, n, i, theta, 1.0 - theta).slope / h;
+  }
+}
+
+template <std::size_t degree>
+void evaluate_nearer(const double* coefficients, const double* end, std::size_t n, double theta, double* x) {
+  if (theta <= 0.5) {
+    evaluate_from_start<degree>(coefficients, n, theta, x);
+  } else {
+    evaluate_from_end<degree>(coefficients, end, n, theta, x);
+  }
+}
+
+}  // namespace
+
+void DenseStep::evaluate(double theta, double* x) const {
+  const auto n = static_cast<std::size_t>(n_);
+  const double* coefficients = coefficients_.data();
+  if (theta == 0.0 || theta == 1.0) {  // bit for bit, the sign of a zero included
+    std::copy_n(theta == 0.0 ? coefficients : end_.data(), n, x);
+    return;
+  }
+  switch (method_) {
+    case Method::dopri5:
+      return evaluate_nearer<4>(coefficients, end_.data(), n, theta, x);
+    case Method::dop853:
+      return evaluate_nearer<7>(coefficients, end_.data(), n, theta, x);
+  }
+}
+
+void DenseStep::derivative(double theta, double* xdot) const {
+  const auto n = static_cast<std::size_t>(n_);
+  switch (method_) {
+    case Method::dopri5:
+      return evaluate_slope<4>(coefficients_.data(), n, theta, h, xdot);
+    case Method::dop853:
+      return evaluate_slope<7>(coefficients_.data(), n, theta, h, xdot);
+  }
+}
+
+}  // namespace saltus::ode

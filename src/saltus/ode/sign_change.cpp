@@ -1,0 +1,164 @@
+// The first sign change of a polynomial beyond the noise.
+//
+// With the expected sign turned to +, a value is high above +noise, low below -noise, else near. The first low point is
+// isolated by bisecting [0, 1], the leftmost part first: a part without low coefficients has no low point (convex
+// hull), one whose coefficients turn low once and stay low gets there exactly once (variation diminishing). Between the
+// last high point before it and the low point everything is near, and the zero is bisected.
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/ode/bernstein.hpp"
+
+namespace saltus::ode {
+namespace {
+
+constexpr double bracket_width = 0x1p-40;
+// Parts are bisected two bits beyond the brackets; what is undecided there is a dip narrower than any bracket.
+constexpr int deepest = 42;
+
+struct Part {
+  double start = 0.0;
+  double width = 1.0;
+  BernsteinCoefficients b{};
+};
+
+/// Both parts of a polynomial cut at theta, each on its own [0, 1].
+struct Halves {
+  BernsteinCoefficients left;
+  BernsteinCoefficients right;
+};
+
+Halves cut(const BernsteinCoefficients& coefficients, double theta) {
+  Halves halves{{}, coefficients};
+  BernsteinCoefficients& b = halves.right;
+  constexpr std::size_t n = event_degree;
+  for (std::size_t level = 0; level <= n; ++level) {
+    halves.left[level] = b[0];
+    for (std::size_t i = 0; i < n - level; ++i) b[i] = (1.0 - theta) * b[i] + theta * b[i + 1];
+  }
+  return halves;
+}
+
+enum class Verdict {
+  none,   ///< no low point
+  once,   ///< gets low exactly once, and ends low
+  split,  ///< undecided
+};
+
+/// For a part that does not begin low.
+Verdict judge(const BernsteinCoefficients& b, double noise) {
+  const auto is_low = [noise](double value) { return !(value >= -noise); };
+  const auto first_low = std::find_if(b.begin(), b.end(), is_low);
+  if (first_low == b.end()) return Verdict::none;
+  if (std::all_of(first_low, b.end(), is_low)) return Verdict::once;
+  // Dips hardly beyond the noise are given up: coefficients that tie with its level up to rounding would be bisected
+  // without end.
+  constexpr double margin = 1.0 + 0x1p-4;
+  const bool shallow =
+      !is_low(b.back()) && std::all_of(b.begin(), b.end(), [&](double v) { return v >= -margin * noise; });
+  return shallow ? Verdict::none : Verdict::split;
+}
+
+/// The part in which the polynomial gets low for the first time (exactly once, or at the limit of resolution).
+std::optional<Part> first_descent(const BernsteinCoefficients& coefficients, double noise) {
+  std::array<Part, deepest + 1> pending;  // leftmost last; each is at most as wide as the next one
+  std::size_t count = 1;
+  pending[0] = {0.0, 1.0, coefficients};
+  while (count > 0) {
+    const Part part = pending[--count];
+    const bool resolved = part.width <= std::ldexp(1.0, -deepest);
+    switch (judge(part.b, noise)) {
+      case Verdict::none:
+        break;
+      case Verdict::once:
+        return part;
+      case Verdict::split: {
+        if (resolved) {
+          if (part.b.back() < -noise) return part;
+          break;
+        }
+        const Halves halves = cut(part.b, 0.5);
+        const double half = 0.5 * part.width;
+        pending[count++] = {part.start + half, half, halves.right};
+        pending[count++] = {part.start, half, halves.left};
+        break;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// Narrows a bracket between a point where `before` holds and one where it does not.
+template <class Predicate>
+SignChange bisect(SignChange bracket, Predicate&& before) {
+  while (bracket.upper - bracket.lower > bracket_width) {
+    const double middle = 0.5 * (bracket.lower + bracket.upper);
+    (before(middle) ? bracket.lower : bracket.upper) = middle;
+  }
+  return bracket;
+}
+
+/// p(theta) / theta^order for a polynomial whose first `order` coefficients are 0, raised to the full degree again by
+/// leaving the last coefficients unused.
+class Quotient {
+ public:
+  Quotient(const BernsteinCoefficients& coefficients, int order) : b_(coefficients), degree_(event_degree) {
+    for (int k = 0; k < order; ++k, --degree_) {
+      // theta B_i of degree N - 1 is (i + 1) / N times B_(i+1) of degree N.
+      for (int i = 0; i < degree_; ++i) b_[at(i)] = b_[at(i + 1)] * degree_ / (i + 1);
+    }
+  }
+
+  [[nodiscard]] double operator()(double theta) const {
+    BernsteinCoefficients b = b_;
+    for (int level = degree_; level > 0; --level) {
+      for (int i = 0; i < level; ++i) b[at(i)] = (1.0 - theta) * b[at(i)] + theta * b[at(i + 1)];
+    }
+    return b[0];
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  BernsteinCoefficients b_;
+  int degree_;
+};
+
+/// The last high point before a low one, up to the width of a bracket; 0 if there is none.
+double last_high(const BernsteinCoefficients& p, double low, double noise) {
+  // Seen backwards from the low point and upside down, it is a first descent.
+  BernsteinCoefficients backwards = cut(p, low).left;
+  std::reverse(backwards.begin(), backwards.end());
+  for (double& value : backwards) value = -value;
+  const auto ascent = first_descent(backwards, noise);
+  if (!ascent) return 0.0;
+  const double end = std::min(1.0, ascent->start + ascent->width);
+  const SignChange bracket =
+      bisect({ascent->start, end}, [&](double theta) { return evaluate(backwards, theta) >= -noise; });
+  return low * (1.0 - bracket.upper);
+}
+
+}  // namespace
+
+std::optional<SignChange> first_sign_change(const BernsteinCoefficients& coefficients, int sign, int zero_order,
+                                            double noise) {
+  SALTUS_ASSERT((sign == 1 || sign == -1) && zero_order >= 0 && zero_order <= 2 && noise >= 0.0);
+  if (certainly_no_sign_change(coefficients, sign, zero_order, noise)) return std::nullopt;
+  BernsteinCoefficients p = coefficients;
+  for (double& value : p) value *= sign;
+  std::fill_n(p.begin(), zero_order, 0.0);
+  if (!(p.front() >= -noise)) return SignChange{0.0, 0.0};
+
+  const auto descent = first_descent(p, noise);
+  if (!descent) return std::nullopt;
+  const Quotient quotient(p, zero_order);
+  const auto not_below_zero = [&](double theta) { return quotient(theta) >= 0.0; };
+  const SignChange around{descent->start, descent->start + descent->width};
+  const SignChange low = bisect(around, [&](double theta) { return evaluate(p, theta) >= -noise; });
+  const SignChange zero{last_high(p, low.upper, noise), low.upper};
+  if (!not_below_zero(zero.lower)) return zero;
+  return bisect(zero, not_below_zero);
+}
+
+}  // namespace saltus::ode

@@ -1,0 +1,130 @@
+#include "saltus/ode/step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "saltus/base/contracts.hpp"
+
+namespace saltus::ode {
+namespace {
+
+/// Constants of the codes DOPRI5 and DOP853 of Hairer & Wanner.
+struct Gains {
+  double exponent;  ///< of the error of this step
+  double beta;      ///< of the error of the step before: 0 is the plain controller
+  double smallest;  ///< factor
+  double largest;
+};
+
+Gains gains(Method method) {
+  switch (method) {
+    case Method::dopri5:
+      return {.exponent = 0.2 - 0.75 * 0.04, .beta = 0.04, .smallest = 0.2, .largest = 10.0};
+    case Method::dop853:
+      return {.exponent = 0.125, .beta = 0.0, .smallest = 0.333, .largest = 6.0};
+  }
+  __builtin_unreachable();
+}
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double safety = 0.9;
+// An error far below the tolerance says nothing about the next step: it counts as this much.
+constexpr double least_error = 1e-4;
+
+/// Root mean square in units of the tolerances at x; a scale of 0 (x_i = 0, atol = 0) is replaced by the smallest one.
+class WeightedNorm {
+ public:
+  WeightedNorm(const double* x, int n, const Tolerances& tolerances) : x_(x), n_(n), tolerances_(tolerances) {}
+
+  template <class Component>
+  double operator()(Component&& component) const {
+    const auto ratio = [&](int i) {
+      const double scale = tolerances_.atol + tolerances_.rtol * std::abs(x_[i]);
+      return std::abs(component(i)) / std::max(scale, std::numeric_limits<double>::min());
+    };
+    double largest = 0.0;
+    for (int i = 0; i < n_; ++i) largest = std::max(largest, ratio(i));
+    if (!(largest > 0.0 && std::isfinite(largest))) return largest;
+    double sum = 0.0;  // of ratios to the largest one: slopes of 1e200 have a norm, too
+    for (int i = 0; i < n_; ++i) sum += std::pow(ratio(i) / largest, 2);
+    return largest * std::sqrt(sum / n_);
+  }
+
+ private:
+  const double* x_;
+  int n_;
+  Tolerances tolerances_;
+};
+
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// f behind an Euler step of length h, shortened until it is finite there; false if that does not help.
+bool slope_behind_euler_step(RightHandSide f, double t, const double* x, const double* slope, double& h,
+                             std::vector<double>& slope_behind) {
+  // 2^-30 of an already careful step: what is undefined even there is reported by the first step itself.
+  constexpr int attempts = 10;
+  std::vector<double> argument(slope_behind.size());
+  for (int attempt = 0; attempt < attempts; ++attempt, h *= 0.125) {
+    for (std::size_t i = 0; i < argument.size(); ++i) argument[i] = x[i] + h * slope[i];
+    f(t + h, argument.data(), slope_behind.data());
+    if (all_finite(slope_behind)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+StepControl::StepControl(Method method) : method_(method), previous_error_(least_error) {}
+
+void StepControl::reset() { *this = StepControl(method_); }
+
+double StepControl::accepted(double error_norm) {
+  const Gains gain = gains(method_);
+  const double raw = safety * std::pow(previous_error_, gain.beta) / std::pow(error_norm, gain.exponent);
+  const double largest = last_rejected_ ? 1.0 : gain.largest;
+  previous_error_ = std::max(error_norm, least_error);
+  last_rejected_ = false;
+  return std::clamp(raw, gain.smallest, largest);
+}
+
+double StepControl::rejected(double error_norm) {
+  const Gains gain = gains(method_);
+  last_rejected_ = true;
+  return std::clamp(safety / std::pow(error_norm, gain.exponent), gain.smallest, safety);
+}
+
+double initial_step(Method method, RightHandSide f, double t, const double* x, const double* slope, int n, double span,
+                    const Tolerances& tolerances) {
+  SALTUS_ASSERT(n >= 0 && span != 0.0);
+  const double length = std::abs(span);
+  const WeightedNorm norm(x, n, tolerances);
+  const double size = norm([&](int i) { return x[i]; });
+  const double speed = norm([&](int i) { return slope[i]; });
+  const bool has_size = size >= 1.0;  // beyond the tolerance of 0
+  // A state that would not even leave a 1e-5th of the tolerance within the span tells nothing about time. A ten times
+  // larger share of the span costs rejected steps then, a ten times smaller one more steps.
+  const double share = 1e-4 * length;
+  const double euler = has_size && speed * length >= 1e-5 ? 0.01 * std::min(size / speed, length) : share;
+  const double guess = std::isfinite(euler) && euler > 0.0 ? euler : share;
+
+  std::vector<double> slope_behind(static_cast<std::size_t>(n));
+  double trial = std::copysign(guess, span);
+  if (!slope_behind_euler_step(f, t, x, slope, trial, slope_behind)) return trial;
+  // Where it had to be shortened the next point beyond it is undefined: no step goes further than the Euler step.
+  const double reach = std::abs(trial) < guess ? 1.0 : 100.0;
+  const double bend = norm([&](int i) { return slope_behind[at(i)] - slope[i]; }) / std::abs(trial);
+
+  // Attributes an error of amplitude (h / time)^(order + 1) to a step of length h, and allows 0.01.
+  const double amplitude = has_size ? size : std::max(speed * length, bend * length * length);
+  const double time = has_size ? std::min(size / speed, std::sqrt(size / bend)) : length;
+  const double step = time * std::pow(0.01 / amplitude, 1.0 / (order(method) + 1));
+  if (!(step > 0.0)) return trial;  // overflow
+  return std::copysign(std::min({reach * std::abs(trial), step, length}), span);
+}
+
+}  // namespace saltus::ode

@@ -1,0 +1,244 @@
+#include "saltus/ode/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/ode/dop853_tableau.hpp"
+#include "saltus/ode/dopri5_tableau.hpp"
+#include "saltus/ode/stage_sums_internal.hpp"
+
+namespace saltus::ode {
+namespace {
+
+std::size_t stage_count(Method method) {
+  switch (method) {
+    case Method::dopri5:
+      return Dopri5Tableau::dense_stages;
+    case Method::dop853:
+      return Dop853Tableau::dense_stages;
+  }
+  __builtin_unreachable();
+}
+
+/// Position of f(t + h, x_new) among the stages.
+std::size_t last_stage(Method method) {
+  switch (method) {
+    case Method::dopri5:
+      return Dopri5Tableau::stages - 1;
+    case Method::dop853:
+      return Dop853Tableau::stages - 1;
+  }
+  __builtin_unreachable();
+}
+
+bool all_finite(const double* values, std::size_t n) {
+  int bad = 0;  // not a bool with early exit: this loop vectorises
+  for (std::size_t i = 0; i < n; ++i) bad |= std::abs(values[i]) <= std::numeric_limits<double>::max() ? 0 : 1;
+  return bad == 0;
+}
+
+/// What the stages of one attempt share.
+struct StageRun {
+  RightHandSide f;
+  double t;
+  double h;
+  const double* x;
+  double* stages;
+  std::size_t n;
+  long& evaluations;
+};
+
+/// x + h times the sum of the stages with the weights of a row of the tableau.
+template <class Tableau, std::size_t row>
+void advance(const StageRun& run, double* __restrict result) {
+  const double* x = run.x;
+  const double* stages = run.stages;
+  const double h = run.h;
+  const std::size_t n = run.n;
+  for (std::size_t i = 0; i < n; ++i) result[i] = x[i] + h * stage_sum<Tableau::a, row>(stages, n, i);
+}
+
+/// Evaluates one stage at the argument it leaves behind; false if one of both is not finite.
+template <class Tableau, std::size_t row>
+bool evaluate_stage(const StageRun& run, double* argument) {
+  advance<Tableau, row>(run, argument);
+  if (!all_finite(argument, run.n)) return false;
+  double* slope = run.stages + row * run.n;
+  run.f(run.t + Tableau::c[row] * run.h, argument, slope);
+  ++run.evaluations;
+  return all_finite(slope, run.n);
+}
+
+/// Stages first, first + 1, ...; stops at the first one that is not finite.
+template <class Tableau, std::size_t first, std::size_t... offset>
+bool evaluate_stages(const StageRun& run, double* argument, std::index_sequence<offset...>) {
+  return (evaluate_stage<Tableau, first + offset>(run, argument) && ...);
+}
+
+/// Stages 2 to the one at the new point.
+template <class Tableau>
+bool take_step(const StageRun& run, double* argument, double* x_new) {
+  constexpr std::size_t last = Tableau::stages - 1;
+  return evaluate_stages<Tableau, 1>(run, argument, std::make_index_sequence<last - 1>{}) &&
+         evaluate_stage<Tableau, last>(run, x_new);
+}
+
+struct ErrorScale {
+  Tolerances tolerances;
+  const double* x;
+  const double* x_new;
+
+  double operator()(std::size_t i) const {
+    // A component that is 0 on both sides with atol = 0 has no scale: its error is 0 or far too large, but 0 / 0 is
+    // not.
+    return std::max(tolerances.atol + tolerances.rtol * std::max(std::abs(x[i]), std::abs(x_new[i])),
+                    std::numeric_limits<double>::min());
+  }
+};
+
+/// Sum of the squares of an embedded error estimate in units of its scale.
+template <const auto& rows, std::size_t row>
+double squared_error(const StageRun& run, const ErrorScale& scale, double* __restrict ratio) {
+  const double* stages = run.stages;
+  const double h = run.h;
+  const std::size_t n = run.n;
+  for (std::size_t i = 0; i < n; ++i) ratio[i] = h * stage_sum<rows, row>(stages, n, i) / scale(i);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) sum += ratio[i] * ratio[i];
+  return sum;
+}
+
+double dopri5_error(const StageRun& run, const ErrorScale& scale, double* ratio) {
+  return std::sqrt(squared_error<Dopri5Tableau::error, 0>(run, scale, ratio) / static_cast<double>(run.n));
+}
+
+/// The estimate of order 5, damped where it is small against a hundredth of the one of order 3: Hairer, Norsett &
+/// Wanner, (10.17) of chapter II.
+double dop853_error(const StageRun& run, const ErrorScale& scale, double* ratio) {
+  const double fifth = squared_error<Dop853Tableau::error, 0>(run, scale, ratio);
+  const double third = squared_error<Dop853Tableau::error, 1>(run, scale, ratio);
+  if (fifth == 0.0) return 0.0;
+  return fifth / std::sqrt(static_cast<double>(run.n) * (fifth + 0.01 * third));
+}
+
+/// Row `row` of the dense output's own weights, times h.
+template <class Tableau, std::size_t row>
+void dense_row(const StageRun& run, double* __restrict result) {
+  const double* stages = run.stages;
+  const double h = run.h;
+  const std::size_t n = run.n;
+  for (std::size_t i = 0; i < n; ++i) result[i] = h * stage_sum<Tableau::dense, row>(stages, n, i);
+}
+
+template <class Tableau, std::size_t... row>
+void dense_rows(const StageRun& run, double* result, std::index_sequence<row...>) {
+  (dense_row<Tableau, row>(run, result + row * run.n), ...);
+}
+
+/// Coefficients 0 to 3 of the nested form: the cubic Hermite interpolant of both ends.
+void hermite_coefficients(const StageRun& run, const double* x_new, const double* slope_new,
+                          double* __restrict result) {
+  const std::size_t n = run.n;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double difference = x_new[i] - run.x[i];
+    const double bend = run.h * run.stages[i] - difference;
+    result[i] = run.x[i];
+    result[n + i] = difference;
+    result[2 * n + i] = bend;
+    result[3 * n + i] = difference - run.h * slope_new[i] - bend;
+  }
+}
+
+constexpr std::size_t hermite_count = 4;
+
+template <class Tableau>
+void dense_coefficients(const StageRun& run, double* result) {
+  dense_rows<Tableau>(run, result, std::make_index_sequence<Tableau::dense.size()>{});
+}
+
+}  // namespace
+
+int order(Method method) {
+  switch (method) {
+    case Method::dopri5:
+      return 5;
+    case Method::dop853:
+      return 8;
+  }
+  __builtin_unreachable();
+}
+
+int dense_degree(Method method) {
+  switch (method) {
+    case Method::dopri5:
+      return 4;
+    case Method::dop853:
+      return 7;
+  }
+  __builtin_unreachable();
+}
+
+Stepper::Stepper(Method method, int n) : method_(method), n_(n) {
+  SALTUS_ASSERT(n >= 0);
+  const auto size = static_cast<std::size_t>(n);
+  for (auto* vector : {&start_, &x_new_, &argument_}) vector->resize(size);
+  stages_.resize(size * stage_count(method));
+}
+
+Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
+                         const Tolerances& tolerances) {
+  const auto n = static_cast<std::size_t>(n_);
+  std::copy_n(x, n, start_.begin());
+  std::copy_n(slope, n, stages_.begin());
+  t_ = t;
+  h_ = h;
+  const StageRun run{f, t, h, start_.data(), stages_.data(), n, evaluations_};
+  const ErrorScale scale{tolerances, start_.data(), x_new_.data()};
+  if (!all_finite(stages_.data(), n)) return Attempt::undefined;
+  switch (method_) {
+    case Method::dopri5:
+      if (!take_step<Dopri5Tableau>(run, argument_.data(), x_new_.data())) return Attempt::undefined;
+      error_norm_ = dopri5_error(run, scale, argument_.data());
+      break;
+    case Method::dop853:
+      if (!take_step<Dop853Tableau>(run, argument_.data(), x_new_.data())) return Attempt::undefined;
+      error_norm_ = dop853_error(run, scale, argument_.data());
+      break;
+  }
+  if (n == 0) error_norm_ = 0.0;
+  if (std::isnan(error_norm_)) error_norm_ = std::numeric_limits<double>::infinity();  // overflow of both estimates
+  return Attempt::finite;
+}
+
+const double* Stepper::slope_new() const { return stages_.data() + last_stage(method_) * static_cast<std::size_t>(n_); }
+
+Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
+  const auto n = static_cast<std::size_t>(n_);
+  const StageRun run{f, t_, h_, start_.data(), stages_.data(), n, evaluations_};
+  output.t = t_;
+  output.h = h_;
+  output.method_ = method_;
+  output.n_ = n_;
+  output.end_.resize(n);
+  output.coefficients_.resize(n * static_cast<std::size_t>(dense_degree(method_) + 1));
+  std::copy_n(x_new_.begin(), n, output.end_.begin());
+  hermite_coefficients(run, x_new_.data(), slope_new(), output.coefficients_.data());
+  double* upper = output.coefficients_.data() + hermite_count * n;
+  switch (method_) {
+    case Method::dopri5:
+      dense_coefficients<Dopri5Tableau>(run, upper);
+      return Attempt::finite;
+    case Method::dop853: {
+      constexpr std::size_t first = Dop853Tableau::stages;
+      constexpr auto extra = std::make_index_sequence<Dop853Tableau::dense_stages - first>{};
+      if (!evaluate_stages<Dop853Tableau, first>(run, argument_.data(), extra)) return Attempt::undefined;
+      dense_coefficients<Dop853Tableau>(run, upper);
+      return Attempt::finite;
+    }
+  }
+  __builtin_unreachable();
+}
+
+}  // namespace saltus::ode
