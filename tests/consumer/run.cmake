@@ -30,12 +30,21 @@ if(private_headers)
   message(FATAL_ERROR "private headers were installed: ${private_headers}")
 endif()
 
-run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${work_dir}/build -G ${generator}
-  -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher}
-  "-DCMAKE_PREFIX_PATH=${work_dir}/prefix\;${casadi_dir}" -D wanted_version=${version})
-run(${CMAKE_COMMAND} --build ${work_dir}/build)
-run(${work_dir}/build/consumer)
-message(STATUS "consumer: ${output}")
+# build_and_run(NAME FOLDER): configures, builds and runs a project that uses the installation; its output in `output`.
+function(build_and_run name folder)
+  run(${CMAKE_COMMAND} -S ${folder} -B ${work_dir}/build/${name} -G ${generator}
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher}
+    "-DCMAKE_PREFIX_PATH=${work_dir}/prefix\;${casadi_dir}" -D wanted_version=${version})
+  run(${CMAKE_COMMAND} --build ${work_dir}/build/${name})
+  run(${work_dir}/build/${name}/${name})
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+build_and_run(consumer ${CMAKE_CURRENT_LIST_DIR}/project)
+build_and_run(first_simulation ${source_dir}/examples/01_first_simulation)
+if(NOT output MATCHES "t = 1\\.2001[0-9]+  enter_sliding" OR NOT output MATCHES "at rest at x = 1\\.8920")
+  message(FATAL_ERROR "examples/01_first_simulation printed\n${output}")
+endif()
 
 # The installed tool has no other library path than its own, and finds the catalogue and plotly beside itself.
 if(EXISTS ${work_dir}/prefix/bin/saltus)

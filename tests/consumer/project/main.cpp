@@ -1,10 +1,10 @@
-#include <cstdio>
-#include <saltus/base/version.hpp>
-#include <saltus/expression/parser.hpp>
+// x' = -sign(x), x(0) = 1: reaches 0 at t = 1 and stays there.
+#include <saltus/model/builder.hpp>
+#include <saltus/pipeline/simulate.hpp>
 
 int main() {
-  const auto tree = saltus::expression::parse("mu*sign(v - 0.2)", {});
-  if (!tree) return std::puts(saltus::to_text(tree.error()).c_str()), 1;
-  std::printf("%s by Saltus %s\n", saltus::expression::to_text(**tree).c_str(), saltus::version.data());
-  return saltus::expression::to_text(**tree) == "mu*sign(v-0.2)" ? 0 : 1;
+  saltus::model::Builder model("sliding");
+  model.dynamics("x", -model.sign(model.state("x", {1.0})));
+  const auto result = saltus::pipeline::simulate(model.build().value(), {.until = 2.0});
+  return result && result->events.size() == 1 && result->final.x.front() == 0.0 ? 0 : 1;
 }
