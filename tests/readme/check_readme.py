@@ -12,7 +12,18 @@ from pathlib import Path
 
 
 def blocks(text, language):
-    return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    """Contents of the fenced blocks of a language; fences open and close in turn."""
+    found, current = [], None
+    for line in text.splitlines():
+        if line.startswith("```"):
+            if current is None:
+                current = (line[3:].strip(), [])
+            else:
+                found.append(current)
+                current = None
+        elif current is not None:
+            current[1].append(line)
+    return ["\n".join(lines) for name, lines in found if name == language]
 
 
 def run(command, tool, folder):
