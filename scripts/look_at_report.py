@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Screenshots of HTML reports in headless Chromium, and what their consoles and networks say. A developer's tool.
 
-    scripts/look_at_report.py demo/*.html                          1280x720 and 1920x1080, light and dark, into /tmp/look
-    scripts/look_at_report.py page.html --do 'move 400 300'        with the pointer there
-    scripts/look_at_report.py page.html --do 'drag 300 400 500 400; click 40 10; wait 0.5' --size 1280x720 --theme dark
+    scripts/look_at_report.py demo/*.html                    1280x720 and 1920x1080, light and dark, into /tmp/look
+    scripts/look_at_report.py page.html --do 'move 400 300'  with the pointer there
+    scripts/look_at_report.py page.html --do 'drag 300 400 500 400' --do 'wait 0.5' --size 1280x720 --theme dark
     scripts/look_at_report.py page.html --do 'run document.title'  prints the value of an expression
 
 Ends with 1 if a page logged an error or a warning, threw, or asked for anything outside of itself.
@@ -27,9 +27,9 @@ class Browser:
         self.input, from_browser = os.pipe()
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         # Chromium reads from 3 and writes to 4.
-        command = (f'exec 3<&{to_browser} 4>&{from_browser}; exec "$0" --headless --no-sandbox --disable-gpu --no-first-run '
-                   '--disable-background-networking --disable-component-update --disable-sync --hide-scrollbars '
-                   f'--user-data-dir="{self.profile.name}" --remote-debugging-pipe about:blank 2>/dev/null')
+        command = (f'exec 3<&{to_browser} 4>&{from_browser}; exec "$0" --headless --no-sandbox --disable-gpu '
+                   '--no-first-run --disable-background-networking --disable-component-update --disable-sync '
+                   f'--hide-scrollbars --user-data-dir="{self.profile.name}" --remote-debugging-pipe about:blank 2>/dev/null')
         self.process = subprocess.Popen(["bash", "-c", command, program], pass_fds=(to_browser, from_browser))
         os.close(to_browser)
         os.close(from_browser)
@@ -52,11 +52,14 @@ class Browser:
             details = data["exceptionDetails"]
             self.complaints.append("exception: " + details.get("exception", {}).get("description", details["text"]))
         elif method == "Runtime.consoleAPICalled" and data["type"] in ("error", "warning", "assert"):
-            self.complaints.append("console: " + " ".join(str(a.get("value", a.get("description"))) for a in data["args"]))
+            texts = [str(a.get("value", a.get("description"))) for a in data["args"]]
+            self.complaints.append("console: " + " ".join(texts))
         elif method == "Log.entryAdded" and data["entry"]["level"] in ("error", "warning"):
             self.complaints.append("log: " + data["entry"]["text"])
-        elif method == "Network.requestWillBeSent" and not data["request"]["url"].startswith(("file:", "data:", "blob:")):
-            self.complaints.append("request: " + data["request"]["url"])
+        elif method == "Network.requestWillBeSent":
+            url = data["request"]["url"]
+            if not url.startswith(("file:", "data:", "blob:")):
+                self.complaints.append("request: " + url)
 
     def call(self, method, **params):
         self.last += 1
@@ -140,6 +143,16 @@ class Browser:
         self.profile.cleanup()
 
 
+def look(browser, page, size, theme, arguments):
+    width, height = (int(part) for part in size.split("x"))
+    seconds = browser.open(f"{page.resolve().as_uri()}#{arguments.hash}", width, height, theme)
+    for action in arguments.do:
+        browser.act(action)
+    file = arguments.out / f"{page.stem}-{size}-{theme}.png"
+    browser.picture(file, arguments.whole)
+    print(f"{file}  (loaded in {seconds:.2f} s)")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pages", nargs="+", type=pathlib.Path)
@@ -148,23 +161,19 @@ def main():
     parser.add_argument("--theme", action="append", choices=["light", "dark"])
     parser.add_argument("--whole", action="store_true", help="the whole page instead of the first screen")
     parser.add_argument("--hash", default="", help="for example event=3")
-    parser.add_argument("--do", default="", help="actions before the picture, separated by semicolons")
+    parser.add_argument("--do", action="append", default=[], help="an action before the picture, repeatable")
     parser.add_argument("--browser", default="chromium")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
 
     browser = Browser(arguments.browser)
-    for page in arguments.pages:
-        for size in arguments.size or ["1280x720", "1920x1080"]:
-            for theme in arguments.theme or ["light", "dark"]:
-                width, height = (int(part) for part in size.split("x"))
-                seconds = browser.open(f"{page.resolve().as_uri()}#{arguments.hash}", width, height, theme)
-                for action in filter(str.strip, arguments.do.split(";")):
-                    browser.act(action)
-                file = arguments.out / f"{page.stem}-{size}-{theme}.png"
-                browser.picture(file, arguments.whole)
-                print(f"{file}  (loaded in {seconds:.2f} s)")
-    browser.close()
+    try:
+        for page in arguments.pages:
+            for size in arguments.size or ["1280x720", "1920x1080"]:
+                for theme in arguments.theme or ["light", "dark"]:
+                    look(browser, page, size, theme, arguments)
+    finally:
+        browser.close()
     for complaint in browser.complaints:
         print(complaint, file=sys.stderr)
     return 1 if browser.complaints else 0

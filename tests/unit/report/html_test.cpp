@@ -76,10 +76,13 @@ TEST(Html, WritesSamplesOnRequest) {
   std::ifstream stream(library, std::ios::binary);
   const std::string source{std::istreambuf_iterator<char>(stream), {}};
   ASSERT_FALSE(source.empty()) << library;
-  const std::vector<std::pair<std::string, result::Result>> samples{
-      {"stick-slip", report_samples::stick_slip(40, 50)}, {"no-events", report_samples::decay()},
-      {"twelve-states", report_samples::twelve_states()}, {"failed", report_samples::failed()},
-      {"many-rows", report_samples::many_rows(1000000)},  {"many-events", report_samples::many_events(20000)}};
+  const std::vector<std::pair<std::string, result::Result>> samples{{"stick-slip", report_samples::stick_slip(40, 50)},
+                                                                    {"no-events", report_samples::decay()},
+                                                                    {"twelve-states", report_samples::twelve_states()},
+                                                                    {"failed", report_samples::failed()},
+                                                                    {"many-rows", report_samples::many_rows(1000000)},
+                                                                    {"many-events", report_samples::many_events(20000)},
+                                                                    {"nothing", report_samples::nothing()}};
   for (const auto& [name, sample] : samples) {
     const auto file = std::filesystem::path(folder) / (name + ".html");
     std::ofstream(file, std::ios::binary) << to_html(sample, source);

@@ -199,7 +199,17 @@ inline result::Result failed() {
   return result;
 }
 
-/// A value of a slowly moving wave with one narrow spike, in many rows.
+/// Stops before the first row.
+inline result::Result nothing() {
+  result::Result result;
+  result.states = {"x", "y"};
+  result.switching_functions = {"psi"};
+  result.status.termination = result::Termination::no_admissible_mode;
+  result.status.message = "No mode continues the start.";
+  return result;
+}
+
+/// Stick-slip with one row that sticks out, in many rows.
 inline result::Result many_rows(std::size_t rows) {
   result::Result result = stick_slip(40, rows / 40);
   result.model.name = "many rows";

@@ -7,13 +7,13 @@ saltus.option = (result, ending) => {
 };
 
 saltus.statusBadge = (result) => {
-  const { termination, done } = result.status;
+  const {termination, done} = result.status;
   const kind = termination === "completed" ? "good" : done ? "notice" : "bad";
-  return saltus.element("span", { class: `badge ${kind}` }, termination.replaceAll("_", " "));
+  return saltus.element("span", {class: `badge ${kind}`}, termination.replaceAll("_", " "));
 };
 
 saltus.facts = (result) => {
-  const { t } = result.trajectory;
+  const {t} = result.trajectory;
   const integrator = saltus.option(result, "integrator");
   const facts = [["method", integrator === null ? result.method : `${result.method}, ${integrator}`]];
   for (const name of ["rtol", "atol"]) {
@@ -26,31 +26,39 @@ saltus.facts = (result) => {
   return facts;
 };
 
-saltus.pageHeader = (result, toggleTheme) =>
-  saltus.element("header", { class: "head" },
-    saltus.element("div", { class: "title" },
-      saltus.element("h1", {}, result.model.name || "simulation"), saltus.statusBadge(result),
-      saltus.element("span", { class: "description", title: result.model.description }, result.model.description)),
-    saltus.element("dl", { class: "facts" },
-      ...saltus.facts(result).map(([name, value]) =>
-        saltus.element("div", {}, saltus.element("dt", {}, name), saltus.element("dd", {}, value)))),
-    saltus.element("button", { class: "theme", title: "light or dark", onclick: toggleTheme }, "◐"));
+saltus.pageHeader = (result, toggleTheme) => saltus.element(
+    "header", {class: "head"},
+    saltus.element(
+        "div", {class: "title"}, saltus.element("h1", {}, result.model.name || "simulation"),
+        saltus.statusBadge(result),
+        saltus.element("span", {class: "description", title: result.model.description}, result.model.description)),
+    saltus.element(
+        "dl", {class: "facts"},
+        ...saltus.facts(result).map(
+            ([name, value]) =>
+                saltus.element("div", {}, saltus.element("dt", {}, name), saltus.element("dd", {}, value)))),
+    saltus.element("button", {class: "theme", title: "light or dark", onclick: toggleTheme}, "◐"));
 
 saltus.banners = (result, select) => {
-  const { status, events } = result;
+  const {status, events} = result;
   const banners = [];
   if (status.termination !== "completed") {
-    banners.push(saltus.element("div", { class: `banner ${status.done ? "notice" : "bad"}`, role: "alert" },
-      saltus.element("strong", {}, status.done ? "Stopped by an event" : `Not completed: ${status.termination.replaceAll("_", " ")}`),
-      ` at t = ${saltus.exact(status.time_reached)}. `, status.message));
+    banners.push(saltus.element(
+        "div", {class: `banner ${status.done ? "notice" : "bad"}`, role: "alert"},
+        saltus.element(
+            "strong", {},
+            status.done ? "Stopped by an event" : `Not completed: ${status.termination.replaceAll("_", " ")}`),
+        ` at t = ${saltus.exact(status.time_reached)}. `, status.message));
   }
   const list = (chosen, title, kind) => {
     if (chosen.length === 0) return;
-    const buttons = chosen.slice(0, 8).map((i) =>
-      saltus.element("button", { onclick: () => select(i) }, `event ${i + 1}, t = ${saltus.brief(events[i].t, 6)}`));
+    const buttons = chosen.slice(0, 8).map(
+        (i) => saltus.element(
+            "button", {onclick: () => select(i)}, `event ${i + 1}, t = ${saltus.brief(events[i].t, 6)}`));
     const left = chosen.length - buttons.length;
-    banners.push(saltus.element("div", { class: `banner ${kind}`, role: "alert" },
-      saltus.element("strong", {}, title), " ", ...buttons, left > 0 ? ` and ${left} more in the table` : null));
+    banners.push(saltus.element(
+        "div", {class: `banner ${kind}`, role: "alert"}, saltus.element("strong", {}, title), " ", ...buttons,
+        left > 0 ? ` and ${left} more in the table` : null));
   };
   const numbered = (wanted) => events.map((_, i) => i).filter((i) => events[i].unique === wanted);
   const no = numbered(false);
@@ -60,49 +68,78 @@ saltus.banners = (result, select) => {
   return banners;
 };
 
-saltus.card = (title, ...content) => saltus.element("section", { class: "card" }, saltus.element("h2", {}, title), ...content);
+saltus.card = (title, ...content) =>
+    saltus.element("section", {class: "card"}, saltus.element("h2", {}, title), ...content);
 
-saltus.pairTable = (pairs) =>
-  saltus.element("table", { class: "plain" }, saltus.element("tbody", {}, ...pairs.map(([name, value]) =>
-    saltus.element("tr", {}, saltus.element("td", {}, name), saltus.element("td", { class: "digits" }, value)))));
+saltus.pairTable = (pairs) => saltus.element(
+    "table", {class: "plain"},
+    saltus.element(
+        "tbody", {},
+        ...pairs.map(
+            ([name, value]) => saltus.element(
+                "tr", {}, saltus.element("td", {title: name}, name), saltus.element("td", {class: "digits"}, value)))));
 
 saltus.finalCard = (result) => {
-  const { final } = result;
+  const {final} = result;
   const names = [...result.states, ...result.output_names];
   const values = [...final.x, ...final.outputs];
-  const surfaces = result.switching_functions.map((name, i) =>
-    [name, saltus.modeBoxes([final.mode[i] ?? null]), saltus.exact(final.alpha[i])]);
-  return saltus.card("End state", saltus.pairTable([["t", saltus.exact(final.t)], ...names.map((name, i) => [name, saltus.exact(values[i])])]),
-    ...(surfaces.length > 0 ? [saltus.plainTable(["switching function", "mode", "α"], surfaces)] : []));
+  const surfaces = result.switching_functions.map(
+      (name, i) => [name, saltus.modeBoxes([final.mode[i] ?? null]), saltus.exact(final.alpha[i])]);
+  return saltus.card(
+      "End state",
+      saltus.pairTable([["t", saltus.exact(final.t)], ...names.map((name, i) => [name, saltus.exact(values[i])])]),
+      ...(surfaces.length > 0 ? [saltus.plainTable(["ψ", "mode", "α"], surfaces)] : []));
 };
 
 saltus.optionText = (value) => {
-  if (Array.isArray(value)) return value.length <= 6 ? `[${value.map(saltus.exact).join(", ")}]` : `${value.length} values, ${saltus.exact(value[0])} … ${saltus.exact(value[value.length - 1])}`;
+  if (Array.isArray(value))
+    return value.length <= 6 ?
+        `[${value.map(saltus.exact).join(", ")}]` :
+        `${value.length} values, ${saltus.exact(value[0])} … ${saltus.exact(value[value.length - 1])}`;
   return saltus.exact(value);
 };
 
 saltus.infoCards = (result) => {
-  const { statistics, model } = result;
-  const numbers = [["steps", statistics.steps.toLocaleString("en-US")], ["rejected steps", statistics.rejected.toLocaleString("en-US")],
-    ["evaluations of the right-hand side", statistics.rhs_evaluations.toLocaleString("en-US")],
-    ["wall time", `${saltus.brief(statistics.wall_seconds, 4)} s`]];
-  const quiet = (text) => saltus.element("p", { class: "quiet" }, text);
+  const {statistics, model} = result;
+  const numbers = [
+    ["steps", statistics.steps.toLocaleString("en-US")],
+    ["rejected steps", statistics.rejected.toLocaleString("en-US")],
+    ["right-hand sides evaluated", statistics.rhs_evaluations.toLocaleString("en-US")],
+    ["wall time", `${saltus.brief(statistics.wall_seconds, 4)} s`]
+  ];
+  const quiet = (text) => saltus.element("p", {class: "quiet"}, text);
   return [
     saltus.finalCard(result),
-    saltus.card("Parameters", model.parameters.length > 0
-      ? saltus.pairTable(model.parameters.map(([name, value]) => [name, saltus.exact(value)])) : quiet("The model has none.")),
-    saltus.card("Options", result.options.length > 0
-      ? saltus.pairTable(result.options.map(([name, value]) => [name, saltus.optionText(value)])) : quiet("None are recorded.")),
+    saltus.card(
+        "Parameters",
+        model.parameters.length > 0 ?
+            saltus.pairTable(model.parameters.map(([name, value]) => [name, saltus.exact(value)])) :
+            quiet("The model has none.")),
+    saltus.card(
+        "Options",
+        result.options.length > 0 ?
+            saltus.pairTable(result.options.map(([name, value]) => [name, saltus.optionText(value)])) :
+            quiet("None are recorded.")),
     saltus.card("Statistics", saltus.pairTable(numbers)),
   ];
 };
 
 saltus.notes = (result) => {
-  const { rows, t } = result.trajectory;
-  const kept = t.length < rows
-    ? `This page holds ${t.length.toLocaleString("en-US")} of the ${rows.toLocaleString("en-US")} rows of the trajectory: the least and greatest value of every curve in each stretch, and both rows of every event. The result file has all of them.`
-    : `This page holds all ${rows.toLocaleString("en-US")} rows of the trajectory.`;
-  const drawn = "Curves are drawn with the least and greatest value per pixel and, up to 2,000 events in view, both rows of every event; zoom in for every row. With more than 400 events in view one line per stretch is drawn. Jumps are gaps.";
-  const origin = `Saltus ${result.saltus}, command ${result.command}. ${result.model.sha256 === "" ? "The model was stated in C++." : `SHA-256 of the model file: ${result.model.sha256}`}`;
-  return saltus.element("footer", {}, saltus.element("p", {}, kept, " ", drawn), saltus.element("p", { class: "digits" }, origin));
+  const {rows, t} = result.trajectory;
+  const number = (n) => n.toLocaleString("en-US");
+  const kept = t.length === rows ? `This page holds all ${number(rows)} rows of the trajectory. ` : [
+    `This page holds ${number(t.length)} of the ${
+        number(rows)} rows of the trajectory: the least and greatest value of`,
+    "every curve in each stretch, and both rows of every event. The result file has all of them. "
+  ].join(" ");
+  const drawn = [
+    "Curves are drawn with the least and greatest value per pixel and, up to 2,000 events in view, both rows",
+    "of every event; zoom in for every row. With more than 400 events in view one line per stretch is drawn, and",
+    "intervals of modes below a pixel are merged, sliding first. Jumps are gaps."
+  ].join(" ");
+  const {sha256} = result.model;
+  const model = sha256 === "" ? "No model file is recorded." : `SHA-256 of the model file: ${sha256}`;
+  return saltus.element(
+      "footer", {}, saltus.element("p", {}, kept, drawn),
+      saltus.element("p", {class: "digits"}, `Saltus ${result.saltus}, command ${result.command}. ${model}`));
 };

@@ -17,41 +17,46 @@ saltus.nearestShownEvent = (result, shown, t) => {
   return shown.length === 0 ? null : shown[saltus.nearestRow(times, t)];
 };
 
-saltus.readoutValues = (result, row, t) => {
-  const { trajectory } = result;
+/** Names and values at a row; at the two rows of an event both, if they differ. */
+saltus.readoutValues = (result, row) => {
+  const {trajectory} = result;
+  const [first, last] = saltus.rowsAtOneTime(trajectory.t, row);
   const values = [];
-  const add = (names, columns, wrap) =>
-    names.forEach((name, i) => values.push([wrap(name), saltus.brief(columns[i][row], 8)]));
-  add(result.states, trajectory.x, (name) => name);
-  add(result.output_names, trajectory.outputs, (name) => name);
-  add(result.controls, trajectory.u, (name) => name);
+  const change = (column) => {
+    const [before, after] = [saltus.brief(column[first], 8), saltus.brief(column[last], 8)];
+    return before === after ? after : `${before} → ${after}`;
+  };
+  const add = (names, columns) => names.forEach((name, i) => values.push([name, change(columns[i])]));
+  add(result.states, trajectory.x);
+  add(result.output_names, trajectory.outputs);
+  add(result.controls, trajectory.u);
   result.switching_functions.forEach((name, i) => {
-    const mode = saltus.valueAt(trajectory.modes[i], t);
-    values.push([`mode(${name})`, saltus.modeWord(mode)]);
-    values.push([`α(${name})`, saltus.brief(trajectory.alpha[i][row], 8)]);
+    const mode = saltus.valueAt(trajectory.modes[i], trajectory.t[row]);
+    const alpha = mode === 0 ? `, α = ${saltus.brief(trajectory.alpha[i][last], 6)}` : "";
+    values.push([name, `${saltus.modeWord(mode)}${alpha}`]);
   });
   return values;
 };
 
 saltus.readoutEvent = (result, index) => {
   const event = result.events[index];
-  const modes = saltus.element("span", {}, saltus.modeBoxes(event.mode_before), " → ", saltus.modeBoxes(event.mode_after));
-  const uncertain = { true: null, false: "solution not unique", null: "uniqueness not decided" }[String(event.unique)];
-  return saltus.element("div", { class: "readout-event" },
-    saltus.element("strong", {}, `${index + 1}. ${saltus.kindLabel(event.kind)}`),
-    ` ${event.name ?? ""} ${event.surfaces.join(", ")} `, modes,
-    uncertain && saltus.element("div", { class: "alarm-text" }, uncertain),
-    event.reason === "" ? null : saltus.element("div", { class: "quiet" }, event.reason));
+  const modes = saltus.modeChange(event, "changed");
+  const uncertain = {true: null, false: "solution not unique", null: "uniqueness not decided"}[String(event.unique)];
+  return saltus.element(
+      "div", {class: "readout-event"}, saltus.element("strong", {}, `${index + 1}. ${saltus.kindLabel(event.kind)}`),
+      ` ${event.name ?? ""} ${event.surfaces.join(", ")} `, modes,
+      uncertain && saltus.element("div", {class: "alarm-text"}, uncertain),
+      event.reason === "" ? null : saltus.element("div", {class: "quiet"}, event.reason));
 };
 
 saltus.cursor = (result, frame, holder, timeline, select) => {
-  const overlay = saltus.svgElement("svg", { class: "cursor" });
-  const readout = saltus.element("div", { class: "readout", hidden: "" });
+  const overlay = saltus.svgElement("svg", {class: "cursor"});
+  const readout = saltus.element("div", {class: "readout", hidden: ""});
   frame.append(overlay, readout);
-  const { t } = result.trajectory;
+  const {t} = result.trajectory;
 
   const place = (clientX) => {
-    const { l, w } = holder._fullLayout._size;
+    const {l, w} = holder._fullLayout._size;
     const pixel = clientX - holder.getBoundingClientRect().left - l;
     if (pixel < 0 || pixel > w || t.length === 0) return null;
     const axis = holder._fullLayout.xaxis;
@@ -59,14 +64,14 @@ saltus.cursor = (result, frame, holder, timeline, select) => {
     const index = saltus.nearestShownEvent(result, timeline.shown(), time);
     const caught = index !== null && Math.abs(axis.d2p(result.events[index].t) - pixel) <= saltus.catchPixels;
     const row = saltus.nearestRow(t, caught ? result.events[index].t : time);
-    return { row, event: caught ? index : null };
+    return {row, event: caught ? index : null};
   };
 
   const drawOverlay = (row) => {
     const size = holder._fullLayout._size;
     const x = size.l + holder._fullLayout.xaxis.d2p(t[row]);
     overlay.replaceChildren(
-      saltus.svgElement("line", { x1: x, x2: x, y1: size.t, y2: size.t + size.h, class: "cursor-line" }));
+        saltus.svgElement("line", {x1: x, x2: x, y1: size.t, y2: size.t + size.h, class: "cursor-line"}));
     timeline.panels().panels.forEach((panel, i) => {
       if (panel.kind !== "curves") return;
       const axis = holder._fullLayout[saltus.axisKey(i)];
@@ -75,22 +80,25 @@ saltus.cursor = (result, frame, holder, timeline, select) => {
         const y = value === null ? NaN : axis.d2p(value);
         if (!(y >= 0 && y <= axis._length)) return;
         const fill = saltus.curveColour(panel, k, saltus.palette());
-        overlay.append(saltus.svgElement("circle", { cx: x, cy: axis._offset + y, r: 3.5, fill, class: "cursor-dot" }));
+        overlay.append(saltus.svgElement("circle", {cx: x, cy: axis._offset + y, r: 3.5, fill, class: "cursor-dot"}));
       });
     });
     return x;
   };
 
-  const drawReadout = (x, place_, clientY) => {
-    const values = saltus.readoutValues(result, place_.row, t[place_.row]);
-    const cells = values.slice(0, saltus.readoutRows).flatMap(([name, value]) => [
-      saltus.element("span", { class: "name" }, saltus.shorten(name, 24)), saltus.element("span", { class: "value" }, value)]);
+  const drawReadout = (x, found, clientY) => {
+    const values = saltus.readoutValues(result, found.row);
+    const cells = values.slice(0, saltus.readoutRows)
+                      .flatMap(
+                          ([name, value]) =>
+                              [saltus.element("span", {class: "name"}, saltus.shorten(name, 18)),
+                               saltus.element("span", {class: "value"}, value)]);
     const left = values.length - saltus.readoutRows;
     readout.replaceChildren(
-      saltus.element("div", { class: "readout-time" }, `t = ${saltus.exact(t[place_.row])}`),
-      saltus.element("div", { class: values.length > 12 ? "readout-grid wide" : "readout-grid" }, ...cells),
-      ...(left > 0 ? [saltus.element("div", { class: "quiet" }, `and ${left} more`)] : []),
-      ...(place_.event === null ? [] : [saltus.readoutEvent(result, place_.event)]));
+        saltus.element("div", {class: "readout-time"}, `t = ${saltus.exact(t[found.row])}`),
+        saltus.element("div", {class: values.length > 12 ? "readout-grid wide" : "readout-grid"}, ...cells),
+        ...(left > 0 ? [saltus.element("div", {class: "quiet"}, `and ${left} more`)] : []),
+        ...(found.event === null ? [] : [saltus.readoutEvent(result, found.event)]));
     readout.hidden = false;
     const box = readout.getBoundingClientRect();
     const width = holder.clientWidth;

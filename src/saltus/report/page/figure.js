@@ -2,7 +2,7 @@
 "use strict";
 
 saltus.fullWindow = (result) => {
-  const { t } = result.trajectory;
+  const {t} = result.trajectory;
   if (t.length === 0) return [0, 1];
   const [from, to] = [t[0], t[t.length - 1]];
   return from < to ? [from, to] : [from - 0.5, from + 0.5];
@@ -13,20 +13,31 @@ saltus.axisKey = (panel) => (panel === 0 ? "yaxis" : `yaxis${panel + 1}`);
 
 /** Modes of one switching function: -1 the lower part of its row, +1 the upper part, sliding all of it. */
 saltus.modeTrace = (intervals, row, axis, palette) => {
-  const cells = { "-1": [-1, null, null], 0: [0, 0, 0], 1: [null, null, 1] };
+  const cells = {"-1": [-1, null, null], 0: [0, 0, 0], 1: [null, null, 1]};
   const z = [0, 1, 2].map((part) => intervals.values.map((mode) => (mode === null ? null : cells[mode][part])));
   return {
-    type: "heatmap", xaxis: "x", yaxis: axis, x: intervals.edges, z, hoverinfo: "none", hoverongaps: false,
-    y: [row - 0.42, row - 0.1, row + 0.1, row + 0.42], zmin: -1.5, zmax: 1.5, showscale: false,
-    colorscale: [[0, palette.minus], [1 / 3, palette.minus], [1 / 3, palette.sliding], [2 / 3, palette.sliding],
-      [2 / 3, palette.plus], [1, palette.plus]],
+    type: "heatmap",
+    xaxis: "x",
+    yaxis: axis,
+    x: intervals.edges,
+    z,
+    hoverinfo: "none",
+    hoverongaps: false,
+    y: [row - 0.42, row - 0.1, row + 0.1, row + 0.42],
+    zmin: -1.5,
+    zmax: 1.5,
+    showscale: false,
+    colorscale: [
+      [0, palette.minus], [1 / 3, palette.minus], [1 / 3, palette.sliding], [2 / 3, palette.sliding],
+      [2 / 3, palette.plus], [1, palette.plus]
+    ],
   };
 };
 
 /** Many short intervals: those of one pixel become one, sliding first because it must be seen. */
-saltus.thinIntervals = ({ edges, values }, [from, to], pixels) => {
-  if (values.length <= 4 * pixels) return { edges, values };
-  const thin = { edges: [], values: [] };
+saltus.thinIntervals = ({edges, values}, [from, to], pixels) => {
+  if (values.length <= 4 * pixels) return {edges, values};
+  const thin = {edges: [], values: []};
   const step = (to - from) / pixels;
   let i = Math.max(0, saltus.lowerBound(edges, from) - 1);
   while (i < values.length && edges[i] <= to) {
@@ -45,47 +56,67 @@ saltus.thinIntervals = ({ edges, values }, [from, to], pixels) => {
 };
 
 saltus.curveColour = (panel, i, palette) => {
-  const first = { state: 0, output: 1, input: 2, alpha: 3 }[panel.sort];
+  const first = {state: 0, output: 1, input: 2, alpha: 3}[panel.sort];
   return palette.curves[(panel.curves.length === 1 ? first : i) % palette.curves.length];
 };
 
-saltus.curveTraces = (result, panel, axis, view) =>
-  panel.curves.map((curve, i) => ({
-    type: "scatter", mode: "lines", xaxis: "x", yaxis: axis, hoverinfo: "none", connectgaps: false,
-    ...saltus.points(result.trajectory.t, curve.values, view.window, view.pixels),
-    line: { color: saltus.curveColour(panel, i, view.palette), width: 1.6, shape: curve.stepwise ? "hv" : "linear" },
-  }));
+saltus.curveTraces = (result, panel, axis, view) => panel.curves.map(
+    (curve, i) => ({
+      type: "scatter",
+      mode: "lines",
+      xaxis: "x",
+      yaxis: axis,
+      hoverinfo: "none",
+      connectgaps: false,
+      ...saltus.points(result.trajectory.t, curve.values, view.window, view.pixels),
+      line: {color: saltus.curveColour(panel, i, view.palette), width: 1.6, shape: curve.stepwise ? "hv" : "linear"},
+    }));
 
-saltus.figureTraces = (result, stack, view) =>
-  stack.panels.flatMap((panel, i) => {
-    const axis = saltus.axisName(i);
-    if (panel.kind === "events") return [saltus.markTrace(result, view.marks, view.selected, view.palette)];
-    if (panel.kind === "modes") {
-      const rows = result.trajectory.modes.map((mode) => saltus.thinIntervals(mode, view.window, view.pixels));
-      return rows.map((mode, row) => saltus.modeTrace(mode, rows.length - 1 - row, axis, view.palette));
-    }
-    return saltus.curveTraces(result, panel, axis, view);
-  });
+saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) => {
+  const axis = saltus.axisName(i);
+  if (panel.kind === "events") return [saltus.markTrace(result, view.marks, view.selected, view.palette)];
+  if (panel.kind === "modes") {
+    const rows = result.trajectory.modes.map((mode) => saltus.thinIntervals(mode, view.window, view.pixels));
+    return rows.map((mode, row) => saltus.modeTrace(mode, rows.length - 1 - row, axis, view.palette));
+  }
+  return saltus.curveTraces(result, panel, axis, view);
+});
 
 saltus.panelAxis = (panel, stack, palette, result) => {
   const domain = [Math.max(0, 1 - (panel.top + panel.height) / stack.height), 1 - panel.top / stack.height];
-  const bare = { domain, fixedrange: true, showgrid: false, zeroline: false, showticklabels: false, ticks: "" };
-  if (panel.kind === "events") return { ...bare, range: [0, 1] };
-  if (panel.kind === "modes") return { ...bare, range: [-0.5, result.switching_functions.length - 0.5] };
-  const alpha = panel.sort === "alpha" ? { range: [-0.06, 1.06], tickvals: [0, 0.5, 1], fixedrange: true } : {};
+  const bare = {domain, fixedrange: true, showgrid: false, zeroline: false, showticklabels: false, ticks: ""};
+  if (panel.kind === "events") return {...bare, range: [0, 1]};
+  if (panel.kind === "modes") return {...bare, range: [-0.5, result.switching_functions.length - 0.5]};
+  const alpha = panel.sort === "alpha" ? {range: [-0.06, 1.06], tickvals: [0, 0.5, 1], fixedrange: true} : {};
   return {
-    domain, gridcolor: palette.grid, zerolinecolor: palette.axis, zerolinewidth: 1, linecolor: palette.grid,
-    showline: true, mirror: true, nticks: Math.max(3, Math.round(panel.height / 32)), automargin: true,
-    exponentformat: "e", tickfont: { size: 11 }, ...alpha,
+    domain,
+    gridcolor: palette.grid,
+    zerolinecolor: palette.axis,
+    zerolinewidth: 1,
+    nticks: Math.max(3, Math.round(panel.height / 24)),
+    automargin: true,
+    exponentformat: "power",
+    minexponent: 5,
+    tickfont: {size: 11},
+    ...alpha,
   };
 };
 
 /** Names of the curves and switching functions at the right border, in the colour of the curve. */
 saltus.panelLabels = (panel, stack, palette, result) => {
   const label = (name, fromTop, color) => ({
-    text: saltus.plain(saltus.shorten(name, 18)), hovertext: saltus.plain(name), xref: "paper", yref: "paper", x: 1,
-    xanchor: "left", xshift: 6, y: 1 - (panel.top + fromTop) / stack.height, yanchor: "middle", showarrow: false,
-    align: "left", font: { size: 12, color },
+    text: saltus.plain(saltus.shorten(name, 18)),
+    hovertext: saltus.plain(name),
+    xref: "paper",
+    yref: "paper",
+    x: 1,
+    xanchor: "left",
+    xshift: 6,
+    y: 1 - (panel.top + fromTop) / stack.height,
+    yanchor: "middle",
+    showarrow: false,
+    align: "left",
+    font: {size: 12, color},
   });
   if (panel.kind === "events") return [label("events", panel.height / 2, palette.quiet)];
   if (panel.kind === "modes") {
@@ -100,37 +131,69 @@ saltus.panelLabels = (panel, stack, palette, result) => {
   });
 };
 
+/** A thin frame around every panel of curves. */
+saltus.frameShapes = (stack, palette) =>
+    stack.panels.filter((panel) => panel.kind === "curves").map((panel) => ({
+                                                                  type: "rect",
+                                                                  xref: "paper",
+                                                                  yref: "paper",
+                                                                  x0: 0,
+                                                                  x1: 1,
+                                                                  y0: Math.max(
+                                                                      0, 1 - (panel.top + panel.height) / stack.height),
+                                                                  y1: 1 - panel.top / stack.height,
+                                                                  line: {color: palette.axis, width: 1},
+                                                                  layer: "above",
+                                                                }));
+
 saltus.labelWidth = (result) => {
-  const longest = (names, extra = 0) => names.reduce((most, name) => Math.max(most, Math.min(18, name.length + extra)), 0);
-  const letters = Math.max(6, longest(result.states), longest(result.output_names), longest(result.controls),
-    longest(result.switching_functions, 3));
+  const longest = (names, extra = 0) =>
+      names.reduce((most, name) => Math.max(most, Math.min(18, name.length + extra)), 0);
+  const letters = Math.max(
+      6, longest(result.states), longest(result.output_names), longest(result.controls),
+      longest(result.switching_functions, 3));
   return 12 + Math.round(7.2 * letters);
 };
 
 saltus.figureLayout = (result, stack, view) => {
-  const { palette } = view;
-  const margin = { l: 52, r: saltus.labelWidth(result), t: 8, b: 40 };
+  const {palette} = view;
+  const margin = {l: 52, r: saltus.labelWidth(result), t: 4, b: 38};
   const layout = {
-    height: stack.height + margin.t + margin.b, margin, showlegend: false, dragmode: "zoom", hovermode: "closest",
-    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: palette.panel, autosize: true,
-    font: { family: "system-ui, sans-serif", size: 12, color: palette.text },
+    height: stack.height + margin.t + margin.b,
+    margin,
+    separators: ".",
+    showlegend: false,
+    dragmode: "zoom",
+    hovermode: "closest",
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: palette.panel,
+    autosize: true,
+    font: {family: "system-ui, sans-serif", size: 12, color: palette.text},
     xaxis: {
-      range: view.window, anchor: saltus.axisName(stack.panels.length - 1), gridcolor: palette.grid, zeroline: false,
-      linecolor: palette.grid, showline: true, title: { text: "t", standoff: 6 }, exponentformat: "e", tickfont: { size: 11 },
+      range: view.window,
+      anchor: saltus.axisName(stack.panels.length - 1),
+      gridcolor: palette.grid,
+      zeroline: false,
+      title: {text: "t", standoff: 4},
+      exponentformat: "power",
+      minexponent: 5,
+      tickfont: {size: 11},
     },
     shapes: [
+      ...saltus.frameShapes(stack, palette),
       ...saltus.slidingShapes(view.sliding, stack.panels, stack.height, view.window, palette),
       ...saltus.markShapes(result, view.marks, view.selected, palette),
     ],
     annotations: stack.panels.flatMap((panel) => saltus.panelLabels(panel, stack, palette, result)),
   };
   stack.panels.forEach((panel, i) => {
-    layout[saltus.axisKey(i)] = { ...saltus.panelAxis(panel, stack, palette, result), ...view.ranges[i] };
+    layout[saltus.axisKey(i)] = {...saltus.panelAxis(panel, stack, palette, result), ...view.ranges[i]};
   });
   return layout;
 };
 
 saltus.plotConfig = {
-  displaylogo: false, responsive: true, doubleClick: false,
-  modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "resetScale2d"],
+  displayModeBar: false,
+  doubleClick: false,
+  showTips: false,
 };

@@ -9,27 +9,47 @@ saltus.isAlarming = (event) => event.unique === false;
 /** Events of the window to draw, at most one per bin if there are too many; indices into result.events. */
 saltus.visibleMarks = (result, shown, [from, to]) => {
   const inside = shown.filter((i) => result.events[i].t >= from && result.events[i].t <= to);
-  if (inside.length <= saltus.maximumMarks) return { marks: inside, thinned: false };
+  if (inside.length <= saltus.maximumMarks) return inside;
   const bins = new Map();
   for (const i of inside) {
     const bin = Math.floor(((result.events[i].t - from) / (to - from)) * saltus.maximumMarks);
     const held = bins.get(bin);
-    if (held === undefined || (saltus.isAlarming(result.events[i]) && !saltus.isAlarming(result.events[held]))) bins.set(bin, i);
+    if (held === undefined || (saltus.isAlarming(result.events[i]) && !saltus.isAlarming(result.events[held])))
+      bins.set(bin, i);
   }
-  return { marks: [...bins.values()], thinned: true };
+  return [...bins.values()];
 };
 
+/** All ordinary events are one path: hundreds of shapes would take plotly most of a second. */
 saltus.markShapes = (result, marks, selected, palette) => {
+  const time = (i) => result.events[i].t;
   const line = (i, style) => ({
-    type: "line", xref: "x", yref: "paper", x0: result.events[i].t, x1: result.events[i].t, y0: 0, y1: 1, ...style,
+    type: "line",
+    layer: "above",
+    xref: "x",
+    yref: "paper",
+    x0: time(i),
+    x1: time(i),
+    y0: 0,
+    y1: 1,
+    line: style,
   });
-  const dense = marks.length > 120;
-  const shapes = marks.map((i) =>
-    saltus.isAlarming(result.events[i])
-      ? line(i, { layer: "above", line: { color: palette.alarm, width: 2, dash: "dash" } })
-      : line(i, { layer: "below", line: { color: palette.mark, width: dense ? 0.5 : 1 } }),
-  );
-  if (selected !== null) shapes.push(line(selected, { layer: "above", line: { color: palette.select, width: 2 } }));
+  const ordinary = marks.filter((i) => !saltus.isAlarming(result.events[i]));
+  const dense = marks.length > 60;
+  const shapes = marks.filter((i) => saltus.isAlarming(result.events[i]))
+                     .map((i) => line(i, {color: palette.alarm, width: 2, dash: "dash"}));
+  if (ordinary.length > 0) {
+    shapes.push({
+      type: "path",
+      layer: "below",
+      xref: "x",
+      yref: "paper",
+      opacity: dense ? 0.5 : 1,
+      path: ordinary.map((i) => `M${time(i)},0L${time(i)},1`).join(""),
+      line: {color: palette.mark, width: dense ? 0.5 : 1},
+    });
+  }
+  if (selected !== null) shapes.push(line(selected, {color: palette.select, width: 2}));
   return shapes;
 };
 
@@ -40,9 +60,17 @@ saltus.slidingShapes = (intervals, panels, totalHeight, [from, to], palette) => 
   const first = panels.find((panel) => panel.kind === "curves");
   if (first === undefined) return [];
   return visible.map(([x0, x1]) => ({
-    type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1 - first.top / totalHeight,
-    layer: "below", line: { width: 0 }, fillcolor: palette.slidingShade,
-  }));
+                       type: "rect",
+                       xref: "x",
+                       yref: "paper",
+                       x0,
+                       x1,
+                       y0: 0,
+                       y1: 1 - first.top / totalHeight,
+                       layer: "below",
+                       line: {width: 0},
+                       fillcolor: palette.slidingShade,
+                     }));
 };
 
 saltus.markTrace = (result, marks, selected, palette) => {
@@ -52,7 +80,12 @@ saltus.markTrace = (result, marks, selected, palette) => {
   };
   const alarming = (i) => saltus.isAlarming(result.events[i]);
   return {
-    type: "scatter", mode: "markers", xaxis: "x", yaxis: "y", hoverinfo: "none", cliponaxis: false,
+    type: "scatter",
+    mode: "markers",
+    xaxis: "x",
+    yaxis: "y",
+    hoverinfo: "none",
+    cliponaxis: false,
     x: marks.map((i) => result.events[i].t),
     y: marks.map(() => 0.5),
     customdata: marks,
@@ -60,7 +93,7 @@ saltus.markTrace = (result, marks, selected, palette) => {
       symbol: marks.map((i) => (alarming(i) ? "x" : (saltus.kinds[result.events[i].kind]?.symbol ?? "circle"))),
       size: marks.map((i) => (alarming(i) ? 13 : 9)),
       color: marks.map(colour),
-      line: { width: 1.5, color: marks.map(colour) },
+      line: {width: 1.5, color: marks.map(colour)},
     },
   };
 };

@@ -33,5 +33,5 @@ saltus.followTheme = (changed) => {
   };
   document.documentElement.dataset.theme = asked ? asked[1] : system.matches ? "dark" : "light";
   system.addEventListener("change", () => apply(system.matches ? "dark" : "light"));
-  return { toggle: () => apply(saltus.currentTheme() === "dark" ? "light" : "dark") };
+  return {toggle: () => apply(saltus.currentTheme() === "dark" ? "light" : "dark")};
 };

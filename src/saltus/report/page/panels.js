@@ -44,17 +44,17 @@ saltus.groupCurves = (curves) => {
 
 /** Panels of curves, top to bottom: states, outputs, inputs, alpha. */
 saltus.curvePanels = (result) => {
-  const { trajectory } = result;
-  const curves = (names, columns, sort) =>
-    names.map((name, i) => ({ name, sort, values: columns[i], stepwise: sort === "input" && saltus.isStepwise(columns[i]) }));
+  const {trajectory} = result;
+  const curves = (names, columns, sort) => names.map(
+      (name, i) => ({name, sort, values: columns[i], stepwise: sort === "input" && saltus.isStepwise(columns[i])}));
   const panels = [
     ...saltus.groupCurves(curves(result.states, trajectory.x, "state")),
     ...saltus.groupCurves(curves(result.output_names, trajectory.outputs, "output")),
     ...saltus.groupCurves(curves(result.controls, trajectory.u, "input")),
-  ].map((group) => ({ kind: "curves", sort: group[0].sort, curves: group }));
+  ].map((group) => ({kind: "curves", sort: group[0].sort, curves: group}));
   const alphas = curves(result.switching_functions, trajectory.alpha, "alpha");
   for (let i = 0; i < alphas.length; i += saltus.perPanel) {
-    panels.push({ kind: "curves", sort: "alpha", curves: alphas.slice(i, i + saltus.perPanel) });
+    panels.push({kind: "curves", sort: "alpha", curves: alphas.slice(i, i + saltus.perPanel)});
   }
   return panels;
 };
@@ -66,8 +66,8 @@ saltus.curvePanels = (result) => {
 saltus.stackPanels = (result, height) => {
   const surfaces = result.switching_functions.length;
   const curves = saltus.curvePanels(result);
-  const panels = [{ kind: "events", height: 22 }];
-  if (surfaces > 0) panels.push({ kind: "modes", height: surfaces === 1 ? 26 : 20 * surfaces });
+  const panels = [{kind: "events", height: 22}];
+  if (surfaces > 0) panels.push({kind: "modes", height: surfaces === 1 ? 26 : 20 * surfaces});
   const gap = 12;
   const fixed = panels.reduce((sum, panel) => sum + panel.height + gap, 0);
   const weights = curves.map((panel) => (panel.sort === "alpha" ? 0.65 : 1));
@@ -75,11 +75,11 @@ saltus.stackPanels = (result, height) => {
   const least = curves.length > 5 ? 92 : 110;
   const free = height - fixed - gap * (curves.length - 1);
   const unit = Math.min(340, Math.max(least, total > 0 ? free / total : 0));
-  curves.forEach((panel, i) => panels.push({ ...panel, height: Math.round(unit * weights[i]) }));
+  curves.forEach((panel, i) => panels.push({...panel, height: Math.round(unit * weights[i])}));
   let top = 0;
   for (const panel of panels) {
     panel.top = top;
     top += panel.height + gap;
   }
-  return { panels, height: top - gap };
+  return {panels, height: top - gap};
 };

@@ -7,8 +7,10 @@ saltus.lowerBound = (values, x) => {
   let high = values.length;
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (values[middle] < x) low = middle + 1;
-    else high = middle;
+    if (values[middle] < x)
+      low = middle + 1;
+    else
+      high = middle;
   }
   return low;
 };
@@ -31,6 +33,14 @@ saltus.nearestRow = (t, x) => {
 /** Rows that share their time with a neighbour: the two sides of an event. */
 saltus.isPaired = (t, i) => t[i] === t[i - 1] || t[i] === t[i + 1];
 
+/** First and last row of those that share their time with row i. */
+saltus.rowsAtOneTime = (t, i) => {
+  let [first, last] = [i, i];
+  while (t[first - 1] === t[i]) first -= 1;
+  while (t[last + 1] === t[i]) last += 1;
+  return [first, last];
+};
+
 /** More pairs than this within the window: closer together than pixels, drawn through their extremes alone. */
 saltus.maximumPairs = 2000;
 
@@ -40,29 +50,31 @@ saltus.maximumPairs = 2000;
  */
 saltus.rowsToDraw = (t, columns, [begin, end], buckets) => {
   const all = end - begin;
-  if (all <= 4 * buckets) return Array.from({ length: all }, (_, i) => begin + i);
+  if (all <= 4 * buckets) return Array.from({length: all}, (_, i) => begin + i);
   let pairs = 0;
   for (let i = begin; i < end; i += 1) pairs += saltus.isPaired(t, i) ? 1 : 0;
   const keepPairs = pairs <= 2 * saltus.maximumPairs;
   const width = (t[end - 1] - t[begin]) / buckets;
   const rows = [];
-  for (let i = begin; i < end; ) {
+  for (let i = begin; i < end;) {
     const limit = t[begin] + width * (Math.floor((t[i] - t[begin]) / width) + 1);
     const chosen = new Set([i]);
-    const extremes = columns.map(() => ({ least: i, greatest: i }));
+    const extremes = columns.map(() => ({least: i, greatest: i}));
     let k = i;
     for (; k < end && (k === i || t[k] < limit); k += 1) {
       if (keepPairs && saltus.isPaired(t, k)) chosen.add(k);
       columns.forEach((values, c) => {
         const value = values[k];
         const best = extremes[c];
-        if (value === null) chosen.add(k);
-        else if (values[best.least] === null || value < values[best.least]) best.least = k;
+        if (value === null)
+          chosen.add(k);
+        else if (values[best.least] === null || value < values[best.least])
+          best.least = k;
         if (value !== null && (values[best.greatest] === null || value > values[best.greatest])) best.greatest = k;
       });
     }
     chosen.add(k - 1);
-    for (const { least, greatest } of extremes) chosen.add(least).add(greatest);
+    for (const {least, greatest} of extremes) chosen.add(least).add(greatest);
     rows.push(...[...chosen].sort((a, b) => a - b));
     i = k;
   }
@@ -83,7 +95,7 @@ saltus.points = (t, values, window, buckets) => {
     y.push(values[i]);
     previous = i;
   }
-  return { x, y };
+  return {x, y};
 };
 
 /** Whether a column looks piecewise constant: far fewer changes than rows. */
@@ -96,7 +108,7 @@ saltus.isStepwise = (values) => {
 /** Intervals in which any switching function slides, merged: [[from, to], …]. */
 saltus.slidingIntervals = (modes) => {
   const all = [];
-  for (const { edges, values } of modes) {
+  for (const {edges, values} of modes) {
     values.forEach((mode, i) => {
       if (mode === 0) all.push([edges[i], edges[i + 1]]);
     });
@@ -105,14 +117,16 @@ saltus.slidingIntervals = (modes) => {
   const merged = [];
   for (const [from, to] of all) {
     const last = merged[merged.length - 1];
-    if (last !== undefined && from <= last[1]) last[1] = Math.max(last[1], to);
-    else merged.push([from, to]);
+    if (last !== undefined && from <= last[1])
+      last[1] = Math.max(last[1], to);
+    else
+      merged.push([from, to]);
   }
   return merged;
 };
 
 /** Value of piecewise constant `values` at time x; at an edge the one to the right. */
-saltus.valueAt = ({ edges, values }, x) => {
+saltus.valueAt = ({edges, values}, x) => {
   if (values.length === 0) return null;
   let i = saltus.lowerBound(edges, x);
   if (edges[i] !== x) i -= 1;

@@ -2,12 +2,13 @@
 "use strict";
 
 /**
- * @param listeners  windowChanged(window) after every change of the window
+ * @param listeners  windowChanged(window) after every change of the window, resized(height) before every drawing
  * @return           what other parts of the page may do with the drawing
  */
 saltus.timeline = (result, holder, listeners) => {
   const full = saltus.fullWindow(result);
-  const sliding = saltus.slidingIntervals(result.trajectory.modes);
+  // Of many switching functions some slide nearly always: shading would say nothing, the bands say it.
+  const sliding = result.switching_functions.length <= 3 ? saltus.slidingIntervals(result.trajectory.modes) : [];
   let shown = result.events.map((_, i) => i);
   let selected = null;
   let window_ = full;
@@ -15,16 +16,18 @@ saltus.timeline = (result, holder, listeners) => {
   let stack = null;
 
   const view = () => {
-    const { marks, thinned } = saltus.visibleMarks(result, shown, window_);
+    const marks = saltus.visibleMarks(result, shown, window_);
     const pixels = 2 * Math.max(200, holder.clientWidth);
-    return { window: window_, ranges, selected, sliding, marks, thinned, pixels, palette: saltus.palette() };
+    return {window: window_, ranges, selected, sliding, marks, pixels, palette: saltus.palette()};
   };
 
   const draw = () => {
-    stack = saltus.stackPanels(result, Math.max(380, window.innerHeight - 150));
+    // As tall as the first screen allows, below head and warnings, above axis and border.
+    const top = holder.getBoundingClientRect().top + window.scrollY;
+    stack = saltus.stackPanels(result, Math.max(360, window.innerHeight - top - 64));
     const current = view();
-    const layout = { ...saltus.figureLayout(result, stack, current), width: holder.clientWidth };
-    holder.classList.toggle("thinned-marks", current.thinned);
+    const layout = {...saltus.figureLayout(result, stack, current), width: holder.clientWidth};
+    listeners.resized(stack.height);
     return Plotly.react(holder, saltus.figureTraces(result, stack, current), layout, saltus.plotConfig);
   };
 
@@ -40,7 +43,7 @@ saltus.timeline = (result, holder, listeners) => {
       const match = /^yaxis(\d*)\.range\[([01])\]$/.exec(key);
       if (match === null) continue;
       const panel = match[1] === "" ? 0 : Number(match[1]) - 1;
-      ranges[panel] ??= { range: [0, 0] };
+      ranges[panel] ??= {range: [0, 0]};
       ranges[panel].range[Number(match[2])] = value;
     }
     const [from, to] = [change["xaxis.range[0]"], change["xaxis.range[1]"]];
@@ -52,15 +55,15 @@ saltus.timeline = (result, holder, listeners) => {
   /** A window around an event, as wide as its distance to the second neighbour on either side. */
   const windowAround = (i) => {
     const at = (k) => result.events[Math.min(Math.max(k, 0), result.events.length - 1)].t;
-    const { t } = result.events[i];
+    const {t} = result.events[i];
     const reach = Math.max(t - at(i - 2), at(i + 2) - t) || (full[1] - full[0]) / 20;
-    return [t - reach, t + reach];
+    return [t - 1.1 * reach, t + 1.1 * reach];
   };
 
   const flag = (i) => {
     selected = i;
     if (i !== null) {
-      const { t } = result.events[i];
+      const {t} = result.events[i];
       const half = (window_[1] - window_[0]) / 2;
       // Out of sight: the window moves there with its width.
       if (t < window_[0] || t > window_[1]) return setWindow([t - half, t + half]);
@@ -72,7 +75,10 @@ saltus.timeline = (result, holder, listeners) => {
   holder.on("plotly_relayout", relayout);
   holder.on("plotly_doubleclick", () => setWindow(full));
   return {
-    draw, flag, setWindow,
+    draw,
+    flag,
+    setWindow,
+    save: () => Plotly.downloadImage(holder, {format: "png", scale: 2, filename: "trajectory"}),
     reset: () => setWindow(full),
     zoomTo: (i) => setWindow(windowAround(i)),
     show: (indices) => {
