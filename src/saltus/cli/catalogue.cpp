@@ -1,0 +1,94 @@
+#include "saltus/cli/catalogue.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "saltus/io/atomic_file.hpp"
+
+namespace saltus::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// <executable>/../share/saltus of an installation.
+fs::path shared_folder() {
+  std::error_code unknown;
+  const auto executable = fs::read_symlink("/proc/self/exe", unknown);
+  return unknown ? fs::path() : executable.parent_path().parent_path() / "share" / "saltus";
+}
+
+std::vector<fs::path> model_folders() {
+  std::vector<fs::path> folders;
+  if (const char* chosen = std::getenv("SALTUS_MODELS"); chosen != nullptr && *chosen != '\0')
+    folders.emplace_back(chosen);
+  folders.push_back(shared_folder() / "models");
+  folders.emplace_back(fs::path(SALTUS_SOURCE_DIR) / "models");
+  return folders;
+}
+
+std::vector<fs::path> plotly_places() {
+  std::vector<fs::path> places;
+  places.push_back(shared_folder() / "plotly.min.js");
+  std::error_code none;
+  for (fs::directory_iterator python(fs::path(SALTUS_SOURCE_DIR) / ".venv" / "lib", none), end; !none && python != end;
+       python.increment(none)) {
+    places.push_back(python->path() / "site-packages" / "plotly" / "package_data" / "plotly.min.js");
+  }
+  return places;
+}
+
+}  // namespace
+
+std::vector<CatalogueEntry> catalogue() {
+  std::map<std::string, fs::path> found;
+  for (const auto& folder : model_folders()) {
+    std::error_code none;
+    for (fs::directory_iterator file(folder, none), end; !none && file != end; file.increment(none)) {
+      if (file->path().extension() == ".toml") found.emplace(file->path().stem().string(), file->path());
+    }
+  }
+  std::vector<CatalogueEntry> entries;
+  for (auto& [name, file] : found) entries.push_back({name, file});
+  return entries;
+}
+
+Expected<fs::path> find_model(const std::string& model) {
+  std::error_code ignored;
+  const fs::path path(model);
+  if (fs::exists(path, ignored) && !fs::is_directory(path, ignored)) return path;
+  std::vector<std::string> known;
+  for (const auto& entry : catalogue()) {
+    if (entry.name == model) return entry.file;
+    known.push_back(entry.name);
+  }
+  const bool is_path = model.find('/') != std::string::npos || path.extension() == ".toml" || fs::exists(path, ignored);
+  if (is_path) return path;
+  const auto nearest = nearest_names(model, known);
+  return tl::unexpected(Error{ErrorCode::unknown_name,
+                              fmt::format("'{}' is no file and no model of the catalogue", model),
+                              nearest.empty() ? "`saltus models` lists the catalogue" : suggest(model, known),
+                              {},
+                              {}});
+}
+
+Expected<std::string> plotly_source() {
+  if (const char* chosen = std::getenv("SALTUS_PLOTLY"); chosen != nullptr && *chosen != '\0') {
+    auto source = io::read_file(chosen);
+    if (!source) return tl::unexpected(with_context(source.error(), "which $SALTUS_PLOTLY names"));
+    return source;
+  }
+  for (const auto& place : plotly_places()) {
+    std::error_code ignored;
+    if (fs::exists(place, ignored)) return io::read_file(place);
+  }
+  return tl::unexpected(Error{ErrorCode::io_failure,
+                              "a report needs plotly.min.js, and it is nowhere to be found",
+                              "install PyPI's plotly and set SALTUS_PLOTLY to its package_data/plotly.min.js",
+                              {},
+                              {}});
+}
+
+}  // namespace saltus::cli

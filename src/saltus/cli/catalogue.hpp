@@ -1,0 +1,29 @@
+// The shipped models, and other files that travel with the tool.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+
+namespace saltus::cli {
+
+struct CatalogueEntry {
+  std::string name;  ///< file name without .toml
+  std::filesystem::path file;
+};
+
+/// All models of the catalogue by name, from $SALTUS_MODELS, then <executable>/../share/saltus/models, then the source
+/// tree; the first of a name counts.
+[[nodiscard]] std::vector<CatalogueEntry> catalogue();
+
+/// MODEL of the command line: a path, or the name of a catalogue entry.
+/// @return the file, or unknown_name with the nearest names.
+[[nodiscard]] Expected<std::filesystem::path> find_model(const std::string& model);
+
+/// The text of plotly.min.js, from $SALTUS_PLOTLY, then <executable>/../share/saltus, then the virtual environment of
+/// the source tree.
+[[nodiscard]] Expected<std::string> plotly_source();
+
+}  // namespace saltus::cli

@@ -1,0 +1,148 @@
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "saltus/cli/commands.hpp"
+#include "saltus/cli/model_input.hpp"
+#include "saltus/cli/terminal.hpp"
+#include "saltus/model/build.hpp"
+
+namespace saltus::cli {
+namespace {
+
+struct Arguments {
+  std::string model;
+  std::vector<std::string> settings;
+};
+
+std::string bounds(double lower, double upper) {
+  if (std::isinf(lower) && std::isinf(upper)) return "";
+  return fmt::format("  in [{}, {}]", lower, upper);
+}
+
+std::string heading(std::string_view title, std::size_t count) { return fmt::format("\n{} ({})\n", title, count); }
+
+std::string states_text(const model::System& system) {
+  std::string text = heading("states", system.state_names.size());
+  for (std::size_t i = 0; i < system.state_names.size(); ++i) {
+    text += fmt::format("  {} = {}{}\n", system.state_names[i], system.initial_state[i],
+                        bounds(system.state_lower[i], system.state_upper[i]));
+  }
+  return text;
+}
+
+std::string parameters_text(const model::System& system) {
+  std::string text = heading("parameters", system.parameter_names.size());
+  for (std::size_t i = 0; i < system.parameter_names.size(); ++i) {
+    text += fmt::format("  {} = {}\n", system.parameter_names[i], system.parameter_values[i]);
+  }
+  return text;
+}
+
+std::string controls_text(const model::System& system) {
+  std::string text = heading("controls", system.control_names.size());
+  for (std::size_t i = 0; i < system.control_names.size(); ++i) {
+    text += fmt::format("  {} = {}{}\n", system.control_names[i], system.control_initial[i],
+                        bounds(system.control_lower[i], system.control_upper[i]));
+  }
+  return text;
+}
+
+std::string_view role_text(model::SwitchingRole role) {
+  switch (role) {
+    case model::SwitchingRole::listed:
+      return "switching function";
+    case model::SwitchingRole::kink:
+      return "kink: the integrator restarts there, nothing slides";
+    case model::SwitchingRole::time_event:
+      return "time event: the integrator restarts there";
+  }
+  __builtin_unreachable();
+}
+
+std::string nesting(const model::System& system, const model::SwitchingFunction& function) {
+  if (function.inner.empty()) return "";
+  std::vector<std::string> names;
+  for (const int index : function.inner) names.push_back(system.switching[static_cast<std::size_t>(index)].name);
+  return fmt::format("; contains the selection of {}", fmt::join(names, ", "));
+}
+
+/// A column whose function was named before under another name.
+std::string alias_text(const model::System& system, const model::SwitchingColumn& column) {
+  const auto& function = system.switching[static_cast<std::size_t>(column.function)];
+  return fmt::format("  {}: alias of {}{}\n", column.name, function.name,
+                     column.orientation < 0 ? ", with the sides swapped" : "");
+}
+
+std::string switching_text(const model::System& system) {
+  std::string text = heading("switching functions", system.switching.size());
+  for (const auto& function : system.switching) {
+    text += fmt::format("  {}: {}{}\n", function.name, role_text(function.role), nesting(system, function));
+  }
+  for (const auto& column : system.columns) {
+    if (column.name != system.switching[static_cast<std::size_t>(column.function)].name)
+      text += alias_text(system, column);
+  }
+  return text;
+}
+
+std::string inclusion_text(const model::System& system) {
+  const bool filippov = system.inclusion == model::Inclusion::filippov;
+  std::string text = fmt::format("\ninclusion: {}\n", filippov ? "filippov" : "aizerman_pyatnitskii");
+  text += fmt::format("  the right-hand side as written is {}multi-affine in the selections\n",
+                      system.multi_affine ? "" : "not ");
+  if (system.inclusion_differences.empty()) {
+    text += "  filippov and aizerman_pyatnitskii are the same for this model\n";
+  } else {
+    text += fmt::format("  filippov and aizerman_pyatnitskii differ in: {}\n",
+                        fmt::join(system.inclusion_differences, ", "));
+  }
+  return text;
+}
+
+std::string events_text(const model::System& system) {
+  if (system.events.empty()) return "";
+  std::string text = heading("events", system.events.size());
+  for (const auto& event : system.events) {
+    text += fmt::format("  {}{}\n", event.name, event.action == model::AtEvent::stop ? ": stops the simulation" : "");
+  }
+  return text;
+}
+
+std::string description_of(const model::System& system, const std::string& path) {
+  std::string text = fmt::format("{}: {}\n{}\n", system.name, system.description, path);
+  text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
+  text += events_text(system) + inclusion_text(system);
+  text += heading("warnings", system.warnings.size());
+  for (const auto& warning : system.warnings) text += fmt::format("  {}\n", warning);
+  return text;
+}
+
+ExitCode run(const Arguments& arguments) {
+  const auto input = read_input(arguments.model, arguments.settings);
+  if (!input) return refuse(input.error());
+  const auto system = model::build(input->file.description, input->overrides);
+  if (!system) return refuse(system.error());
+  print(description_of(*system, input->path));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Command add_check(CLI::App& app) {
+  auto* command = app.add_subcommand("check", "read a model, classify its switching functions, warn");
+  // Shared: the parser fills it after this function has returned, the command reads it.
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("MODEL", arguments->model, "model file, or a name of the catalogue (saltus models)")->required();
+  command->add_option("--set", arguments->settings, "change a value before checking, as in simulate")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->take_all();
+  command->footer("Example:\n  saltus check stick-slip");
+  return {"check", [arguments] { return run(*arguments); }};
+}
+
+}  // namespace saltus::cli

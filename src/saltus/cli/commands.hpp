@@ -1,0 +1,27 @@
+// The subcommands: each adds itself to the command line and is run if it was chosen.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "saltus/cli/exit_code.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace saltus::cli {
+
+struct Command {
+  std::string name;
+  std::function<ExitCode()> run;  ///< once the command line is parsed
+};
+
+[[nodiscard]] Command add_simulate(CLI::App& app);
+[[nodiscard]] Command add_check(CLI::App& app);
+[[nodiscard]] Command add_models(CLI::App& app);
+[[nodiscard]] Command add_report(CLI::App& app);
+/// Hidden: prints docs/options.md.
+[[nodiscard]] Command add_options_page(CLI::App& app);
+
+}  // namespace saltus::cli

@@ -1,0 +1,19 @@
+#include <CLI/CLI.hpp>
+
+#include "saltus/cli/commands.hpp"
+#include "saltus/cli/terminal.hpp"
+#include "saltus/pipeline/option_fields.hpp"
+
+namespace saltus::cli {
+
+Command add_options_page(CLI::App& app) {
+  auto* command = app.add_subcommand("options-page", "print docs/options.md");
+  command->group("");  // for developers: not in --help
+  command->footer("Example:\n  saltus options-page > docs/options.md");
+  return {"options-page", [] {
+            print(pipeline::options_page());
+            return ExitCode::done;
+          }};
+}
+
+}  // namespace saltus::cli

@@ -1,0 +1,32 @@
+// Files a run writes: checked before computing, written whole or not at all.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::cli {
+
+/// The outputs of one run; exists only if all of them can be written.
+class Outputs {
+ public:
+  /// @param files   of --out: .json or .csv
+  /// @param report  of --report: .html; empty for none
+  /// @param input   file that is read and must not be overwritten
+  /// @return the outputs, or an error: a suffix without meaning, a file twice, one that cannot be written, plotly
+  ///         missing.
+  [[nodiscard]] static Expected<Outputs> make(const std::vector<std::string>& files, const std::string& report,
+                                              const std::string& input);
+
+  [[nodiscard]] Expected<void> write(const result::Result& result) const;
+
+ private:
+  std::vector<std::string> files_;
+  std::string report_;
+  std::string plotly_;
+};
+
+}  // namespace saltus::cli

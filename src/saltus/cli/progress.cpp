@@ -1,0 +1,45 @@
+#include "saltus/cli/progress.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+namespace saltus::cli {
+namespace {
+
+constexpr auto interval = std::chrono::milliseconds(100);
+/// A run that ends before this shows no line at all: it would only flicker.
+constexpr auto patience = std::chrono::milliseconds(300);
+
+}  // namespace
+
+std::string progress_text(const pipeline::StepRecord& step) {
+  const double share = (step.t - step.from) / (step.until - step.from);
+  return fmt::format("t = {:.6g}   {:.0f} %   {} steps   {} events", step.t, 100.0 * std::clamp(share, 0.0, 1.0),
+                     step.steps, step.events);
+}
+
+ProgressLine::ProgressLine(ShowProgress show)
+    : shown_(show == ShowProgress::when_terminal && ::isatty(STDERR_FILENO) == 1), next_(Clock::now() + patience) {}
+
+void ProgressLine::update(const pipeline::StepRecord& step) {
+  if (!shown_) return;
+  const auto now = Clock::now();
+  if (now < next_) return;
+  next_ = now + interval;
+  const auto text = progress_text(step);
+  std::fputs(fmt::format("\r{:<{}}", text, width_).c_str(), stderr);
+  std::fflush(stderr);
+  width_ = std::max(width_, text.size());
+}
+
+void ProgressLine::clear() {
+  if (width_ == 0) return;
+  std::fputs(fmt::format("\r{:{}}\r", "", width_).c_str(), stderr);
+  std::fflush(stderr);
+  width_ = 0;
+}
+
+}  // namespace saltus::cli

@@ -1,0 +1,37 @@
+// One line on a terminal that shows how far a simulation is.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+#include "saltus/pipeline/simulate.hpp"
+
+namespace saltus::cli {
+
+enum class ShowProgress { when_terminal, never };
+
+/// Rewrites its line on standard error at most ten times a second; silent if standard error is no terminal.
+class ProgressLine {
+ public:
+  explicit ProgressLine(ShowProgress show);
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine() { clear(); }
+
+  void update(const pipeline::StepRecord& step);
+  /// Takes the line away.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool shown_;
+  std::size_t width_ = 0;
+  Clock::time_point next_;
+};
+
+/// "t = 12.5   31 %   1234 steps   6 events".
+[[nodiscard]] std::string progress_text(const pipeline::StepRecord& step);
+
+}  // namespace saltus::cli

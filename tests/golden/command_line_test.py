@@ -1,0 +1,229 @@
+"""Exit codes, help, tables and messages of the command line."""
+
+import tool
+
+MODEL = """
+[model]
+name = "slow-down"
+description = "two speeds"
+[parameters]
+fast = 3
+[controls]
+u = 0
+[states]
+x = -1
+[dynamics]
+x = "if(x > 0, 1, fast) + u"
+[simulate]
+until = 1.0
+"""
+
+
+class Help(tool.ToolTest):
+    def test_help_and_version_are_no_errors(self):
+        self.assertIn("simulate", self.run_tool("--help", code=0)[0])
+        self.assertRegex(self.run_tool("--version", code=0)[0], r"^saltus \d+\.\d+\.\d+\n$")
+
+    def test_help_names_what_is_there_and_nothing_else(self):
+        text, _ = self.run_tool("--help", code=0)
+        for later in ("optimize", "compare", "mpcc", "options-page"):
+            self.assertNotIn(later, text)
+
+    def test_every_subcommand_ends_with_one_example(self):
+        for command in ("simulate", "check", "report", "models"):
+            text, _ = self.run_tool(command, "--help", code=0)
+            lines = text.rstrip().splitlines()
+            self.assertEqual(lines[-2], "Example:", text)
+            self.assertTrue(lines[-1].startswith(f"  saltus "), text)
+            self.assertIn(f"saltus {command}", lines[-1])
+
+    def test_examples_run(self):
+        for command in ("check", "models", "simulate"):
+            text, _ = self.run_tool(command, "--help", code=0)
+            example = text.rstrip().splitlines()[-1].split(">")[0].split()
+            self.run_tool(*example[1:], code=0)
+
+    def test_help_of_simulate_lists_the_options_table(self):
+        text, _ = self.run_tool("simulate", "--help", code=0)
+        for key in ("event.integrator", "output.every", "initial_mode.*", "max_steps", "[1e-08]"):
+            self.assertIn(key, text)
+
+    def test_the_page_of_options_is_up_to_date(self):
+        page, _ = self.run_tool("options-page", code=0)
+        self.assertEqual(page, (tool.SOURCE / "docs/options.md").read_text(encoding="utf-8"))
+
+
+class BadInput(tool.ToolTest):
+    def refused(self, expected, *arguments):
+        out, err = self.run_tool(*arguments, code=2)
+        self.assertIn(expected, err)
+        self.assertEqual(out, "")
+
+    def test_command_line(self):
+        self.refused("simulate", )
+        self.refused("did you mean 'simulate'?", "simulat", "crossing")
+        self.refused("MODEL", "simulate")
+        self.refused("unexpected argument '--rtoll'", "simulate", "crossing", "--rtoll", "1")
+        self.refused("did you mean '--rtol'", "simulate", "crossing", "--rtoll", "1")
+        self.refused("unexpected argument 'again'", "simulate", "crossing", "again")
+        self.refused("--until abc: error: expected a finite number", "simulate", "crossing", "--until", "abc")
+        self.refused("--rtol -1", "simulate", "crossing", "--rtol", "-1")
+        self.refused("until equals from", "simulate", "crossing", "--until", "0")
+        self.refused("--rtol", "simulate", "crossing", "--rtol")
+
+    def test_later_commands_and_methods(self):
+        for later in ("optimize", "compare", "order", "mpcc"):
+            self.refused("a later one brings it", later, "crossing")
+        self.refused("a later one brings it", "simulate", "crossing", "--method", "fesd")
+        self.refused("a later one brings it", "simulate", "crossing", "--integrator", "radau5")
+        self.refused("a later one brings it", "simulate", "crossing", "--branch", "all")
+        self.refused("a later one brings it", "simulate", "crossing", "--branch", "3")
+
+    def test_models(self):
+        self.refused("did you mean 'crossing'?", "simulate", "crosing")
+        self.refused("no such file", "simulate", "folder/none.toml")
+        self.refused("this is a folder", "check", ".")
+        self.refused("too large", "check", self.write("big.toml", "#" * (16 * 2**20 + 1)))
+
+    def test_settings(self):
+        model = self.write("m.toml", MODEL)
+        self.refused("fast", "simulate", model, "--set", "fst=1")
+        self.refused("expected NAME=VALUE", "simulate", model, "--set", "fast")
+        self.refused("expected NAME=VALUE", "simulate", model, "--set", "fast=")
+        self.refused("--set fast=1+:1:", "simulate", model, "--set", "fast=1+")
+        self.refused("did you mean 'simulate.rtol'?", "simulate", model, "--set", "simulate.rtl=1")
+
+    def test_outputs_are_checked_before_computing(self):
+        model = self.write("m.toml", MODEL)
+        self.refused("must end in .json or .csv", "simulate", model, "--out", "r.txt")
+        self.refused("there is no folder", "simulate", model, "--out", "none/r.json")
+        self.refused("named twice", "simulate", model, "--out", "r.json", "--out", "./r.json")
+        self.refused("must end in .html", "simulate", model, "--report", "r.json")
+        (self.folder / "d.json").mkdir()
+        self.refused("this is a folder", "simulate", model, "--out", "good.json", "--out", "d.json")
+        self.assertFalse((self.folder / "good.json").exists())
+
+    def test_a_missing_plotly_is_told_before_computing(self):
+        model = self.write("m.toml", MODEL)
+        out, err = self.run_tool("simulate", model, "--report", "r.html", code=2,
+                                 environment={"SALTUS_PLOTLY": "/none/plotly.min.js"})
+        self.assertIn("SALTUS_PLOTLY", err)
+
+
+class Simulate(tool.ToolTest):
+    def test_table(self):
+        out, err = self.run_tool("simulate", self.write("m.toml", MODEL), code=0)
+        self.assertEqual(err, "")
+        self.assertRegex(out, r"(?m)^model +slow-down: two speeds$")
+        self.assertRegex(out, r"(?m)^method +event \(dopri5, rtol 1e-08, atol 1e-10\)$")
+        self.assertRegex(out, r"(?m)^status +completed at t = 1$")
+        self.assertRegex(out, r"(?m)^end state +x = 0\.6666666\d*$")
+        self.assertRegex(out, r"(?m)^events +1$")
+        self.assertRegex(out, r"(?m)^  # +t +kind +surfaces +mode$")
+        self.assertRegex(out, r"(?m)^  1 +0\.3333333\d* +crossing +x +- > \+$")
+        self.assertRegex(out, r"(?m)^statistics +\d+ steps, \d+ rejected, \d+ evaluations")
+        self.assertLessEqual(max(map(len, out.splitlines())), 100)
+
+    def test_quiet_prints_nothing(self):
+        self.assertEqual(self.run_tool("simulate", self.write("m.toml", MODEL), "--quiet", code=0), ("", ""))
+
+    def test_settings_change_parameters_states_controls_and_options(self):
+        model = self.write("m.toml", MODEL)
+        def end(*settings):
+            out, _ = self.run_tool("simulate", model, *settings, code=0)
+            return float(out.split("x = ")[1].split()[0])
+        self.assertAlmostEqual(end("--set", "fast=2"), 0.5, 8)
+        self.assertAlmostEqual(end("--set", "x=1/2"), 1.5, 8)
+        self.assertAlmostEqual(end("--set", "u=1"), 1.5, 8)
+        self.assertAlmostEqual(end("--set", "simulate.until=2"), 5 / 3, 8)
+        self.assertAlmostEqual(end("--until", "2"), 5 / 3, 8)
+        self.assertAlmostEqual(end("--set", "simulate.inputs.u=t"), 1.176700684, 5)
+        self.assertAlmostEqual(end("--set", "dynamics.x=1"), 0.0, 8)
+        self.assertAlmostEqual(end("--set", "fast=2", "--set", "x=-0.5", "--integrator", "dop853"), 0.75, 8)
+
+    def test_an_early_stop_has_its_own_code_and_is_written(self):
+        model = self.write("m.toml", MODEL)
+        out, err = self.run_tool("simulate", model, "--set", "simulate.max_steps=1", "--set", "dynamics.x=-sin(x)*x",
+                                 "--until", "1000", "--out", "r.json", code=3)
+        self.assertIn("iteration_limit", out)
+        self.assertIn("stopped early: iteration_limit", err)
+        self.assertTrue((self.folder / "r.json").exists())
+
+    def test_long_event_lists_show_both_ends_and_the_count(self):
+        model = self.write("m.toml", """
+[model]
+name = "many"
+[states]
+x = 0.5
+v = 0
+[dynamics]
+x = "v"
+v = "-x"
+[[events]]
+name = "middle"
+when = "x"
+[simulate]
+until = 100
+""")
+        out, _ = self.run_tool("simulate", model, code=0)
+        self.assertRegex(out, r"(?m)^events +32, the first and the last 10$")
+        rows = [line for line in out.splitlines() if " user " in line]
+        self.assertEqual(len(rows), 20)
+        self.assertTrue(rows[-1].split()[0] == "32" and rows[0].split()[0] == "1")
+
+
+class Check(tool.ToolTest):
+    def test_says_what_a_model_is(self):
+        model = self.write("m.toml", """
+[model]
+name = "m"
+[parameters]
+c = 2
+unused = 1
+[controls]
+u = { initial = 0.5, lower = -1, upper = 1 }
+[states]
+x = 1
+[switching]
+a = "x - 1"
+b = "2 - 2*x"
+[dynamics]
+x = "if(a > 0, 4, 1)*sign(x - 1) + step(b) + abs(x) + step(t - 1) + u*c"
+[simulate]
+until = 1
+""")
+        out, err = self.run_tool("check", model, code=0)
+        for expected in ("x = 1", "c = 2", "u = 0.5  in [-1, 1]", "a: switching function", "kink", "time event",
+                         "b: alias of a, with the sides swapped", "differ in: x", "unused"):
+            self.assertIn(expected, out)
+        self.assertEqual(err, "")
+
+    def test_takes_every_model_of_the_catalogue(self):
+        listed, _ = self.run_tool("models", code=0)
+        for line in listed.splitlines():
+            self.run_tool("check", line.split()[0], code=0)
+
+
+class Models(tool.ToolTest):
+    def test_lists_names_and_descriptions(self):
+        out, _ = self.run_tool("models", code=0)
+        self.assertRegex(out, r"(?m)^stick-slip +a block on a moving belt sticks and slips$")
+        names = [line.split()[0] for line in out.splitlines()]
+        self.assertEqual(names, sorted(path.stem for path in (tool.SOURCE / "models").glob("*.toml")))
+
+    def test_prints_a_file(self):
+        out, _ = self.run_tool("models", "crossing", code=0)
+        self.assertEqual(out, (tool.SOURCE / "models/crossing.toml").read_text(encoding="utf-8"))
+        self.assertIn("did you mean 'crossing'?", self.run_tool("models", "crosing", code=2)[1])
+
+    def test_another_folder_comes_first(self):
+        self.write("crossing.toml", MODEL)
+        self.write("mine.toml", MODEL)
+        out, _ = self.run_tool("models", code=0, environment={"SALTUS_MODELS": str(self.folder)})
+        self.assertRegex(out, r"(?m)^crossing +two speeds$")
+        self.assertRegex(out, r"(?m)^mine +two speeds$")
+        self.assertIn("sliding", out)
+
+
+if __name__ == "__main__":
+    tool.main()

@@ -1,0 +1,69 @@
+"""Ctrl-C: stops at the next step, what was computed is written; progress only where somebody looks."""
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import time
+import unittest
+
+import tool
+
+ENDLESS = """
+[model]
+name = "endless"
+[states]
+x = 1
+v = 0
+[dynamics]
+x = "v"
+v = "-x"
+[simulate]
+until = 1e9
+max_steps = 1000000000
+output = { points = 10 }
+"""
+
+
+class Interrupt(tool.ToolTest):
+    def start(self, **streams):
+        model = self.write("m.toml", ENDLESS)
+        return subprocess.Popen([tool.TOOL, "simulate", str(model), "--out", "r.json"], cwd=self.folder, **streams)
+
+    def test_the_first_one_stops_and_writes(self):
+        process = self.start(stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(2.0)
+        self.assertIsNone(process.poll(), "ended by itself")
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 3, err)
+        self.assertIn("stopped_by_user", out)
+        self.assertIn("stopped_by_user", err)
+        self.assertNotIn("%", err)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertEqual(result["status"]["termination"], "stopped_by_user")
+        self.assertGreater(result["final"]["t"], 0.0)
+        self.assertLess(result["final"]["t"], 1e9)
+        self.assertEqual(result["trajectory"]["t"][-1], result["final"]["t"])
+
+    def test_a_terminal_sees_progress(self):
+        seen, shown = pty.openpty()
+        process = self.start(stdout=subprocess.DEVNULL, stderr=shown)
+        os.close(shown)
+        text = b""
+        while b" %" not in text:
+            text += os.read(seen, 4096)
+        process.send_signal(signal.SIGINT)
+        while True:
+            try:
+                text += os.read(seen, 4096)
+            except OSError:  # the other side closed
+                break
+        self.assertEqual(process.wait(timeout=60), 3)
+        os.close(seen)
+        self.assertRegex(text.decode(), r"\rt = [0-9.e+]+   0 %   \d+ steps   0 events")
+
+
+if __name__ == "__main__":
+    tool.main()

@@ -1,0 +1,110 @@
+"""JSON, CSV and report files of a run."""
+
+import csv
+import hashlib
+import json
+import re
+
+import tool
+
+KEYS = ["format", "saltus", "model", "command", "method", "status", "states", "controls", "switching_functions",
+        "outputs", "final", "events", "trajectory", "statistics", "options"]
+EVENT_KEYS = ["t", "kind", "name", "surfaces", "mode_before", "mode_after", "alpha_before", "alpha_after", "x",
+              "x_after", "unique", "alternatives", "reason"]
+
+
+class Json(tool.ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.run_tool("simulate", "stick-slip", "--out", "r.json", "--out", "r.csv", "--quiet", code=0)
+        self.result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
+    def test_keys_in_order(self):
+        self.assertEqual(list(self.result), KEYS)
+        self.assertEqual(list(self.result["model"])[:3], ["name", "sha256", "parameters"])
+        self.assertEqual(list(self.result["status"]), ["termination", "message", "time_reached"])
+        self.assertEqual(list(self.result["final"]), ["t", "x", "mode", "alpha", "outputs"])
+        self.assertEqual(list(self.result["trajectory"]), ["t", "x", "u", "alpha", "mode", "outputs"])
+        self.assertEqual(list(self.result["statistics"]), ["steps", "rejected", "rhs_evaluations", "wall_seconds"])
+        for event in self.result["events"]:
+            self.assertEqual(list(event), EVENT_KEYS)
+
+    def test_content(self):
+        result = self.result
+        self.assertEqual(result["format"], "saltus-result/1")
+        self.assertEqual(result["model"]["sha256"],
+                         hashlib.sha256((tool.SOURCE / "models/stick-slip.toml").read_bytes()).hexdigest())
+        self.assertEqual(result["status"]["termination"], "completed")
+        self.assertEqual(result["states"], ["q", "v"])
+        self.assertEqual(result["switching_functions"], ["slip"])
+        self.assertAlmostEqual(result["final"]["x"][0], 0.62894363667354, 6)
+        self.assertEqual(result["options"]["simulate.rtol"], 1e-8)
+        self.assertEqual(result["options"]["simulate.event.integrator"], "dopri5")
+        self.assertEqual(result["options"]["simulate.output.points"], 1001)
+
+    def test_every_event_has_two_rows(self):
+        times = self.result["trajectory"]["t"]
+        for event in self.result["events"]:
+            self.assertGreaterEqual(times.count(event["t"]), 2)
+
+    def test_csv_holds_the_same_trajectory(self):
+        with open(self.folder / "r.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(rows[0], ["t", "q", "v", "alpha(slip)", "mode(slip)"])
+        trajectory = self.result["trajectory"]
+        self.assertEqual(len(rows) - 1, len(trajectory["t"]))
+        for row, t, x in zip(rows[1:], trajectory["t"], trajectory["x"]):
+            self.assertEqual([float(field) for field in row[:3]], [t, *x])
+
+    def test_the_page_of_a_stored_result_is_that_of_the_run(self):
+        out, _ = self.run_tool("report", "r.json", code=0)
+        self.assertEqual(out, "r.html\n")
+        page = (self.folder / "r.html").read_text(encoding="utf-8")
+        self.assertIn("stick-slip", page)
+        self.assertNotRegex(page, r"<(script|link)[^>]+(src|href)=")
+        self.run_tool("report", "r.json", "--out", "other.html", code=0)
+        self.assertEqual(page, (self.folder / "other.html").read_text(encoding="utf-8"))
+
+    def test_runs_write_equal_results_but_for_the_clock(self):
+        self.run_tool("simulate", "stick-slip", "--out", "s.json", "--quiet", code=0)
+        def timeless(name):
+            return re.sub(r'"wall_seconds": [^\n]*', "", (self.folder / name).read_text(encoding="utf-8"))
+        self.assertEqual(timeless("r.json"), timeless("s.json"))
+
+
+class Atomicity(tool.ToolTest):
+    def test_an_existing_file_survives_a_run_that_fails(self):
+        model = self.write("m.toml", '[model]\nname = "m"\n[states]\nx = 0\n[dynamics]\nx = "y"\n[simulate]\nuntil = 1\n')
+        self.write("r.json", "precious")
+        self.run_tool("simulate", model, "--out", "r.json", code=2)
+        self.assertEqual((self.folder / "r.json").read_text(), "precious")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["m.toml", "r.json"])
+
+    def test_the_input_is_never_overwritten(self):
+        self.run_tool("simulate", "crossing", "--out", "r.json", "--quiet", code=0)
+        before = (self.folder / "r.json").read_bytes()
+        self.run_tool("report", "r.json", "--out", "r.json", code=2)
+        self.assertEqual((self.folder / "r.json").read_bytes(), before)
+
+
+class Malformed(tool.ToolTest):
+    def refused(self, name, expected):
+        _, err = self.run_tool("report", name, code=2)
+        self.assertIn(expected, err)
+        self.assertIn(str(name), err)
+
+    def test_results(self):
+        self.refused("none.json", "no such file")
+        self.write("empty.json", "")
+        self.refused("empty.json", "the file is empty")
+        self.write("cut.json", '{\n  "format": "saltus-result/1",\n  "mod')
+        self.refused("cut.json", "cut.json:3:")
+        self.write("other.json", '{"a": 1}')
+        self.refused("other.json", "'format' is missing")
+        self.write("newer.json", '{"format": "saltus-result/9"}')
+        self.refused("newer.json", "saltus-result/9")
+        self.assertFalse(list(self.folder.glob("*.html")))
+
+
+if __name__ == "__main__":
+    tool.main()

@@ -1,0 +1,162 @@
+#include "saltus/io/json_result.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace saltus::io {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// One of everything, with values whose shortest text is long.
+result::Result sample() {
+  result::Result r;
+  r.model = {"stick-slip", "a \"block\", on a belt", "00ff", {{"mu", 0.1 + 0.2}, {"a", -0.0}}};
+  r.status = {result::Termination::iteration_limit, "too many\nsteps", 5e-324};
+  r.states = {"q", "v"};
+  r.controls = {"u"};
+  r.switching_functions = {"slip", "q-max(v,0.2)"};
+  r.outputs = {"power"};
+  r.final = {2.0, {1.7976931348623157e308, 0.2}, {0, -1}, {1.0 / 3.0, 0.0}, {nan}};
+  result::Event event;
+  event.t = 0.24468880178327183;
+  event.kind = result::EventKind::enter_sliding;
+  event.surfaces = {"slip"};
+  event.mode_before = result::Mode{-1, -1};
+  event.mode_after = result::Mode{0, -1};
+  event.alpha_before = std::vector<double>{0.0, 0.0};
+  event.alpha_after = std::vector<double>{nan, 0.0};
+  event.x = {0.1, 0.2};
+  event.x_after = {0.1, 0.2};
+  event.unique = false;
+  event.alternatives = {{{1, -1}, {1.0, 0.0}}, {{0, -1}, {nan, 0.0}}};
+  event.reason = "both fields point to the surface";
+  r.events.push_back(event);
+  event = {};
+  event.kind = result::EventKind::user;
+  event.name = "returns";
+  event.x = event.x_after = {0.0, 1e-300};
+  event.unique = std::nullopt;
+  r.events.push_back(event);
+  r.trajectory.t = {0.0, 2.0};
+  r.trajectory.x = {{0.1, -0.0}, {1e22, 123456789.123456789}};
+  r.trajectory.u = {{1.0}, {-2.5}};
+  r.trajectory.alpha = {{nan, 1.0}, {0.25, 0.0}};
+  r.trajectory.mode = {{0, 1}, {0, -1}};
+  r.trajectory.outputs = {{3.0}, {4.0}};
+  r.statistics = {12, 3, 9007199254740993, 0.01};
+  r.options = {{"simulate.rtol", 1e-8},
+               {"simulate.max_steps", std::int64_t{1000000}},
+               {"simulate.output", std::string("steps")},
+               {"simulate.from", 0.0},
+               {"simulate.output.times", std::vector<double>{0.5, 1.0}},
+               {"flag", true}};
+  return r;
+}
+
+// Texts are compared, since NaN is unequal to itself: equal values give equal texts.
+TEST(JsonResult, ReadsBackEqual) {
+  const auto original = sample();
+  const auto text = to_json(original);
+  const auto read = parse_result(text, "r.json");
+  ASSERT_TRUE(read) << to_text(read.error());
+  EXPECT_EQ(to_json(*read), text);
+  EXPECT_EQ(read->trajectory.x, original.trajectory.x);
+  EXPECT_TRUE(std::signbit(read->trajectory.x[0][1]));
+  EXPECT_EQ(read->model.parameters, original.model.parameters);
+  EXPECT_EQ(read->model.description, original.model.description);
+  EXPECT_EQ(read->status.message, original.status.message);
+  EXPECT_EQ(read->status.time_reached, 5e-324);
+  EXPECT_EQ(read->options, original.options);
+  EXPECT_EQ(read->events[0].mode_before, original.events[0].mode_before);
+  EXPECT_EQ(read->events[0].alternatives.size(), 2U);
+  EXPECT_EQ(read->events[0].unique, std::optional<bool>(false));
+  EXPECT_EQ(read->events[1].unique, std::nullopt);
+  EXPECT_EQ(read->events[1].mode_before, std::nullopt);
+  EXPECT_EQ(read->events[1].name, "returns");
+  EXPECT_EQ(read->statistics.rhs_evaluations, 9007199254740993);
+}
+
+TEST(JsonResult, WritesNonFiniteNumbersAsNullAndReadsThemAsNan) {
+  const auto text = to_json(sample());
+  EXPECT_NE(text.find("\"outputs\": [null]"), std::string::npos) << text;
+  const auto read = parse_result(text, "r.json");
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(std::isnan(read->final.outputs[0]));
+}
+
+TEST(JsonResult, KeysAreInTheOrderOfTheContract) {
+  const auto text = to_json(sample());
+  std::size_t place = 0;
+  for (const auto* key : {"format", "saltus", "model", "command", "method", "status", "states", "controls",
+                          "switching_functions", "outputs", "final", "events", "trajectory", "statistics", "options"}) {
+    const auto next = text.find("\n  \"" + std::string(key) + "\": ", place);
+    ASSERT_NE(next, std::string::npos) << key;
+    place = next;
+  }
+}
+
+struct Damage {
+  const char* what;
+  const char* from;
+  const char* to;
+  const char* expected;
+};
+
+class DamagedResult : public testing::TestWithParam<Damage> {};
+
+TEST_P(DamagedResult, IsRefusedWithItsPlace) {
+  auto text = to_json(sample());
+  const auto place = text.find(GetParam().from);
+  ASSERT_NE(place, std::string::npos);
+  text.replace(place, std::string(GetParam().from).size(), GetParam().to);
+  const auto read = parse_result(text, "r.json");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().location.file, "r.json");
+  EXPECT_NE(to_text(read.error()).find(GetParam().expected), std::string::npos) << to_text(read.error());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, DamagedResult,
+    testing::Values(
+        Damage{"format", "saltus-result/1", "saltus-result/2", "at /format: expected \"saltus-result/1\""},
+        Damage{"missing key", "\"command\"", "\"comand\"", "'command' is missing"},
+        Damage{"kind", "enter_sliding", "entering", "at /events/0/kind: 'entering' is no kind"},
+        Damage{"termination", "iteration_limit", "tired", "at /status/termination: 'tired' is no termination"},
+        Damage{"type", "\"states\": [\"q\",\"v\"]", "\"states\": [1,2]", "at /states: expected a text, found 1"},
+        Damage{"mode", "[0,-1],", "[2,-1],", "expected -1, 0 or 1, found 2"},
+        Damage{"width", "\"controls\": [\"u\"]", "\"controls\": []", "at /trajectory/u/0: expected 0 entries, found 1"},
+        Damage{"rows", "\"t\": [0.0,2.0]", "\"t\": [0.0]",
+               "at /trajectory/x: expected as many rows as times, 1, found 2"},
+        Damage{"syntax", "\"saltus\": ", "\"saltus\" ", "r.json:3:"}),
+    [](const auto& damage) {
+      std::string name = damage.param.what;
+      std::replace(name.begin(), name.end(), ' ', '_');
+      return name;
+    });
+
+TEST(JsonResult, RefusesTextsThatAreNoResult) {
+  EXPECT_NE(to_text(parse_result("", "r.json").error()).find("the file is empty"), std::string::npos);
+  EXPECT_NE(to_text(parse_result("[]", "r.json").error()).find("expected an object, found array"), std::string::npos);
+  EXPECT_NE(to_text(parse_result("{", "r.json").error()).find("not valid JSON"), std::string::npos);
+  EXPECT_FALSE(parse_result(std::string(100000, '['), "r.json"));
+  EXPECT_FALSE(parse_result(R"({"format": 1e999})", "r.json"));
+  const auto whole = to_json(sample());
+  for (std::size_t length = 0; length + 2 < whole.size(); length += 7) {
+    EXPECT_FALSE(parse_result(whole.substr(0, length), "r.json")) << length;
+  }
+}
+
+TEST(CsvTrajectory, HasTheHeaderOfTheContractWithQuotedNames) {
+  const auto text = to_csv(sample());
+  const auto header = text.substr(0, text.find('\n'));
+  EXPECT_EQ(header, "t,q,v,u,alpha(slip),\"alpha(q-max(v,0.2))\",mode(slip),\"mode(q-max(v,0.2))\"");
+  EXPECT_NE(text.find("\n2,1e+22,123456789.12345679,-2.5,0.25,0,0,-1\n"), std::string::npos) << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+}
+
+}  // namespace
+}  // namespace saltus::io

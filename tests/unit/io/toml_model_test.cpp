@@ -1,0 +1,263 @@
+#include "saltus/io/toml_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "saltus/expression/parser.hpp"
+
+namespace saltus::io {
+namespace {
+
+constexpr std::string_view whole = R"toml([model]
+name = "sample"
+description = "one of everything"
+inclusion = "aizerman_pyatnitskii"
+
+[parameters]
+mu = 0.8
+nu = "2*mu"
+k = { initial = "mu + 1", lower = 0, upper = inf, free = false }
+
+[states]
+z = 1
+a = { initial = "-mu", lower = -10, upper = "2*mu" }
+
+[controls]
+w = 3
+u = { lower = -5, upper = 5, initial = 0.5 }
+
+[definitions]
+spring = "-z"
+
+[switching]
+slip = "a - 0.2"
+
+[dynamics]
+z = "a"
+a = "spring + u - mu*sign(slip)"
+
+[outputs]
+power = "mu*a"
+one = 1
+
+[[events]]
+name = "returns"
+when = "z"
+direction = "up"
+
+[[events]]
+when = "a > 1"
+stop = true
+
+[simulate]
+until = 40
+from = -1.5
+method = "event"
+rtol = 1e-9
+atol = 0
+output = { times = [0, 1.5, 40] }
+inputs = { u = "sin(t)" }
+native = "off"
+max_steps = 1e5
+initial_mode = { slip = 0 }
+[simulate.event]
+integrator = "dop853"
+max_step = 0.5
+branches = "report"
+)toml";
+
+ModelFile parsed(std::string_view text) {
+  auto model = parse_model(text, "m.toml");
+  EXPECT_TRUE(model) << to_text(model.error());
+  return model.value_or(ModelFile{});
+}
+
+template <class Item>
+std::vector<std::string> names(const std::vector<Item>& items) {
+  std::vector<std::string> list;
+  for (const auto& item : items) list.push_back(item.name);
+  return list;
+}
+
+TEST(TomlModel, ReadsEveryTableInTheOrderOfTheFile) {
+  const auto description = parsed(whole).description;
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(description.name, "sample");
+  EXPECT_EQ(description.description, "one of everything");
+  EXPECT_EQ(description.inclusion, model::Inclusion::aizerman_pyatnitskii);
+  EXPECT_EQ(names(description.parameters), (Names{"mu", "nu", "k"}));
+  EXPECT_EQ(names(description.states), (Names{"z", "a"}));
+  EXPECT_EQ(names(description.controls), (Names{"w", "u"}));
+  EXPECT_EQ(names(description.outputs), (Names{"power", "one"}));
+  EXPECT_EQ(names(description.definitions), Names{"spring"});
+  EXPECT_EQ(names(description.switching), Names{"slip"});
+  EXPECT_EQ(names(description.dynamics), (Names{"z", "a"}));
+  EXPECT_EQ(names(description.inputs), Names{"u"});
+  EXPECT_EQ(expression::to_text(*description.parameters[2].expression), "mu+1");
+  EXPECT_EQ(expression::to_text(*description.states[1].upper), "2*mu");
+  EXPECT_EQ(description.states[0].lower, nullptr);
+  EXPECT_EQ(expression::to_text(*description.controls[1].initial), "0.5");
+}
+
+TEST(TomlModel, ReadsEvents) {
+  const auto events = parsed(whole).description.events;
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].name, "returns");
+  EXPECT_EQ(events[0].direction, model::Direction::up);
+  EXPECT_EQ(events[0].action, model::AtEvent::record);
+  EXPECT_EQ(events[1].name, std::nullopt);
+  EXPECT_EQ(events[1].direction, model::Direction::both);
+  EXPECT_EQ(events[1].action, model::AtEvent::stop);
+  EXPECT_EQ(expression::to_text(*events[1].when), "a>1");
+}
+
+TEST(TomlModel, ReadsOptions) {
+  const auto options = parsed(whole).simulate;
+  EXPECT_EQ(options.until, 40.0);
+  EXPECT_EQ(options.from, -1.5);
+  EXPECT_EQ(options.rtol, 1e-9);
+  EXPECT_EQ(options.atol, 0.0);
+  EXPECT_EQ(options.max_steps, 100000);
+  EXPECT_EQ(options.native, pipeline::Native::off);
+  EXPECT_EQ(options.event.integrator, pipeline::Integrator::dop853);
+  EXPECT_EQ(options.event.max_step, 0.5);
+  ASSERT_EQ(options.initial_mode.size(), 1U);
+  EXPECT_EQ(options.initial_mode[0], (std::pair<std::string, int>("slip", 0)));
+  const auto* times = std::get_if<pipeline::AtTimes>(&options.output);
+  ASSERT_NE(times, nullptr);
+  EXPECT_EQ(times->times, (std::vector<double>{0, 1.5, 40}));
+  EXPECT_TRUE(check_options(parsed(whole)));
+}
+
+TEST(TomlModel, ReadsEveryFormOfOutput) {
+  const std::string head = "[model]\nname='m'\n[simulate]\noutput = ";
+  EXPECT_TRUE(std::holds_alternative<pipeline::EveryStep>(parsed(head + "'steps'").simulate.output));
+  EXPECT_EQ(std::get<pipeline::EveryInterval>(parsed(head + "{ every = 0.25 }").simulate.output).interval, 0.25);
+  EXPECT_EQ(std::get<pipeline::NumberOfPoints>(parsed(head + "{ points = 7 }").simulate.output).points, 7);
+}
+
+TEST(TomlModel, TheFingerprintIsThatOfTheBytes) {
+  EXPECT_EQ(parsed("[model]\nname = \"m\"\n").sha256,
+            "9244c2122fabbe47a6c96373cf73373dea8dd270ab685bac1f0e09bd5b179a5b");
+}
+
+// Expressions carry the positions of the file, whichever quotes they stand in.
+struct Placed {
+  const char* value;
+  int line, column;  ///< of the name `b`
+};
+
+class ExpressionPosition : public testing::TestWithParam<Placed> {};
+
+TEST_P(ExpressionPosition, IsThatOfTheFile) {
+  const auto model = parsed(std::string("[model]\nname = 'm'\n[dynamics]\nx = ") + GetParam().value + "\n");
+  ASSERT_EQ(model.description.dynamics.size(), 1U);
+  const auto* sum = std::get_if<expression::Binary>(&model.description.dynamics[0].expression->value);
+  ASSERT_NE(sum, nullptr);
+  EXPECT_EQ(sum->right->location.file, "m.toml");
+  EXPECT_EQ(sum->right->location.line, GetParam().line);
+  EXPECT_EQ(sum->right->location.column, GetParam().column);
+}
+
+INSTANTIATE_TEST_SUITE_P(Quotes, ExpressionPosition,
+                         testing::Values(Placed{"\"a + b\"", 4, 10}, Placed{"'a + b'", 4, 10},
+                                         Placed{"\"\"\"a + b\"\"\"", 4, 12}, Placed{"'''a +\n  b'''", 5, 3},
+                                         Placed{"\"\"\"\na +\n  b\"\"\"", 6, 3}, Placed{"'''\na + b'''", 5, 5},
+                                         Placed{"'''\r\na + b'''", 5, 5}));
+
+TEST(TomlModel, NamesAndTablesCarryTheirPositions) {
+  const auto model = parsed(whole);
+  EXPECT_EQ(model.description.states[1].location.line, 13);
+  EXPECT_EQ(model.description.states[1].location.column, 1);
+  EXPECT_EQ(model.description.states[1].initial->location.line, 13);
+  EXPECT_EQ(model.description.events[1].location.line, 38);
+}
+
+TEST(TomlModel, ProblemsBetweenOptionsNameTheirPlace) {
+  const auto model = parsed("[model]\nname='m'\n[simulate]\nuntil = 1\noutput = { times = [0.5, 2] }\n");
+  const auto checked = check_options(model);
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().location.line, 5);
+  EXPECT_NE(checked.error().message.find("output time 2"), std::string::npos);
+  const auto without_end = check_options(parsed("[model]\nname='m'\n"));
+  ASSERT_FALSE(without_end);
+  EXPECT_NE(without_end.error().message.find("no end time"), std::string::npos);
+}
+
+// ---- settings ----
+
+TEST(Settings, ReachOptionsInputsAndExpressions) {
+  auto model = parsed(whole);
+  const std::vector<std::pair<std::string, std::string>> settings{{"simulate.rtol", "1e-6"},
+                                                                  {"simulate.until", "2*pi"},
+                                                                  {"simulate.event.integrator", "dopri5"},
+                                                                  {"simulate.output.every", "1/4"},
+                                                                  {"simulate.initial_mode.slip", "-1"},
+                                                                  {"simulate.event.max_step", "none"},
+                                                                  {"simulate.inputs.w", "t^2"},
+                                                                  {"simulate.inputs.u", "cos(t)"},
+                                                                  {"states.a.lower", "-3"},
+                                                                  {"dynamics.z", "2*a"},
+                                                                  {"parameters.mu", "0.5"},
+                                                                  {"model.inclusion", "filippov"}};
+  for (const auto& [key, value] : settings) {
+    auto changed = with_setting(model, key, value);
+    ASSERT_TRUE(changed) << key << "\n" << to_text(changed.error());
+    model = std::move(*changed);
+  }
+  EXPECT_EQ(model.simulate.rtol, 1e-6);
+  EXPECT_EQ(model.simulate.until, 2 * 3.14159265358979323846);
+  EXPECT_EQ(model.simulate.event.integrator, pipeline::Integrator::dopri5);
+  EXPECT_EQ(std::get<pipeline::EveryInterval>(model.simulate.output).interval, 0.25);
+  EXPECT_EQ(model.simulate.initial_mode[0].second, -1);
+  EXPECT_EQ(model.simulate.event.max_step, std::nullopt);
+  EXPECT_EQ(names(model.description.inputs), (std::vector<std::string>{"u", "w"}));
+  EXPECT_EQ(expression::to_text(*model.description.inputs[0].expression), "cos(t)");
+  EXPECT_EQ(expression::to_text(*model.description.states[1].lower), "-3");
+  EXPECT_EQ(expression::to_text(*model.description.dynamics[0].expression), "2*a");
+  EXPECT_EQ(expression::to_text(*model.description.parameters[0].expression), "0.5");
+  EXPECT_EQ(model.description.inclusion, model::Inclusion::filippov);
+}
+
+TEST(Settings, ReachListsAndNamesWithDots) {
+  const auto options = with_option({}, "simulate.output.times", "[0, 1/2, 1]");
+  ASSERT_TRUE(options);
+  EXPECT_EQ(std::get<pipeline::AtTimes>(options->output).times, (std::vector<double>{0, 0.5, 1}));
+  const auto mode = with_option({}, "simulate.initial_mode.v-0.2", "1");
+  ASSERT_TRUE(mode);
+  EXPECT_EQ(mode->initial_mode[0].first, "v-0.2");
+}
+
+struct Refused {
+  const char* key;
+  const char* value;
+  const char* expected;
+};
+
+class RefusedSetting : public testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedSetting, SaysWhyAndWhichKey) {
+  const auto changed = with_setting(parsed(whole), GetParam().key, GetParam().value);
+  ASSERT_FALSE(changed);
+  const auto text = to_text(changed.error());
+  EXPECT_NE(text.find(GetParam().expected), std::string::npos) << text;
+  EXPECT_NE(text.find(std::string("--set ") + GetParam().key), std::string::npos) << text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, RefusedSetting,
+                         testing::Values(Refused{"simulate.rtoll", "1", "did you mean 'simulate.rtol'"},
+                                         Refused{"simulate.integrator", "dopri5",
+                                                 "did you mean 'simulate.event.integrator'"},
+                                         Refused{"simulate.rtol", "0", "expected a finite number > 0, found 0"},
+                                         Refused{"simulate.rtol", "tight", "found \"tight\""},
+                                         Refused{"simulate.rtol", "nan", "expected a finite number > 0"},
+                                         Refused{"simulate.method", "fesd", "a later one brings it"},
+                                         Refused{"simulate.event.integrator", "dopri6", "did you mean 'dopri5'"},
+                                         Refused{"simulate.event.branches", "3", "a later one brings it"},
+                                         Refused{"simulate.inputs.u", "sin(", "simulate.inputs.u"},
+                                         Refused{"states.y", "1", "the model has no 'y'"},
+                                         Refused{"statess.z", "1", "did you mean 'states'"},
+                                         Refused{"dynamics.a", "1 +", "--set dynamics.a:1:"},
+                                         Refused{"model.inclusion", "filipov", "did you mean 'filippov'"}));
+
+}  // namespace
+}  // namespace saltus::io
