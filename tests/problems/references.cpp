@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +25,8 @@ ReferenceEvent event_of(const json& entry) {
                        .alternatives = {}};
   if (!entry.at("mode_before").is_null()) event.mode_before = entry.at("mode_before").get<std::vector<int>>();
   if (entry.contains("unique")) event.unique = entry.at("unique").get<bool>();
-  for (const json& other : entry.value("alternatives", json::array())) {
+  const json alternatives = entry.value("alternatives", json::array());
+  for (const json& other : alternatives) {
     event.alternatives.push_back({.mode = other.at("mode"), .alpha = other.at("alpha")});
   }
   return event;
@@ -55,7 +57,8 @@ std::vector<ReferenceProblem> read() {
   std::ifstream file(SALTUS_SOURCE_DIR "/tests/problems/references.json");
   if (!file) throw std::runtime_error("cannot open tests/problems/references.json");
   std::vector<ReferenceProblem> problems;
-  for (const json& entry : json::parse(file).at("problems")) problems.push_back(problem_of(entry));
+  const json document = json::parse(file);
+  for (const json& entry : document.at("problems")) problems.push_back(problem_of(entry));
   return problems;
 }
 
@@ -79,6 +82,8 @@ std::string test_name(const ReferenceProblem& problem) {
   std::replace_if(name.begin(), name.end(), is_other, '_');
   return name;
 }
+
+void PrintTo(const ReferenceProblem& problem, std::ostream* out) { *out << test_name(problem); }
 
 std::vector<std::string> catalogue() {
   std::vector<std::string> names;

@@ -1,6 +1,7 @@
 // Reference solutions of the catalogue's models (references.json, written by make_references.py).
 #pragma once
 
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,6 +45,8 @@ struct ReferenceProblem {
 [[nodiscard]] const ReferenceProblem& reference(const std::string& model);
 /// "stick_slip_from_outside": what GoogleTest accepts as a name.
 [[nodiscard]] std::string test_name(const ReferenceProblem& problem);
+/// How GoogleTest prints a parameter (its name for such a function).
+void PrintTo(const ReferenceProblem& problem, std::ostream* out);
 /// Names of all models of the catalogue, from the files in models/, sorted.
 [[nodiscard]] std::vector<std::string> catalogue();
 
