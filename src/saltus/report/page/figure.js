@@ -69,7 +69,13 @@ saltus.curveTraces = (result, panel, axis, view) => panel.curves.map(
       hoverinfo: "none",
       connectgaps: false,
       ...saltus.points(result.trajectory.t, curve.values, view.window, view.pixels),
-      line: {color: saltus.curveColour(panel, i, view.palette), width: 1.6, shape: curve.stepwise ? "hv" : "linear"},
+      // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
+      line: {
+        simplify: false,
+        color: saltus.curveColour(panel, i, view.palette),
+        width: 1.6,
+        shape: curve.stepwise ? "hv" : "linear"
+      },
     }));
 
 saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) => {
@@ -82,8 +88,11 @@ saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) =
   return saltus.curveTraces(result, panel, axis, view);
 });
 
+saltus.panelDomain =
+    (panel, stack) => [Math.max(0, 1 - (panel.top + panel.height) / stack.height), 1 - panel.top / stack.height];
+
 saltus.panelAxis = (panel, stack, palette, result) => {
-  const domain = [Math.max(0, 1 - (panel.top + panel.height) / stack.height), 1 - panel.top / stack.height];
+  const domain = saltus.panelDomain(panel, stack);
   const bare = {domain, fixedrange: true, showgrid: false, zeroline: false, showticklabels: false, ticks: ""};
   if (panel.kind === "events") return {...bare, range: [0, 1]};
   if (panel.kind === "modes") return {...bare, range: [-0.5, result.switching_functions.length - 0.5]};
@@ -132,19 +141,11 @@ saltus.panelLabels = (panel, stack, palette, result) => {
 };
 
 /** A thin frame around every panel of curves. */
-saltus.frameShapes = (stack, palette) =>
-    stack.panels.filter((panel) => panel.kind === "curves").map((panel) => ({
-                                                                  type: "rect",
-                                                                  xref: "paper",
-                                                                  yref: "paper",
-                                                                  x0: 0,
-                                                                  x1: 1,
-                                                                  y0: Math.max(
-                                                                      0, 1 - (panel.top + panel.height) / stack.height),
-                                                                  y1: 1 - panel.top / stack.height,
-                                                                  line: {color: palette.axis, width: 1},
-                                                                  layer: "above",
-                                                                }));
+saltus.frameShapes = (stack, palette) => stack.panels.filter((panel) => panel.kind === "curves").map((panel) => {
+  const [y0, y1] = saltus.panelDomain(panel, stack);
+  const line = {color: palette.axis, width: 1};
+  return {type: "rect", xref: "paper", yref: "paper", x0: 0, x1: 1, y0, y1, line, layer: "above"};
+});
 
 saltus.labelWidth = (result) => {
   const longest = (names, extra = 0) =>

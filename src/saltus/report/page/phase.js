@@ -34,7 +34,8 @@ saltus.phaseParts = (result, columns, rows, sliding) => {
 saltus.phaseTraces = (result, choice, rows, sliding, events, palette) => {
   const columns = choice.map((i) => result.trajectory.x[i]);
   const parts = saltus.phaseParts(result, columns, rows, sliding);
-  const line = (part, color, width, name) => ({type: "scatter", mode: "lines", ...part, name, line: {color, width}});
+  const line = (part, color, width, name) =>
+      ({type: "scatter", mode: "lines", ...part, name, line: {simplify: false, color, width}});
   const point = (i, name, symbol) => ({
     type: "scatter",
     mode: "markers",

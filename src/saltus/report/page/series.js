@@ -45,7 +45,7 @@ saltus.rowsAtOneTime = (t, i) => {
 saltus.maximumPairs = 2000;
 
 /**
- * Rows of [begin, end) to draw: all if there are few, else per bucket of time (half a pixel) the first, least, greatest
+ * Rows of [begin, end) to draw: all if there are few, else per bucket of time (a pixel) the first, least, greatest
  * and last, for each of the columns, and both rows of every event.
  */
 saltus.rowsToDraw = (t, columns, [begin, end], buckets) => {

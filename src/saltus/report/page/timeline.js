@@ -17,7 +17,7 @@ saltus.timeline = (result, holder, listeners) => {
 
   const view = () => {
     const marks = saltus.visibleMarks(result, shown, window_);
-    const pixels = 2 * Math.max(200, holder.clientWidth);
+    const pixels = Math.max(200, holder.clientWidth);
     return {window: window_, ranges, selected, sliding, marks, pixels, palette: saltus.palette()};
   };
 
