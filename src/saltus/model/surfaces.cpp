@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <optional>
 
 #include "saltus/base/function_ref.hpp"
 #include "saltus/model/sharing_internal.hpp"
@@ -15,6 +15,8 @@ namespace {
 constexpr int enough_points = 64;
 constexpr int seeded_starts = 192;
 constexpr int neighbour_limit = 32;
+/// Part of a branch difference nearby that still counts as none on the surface. Ten times larger would hide weak
+/// friction beside strong springs, ten times smaller would come near the accuracy of the points.
 constexpr double jump_tolerance = 1e-9;
 
 double entry(const std::vector<double>& values, int index) { return values[static_cast<std::size_t>(index)]; }
@@ -174,42 +176,108 @@ class SurfaceWalk {
   std::vector<int> variables_;
 };
 
-/// Targets at a point on a surface for chosen values of its alpha; the other alphas are the signs there.
-class SurfaceValues {
- public:
-  SurfaceValues(const Tape& tape, const std::vector<int>& targets, int alpha)
-      : tape_(tape), alpha_(alpha), cone_(tape.cone(targets, Links::through_alpha)) {}
+/// Three values of a target: for alpha_j = 0, 1/2 and 1.
+using Triple = std::array<double, 3>;
 
-  void at(Point point, const std::vector<double>& scale, double alpha) {
-    // The others are read with alpha = 1 once and then held: where one of them vanishes at the point, too, its rounding
-    // must not pass for a jump.
-    const auto own = static_cast<std::size_t>(tape_[alpha_].variable);
-    point[own] = 1.0;
-    evaluate(tape_, cone_, point, values);
-    for (const int node : cone_) {
-      if (tape_[node].psi < 0 || node == alpha_) continue;
-      point[static_cast<std::size_t>(tape_[node].variable)] = entry(values.value, node) > 0.5 ? 1.0 : 0.0;
-    }
-    point[own] = alpha;
-    std::vector<double> position_error(scale.size());
-    for (std::size_t i = 0; i < scale.size(); ++i) position_error[i] = jump_tolerance * scale[i];
-    evaluate_with_bounds(tape_, cone_, point, position_error, jump_tolerance, values);
+/// Targets at a point on a surface and a step away from it, the other alphas being the signs at the point.
+class Profiler {
+ public:
+  Profiler(const Tape& tape, const Surface& surface, const std::vector<int>& targets)
+      : tape_(tape), surface_(surface), targets_(targets) {
+    std::vector<int> roots = targets;
+    roots.push_back(surface.psi);
+    cone_ = tape.cone(roots, Links::through_alpha);
   }
 
-  TapeValues values;
+  void at(Point point, const std::vector<double>& scale) {
+    hold_others(point);
+    psi_here_ = triples(point, scale, here_, Rounding::bounded);
+    for (std::size_t i = 0; i < scale.size(); ++i) {
+      if (scale[i] > 0.0) point[i] += 0.1 * scale[i] * seeded_draw(9000, i);
+    }
+    psi_nearby_ = triples(point, scale, nearby_, Rounding::ignored);
+  }
+
+  /// Whether a difference of a target's three values is more than what remains of a difference that vanishes on the
+  /// surface itself: rounding, and the part of its value nearby that belongs to the |psi| the point is left with (its
+  /// square root, as for sqrt(abs(psi))). Differences that are not finite do not count.
+  [[nodiscard]] std::optional<bool> exceeds(std::size_t target, double (*difference)(const Triple&)) const {
+    const double found = std::abs(difference(here_[target]));
+    if (!std::isfinite(found)) return std::nullopt;
+    const double nearby = std::abs(difference(nearby_[target]));
+    const double size = std::max(std::abs(here_[target][0]), std::abs(here_[target][2]));
+    // A branch that is undefined on the other side (sqrt) has no value nearby; its size has to do.
+    const double reference = std::isfinite(nearby) ? nearby : size;
+    const double distance = std::sqrt(std::abs(psi_here_ / psi_nearby_));
+    const double part = std::isfinite(distance) ? std::max(jump_tolerance, 10.0 * distance) : jump_tolerance;
+    const double rounding = std::isfinite(bound_[target]) ? std::min(bound_[target], 1e-5 * size) : 0.0;
+    return found > part * reference + rounding;
+  }
 
  private:
+  enum class Rounding { bounded, ignored };
+
+  /// Read once with alpha_j = 1 and then held: where another psi vanishes at the point, too, its rounding must not pass
+  /// for a jump.
+  void hold_others(Point& point) {
+    const auto own = static_cast<std::size_t>(tape_[surface_.alpha].variable);
+    point[own] = 1.0;
+    evaluate(tape_, cone_, point, values_);
+    for (const int node : cone_) {
+      if (tape_[node].psi < 0 || node == surface_.alpha) continue;
+      point[static_cast<std::size_t>(tape_[node].variable)] = entry(values_.value, node) > 0.5 ? 1.0 : 0.0;
+    }
+  }
+
+  /// @return psi_j at the point
+  double triples(Point& point, const std::vector<double>& scale, std::vector<Triple>& triples, Rounding rounding) {
+    constexpr double unit = 4.0 * std::numeric_limits<double>::epsilon();
+    const auto own = static_cast<std::size_t>(tape_[surface_.alpha].variable);
+    std::vector<double> position_error;
+    if (rounding == Rounding::bounded) {
+      for (const double size : scale) position_error.push_back(unit * size);
+      bound_.assign(targets_.size(), 0.0);
+    }
+    triples.assign(targets_.size(), {});
+    for (std::size_t k = 0; k < 3; ++k) {
+      point[own] = 0.5 * static_cast<double>(k);
+      evaluate_with_bounds(tape_, cone_, point, position_error, unit, values_);
+      for (std::size_t i = 0; i < targets_.size(); ++i) {
+        triples[i][k] = entry(values_.value, targets_[i]);
+        if (rounding == Rounding::bounded) bound_[i] = std::max(bound_[i], entry(values_.bound, targets_[i]));
+      }
+    }
+    return entry(values_.value, surface_.psi);
+  }
+
   const Tape& tape_;
-  int alpha_;
+  Surface surface_;
+  const std::vector<int>& targets_;
   std::vector<int> cone_;
+  TapeValues values_;
+  std::vector<Triple> here_, nearby_;
+  std::vector<double> bound_;
+  double psi_here_ = 0.0, psi_nearby_ = 0.0;
 };
 
-/// The difference two values of a target may have without being different: the bound of what the position error does.
-/// It is cut where a slope is huge at the surface (sqrt(abs(x))), where it would hide true jumps; `size` is that of the
-/// target nearby.
-double allowed(double bound, double size) {
-  const double cut = 1e-5 * size;
-  return std::isfinite(bound) ? std::min(bound, std::max(cut, jump_tolerance * size)) : cut;
+double jump_of(const Triple& values) { return values[2] - values[0]; }
+double bend_of(const Triple& values) { return values[1] - 0.5 * (values[0] + values[2]); }
+
+/// Whether a target's difference is found anywhere on the surface; assumed where no point shows anything.
+bool found_on_surface(const Tape& tape, const Surface& surface, const std::vector<int>& targets,
+                      double (*difference)(const Triple&)) {
+  Profiler profiler(tape, surface, targets);
+  bool found = false, reached = false;
+  SurfaceWalk(tape, surface, targets).visit([&](const Point& point, const std::vector<double>& scale) {
+    profiler.at(point, scale);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const auto exceeds = profiler.exceeds(i, difference);
+      reached = reached || exceeds.has_value();
+      found = found || exceeds.value_or(false);
+    }
+    return !found;
+  });
+  return found || !reached;
 }
 
 std::vector<int> containing(const std::vector<int>& targets, int alpha,
@@ -220,64 +288,6 @@ std::vector<int> containing(const std::vector<int>& targets, int alpha,
     if (std::binary_search(alphas.begin(), alphas.end(), alpha)) found.push_back(targets[i]);
   }
   return found;
-}
-
-/// One target at a point on a surface with alpha = 0, 1/2, 1, and its size a step away from it.
-struct Profile {
-  double below, middle, above;
-  double bound;
-  double size;
-};
-
-class Profiler {
- public:
-  Profiler(const Tape& tape, const Surface& surface, const std::vector<int>& targets)
-      : below_(tape, targets, surface.alpha),
-        middle_(tape, targets, surface.alpha),
-        above_(tape, targets, surface.alpha),
-        nearby_(tape, targets, surface.alpha) {}
-
-  void at(const Point& point, const std::vector<double>& scale) {
-    below_.at(point, scale, 0.0);
-    middle_.at(point, scale, 0.5);
-    above_.at(point, scale, 1.0);
-    Point moved = point;
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-      if (scale[i] > 0.0) moved[i] += 0.1 * scale[i];
-    }
-    nearby_.at(moved, scale, 1.0);
-  }
-
-  [[nodiscard]] Profile of(int target) const {
-    const double below = entry(below_.values.value, target), above = entry(above_.values.value, target);
-    const double nearby = entry(nearby_.values.value, target);
-    return {.below = below,
-            .middle = entry(middle_.values.value, target),
-            .above = above,
-            .bound = std::max(entry(below_.values.bound, target), entry(above_.values.bound, target)),
-            .size = std::max({std::abs(below), std::abs(above), std::isfinite(nearby) ? std::abs(nearby) : 0.0})};
-  }
-
- private:
-  SurfaceValues below_, middle_, above_, nearby_;
-};
-
-bool jumps(const Tape& tape, const Surface& surface, const std::vector<int>& targets) {
-  Profiler profiler(tape, surface, targets);
-  bool found = false;
-  int valid = 0;
-  SurfaceWalk(tape, surface, targets).visit([&](const Point& point, const std::vector<double>& scale) {
-    profiler.at(point, scale);
-    for (const int target : targets) {
-      const Profile profile = profiler.of(target);
-      const double difference = std::abs(profile.above - profile.below);
-      if (!std::isfinite(difference)) continue;  // a branch may be undefined beyond its own surface
-      ++valid;
-      found = found || difference > allowed(profile.bound, profile.size);
-    }
-    return !found;
-  });
-  return found || valid == 0;
 }
 
 }  // namespace
@@ -295,23 +305,14 @@ std::vector<SwitchingRole> classify(const Tape& tape, const std::vector<Surface>
       continue;
     }
     const auto affected = containing(targets, surface.alpha, alphas_of_target);
-    const bool listed = !affected.empty() && jumps(tape, surface, affected);
+    const bool listed = !affected.empty() && found_on_surface(tape, surface, affected, jump_of);
     roles.push_back(listed ? SwitchingRole::listed : SwitchingRole::kink);
   }
   return roles;
 }
 
 bool bends_on_surface(const Tape& tape, const Surface& surface, int target) {
-  Profiler profiler(tape, surface, {target});
-  bool found = false;
-  SurfaceWalk(tape, surface, {target}).visit([&](const Point& point, const std::vector<double>& scale) {
-    profiler.at(point, scale);
-    const Profile profile = profiler.of(target);
-    const double difference = std::abs(profile.middle - 0.5 * (profile.below + profile.above));
-    found = std::isfinite(difference) && difference > allowed(profile.bound, profile.size);
-    return !found;
-  });
-  return found;
+  return found_on_surface(tape, surface, {target}, bend_of);
 }
 
 }  // namespace saltus::model

@@ -19,8 +19,8 @@ struct Surface {
 ///
 /// Everything that can jump is in `targets`, the other psi among them. At up to 64 points on psi_j = 0, around the
 /// initial state and far from it, the targets that contain alpha_j are evaluated for alpha_j = 0 and 1, the other
-/// alphas being the signs there; a difference beyond 1e-9 relative to the size of the terms is a jump. A surface
-/// without jump is a kink; one on which no point is found counts as listed.
+/// alphas being the signs there; a difference beyond rounding and 1e-9 of the difference a step away from the surface
+/// is a jump. A surface without jump is a kink; one on which no point is found counts as listed.
 /// @param surfaces  in the order of their alphas
 /// @return one role per surface
 [[nodiscard]] std::vector<SwitchingRole> classify(const Tape& tape, const std::vector<Surface>& surfaces,
