@@ -2,10 +2,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
 
-#include "saltus/base/function_ref.hpp"
 #include "saltus/model/sharing_internal.hpp"
+#include "saltus/model/surface_points_internal.hpp"
 #include "saltus/model/surfaces_internal.hpp"
 
 namespace saltus::model {
@@ -14,167 +16,12 @@ namespace {
 /// Points that count, and starts at most; a surface that few starts reach is given up as listed.
 constexpr int enough_points = 64;
 constexpr int seeded_starts = 192;
-constexpr int neighbour_limit = 32;
+constexpr std::size_t corner_points = 16;
 /// Part of a branch difference nearby that still counts as none on the surface. Ten times larger would hide weak
 /// friction beside strong springs, ten times smaller would come near the accuracy of the points.
 constexpr double jump_tolerance = 1e-9;
 
 double entry(const std::vector<double>& values, int index) { return values[static_cast<std::size_t>(index)]; }
-
-/// Start number k: every second one around the initial state, the others around 0; sizes from 1e-3 to 1e3.
-/// Only the given variables (moving ones) are set.
-Point start_point(const Tape& tape, std::span<const int> variables, int k) {
-  constexpr std::array<double, 7> magnitudes{1.0, 0.1, 10.0, 1e-2, 100.0, 1e-3, 1e3};
-  const double magnitude = entry({magnitudes.begin(), magnitudes.end()}, (k / 2) % 7);
-  Point point = blank_point(tape);
-  for (const int index : variables) {
-    const auto i = static_cast<std::size_t>(index);
-    const Variable& variable = tape.variables()[i];
-    const double draw = magnitude * seeded_draw(static_cast<std::uint64_t>(k) + 5000, i);
-    const double base = variable.kind == VariableKind::time || !std::isfinite(variable.value) ? 0.0 : variable.value;
-    point[i] = k % 2 == 0 ? base + draw : draw;
-  }
-  return point;
-}
-
-/// The variables t, x, u below the roots, also through alphas.
-std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots) {
-  std::vector<int> found;
-  for (const int node : tape.cone(roots, Links::through_alpha)) {
-    const int variable = tape[node].variable;
-    if (variable < 0 || tape[node].psi >= 0) continue;
-    const VariableKind kind = tape.variables()[static_cast<std::size_t>(variable)].kind;
-    if (kind != VariableKind::parameter) found.push_back(variable);
-  }
-  return found;
-}
-
-/// Moves points onto psi = 0 by Newton's method along the gradient; coordinates move in proportion to their size.
-class Projection {
- public:
-  Projection(const Tape& tape, int psi)
-      : tape_(tape),
-        psi_(psi),
-        cone_(tape.cone(std::span(&psi, 1), Links::through_alpha)),
-        variables_(moving_variables(tape, std::span(&psi, 1))) {}
-
-  /// @return whether |psi| fell to rounding level; `scale` gets the sizes of the coordinates the point went through.
-  bool onto_surface(Point& point, std::vector<double>& scale) {
-    scale.assign(point.size(), 0.0);
-    note_sizes(point, scale);
-    evaluate_with_bounds(tape_, cone_, point, scale, 0.0, values_);
-    const double size = std::max(std::abs(entry(values_.value, psi_)), entry(values_.bound, psi_));
-    if (!std::isfinite(size)) return false;
-    // psi = x^2 needs about 40 halvings to reach the tolerance, a transversal surface 3 to 8 steps.
-    for (int iteration = 0; iteration < 60; ++iteration) {
-      const double psi = entry(values_.value, psi_);
-      if (std::abs(psi) <= 1e-14 * size) break;
-      if (!step(point, scale)) break;
-      evaluate(tape_, cone_, point, values_);
-    }
-    return std::abs(entry(values_.value, psi_)) <= 1e-12 * size;
-  }
-
- private:
-  void note_sizes(const Point& point, std::vector<double>& scale) const {
-    for (const int variable : variables_) {
-      double& size = scale[static_cast<std::size_t>(variable)];
-      size = std::max(size, std::abs(entry(point, variable)));
-    }
-  }
-
-  bool step(Point& point, std::vector<double>& scale) {
-    const auto slope = gradient(tape_, values_, psi_);
-    double weighted = 0.0;
-    for (const int variable : variables_) {
-      const double part = entry(slope, variable) * entry(scale, variable);
-      weighted += part * part;
-    }
-    if (!(weighted > 0.0) || !std::isfinite(weighted)) return false;
-    const double factor = entry(values_.value, psi_) / weighted;
-    for (const int variable : variables_) {
-      const double size = entry(scale, variable);
-      point[static_cast<std::size_t>(variable)] -= factor * entry(slope, variable) * size * size;
-    }
-    note_sizes(point, scale);
-    return true;
-  }
-
-  const Tape& tape_;
-  int psi_;
-  std::vector<int> cone_;
-  std::vector<int> variables_;
-  TapeValues values_;
-};
-
-std::vector<int> alpha_nodes(const Tape& tape, std::span<const int> roots, Links links) {
-  std::vector<int> found;
-  for (const int node : tape.cone(roots, links)) {
-    if (tape[node].psi >= 0) found.push_back(node);
-  }
-  return found;
-}
-
-/// The psi of the other surfaces that take part in the targets, at most neighbour_limit.
-std::vector<int> neighbours_of(const Tape& tape, const std::vector<int>& targets, int alpha) {
-  std::vector<int> neighbours;
-  for (const int node : alpha_nodes(tape, targets, Links::through_alpha)) {
-    if (node != alpha && static_cast<int>(neighbours.size()) < neighbour_limit) neighbours.push_back(tape[node].psi);
-  }
-  return neighbours;
-}
-
-/// A small step off a surface, to either side of it in turns.
-void displace(Point& point, const std::vector<double>& scale, int k) {
-  for (std::size_t i = 0; i < point.size(); ++i) {
-    if (scale[i] > 0.0) point[i] += 1e-3 * scale[i] * seeded_draw(static_cast<std::uint64_t>(k) + 7000, i);
-  }
-}
-
-/// Points on one surface: from seeded starts, and from starts on either side of the neighbouring surfaces, since what
-/// alpha_j multiplies may live in a thin region only.
-class SurfaceWalk {
- public:
-  SurfaceWalk(const Tape& tape, const Surface& surface, const std::vector<int>& targets)
-      : tape_(tape), projection_(tape, surface.psi), neighbours_(neighbours_of(tape, targets, surface.alpha)) {
-    std::vector<int> roots = targets;
-    roots.push_back(surface.psi);
-    variables_ = moving_variables(tape, roots);
-  }
-
-  /// Visits points until `visit` returns false or none are left.
-  /// @return number of points visited
-  int visit(FunctionRef<bool(const Point&, const std::vector<double>&)> visit) {
-    int visited = 0;
-    for (int k = 0; k < seeded_starts && visited < enough_points; ++k) {
-      if (!visit_from(start_point(tape_, variables_, k), visit, visited)) return visited;
-    }
-    for (const int neighbour : neighbours_) {
-      Projection onto_neighbour(tape_, neighbour);
-      for (int k = 0; k < 12; ++k) {
-        std::vector<double> scale;
-        Point point = start_point(tape_, variables_, k);
-        if (!onto_neighbour.onto_surface(point, scale)) continue;
-        displace(point, scale, k);
-        if (!visit_from(point, visit, visited)) return visited;
-      }
-    }
-    return visited;
-  }
-
- private:
-  bool visit_from(Point point, FunctionRef<bool(const Point&, const std::vector<double>&)> visit, int& visited) {
-    std::vector<double> scale;
-    if (!projection_.onto_surface(point, scale)) return true;
-    ++visited;
-    return visit(point, scale);
-  }
-
-  const Tape& tape_;
-  Projection projection_;
-  std::vector<int> neighbours_;
-  std::vector<int> variables_;
-};
 
 /// Three values of a target: for alpha_j = 0, 1/2 and 1.
 using Triple = std::array<double, 3>;
@@ -263,22 +110,132 @@ class Profiler {
 double jump_of(const Triple& values) { return values[2] - values[0]; }
 double bend_of(const Triple& values) { return values[1] - 0.5 * (values[0] + values[2]); }
 
-/// Whether a target's difference is found anywhere on the surface; assumed where no point shows anything.
-bool found_on_surface(const Tape& tape, const Surface& surface, const std::vector<int>& targets,
-                      double (*difference)(const Triple&)) {
-  Profiler profiler(tape, surface, targets);
-  bool found = false, reached = false;
-  SurfaceWalk(tape, surface, targets).visit([&](const Point& point, const std::vector<double>& scale) {
-    profiler.at(point, scale);
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-      const auto exceeds = profiler.exceeds(i, difference);
-      reached = reached || exceeds.has_value();
-      found = found || exceeds.value_or(false);
+using Difference = double (*)(const Triple&);
+
+/// Sides of the other surfaces on which a target would show a difference. A term that needs many conditions at once
+/// shows none at random points, so the corner is searched, not drawn: starting between the corners, where the
+/// (multi-affine) difference is the mean of those at the corners, each alpha in turn goes to the side where more of it
+/// is left.
+class CornerSearch {
+ public:
+  CornerSearch(const Tape& tape, const Surface& surface, int target)
+      : tape_(tape), surface_(surface), target_(target), cone_(tape.cone(std::span(&target, 1), Links::written)) {
+    for (const int node : cone_) {
+      if (tape[node].psi >= 0 && node != surface.alpha) others_.push_back(node);
     }
-    return !found;
-  });
-  return found || !reached;
-}
+  }
+
+  [[nodiscard]] bool has_others() const { return !others_.empty(); }
+
+  /// Empty if no difference is found.
+  [[nodiscard]] std::map<int, double> corner(Point point, Difference difference, std::uint64_t seed) {
+    for (const int other : others_)
+      at(point, other) = 0.5 + 0.25 * seeded_draw(seed, static_cast<std::uint64_t>(other));
+    if (!(value(point, difference) > 0.0)) return {};
+    std::map<int, double> sides;
+    for (const int other : others_) {
+      at(point, other) = 1.0;
+      const double above = value(point, difference);
+      at(point, other) = 0.0;
+      const double below = value(point, difference);
+      const double side = above > below || std::isnan(below) ? 1.0 : 0.0;
+      at(point, other) = side;
+      sides[other] = side;
+    }
+    return sides;
+  }
+
+ private:
+  double& at(Point& point, int alpha) const { return point[static_cast<std::size_t>(tape_[alpha].variable)]; }
+
+  /// |difference|, 0 where it is no more than rounding.
+  double value(Point& point, Difference difference) {
+    Triple triple{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      at(point, surface_.alpha) = 0.5 * static_cast<double>(k);
+      evaluate(tape_, cone_, point, values_);
+      triple[k] = entry(values_.value, target_);
+    }
+    const double found = std::abs(difference(triple));
+    const double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+    return found > rounding * std::max(std::abs(triple[0]), std::abs(triple[2])) ? found : 0.0;
+  }
+
+  const Tape& tape_;
+  Surface surface_;
+  int target_;
+  std::vector<int> cone_;
+  std::vector<int> others_;
+  TapeValues values_;
+};
+
+/// The search for a difference on one surface: at seeded points first, then at corners they did not reach.
+class SurfaceSearch {
+ public:
+  SurfaceSearch(const Tape& tape, const Surface& surface, const std::vector<int>& targets, Difference difference)
+      : tape_(tape),
+        surface_(surface),
+        targets_(targets),
+        difference_(difference),
+        projection_(tape, surface.psi),
+        profiler_(tape, surface, targets) {}
+
+  /// Assumed where no point shows anything.
+  [[nodiscard]] bool found() { return seen_at_seeded_points() || !reached_ || seen_at_corners(); }
+
+ private:
+  bool seen_at(const Point& point, const std::vector<double>& scale) {
+    profiler_.at(point, scale);
+    bool seen = false;
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      const auto exceeds = profiler_.exceeds(i, difference_);
+      reached_ = reached_ || exceeds.has_value();
+      seen = seen || exceeds.value_or(false);
+    }
+    return seen;
+  }
+
+  bool seen_at_seeded_points() {
+    std::vector<int> roots = targets_;
+    roots.push_back(surface_.psi);
+    const auto variables = moving_variables(tape_, roots);
+    for (int k = 0; k < seeded_starts && static_cast<int>(points_.size()) < enough_points; ++k) {
+      std::vector<double> scale;
+      Point point = start_point(tape_, variables, k);
+      if (!projection_.onto(0.0, point, scale)) continue;
+      if (seen_at(point, scale)) return true;
+      points_.push_back(std::move(point));
+    }
+    return false;
+  }
+
+  bool seen_at_corners() {
+    for (const int target : targets_) {
+      CornerSearch search(tape_, surface_, target);
+      if (!search.has_others()) continue;
+      std::set<std::map<int, double>> tried;
+      for (std::size_t k = 0; k < points_.size() && k < corner_points; ++k) {
+        const auto sides = search.corner(points_[k], difference_, 11000 + k);
+        if (sides.empty()) continue;
+        // Sides that exclude each other (x > 5 on x = 0) cannot be reached; a few starts decide that.
+        if (!tried.insert(sides).second && k > 4) continue;
+        std::vector<double> scale;
+        Point point = points_[k];
+        if (move_to_sides(tape_, projection_, sides, point, scale) && seen_at(point, scale)) return true;
+      }
+    }
+    return false;
+  }
+
+  const Tape& tape_;
+  Surface surface_;
+  const std::vector<int>& targets_;
+  Difference difference_;
+  Projection projection_;
+  Profiler profiler_;
+  std::vector<Point> points_;
+  bool reached_ = false;
+};
 
 std::vector<int> containing(const std::vector<int>& targets, int alpha,
                             const std::vector<std::vector<int>>& alphas_of_target) {
@@ -305,14 +262,15 @@ std::vector<SwitchingRole> classify(const Tape& tape, const std::vector<Surface>
       continue;
     }
     const auto affected = containing(targets, surface.alpha, alphas_of_target);
-    const bool listed = !affected.empty() && found_on_surface(tape, surface, affected, jump_of);
+    const bool listed = !affected.empty() && SurfaceSearch(tape, surface, affected, jump_of).found();
     roles.push_back(listed ? SwitchingRole::listed : SwitchingRole::kink);
   }
   return roles;
 }
 
 bool bends_on_surface(const Tape& tape, const Surface& surface, int target) {
-  return found_on_surface(tape, surface, {target}, bend_of);
+  const std::vector<int> targets{target};
+  return SurfaceSearch(tape, surface, targets, bend_of).found();
 }
 
 }  // namespace saltus::model

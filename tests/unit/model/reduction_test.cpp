@@ -62,6 +62,7 @@ TEST(Conditions, ManyIndependentOnesStayCompact) {
   }
   dynamics[0].second = "if(" + condition + ", 1, -1)";
   const System system = built({.states = states, .dynamics = dynamics});
+  EXPECT_EQ(system.columns.size(), 40U);
   EXPECT_EQ(f_at(system, x)[0], 1.0);
   x[39] = 0.0;
   EXPECT_EQ(f_at(system, x)[0], -1.0);

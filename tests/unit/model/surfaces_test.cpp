@@ -58,6 +58,26 @@ TEST(Surfaces, AJumpInAThinRegionIsFound) {
   EXPECT_EQ(columns(system), (Names{"v-0.5", "0.501-v", "x-2"}));
 }
 
+TEST(Surfaces, AJumpThatNeedsManyConditionsIsFound) {
+  std::string condition;
+  Table states, dynamics;
+  for (int i = 0; i < 12; ++i) {
+    const std::string name = "x" + std::to_string(i);
+    states.push_back({name, "0"});
+    dynamics.push_back({name, "0"});
+    condition +=
+        (i > 0 ? " and " : "") + name + " > " + std::to_string(i - 6) + "*x" + std::to_string((i + 1) % 12) + " + 2";
+  }
+  dynamics[0].second = "if(" + condition + ", 1, -1)";
+  EXPECT_EQ(built({.states = states, .dynamics = dynamics}).columns.size(), 12U);
+}
+
+TEST(Surfaces, AConditionThatCannotHoldOnASurfaceMakesNoJumpThere) {
+  const System system =
+      built({.states = {{"x", "1"}, {"y", "0"}}, .dynamics = {{"x", "if(x > 0, if(x > 5, 3, 1), 1)"}, {"y", "0"}}});
+  EXPECT_EQ(columns(system), Names{"x-5"});
+}
+
 TEST(Surfaces, SmallJumpsBesideLargeTermsAreFound) {
   const System system = built({.states = {{"x", "1"}}, .dynamics = {{"x", "1e6*x + 1e-3*sign(x - 7)"}}});
   EXPECT_EQ(system.switching[0].role, SwitchingRole::listed);

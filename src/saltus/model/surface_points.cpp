@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "saltus/model/sharing_internal.hpp"
+#include "saltus/model/surface_points_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+double entry(const std::vector<double>& values, int index) { return values[static_cast<std::size_t>(index)]; }
+
+}  // namespace
+
+std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots) {
+  std::vector<int> found;
+  for (const int node : tape.cone(roots, Links::through_alpha)) {
+    const int variable = tape[node].variable;
+    if (variable < 0 || tape[node].psi >= 0) continue;
+    const VariableKind kind = tape.variables()[static_cast<std::size_t>(variable)].kind;
+    if (kind != VariableKind::parameter) found.push_back(variable);
+  }
+  return found;
+}
+
+std::vector<int> alpha_nodes(const Tape& tape, std::span<const int> roots, Links links) {
+  std::vector<int> found;
+  for (const int node : tape.cone(roots, links)) {
+    if (tape[node].psi >= 0) found.push_back(node);
+  }
+  return found;
+}
+
+Point start_point(const Tape& tape, std::span<const int> variables, int k) {
+  constexpr std::array<double, 7> magnitudes{1.0, 0.1, 10.0, 1e-2, 100.0, 1e-3, 1e3};
+  const double magnitude = magnitudes[static_cast<std::size_t>(k / 2) % magnitudes.size()];
+  Point point = blank_point(tape);
+  for (const int index : variables) {
+    const auto i = static_cast<std::size_t>(index);
+    const Variable& variable = tape.variables()[i];
+    const double draw = magnitude * seeded_draw(static_cast<std::uint64_t>(k) + 5000, i);
+    const double base = variable.kind == VariableKind::time || !std::isfinite(variable.value) ? 0.0 : variable.value;
+    point[i] = k % 2 == 0 ? base + draw : draw;
+  }
+  return point;
+}
+
+Projection::Projection(const Tape& tape, int psi)
+    : tape_(tape),
+      psi_(psi),
+      cone_(tape.cone(std::span(&psi, 1), Links::through_alpha)),
+      variables_(moving_variables(tape, std::span(&psi, 1))) {}
+
+void Projection::note_sizes(const Point& point, std::vector<double>& scale) const {
+  for (const int variable : variables_) {
+    double& size = scale[static_cast<std::size_t>(variable)];
+    size = std::max(size, std::abs(entry(point, variable)));
+  }
+}
+
+Projection::Value Projection::at(const Point& point) {
+  std::vector<double> scale(point.size(), 0.0);
+  note_sizes(point, scale);
+  evaluate_with_bounds(tape_, cone_, point, scale, 0.0, values_);
+  const double psi = entry(values_.value, psi_);
+  return {psi, std::max(std::abs(psi), entry(values_.bound, psi_))};
+}
+
+bool Projection::onto(double level, Point& point, std::vector<double>& scale) {
+  scale.assign(point.size(), 0.0);
+  note_sizes(point, scale);
+  const double size = at(point).size;
+  if (!std::isfinite(size)) return false;
+  // psi = x^2 needs about 40 halvings to reach the tolerance, a transversal surface 3 to 8 steps.
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    if (std::abs(entry(values_.value, psi_) - level) <= 1e-14 * size) break;
+    if (!step(level, point, scale)) break;
+    evaluate(tape_, cone_, point, values_);
+  }
+  return std::abs(entry(values_.value, psi_) - level) <= 1e-12 * size;
+}
+
+bool Projection::step(double level, Point& point, std::vector<double>& scale) {
+  const auto slope = gradient(tape_, values_, psi_);
+  double weighted = 0.0;
+  for (const int variable : variables_) {
+    const double part = entry(slope, variable) * entry(scale, variable);
+    weighted += part * part;
+  }
+  if (!(weighted > 0.0) || !std::isfinite(weighted)) return false;
+  const double factor = (entry(values_.value, psi_) - level) / weighted;
+  for (const int variable : variables_) {
+    const double size = entry(scale, variable);
+    point[static_cast<std::size_t>(variable)] -= factor * entry(slope, variable) * size * size;
+  }
+  note_sizes(point, scale);
+  return true;
+}
+
+bool move_to_sides(const Tape& tape, Projection& held, const std::map<int, double>& sides, Point& point,
+                   std::vector<double>& scale) {
+  std::vector<std::pair<Projection, double>> wanted;
+  for (const auto& [alpha, side] : sides) wanted.emplace_back(Projection(tape, tape[alpha].psi), side);
+  const auto on_wrong_side = [&](auto& surface) {
+    const double psi = surface.first.at(point).psi;
+    return surface.second > 0.5 ? !(psi > 0.0) : !(psi < 0.0);
+  };
+  // The margin falls to 1e-6 of the terms: narrower regions than that are not looked for.
+  double margin = 0.2;
+  for (int turn = 0; turn < 20; ++turn, margin *= 0.5) {
+    bool moved = false;
+    for (auto& surface : wanted) {
+      if (!on_wrong_side(surface)) continue;
+      moved = true;
+      const double level = margin * surface.first.at(point).size;
+      if (!surface.first.onto(surface.second > 0.5 ? level : -level, point, scale)) return false;
+    }
+    if (!held.onto(0.0, point, scale)) return false;
+    if (!moved && std::none_of(wanted.begin(), wanted.end(), on_wrong_side)) return true;
+  }
+  return false;
+}
+
+}  // namespace saltus::model

@@ -1,0 +1,55 @@
+// Finding points on surfaces psi = 0 of a tape, and points on the wanted sides of others.
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "saltus/model/tape_internal.hpp"
+
+namespace saltus::model {
+
+/// The variables t, x, u below the roots, also through alphas.
+[[nodiscard]] std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots);
+
+/// The alphas (nodes) below the roots, ascending.
+[[nodiscard]] std::vector<int> alpha_nodes(const Tape& tape, std::span<const int> roots, Links links);
+
+/// Start number k with the given variables set: every second one around the initial state, the others around 0; sizes
+/// from 1e-3 to 1e3.
+[[nodiscard]] Point start_point(const Tape& tape, std::span<const int> variables, int k);
+
+/// Moves points onto psi = level by Newton's method along the gradient; coordinates move in proportion to their size.
+class Projection {
+ public:
+  Projection(const Tape& tape, int psi);
+
+  /// @return whether |psi - level| fell to rounding level; `scale` gets the sizes of the coordinates the point went
+  ///         through (0 for those psi does not depend on).
+  bool onto(double level, Point& point, std::vector<double>& scale);
+
+  /// psi at a point, and the size of its terms there.
+  struct Value {
+    double psi, size;
+  };
+  [[nodiscard]] Value at(const Point& point);
+
+ private:
+  void note_sizes(const Point& point, std::vector<double>& scale) const;
+  bool step(double level, Point& point, std::vector<double>& scale);
+
+  const Tape& tape_;
+  int psi_;
+  std::vector<int> cone_;
+  std::vector<int> variables_;
+  TapeValues values_;
+};
+
+/// Moves a point to the wanted sides (alpha node -> 1 or 0) of some surfaces by projecting onto them in turns, with a
+/// margin that shrinks from turn to turn.
+/// @param held  the surface the point must stay on
+/// @return whether a point was found
+[[nodiscard]] bool move_to_sides(const Tape& tape, Projection& held, const std::map<int, double>& sides, Point& point,
+                                 std::vector<double>& scale);
+
+}  // namespace saltus::model
