@@ -64,7 +64,8 @@ void expect_reference(const Result& result, const ReferenceProblem& problem, dou
 }
 
 void expect_identical(const Result& a, const Result& b) {
-  ASSERT_EQ(a.status.termination, b.status.termination);
+  ASSERT_EQ(a.status.termination, result::Termination::completed) << a.status.message;
+  ASSERT_EQ(b.status.termination, result::Termination::completed) << b.status.message;
   ASSERT_EQ(a.events.size(), b.events.size());
   for (std::size_t i = 0; i < a.events.size(); ++i) {
     const Event &left = a.events[i], &right = b.events[i];
