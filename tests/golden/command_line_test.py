@@ -1,5 +1,7 @@
 """Exit codes, help, tables and messages of the command line."""
 
+import math
+
 import tool
 
 MODEL = """
@@ -45,7 +47,8 @@ class Help(tool.ToolTest):
 
     def test_help_of_simulate_lists_the_options_table(self):
         text, _ = self.run_tool("simulate", "--help", code=0)
-        for key in ("event.integrator", "output.every", "initial_mode.*", "max_steps", "[1e-08]"):
+        self.assertLessEqual(max(map(len, text.splitlines())), 120)
+        for key in ("event.integrator", "output.every", "initial_mode.*", "max_steps", "default 1e-08"):
             self.assertIn(key, text)
 
     def test_the_page_of_options_is_up_to_date(self):
@@ -68,7 +71,7 @@ class BadInput(tool.ToolTest):
         self.refused("unexpected argument 'again'", "simulate", "crossing", "again")
         self.refused("--until abc: error: expected a finite number", "simulate", "crossing", "--until", "abc")
         self.refused("--rtol -1", "simulate", "crossing", "--rtol", "-1")
-        self.refused("until equals from", "simulate", "crossing", "--until", "0")
+        self.refused("until (0) is not after from (0)", "simulate", "crossing", "--until", "0")
         self.refused("--rtol", "simulate", "crossing", "--rtol")
 
     def test_later_commands_and_methods(self):
@@ -120,7 +123,7 @@ class Simulate(tool.ToolTest):
         self.assertRegex(out, r"(?m)^end state +x = 0\.6666666\d*$")
         self.assertRegex(out, r"(?m)^events +1$")
         self.assertRegex(out, r"(?m)^  # +t +kind +surfaces +mode$")
-        self.assertRegex(out, r"(?m)^  1 +0\.3333333\d* +crossing +x +- > \+$")
+        self.assertRegex(out, r"(?m)^  1 +0\.3333333\d* +crossing +x-0 +- > \+$")
         self.assertRegex(out, r"(?m)^statistics +\d+ steps, \d+ rejected, \d+ evaluations")
         self.assertLessEqual(max(map(len, out.splitlines())), 100)
 
@@ -137,7 +140,8 @@ class Simulate(tool.ToolTest):
         self.assertAlmostEqual(end("--set", "u=1"), 1.5, 8)
         self.assertAlmostEqual(end("--set", "simulate.until=2"), 5 / 3, 8)
         self.assertAlmostEqual(end("--until", "2"), 5 / 3, 8)
-        self.assertAlmostEqual(end("--set", "simulate.inputs.u=t"), 1.176700684, 5)
+        met = math.sqrt(11) - 3  # -1 + 3 t + t^2/2 = 0; then x' = 1 + t
+        self.assertAlmostEqual(end("--set", "simulate.inputs.u=t"), (1 - met) + (1 - met**2) / 2, 6)
         self.assertAlmostEqual(end("--set", "dynamics.x=1"), 0.0, 8)
         self.assertAlmostEqual(end("--set", "fast=2", "--set", "x=-0.5", "--integrator", "dop853"), 0.75, 8)
 
@@ -193,7 +197,7 @@ x = "if(a > 0, 4, 1)*sign(x - 1) + step(b) + abs(x) + step(t - 1) + u*c"
 until = 1
 """)
         out, err = self.run_tool("check", model, code=0)
-        for expected in ("x = 1", "c = 2", "u = 0.5  in [-1, 1]", "a: switching function", "kink", "time event",
+        for expected in ("x = 1", "c = 2", "u = 0.5  in [-1, 1]", "a: listed", "kink", "time event",
                          "b: alias of a, with the sides swapped", "differ in: x", "unused"):
             self.assertIn(expected, out)
         self.assertEqual(err, "")

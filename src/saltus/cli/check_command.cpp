@@ -54,7 +54,7 @@ std::string controls_text(const model::System& system) {
 std::string_view role_text(model::SwitchingRole role) {
   switch (role) {
     case model::SwitchingRole::listed:
-      return "switching function";
+      return "listed: a column of the result, where the field may jump";
     case model::SwitchingRole::kink:
       return "kink: the integrator restarts there, nothing slides";
     case model::SwitchingRole::time_event:

@@ -73,12 +73,15 @@ Expected<Outputs> Outputs::make(const std::vector<std::string>& files, const std
 }
 
 Expected<void> Outputs::write(const result::Result& result) const {
-  for (const auto& file : files_) {
-    const bool csv = fs::path(file).extension() == ".csv";
-    if (auto done = io::write_file(file, csv ? io::to_csv(result) : io::to_json(result)); !done) return done;
-  }
-  if (report_.empty()) return {};
-  return io::write_file(report_, report::to_html(result, plotly_));
+  Expected<void> outcome;
+  const auto put = [&](const std::string& file, const std::string& content) {
+    auto written = io::write_file(file, content);
+    if (!written && outcome) outcome = std::move(written);
+  };
+  for (const auto& file : files_)
+    put(file, fs::path(file).extension() == ".csv" ? io::to_csv(result) : io::to_json(result));
+  if (!report_.empty()) put(report_, report::to_html(result, plotly_));
+  return outcome;
 }
 
 }  // namespace saltus::cli

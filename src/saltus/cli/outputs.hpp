@@ -21,6 +21,7 @@ class Outputs {
   [[nodiscard]] static Expected<Outputs> make(const std::vector<std::string>& files, const std::string& report,
                                               const std::string& input);
 
+  /// Writes all it can; returns the first failure.
   [[nodiscard]] Expected<void> write(const result::Result& result) const;
 
  private:

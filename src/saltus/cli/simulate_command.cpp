@@ -91,11 +91,12 @@ ExitCode run(const Arguments& arguments) {
   if (!outputs) return refuse(outputs.error());
 
   auto result = compute(arguments, *input);
-  if (!result) return refuse(result.error());
+  if (!result) return refuse(io::located(result.error(), input->file));
   complete_record(*input, *result);
 
-  if (auto written = outputs->write(*result); !written) return refuse(written.error());
-  if (!arguments.quiet) print(report::to_table(*result));
+  const auto written = outputs->write(*result);
+  if (!arguments.quiet) print(report::to_table(*result));  // also if nothing could be written: it is all that is left
+  if (!written) return refuse(written.error());
   if (is_done(result->status.termination)) return ExitCode::done;
   print_error(fmt::format("stopped early: {} at t = {}{}{}", name(result->status.termination),
                           result->status.time_reached, result->status.message.empty() ? "" : ": ",

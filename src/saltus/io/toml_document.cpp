@@ -125,6 +125,27 @@ Expected<void> check_encoding(std::string_view text, const std::string& file) {
   return {};
 }
 
+/// More parts than any key of a model file has. toml++ bounds the depth of brackets (256), not that of dotted keys, and
+/// destroys its tree recursively: this keeps it below some ten thousand levels.
+constexpr int most_parts = 32;
+
+/// Whether a line has a longer chain of names with dots between, wherever it stands.
+bool has_endless_key(std::string_view text) {
+  int parts = 1;
+  char last = '\n';
+  for (const char c : text) {
+    const bool in_name = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '"' ||
+                         c == '\'' || c == ' ' || c == '\t';
+    if (c == '.' && last != '.') {
+      if (++parts > most_parts) return true;
+    } else if (!in_name) {
+      parts = 1;
+    }
+    last = c;
+  }
+  return false;
+}
+
 /// The habit of leaving the quotes away: x = -x + 1, x = sin(t).
 bool looks_like_bare_expression(std::string_view line) {
   const auto equal = line.find('=');
@@ -138,14 +159,24 @@ bool looks_like_bare_expression(std::string_view line) {
          value.find_first_of("+-*/^(", first) != std::string_view::npos;
 }
 
+/// Without "Error while parsing value: ": that it is an error stands there already, and the place, too.
+std::string_view shortened(std::string_view description) {
+  constexpr std::string_view prefix = "Error while parsing ";
+  const auto colon = description.find(": ");
+  const bool has_prefix = description.starts_with(prefix) && colon != std::string_view::npos;
+  return has_prefix ? description.substr(colon + 2) : description;
+}
+
 Error syntax_error(const SourceText& source, const toml::parse_error& failure) {
   const auto& position = failure.source().begin;
   std::string remedy = "see toml.io for the syntax of TOML";
-  if (looks_like_bare_expression(source.line(position.line))) {
+  const std::string_view description = failure.description();
+  const bool is_number = description.find("could not be interpreted as a value") != std::string_view::npos;
+  if (!is_number && looks_like_bare_expression(source.line(position.line))) {
     remedy = "expressions stand in quotes: x = \"-x + sin(t)\"";
   }
   return {ErrorCode::parse_failure,
-          fmt::format("not valid TOML: {}", failure.description()),
+          fmt::format("not valid TOML: {}", shortened(description)),
           std::move(remedy),
           source.location(position),
           {}};
@@ -155,6 +186,10 @@ Error syntax_error(const SourceText& source, const toml::parse_error& failure) {
 
 Expected<TomlTable> parse_toml(std::string_view text, const std::string& file) {
   if (auto readable = check_encoding(text, file); !readable) return tl::unexpected(readable.error());
+  if (has_endless_key(text)) {
+    return tl::unexpected(not_readable(file, fmt::format("a key has more than {} parts", most_parts),
+                                       "keys of a model file have one to four, like simulate.event.integrator"));
+  }
   const SourceText source(text, file);
   try {
     return converted(source, toml::parse(text, file));

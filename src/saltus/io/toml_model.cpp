@@ -1,5 +1,6 @@
 #include "saltus/io/toml_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -114,6 +115,15 @@ Expected<ModelFile> read_model(const std::filesystem::path& file) {
   const auto text = read_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_model(*text, file.string());
+}
+
+Error located(Error error, const ModelFile& model) {
+  if (!error.location.file.empty()) return error;
+  for (const auto& [key, location] : model.option_locations) {
+    const auto frame = fmt::format("in simulate.{}", key);
+    if (std::find(error.context.begin(), error.context.end(), frame) != error.context.end()) error.location = location;
+  }
+  return error;
 }
 
 Expected<void> check_options(const ModelFile& model) {

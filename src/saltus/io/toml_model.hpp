@@ -42,6 +42,10 @@ inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
 /// Checks the options of [simulate] against each other (pipeline::find_problem), and tells where the file states them.
 [[nodiscard]] Expected<void> check_options(const ModelFile& model);
 
+/// The error with the place of the option it is about, if it has no place of its own and a frame of its context names
+/// the option ("in simulate.initial_mode.slip").
+[[nodiscard]] Error located(Error error, const ModelFile& model);
+
 /// `--set a.b=value` for the options of a simulation: KEY is a dotted path below the file's root
 /// ("simulate.rtol", "simulate.event.integrator"); a bare word is a string.
 [[nodiscard]] Expected<pipeline::SimulateOptions> with_option(pipeline::SimulateOptions options, std::string_view key,

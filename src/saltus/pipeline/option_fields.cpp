@@ -270,7 +270,7 @@ void record_branches(const SimulateOptions& options, std::string_view key, Optio
 }
 
 constexpr std::array fields{
-    OptionField{"until", "a finite number, not `from`", "End of the simulation; there is no default.",
+    OptionField{"until", "a finite number > `from`", "End of the simulation; there is no default.",
                 set_number<until, Range::finite>, record_until},
     OptionField{"from", "a finite number", "Start of the simulation.", set_number<from, Range::finite>,
                 record_number<from>},
@@ -358,17 +358,16 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
   if (!options.until) {
     return problem("until", "no end time", "write until = T in [simulate], or give --until T on the command line");
   }
-  if (*options.until == options.from) {
-    return problem("until", fmt::format("until equals from ({})", options.from),
-                   "nothing to simulate: move one of them");
+  if (!(*options.until > options.from)) {
+    return problem("until", fmt::format("until ({}) is not after from ({})", *options.until, options.from),
+                   "choose until > from");
   }
   if (!(options.rtol + options.atol > 0.0)) {
     return problem("atol", "rtol and atol are both 0", "one of them must be positive, e.g. rtol = 1e-8");
   }
   if (const auto* grid = std::get_if<AtTimes>(&options.output)) {
-    const auto [low, high] = std::minmax(options.from, *options.until);
     for (const double time : grid->times) {
-      if (low <= time && time <= high) continue;
+      if (options.from <= time && time <= *options.until) continue;
       return problem(
           "output.times",
           fmt::format("output time {} lies outside the simulation from {} to {}", time, options.from, *options.until),

@@ -49,12 +49,12 @@ struct OptionProblem {
   Error error;
 };
 
-/// Checks the options against each other: `until` given and different from `from`, rtol + atol > 0, output times within
+/// Checks the options against each other: `until` given and after `from`, rtol + atol > 0, output times within
 /// the span.
 /// @return the first problem, or nullopt if a simulation may start.
 [[nodiscard]] std::optional<OptionProblem> find_problem(const SimulateOptions& options);
 
-/// One line per option: key, what is expected, default, meaning; for --help.
+/// Two lines per option: key, what is expected and default; meaning. For --help.
 [[nodiscard]] std::string options_help();
 
 /// The page docs/options.md.

@@ -48,8 +48,8 @@ std::string options_help() {
   std::string text;
   for (const auto& field : simulate_fields()) {
     const auto standard = default_text(field);
-    text += fmt::format("  {:<18} {:<24} {}{}\n", field.key, field.expects, field.doc,
-                        standard.empty() ? "" : fmt::format(" [{}]", standard));
+    text += fmt::format("  {:<17} {}{}\n        {}\n", field.key, field.expects,
+                        standard.empty() ? "" : fmt::format("; default {}", standard), field.doc);
   }
   return text;
 }

@@ -56,8 +56,9 @@ Expected<std::vector<std::pair<int, int>>> forced_modes(const model::System& sys
       if (column.name == name) found = &column;
     }
     if (found == nullptr) {
-      return tl::unexpected(with_context({ErrorCode::unknown_name, "unknown switching function '" + name + "'",
-                                          suggest(name, known), {}, {}}, "in simulate.initial_mode"));
+      return tl::unexpected(with_context(
+          {ErrorCode::unknown_name, "unknown switching function '" + name + "'", suggest(name, known), {}, {}},
+          "in simulate.initial_mode." + name));
     }
     forced.emplace_back(found->function, found->orientation * mode);
   }
@@ -75,15 +76,18 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
       integration.method = ode::Method::dop853;
       break;
     case Integrator::radau5:
-      return tl::unexpected(Error{ErrorCode::not_available, "integrator 'radau5' is not available in this version",
-                                  "use 'dopri5' or 'dop853'; a later version brings radau5", {}, {}});
+      return tl::unexpected(Error{ErrorCode::not_available,
+                                  "integrator 'radau5' is not available in this version",
+                                  "use 'dopri5' or 'dop853'; a later version brings radau5",
+                                  {},
+                                  {}});
   }
   integration.from = options.from;
   integration.until = *options.until;
   if (!(integration.until > integration.from)) {
-    return tl::unexpected(invalid(fmt::format("simulate.until = {} is not behind simulate.from = {}", integration.until,
-                                              integration.from),
-                                  "choose until > from"));
+    return tl::unexpected(invalid(
+        fmt::format("simulate.until = {} is not behind simulate.from = {}", integration.until, integration.from),
+        "choose until > from"));
   }
   integration.tolerances = {options.rtol, options.atol};
   integration.max_step = options.event.max_step;
@@ -118,8 +122,11 @@ result::Result frame(const model::System& system, const SimulateOptions& options
 Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
                                   const Observers& observers) {
   if (options.method != Method::event) {
-    return tl::unexpected(Error{ErrorCode::not_available, "only the method 'event' is available in this version",
-                                "use --method event; a later version brings the others", {}, {}});
+    return tl::unexpected(Error{ErrorCode::not_available,
+                                "only the method 'event' is available in this version",
+                                "use --method event; a later version brings the others",
+                                {},
+                                {}});
   }
   const auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
@@ -130,8 +137,8 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   event_integrator::StepObserver observer;
   if (observers.on_step) {
     observer = [&](const event_integrator::Progress& progress) {
-      const auto answer = observers.on_step(
-          {progress.t, integration_or->from, integration_or->until, progress.steps, progress.events});
+      const auto answer =
+          observers.on_step({progress.t, integration_or->from, integration_or->until, progress.steps, progress.events});
       return answer == Proceed::on ? event_integrator::Continue::yes : event_integrator::Continue::no;
     };
   }

@@ -143,14 +143,17 @@ std::string event_table(const result::Result& result) {
 }
 
 std::string method_text(const result::Result& result) {
-  std::vector<std::string> details;
-  for (const auto& [name, value] : result.options) {
-    const auto* word = std::get_if<std::string>(&value);
-    const auto* number = std::get_if<double>(&value);
-    if (name == "simulate.event.integrator" && word != nullptr) details.push_back(*word);
-    if (name == "simulate.rtol" && number != nullptr) details.push_back(fmt::format("rtol {:g}", *number));
-    if (name == "simulate.atol" && number != nullptr) details.push_back(fmt::format("atol {:g}", *number));
-  }
+  const auto value_of = [&](std::string_view key, std::string_view form) -> std::string {
+    for (const auto& [name, value] : result.options) {
+      if (name != key) continue;
+      if (const auto* word = std::get_if<std::string>(&value)) return *word;
+      if (const auto* number = std::get_if<double>(&value)) return fmt::format(fmt::runtime(form), *number);
+    }
+    return "";
+  };
+  std::vector<std::string> details{value_of("simulate.event.integrator", ""), value_of("simulate.rtol", "rtol {:g}"),
+                                   value_of("simulate.atol", "atol {:g}")};
+  std::erase(details, "");
   return details.empty() ? result.method : fmt::format("{} ({})", result.method, fmt::join(details, ", "));
 }
 

@@ -1,5 +1,8 @@
 #include "saltus/io/toml_model.hpp"
 
+#include <algorithm>
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "saltus/expression/parser.hpp"
@@ -183,7 +186,38 @@ TEST(TomlModel, ProblemsBetweenOptionsNameTheirPlace) {
   EXPECT_NE(without_end.error().message.find("no end time"), std::string::npos);
 }
 
-// ---- settings ----
+// Whatever a text has become, the answer is a model or an error with a message and a place within the text.
+TEST(TomlModel, DamagedTextsAreReadOrRefusedNeverWorse) {
+  std::mt19937 random(20240701);
+  const auto below = [&](std::size_t end) { return std::uniform_int_distribution<std::size_t>(0, end - 1)(random); };
+  constexpr std::string_view alphabet = "\"'=[]{}.,#-+*/()\n xt1e";
+  const auto lines = static_cast<int>(std::count(whole.begin(), whole.end(), '\n'));
+  int refused = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::string text(whole);
+    for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
+      const auto place = below(text.size());
+      const std::string piece(1 + below(2), alphabet[below(alphabet.size())]);
+      below(2) == 0 ? text.replace(place, below(20), piece) : text.insert(place, piece);
+    }
+    const auto model = parse_model(text, "m.toml");
+    if (model) continue;
+    ++refused;
+    EXPECT_FALSE(model.error().message.empty());
+    EXPECT_GE(model.error().location.line, 0);
+    EXPECT_LE(model.error().location.line, lines + 7);
+  }
+  EXPECT_GT(refused, 1000);
+}
+
+TEST(TomlModel, AHundredLevelsOfEverythingAreReadOrRefused) {
+  std::string keys = "a";
+  for (int i = 0; i < 30; ++i) keys += ".a";
+  std::string text = "[model]\nname = 'm'\n[states]\n";
+  for (int level = 0; level < 250; ++level) text += keys + " = { ";
+  text += keys + " = 1" + std::string(250, '}');
+  EXPECT_FALSE(parse_model(text, "m.toml"));
+}
 
 TEST(Settings, ReachOptionsInputsAndExpressions) {
   auto model = parsed(whole);
