@@ -1,0 +1,88 @@
+// Saltus in the comparison: a model file through the library, the parts of the time apart.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "protocol.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/integrate.hpp"
+#include "saltus/io/toml_model.hpp"
+#include "saltus/model/build.hpp"
+
+namespace compare {
+namespace {
+
+namespace evaluation = saltus::evaluation;
+namespace event_integrator = saltus::event_integrator;
+namespace model = saltus::model;
+
+template <class Value>
+Value value_or_exit(saltus::Expected<Value> expected) {
+  if (expected) return std::move(*expected);
+  std::fprintf(stderr, "%s\n", saltus::to_text(expected.error()).c_str());
+  std::exit(2);
+}
+
+event_integrator::IntegrationOptions options_of(const Request& request, double until) {
+  event_integrator::IntegrationOptions options;
+  if (request.method == "dopri5") {
+    options.method = saltus::ode::Method::dopri5;
+  } else if (request.method == "dop853") {
+    options.method = saltus::ode::Method::dop853;
+  } else {
+    unknown(request);
+  }
+  options.until = until;
+  // The competitors keep events and end state; `trajectory` is what a user gets by default: every step.
+  if (request.variant == "events") {
+    options.output.rows = event_integrator::OutputTimes::Rows::at_times;
+  } else if (request.variant != "trajectory") {
+    unknown(request);
+  }
+  options.max_steps = 100000000;
+  return options;
+}
+
+Run run_of(const event_integrator::Integration& integration) {
+  Run run;
+  run.status = std::string(saltus::result::name(integration.status.termination));
+  run.x = integration.final.x;
+  for (const auto& event : integration.events) {
+    if (event.kind != saltus::result::EventKind::start) run.events.push_back(event.t);
+  }
+  run.steps = static_cast<long>(integration.statistics.steps);
+  run.evaluations = static_cast<long>(integration.statistics.rhs_evaluations);
+  return run;
+}
+
+/// PROBLEM is the path of a model file; its name is that of the problem, its [simulate] has the end.
+void sweep(Request request) {
+  const std::filesystem::path file = request.problem;
+  request.problem = file.stem().string();
+  const double begin = cpu_seconds();
+  const auto model_file = value_or_exit(saltus::io::read_model(file));
+  const model::System system = value_or_exit(model::build(model_file.description));
+  const double built = cpu_seconds();
+  auto kernel = value_or_exit(evaluation::ModelKernel::compile(system));
+  const double compiled = cpu_seconds();
+  auto options = options_of(request, model_file.simulate.until.value_or(1.0));
+  char parts[120];
+  std::snprintf(parts, sizeof parts, ",\"build_seconds\":%.6g,\"compile_seconds\":%.6g", built - begin,
+                compiled - built);
+  for (const double tolerance : request.tolerances) {
+    options.tolerances = {tolerance, 0.01 * tolerance};
+    const long before = kernel.field_evaluations();
+    Run run = run_of(event_integrator::integrate(kernel, system, options));
+    run.evaluations = kernel.field_evaluations() - before;
+    const Timing timing =
+        median_time(request.seconds, [&] { static_cast<void>(event_integrator::integrate(kernel, system, options)); });
+    print(request, tolerance, timing, run, parts);
+  }
+}
+
+}  // namespace
+}  // namespace compare
+
+int main(int count, char** arguments) { compare::sweep(compare::request_from(count, arguments)); }
