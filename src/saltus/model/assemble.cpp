@@ -3,86 +3,13 @@
 
 #include <fmt/format.h>
 
+#include "saltus/model/guards_internal.hpp"
 #include "saltus/model/reduction_internal.hpp"
 #include "saltus/model/statement_internal.hpp"
 #include "saltus/model/surfaces_internal.hpp"
 
 namespace saltus::model {
 namespace {
-
-/// The comparisons of an event's condition become its guards; the others fold.
-class Guards {
- public:
-  explicit Guards(Recognition& recognition) : recognition_(recognition) {}
-
-  [[nodiscard]] Expected<Truth> truth(const Condition& condition) {
-    switch (condition.kind()) {
-      case Condition::Kind::constant:
-        return condition.truth() > 0.0 ? 1 : 0;
-      case Condition::Kind::comparison:
-        return comparison_truth(condition.comparison());
-      case Condition::Kind::negation:
-        return truth(condition.left()).map([&](Truth a) { return diagram_.negation(a); });
-      case Condition::Kind::conjunction:
-      case Condition::Kind::disjunction:
-        break;
-    }
-    const auto a = truth(condition.left());
-    if (!a) return a;
-    const auto b = truth(condition.right());
-    if (!b) return b;
-    return condition.kind() == Condition::Kind::conjunction ? diagram_.conjunction(*a, *b)
-                                                            : diagram_.disjunction(*a, *b);
-  }
-
-  /// A condition that folded still is one: it gets a guard that never changes.
-  void fill(UserEvent& event, Truth truth) {
-    if (guards_.empty()) static_cast<void>(guard(recognition_.graph.node(SXElem(1.0)), AtEquality::is_false));
-    std::vector<SXElem> symbols, differences;
-    for (std::size_t i = 0; i < guards_.size(); ++i) {
-      symbols.push_back(SXElem::sym(fmt::format("guard_alpha_{}", i)));
-      differences.push_back(recognition_.graph.expression(guards_[i].node));
-      event.true_at_equality.push_back(guards_[i].at_equality == AtEquality::is_true);
-    }
-    event.guards = column(differences);
-    event.guard_alpha = column(symbols);
-    event.value = recognition_.graph.polynomial(diagram_, truth, symbols);
-  }
-
-  [[nodiscard]] bool overflowed() const { return diagram_.overflowed(); }
-
- private:
-  struct Guard {
-    int node;
-    AtEquality at_equality;
-  };
-
-  int guard(int node, AtEquality at_equality) {
-    for (std::size_t i = 0; i < guards_.size(); ++i) {
-      if (guards_[i].node == node && guards_[i].at_equality == at_equality) return static_cast<int>(i);
-    }
-    guards_.push_back({node, at_equality});
-    return static_cast<int>(guards_.size()) - 1;
-  }
-
-  Expected<Truth> comparison_truth(const Comparison& comparison) {
-    const auto difference = scalar(comparison.difference);
-    if (!difference) {
-      return tl::unexpected(
-          Error{ErrorCode::invalid_model, "a comparison of vectors", "compare their entries one by one", {}, {}});
-    }
-    const auto node = recognition_.graph.add(*difference);
-    if (!node) return tl::unexpected(node.error());
-    const auto constant = constant_value(recognition_.graph.tape(), *node);
-    if (!constant) return diagram_.literal(guard(*node, comparison.at_equality));
-    const bool holds = *constant > 0.0 || (*constant == 0.0 && comparison.at_equality == AtEquality::is_true);
-    return holds ? TruthDiagram::constant_true() : TruthDiagram::constant_false();
-  }
-
-  Recognition& recognition_;
-  TruthDiagram diagram_;
-  std::vector<Guard> guards_;
-};
 
 /// The steps from a statement to a system, each of which fills some of its fields.
 class Assembly {

@@ -102,6 +102,7 @@ int SharingIndex::same(const Samples& known, const Samples& asked) {
   for (std::size_t k = 0; k < pool_size && compared < 16; ++k) {
     const double a = known.value[k], b = asked.value[k];
     if (!std::isfinite(a) || !std::isfinite(b)) continue;
+    if (!std::isfinite(known.error[k]) || !std::isfinite(asked.error[k])) continue;
     const double noise_a = 8.0 * known.error[k], noise_b = 8.0 * asked.error[k];
     const bool zero_a = std::abs(a) <= noise_a, zero_b = std::abs(b) <= noise_b;
     if (zero_a != zero_b) return 0;

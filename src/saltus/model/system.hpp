@@ -13,9 +13,9 @@ namespace saltus::model {
 
 /// How a switching function takes part in a result.
 enum class SwitchingRole {
-  listed,      ///< makes a jump somewhere, or is named: column in the result
-  kink,        ///< both branches agree on its surface everywhere: restart only
-  time_event,  ///< depends on time only: restart only (column if named)
+  listed,      ///< makes a jump somewhere: column in the result, each change of sign is an event
+  kink,        ///< nothing jumps on its surface: restart only (column if named)
+  time_event,  ///< depends on time and controls only: restart only (column if named)
 };
 
 /// psi_j(t, x, u, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index (nesting).
@@ -47,8 +47,14 @@ struct UserEvent {
   AtEvent action = AtEvent::record;
 };
 
-/// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j). With Inclusion::filippov f is multi-affine in alpha.
-/// All expressions are over the symbols t, x, u, p, alpha of this value. Units are the model's.
+/// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j). With Inclusion::filippov f is multi-affine in the alphas of
+/// listed functions (those of kinks and time events are 0 or 1 wherever their value matters). All expressions are over
+/// the symbols t, x, u, p, alpha of this value. Units are the model's. Structure (which functions exist, what folded,
+/// what is a kink) holds for parameter_values.
+///
+/// A branch of if, abs, max, min that can be NaN or infinite is guarded: alpha = 0 and 1 select a branch exactly, also
+/// when the other is NaN. Take derivatives with respect to alpha as differences of corners, not by differentiating a
+/// guarded term at alpha = 0 or 1, where the branch not taken is missing from it.
 struct System {
   std::string name;
   std::string description;
@@ -70,8 +76,8 @@ struct System {
   std::vector<SwitchingColumn> columns;  ///< of the result: order of appearance, named ones first in file order
   std::vector<UserEvent> events;
 
-  bool multi_affine = true;                        ///< f_as_written is multi-affine in alpha
-  std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ, empty if none
+  bool multi_affine = true;                        ///< f_as_written is, in the alphas of listed functions, by its form
+  std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ on a surface
   std::vector<std::string> warnings;               ///< unused names, aliases, …
 };
 

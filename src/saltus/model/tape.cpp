@@ -59,8 +59,10 @@ bool is_leaf(const TapeNode& node) {
   return node.operation == casadi::OP_CONST || node.operation == casadi::OP_PARAMETER;
 }
 
-/// |d| b, where a derivative that does not matter (b = 0) may be infinite or NaN.
-double share(double derivative, double bound) { return bound == 0.0 ? 0.0 : std::abs(derivative) * bound; }
+/// |d| b. A derivative that does not exist (of a negative base with respect to the exponent) has no share.
+double share(double derivative, double bound) {
+  return bound == 0.0 || std::isnan(derivative) ? 0.0 : std::abs(derivative) * bound;
+}
 
 }  // namespace
 

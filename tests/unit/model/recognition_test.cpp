@@ -59,6 +59,14 @@ TEST(Recognition, SharingSurvivesArgumentsWithALimitedDomain) {
   EXPECT_EQ(columns(system), Names{"log(x)-1"});
 }
 
+TEST(Recognition, PowersWithAParameterAreComparedToo) {
+  const System system =
+      built({.parameters = {{"k", "2"}},
+             .states = {{"x", "1"}},
+             .dynamics = {{"x", "step(x^k - 4) + 3*step(12 - 3*x^k) + step(x^k - 5) + step(x^3 - 4)"}}});
+  EXPECT_EQ(columns(system), (Names{"x^k-4", "x^k-5", "x^3-4"}));
+}
+
 TEST(Recognition, NamesComeFromTheText) {
   const System system = built({.states = {{"x", "1"}, {"y", "2"}, {"z", "3"}},
                                .definitions = {{"level", "x + y"}},
