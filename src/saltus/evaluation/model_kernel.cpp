@@ -56,7 +56,11 @@ struct ModelKernel::Implementation {
 };
 
 ModelKernel::Implementation::Implementation(const model::System& system)
-    : t(system.t), x(system.x), p(system.p), alpha(system.alpha), parameters(system.parameter_values),
+    : t(system.t),
+      x(system.x),
+      p(system.p),
+      alpha(system.alpha),
+      parameters(system.parameter_values),
       n_psi(static_cast<int>(system.switching.size())) {
   input = SX::densify(system.input);
   const auto with_inputs = [&](const SX& expression) {
@@ -142,7 +146,10 @@ Expected<ModelKernel> ModelKernel::compile(const model::System& system) {
     return ModelKernel(std::make_unique<Implementation>(system));
   } catch (const std::exception& error) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
-                                std::string("the model's expressions cannot be compiled: ") + error.what(), "", {}, {}});
+                                std::string("the model's expressions cannot be compiled: ") + error.what(),
+                                "",
+                                {},
+                                {}});
   }
 }
 

@@ -9,12 +9,12 @@
 
 namespace saltus::evaluation {
 
-/// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons (guards)
-/// of their conditions.
+/// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons
+/// (guards) of their conditions.
 ///
-/// All functions take t (model time), x (n_x), alpha (n_psi, in [0, 1]) and write to the caller's memory; values that are
-/// not finite mark points where the model is undefined. Controls are replaced by their inputs u(t). Not thread safe: one
-/// kernel per thread (the interpreter's work space is inside).
+/// All functions take t (model time), x (n_x), alpha (n_psi, in [0, 1]) and write to the caller's memory; values that
+/// are not finite mark points where the model is undefined. Controls are replaced by their inputs u(t). Not thread
+/// safe: one kernel per thread (the interpreter's work space is inside).
 class ModelKernel {
  public:
   /// Compiles the functions that every run needs; derivatives of single functions are compiled when first asked for.

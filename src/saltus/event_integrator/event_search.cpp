@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace saltus::event_integrator {
 namespace {
@@ -29,6 +30,24 @@ double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
   return tail;
 }
 
+/// Whether a smooth function with these values at the five Chebyshev-Lobatto nodes of an interval keeps its sign by a
+/// wide margin: the sum of the Chebyshev coefficients bounds the interpolant, the last two say how much it may miss.
+bool stays_far(const std::array<double, 5>& v, int sign) {
+  const double r = std::numbers::sqrt2 / 2.0;
+  const double c0 = (0.5 * (v[0] + v[4]) + v[1] + v[2] + v[3]) / 4.0;
+  const double c1 = (0.5 * (v[4] - v[0]) + r * (v[3] - v[1])) / 2.0;
+  const double c2 = (0.5 * (v[0] + v[4]) - v[2]) / 2.0;
+  const double c3 = (0.5 * (v[4] - v[0]) - r * (v[3] - v[1])) / 2.0;
+  const double c4 = (0.5 * (v[0] + v[4]) - v[1] + v[2] - v[3]) / 4.0;
+  const double tail = std::abs(c3) + std::abs(c4);
+  return sign * c0 > std::abs(c1) + std::abs(c2) + 8.0 * tail;
+}
+
+bool uses_phi(const EventFunction& function) {
+  return function.kind == FunctionKind::surface || function.kind == FunctionKind::user ||
+         function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
+}
+
 /// d phi / d theta of an interpolant by a central difference: starts a Newton correction, no more.
 double slope_at(const ode::BernsteinCoefficients& coefficients, double theta) {
   constexpr double width = 1e-4;
@@ -39,8 +58,9 @@ double slope_at(const ode::BernsteinCoefficients& coefficients, double theta) {
 
 }  // namespace
 
-EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, const ode::Tolerances& tolerances)
-    : kernel_(kernel), field_(field), tolerances_(tolerances) {
+EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
+                         const ode::Tolerances& tolerances)
+    : kernel_(kernel), field_(field), five_nodes_suffice_(ode::dense_degree(method) <= 4), tolerances_(tolerances) {
   const auto n_phi = at(kernel.event_functions());
   for (auto* vector : {&phi_, &phi_below_, &phi_above_, &magnitude_, &slope_}) vector->resize(n_phi);
   x_.resize(at(kernel.states()));
@@ -75,6 +95,11 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
     }
   }
   for (int u = n_psi; u < kernel_.event_functions(); ++u) functions_.push_back({FunctionKind::user, u, 0, 0, 0});
+  // Functions that are not affine in the state may oscillate within a step: five nodes do not speak for them.
+  prefilter_.clear();
+  for (const auto& function : functions_) {
+    prefilter_.push_back(five_nodes_suffice_ && (!uses_phi(function) || kernel_.is_affine(function.index)));
+  }
   noise_.assign(functions_.size(), 0.0);
   accuracy_.assign(functions_.size(), 0.0);
   point_.resize(functions_.size());
@@ -108,16 +133,15 @@ void EventSearch::rescale(double t, const double* x) {
   if (!exits_.empty()) field_.exits(t, x, exits_.data());
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const auto& function = functions_[i];
-    if (function.kind == FunctionKind::surface || function.kind == FunctionKind::user ||
-        function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above) {
+    if (uses_phi(function)) {
       const auto j = at(function.index);
       // A handful of roundings of terms as large as the magnitude.
       noise_[i] = 8.0 * epsilon * magnitude_[j];
       accuracy_[i] = 0.1 * (tolerances_.atol * slope_[j] + tolerances_.rtol * magnitude_[j]);
     } else {
       const auto& exit = exits_[at(function.row)];
-      const double size = function.kind == FunctionKind::loss ? std::abs(exit.loss)
-                                                              : std::abs(exit.below) + std::abs(exit.above);
+      const double size =
+          function.kind == FunctionKind::loss ? std::abs(exit.loss) : std::abs(exit.below) + std::abs(exit.above);
       noise_[i] = 32.0 * epsilon * size;
       accuracy_[i] = 0.1 * tolerances_.rtol * size;
     }
@@ -162,73 +186,114 @@ void EventSearch::evaluate(double t, const double* x, std::vector<double>& value
   }
 }
 
-void EventSearch::sample(const ode::DenseStep& step, double from, double to) {
-  const auto& nodes = ode::interpolation_nodes();
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const double theta = k + 1 == nodes.size() ? to : from + (to - from) * nodes[k];
-    step.evaluate(theta, x_.data());
-    evaluate(step.t + theta * step.h, x_.data(), point_);
-    std::copy(point_.begin(), point_.end(), samples_.begin() + static_cast<std::ptrdiff_t>(k * functions_.size()));
+void EventSearch::sample_node(const ode::DenseStep& step, double theta, std::size_t node) {
+  step.evaluate(theta, x_.data());
+  evaluate(step.t + theta * step.h, x_.data(), point_);
+  std::copy(point_.begin(), point_.end(), samples_.begin() + static_cast<std::ptrdiff_t>(node * functions_.size()));
+}
+
+double EventSearch::node_theta(double from, double to, std::size_t node) const {
+  return node == ode::event_degree ? to : from + (to - from) * ode::interpolation_nodes()[node];
+}
+
+/// Every second node: enough to see that all functions stay far from zero, which is the case in most steps.
+bool EventSearch::all_far(const ode::DenseStep& step) {
+  // NOTE: a dense output of degree 7 dips between five nodes (the relay loses events at loose tolerances).
+  for (std::size_t node = 0; node < ode::event_nodes; node += 2) sample_node(step, node_theta(0.0, 1.0, node), node);
+  if (!five_nodes_suffice_) return false;
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    if (functions_[i].sign == 0 || functions_[i].zero_order != 0 || !prefilter_[i]) return false;
+    const auto value = [&](std::size_t node) { return samples_[node * functions_.size() + i]; };
+    if (!stays_far({value(0), value(2), value(4), value(6), value(8)}, functions_[i].sign)) return false;
   }
+  return true;
 }
 
 SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
-  if (functions_.empty()) return SearchOutcome::none;
+  if (functions_.empty() || all_far(step)) return SearchOutcome::none;
+  step.evaluate(0.0, x_.data());
+  rescale(step.t, x_.data());
+  for (std::size_t node = 1; node < ode::event_nodes; node += 2) sample_node(step, node_theta(0.0, 1.0, node), node);
   return search_interval(step, 0.0, 1.0, 0, hit);
 }
 
-SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit) {
-  sample(step, from, to);
-  SearchOutcome outcome = SearchOutcome::none;
-  bool unresolved = false;
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    const auto& function = functions_[i];
-    std::array<double, ode::event_nodes> values;
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
-    if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
-      unresolved = true;
-      continue;
-    }
-    const auto coefficients = ode::to_bernstein(values);
-    int sign = function.sign;
-    if (sign == 0) {  // a user function at zero: it gets the sign it moves to
-      const auto first = std::find_if(coefficients.begin(), coefficients.end(),
-                                      [&](double b) { return std::abs(b) > noise_[i]; });
-      if (first == coefficients.end()) continue;
-      sign = sign_of(*first);
-    }
-    const int zero_order = from == 0.0 ? function.zero_order : 0;
-    if (!kernel_.is_affine(function.index) || function.kind >= FunctionKind::exit_below) {
-      const double error = chebyshev_tail(values);
-      const bool far = std::all_of(coefficients.begin(), coefficients.end(), [&](double b) { return sign * b > 8.0 * error; });
-      if (far) continue;
-      unresolved = unresolved || error > accuracy_[i];
-    }
-    if (ode::certainly_no_sign_change(coefficients, sign, zero_order, noise_[i])) continue;
-    const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise_[i]);
-    if (!change) continue;
-    const double local = 0.5 * (change->lower + change->upper);
+/// Whether the interpolant of function i misses the function's values between the nodes.
+bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std::size_t i,
+                         const ode::BernsteinCoefficients& coefficients) {
+  // Three places that are not symmetric to each other: a periodic function does not fool the nodes and these as well.
+  for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{6}}) {
+    const double local = ode::check_nodes()[place];
     const double theta = from + (to - from) * local;
-    if (outcome == SearchOutcome::none || theta < hit.theta) {
-      hit = {i, theta, slope_at(coefficients, local) / ((to - from) * step.h), sign};
+    step.evaluate(theta, x_.data());
+    evaluate(step.t + theta * step.h, x_.data(), point_);
+    if (!(std::abs(point_[i] - ode::evaluate(coefficients, local)) <= accuracy_[i])) return true;
+  }
+  return false;
+}
+
+/// The first sign change of one function between two nodes' ends, from the samples.
+EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, double to, std::size_t i) {
+  const auto& function = functions_[i];
+  std::array<double, ode::event_nodes> values;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return {false, {}};
+  const auto coefficients = ode::to_bernstein(values);
+  int sign = function.sign;
+  if (sign == 0) {  // a user function at zero: it gets the sign it moves to
+    const auto first =
+        std::find_if(coefficients.begin(), coefficients.end(), [&](double b) { return std::abs(b) > noise_[i]; });
+    if (first == coefficients.end()) return {};
+    sign = sign_of(*first);
+  }
+  const int zero_order = from == 0.0 ? function.zero_order : 0;
+  const bool is_exit = !uses_phi(function);
+  if (is_exit || !kernel_.is_affine(function.index)) {
+    const double error = chebyshev_tail(values);
+    if (is_exit &&
+        std::all_of(coefficients.begin(), coefficients.end(), [&](double b) { return sign * b > 8.0 * error; })) {
+      return {};
+    }
+    if (error > accuracy_[i] || (!is_exit && misses(step, from, to, i, coefficients))) return {false, {}};
+  }
+  if (ode::certainly_no_sign_change(coefficients, sign, zero_order, noise_[i])) return {};
+  const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise_[i]);
+  if (!change) return {};
+  const double local = 0.5 * (change->lower + change->upper);
+  return {true, Hit{i, from + (to - from) * local, slope_at(coefficients, local) / ((to - from) * step.h), sign}};
+}
+
+/// The samples of [from, to] are taken; cuts the interval where an interpolant is not good enough.
+SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit) {
+  SearchOutcome outcome = SearchOutcome::none;
+  bool resolved = true;
+  for (std::size_t i = 0; i < functions_.size() && resolved; ++i) {
+    const auto finding = find(step, from, to, i);
+    resolved = finding.resolved;
+    if (finding.hit && (outcome == SearchOutcome::none || finding.hit->theta < hit.theta)) {
+      hit = *finding.hit;
       outcome = SearchOutcome::hit;
     }
   }
-  if (!unresolved) return outcome;
+  if (resolved) return outcome;
   if (depth >= deepest) return SearchOutcome::unresolved;
   const double middle = 0.5 * (from + to);
-  const SearchOutcome left = search_interval(step, from, middle, depth + 1, hit);
-  return left != SearchOutcome::none ? left : search_interval(step, middle, to, depth + 1, hit);
+  for (const auto& [begin, end] : {std::pair{from, middle}, std::pair{middle, to}}) {
+    for (std::size_t node = 0; node < ode::event_nodes; ++node) sample_node(step, node_theta(begin, end, node), node);
+    const SearchOutcome half = search_interval(step, begin, end, depth + 1, hit);
+    if (half != SearchOutcome::none) return half;
+  }
+  return SearchOutcome::none;
 }
 
 void EventSearch::settle(double t, const double* x) {
-  rescale(t, x);
   bool unknown = false;
   for (auto& function : functions_) {
     function.zero_order = 0;
     unknown = unknown || function.sign == 0;
   }
-  if (unknown) read_user_signs(t, x);
+  if (!unknown) return;
+  rescale(t, x);
+  read_user_signs(t, x);
 }
 
 void EventSearch::set_user_sign(std::size_t function, int sign) {

@@ -47,7 +47,8 @@ enum class SearchOutcome {
 /// Searches one step after the other. Owns the work space; allocates in enter() only.
 class EventSearch {
  public:
-  EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, const ode::Tolerances& tolerances);
+  EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
+              const ode::Tolerances& tolerances);
 
   /// Sets up the functions of a mode at (t, x). `zero_order` (n_psi): zeros that surfaces have at this point.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
@@ -69,12 +70,22 @@ class EventSearch {
   void set_user_sign(std::size_t function, int sign);
 
  private:
+  struct Finding {
+    bool resolved = true;
+    std::optional<Hit> hit;
+  };
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
-  void sample(const ode::DenseStep& step, double from, double to);
+  Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
+  bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
+              const ode::BernsteinCoefficients& coefficients);
+  bool all_far(const ode::DenseStep& step);
+  void sample_node(const ode::DenseStep& step, double theta, std::size_t node);
+  [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;
   void read_user_signs(double t, const double* x);
 
   const evaluation::ModelKernel& kernel_;
   ModeField& field_;
+  bool five_nodes_suffice_;  ///< the dense output has degree 4: five samples determine an affine function
   ode::Tolerances tolerances_;
   ModeState state_;
   std::vector<EventFunction> functions_;
@@ -84,6 +95,7 @@ class EventSearch {
   std::vector<double> x_, point_;
   std::vector<double> samples_;  ///< node by node
   std::vector<double> noise_, accuracy_;
+  std::vector<bool> prefilter_;  ///< five samples may show that the function stays away from zero
 };
 
 }  // namespace saltus::event_integrator

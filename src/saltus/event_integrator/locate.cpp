@@ -89,7 +89,8 @@ bool Locator::correct(const Hit& hit) {
     if (value == 0.0 || std::abs(value) <= 0.125 * search_.noise(hit.function) || trial_.h == 0.0) return true;
     (value * hit.sign > 0.0 ? before : beyond) = h;
     // The interpolant's slope is good to many digits; only where it fails (near a double zero) is a secant better.
-    if (iteration > 0 && std::abs(value) > 0.1 * std::abs(previous_value) && h != previous_h && value != previous_value) {
+    if (iteration > 0 && std::abs(value) > 0.1 * std::abs(previous_value) && h != previous_h &&
+        value != previous_value) {
       slope = (value - previous_value) / (h - previous_h);
     }
     previous_h = h;
@@ -115,8 +116,8 @@ std::optional<std::size_t> Locator::earlier_function(std::size_t located) const 
   return std::nullopt;
 }
 
-/// Functions that reach zero together with the located one: at zero to rounding of their values or of time, and away from
-/// it shortly before (a surface just left is still near zero, but moving away).
+/// Functions that reach zero together with the located one: at zero to rounding of their values or of time, and away
+/// from it shortly before (a surface just left is still near zero, but moving away).
 std::vector<std::size_t> Locator::vanishing_with(std::size_t located) {
   std::vector<std::size_t> together{located};
   std::vector<double> x(n_);

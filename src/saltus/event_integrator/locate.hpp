@@ -27,8 +27,8 @@ struct Located {
 
 /// Corrects a hit found on the dense output of the step (start, h).
 /// Newton in t with the slope of the interpolant, safeguarded by the bracket of signs seen; every iteration retakes the
-/// step, so the order of the method is kept. Of several functions the earliest zero is located; those that vanish with it
-/// to rounding are one event.
+/// step, so the order of the method is kept. Of several functions the earliest zero is located; those that vanish with
+/// it to rounding are one event.
 /// @return nullopt if the right-hand side is undefined up to the event (shorten the step).
 [[nodiscard]] std::optional<Located> locate(ode::Stepper& stepper, ModeField& field, EventSearch& search,
                                             const ode::Tolerances& tolerances, const StepStart& start,

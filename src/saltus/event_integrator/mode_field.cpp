@@ -50,8 +50,8 @@ void ModeField::enter(const ModeState& state) {
   exits_.assign(sliding_.size(), {});
   coordinate_.assign(sliding_.size(), -1);
   constant_row_.assign(sliding_.size(), false);
-  solve_ = sliding_.empty() ? SlidingSolve::none
-                            : (affine_in_alpha_ ? SlidingSolve::decoupled : SlidingSolve::nonaffine);
+  solve_ =
+      sliding_.empty() ? SlidingSolve::none : (affine_in_alpha_ ? SlidingSolve::decoupled : SlidingSolve::nonaffine);
   for (const int i : sliding_) {
     for (const int j : sliding_) {
       if (i != j && kernel_.depends(i, j)) solve_ = SlidingSolve::coupled;

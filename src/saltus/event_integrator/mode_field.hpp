@@ -13,10 +13,10 @@ namespace saltus::event_integrator {
 
 /// How the selections of the sliding surfaces follow from grad psi_I . f(alpha) + d psi_I/dt = 0.
 enum class SlidingSolve {
-  none,        ///< no sliding
-  decoupled,   ///< each normal component depends on its own selection only: closed form
-  coupled,     ///< multi-affine in several selections: Newton from the mode's selections
-  nonaffine,   ///< decoupled, but not affine (Aizerman-Pyatnitskii): secant from the mode's selections
+  none,       ///< no sliding
+  decoupled,  ///< each normal component depends on its own selection only: closed form
+  coupled,    ///< multi-affine in several selections: Newton from the mode's selections
+  nonaffine,  ///< decoupled, but not affine (Aizerman-Pyatnitskii): secant from the mode's selections
 };
 
 /// Exit functions of one sliding surface; the mode ends where one changes its sign.
@@ -64,18 +64,18 @@ class ModeField {
   bool affine_in_alpha_;
   SlidingSolve solve_ = SlidingSolve::none;
   std::vector<int> sliding_;
-  std::vector<double> start_alpha_;       ///< of the mode
-  std::vector<double> alpha_;             ///< of the last evaluation
-  std::vector<double> corner_[2];         ///< selections of the two regions (one sliding surface)
-  std::vector<double> trial_;             ///< n_psi
-  std::vector<double> f_[2];              ///< n_x each
-  std::vector<double> values_;            ///< all event functions
-  std::vector<ExitValues> exits_;         ///< of the last evaluation
-  std::vector<bool> constant_row_;        ///< gradient known once and for all in this mode
-  std::vector<int> coordinate_;           ///< the only nonzero column of a row, or -1
-  Eigen::MatrixXd rows_;                  ///< J, m x n_x
-  Eigen::VectorXd rates_, residual_;      ///< d psi_I/dt, m
-  Eigen::MatrixXd normal_matrix_;         ///< J J^T, then G
+  std::vector<double> start_alpha_;   ///< of the mode
+  std::vector<double> alpha_;         ///< of the last evaluation
+  std::vector<double> corner_[2];     ///< selections of the two regions (one sliding surface)
+  std::vector<double> trial_;         ///< n_psi
+  std::vector<double> f_[2];          ///< n_x each
+  std::vector<double> values_;        ///< all event functions
+  std::vector<ExitValues> exits_;     ///< of the last evaluation
+  std::vector<bool> constant_row_;    ///< gradient known once and for all in this mode
+  std::vector<int> coordinate_;       ///< the only nonzero column of a row, or -1
+  Eigen::MatrixXd rows_;              ///< J, m x n_x
+  Eigen::VectorXd rates_, residual_;  ///< d psi_I/dt, m
+  Eigen::MatrixXd normal_matrix_;     ///< J J^T, then G
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 

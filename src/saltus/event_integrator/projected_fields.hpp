@@ -15,8 +15,8 @@ struct Motion {
   int order = 0;  ///< of the first derivative that does not vanish; 0 if none was found
 };
 
-/// All values are at one point (occasion.t, occasion.x); not finite where a field is undefined there and also just beside
-/// the surfaces, on the side that belongs to the selections.
+/// All values are at one point (occasion.t, occasion.x); not finite where a field is undefined there and also just
+/// beside the surfaces, on the side that belongs to the selections.
 class ProjectedFields {
  public:
   ProjectedFields(const evaluation::ModelKernel& kernel, const Occasion& occasion);
@@ -27,8 +27,8 @@ class ProjectedFields {
                                                  std::size_t corner) const;
   /// Normal components of f(alpha) on the surfaces of `group`.
   [[nodiscard]] std::vector<double> velocities(const std::vector<double>& alpha, const std::vector<int>& group) const;
-  /// Where psi_surface goes along f(alpha). Velocities up to 1e-10 `scale` count as 0 and the next derivatives decide, of
-  /// which those count that move psi over the occasion's time scale beyond rounding.
+  /// Where psi_surface goes along f(alpha). Velocities up to 1e-10 `scale` count as 0 and the next derivatives decide,
+  /// of which those count that move psi over the occasion's time scale beyond rounding.
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
 
   /// The table of all 2^m corners of a group.

@@ -104,7 +104,8 @@ bool Recorder::started(double t, const std::vector<double>& x, const Transition&
   return true;
 }
 
-void Recorder::user(double t, const std::vector<double>& x, const ModeState& before, const ModeState& after, int event) {
+void Recorder::user(double t, const std::vector<double>& x, const ModeState& before, const ModeState& after,
+                    int event) {
   result::Event entry;
   entry.t = t;
   entry.kind = result::EventKind::user;

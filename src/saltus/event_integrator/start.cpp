@@ -36,8 +36,10 @@ bool finite_at_start(const Surroundings& s, double t, const double* x, const Mod
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     if (std::isfinite(values[at(j)])) continue;
     transition.termination = result::Termination::evaluation_failed;
-    transition.message = fmt::format("the switching function '{}' is not finite at the start t = {}; change the initial "
-                                     "values or its expression", s.system.switching[at(j)].name, t);
+    transition.message = fmt::format(
+        "the switching function '{}' is not finite at the start t = {}; change the initial "
+        "values or its expression",
+        s.system.switching[at(j)].name, t);
     return false;
   }
   return true;
@@ -71,8 +73,9 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
     const bool at_zero = std::find(start.at_zero.begin(), start.at_zero.end(), surface) != start.at_zero.end();
     if (!at_zero && mode != state.mode[at(surface)]) {
       start.transition.termination = result::Termination::no_admissible_mode;
-      start.transition.message = fmt::format("initial_mode {} = {} contradicts the sign of the switching function at the start",
-                                             s.system.switching[at(surface)].name, mode);
+      start.transition.message =
+          fmt::format("initial_mode {} = {} contradicts the sign of the switching function at the start",
+                      s.system.switching[at(surface)].name, mode);
       return start;
     }
     set_surface(wanted, surface, mode, mode > 0 ? 1.0 : mode < 0 ? 0.0 : 0.5);

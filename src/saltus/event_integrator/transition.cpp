@@ -38,7 +38,8 @@ std::string names(const model::System& system, const std::vector<int>& surfaces)
 bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j) {
   if (kernel.depends(i, j)) return true;
   for (int nested = 0; nested < kernel.switching_functions(); ++nested) {
-    if (!contains(occasion.at_zero, nested) && contains(kernel.inner(nested), j) && kernel.depends(i, nested)) return true;
+    if (!contains(occasion.at_zero, nested) && contains(kernel.inner(nested), j) && kernel.depends(i, nested))
+      return true;
   }
   return false;
 }
@@ -144,12 +145,13 @@ bool Decider::decide(const std::vector<int>& group) {
     case Verdict::two_fold:
       return fail(result::Termination::outside_class,
                   fmt::format("both fields are tangent to '{}' at t = {} (two-fold point): the sliding motion is not "
-                              "determined there", culprit(), occasion_.t));
+                              "determined there",
+                              culprit(), occasion_.t));
     case Verdict::coupled:
       return fail(result::Termination::outside_class,
                   fmt::format("the surfaces {} meet at t = {} and influence each other: the continuation needs the "
-                              "codimension-{} switching of a later version", names(s_.system, group), occasion_.t,
-                              group.size()));
+                              "codimension-{} switching of a later version",
+                              names(s_.system, group), occasion_.t, group.size()));
   }
   for (std::size_t k = 0; k < group.size(); ++k) {
     SurfaceDecision surface = decision.surfaces[k];
@@ -215,9 +217,8 @@ bool Decider::check() {
   if (!std::all_of(xdot.begin(), xdot.end(), [](double v) { return std::isfinite(v); })) {
     // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
     if (!state.sliding.empty()) {
-      return fail(result::Termination::evaluation_failed,
-                  fmt::format("the sliding field on {} is not finite at t = {}", names(s_.system, state.sliding),
-                              occasion_.t));
+      return fail(result::Termination::evaluation_failed, fmt::format("the sliding field on {} is not finite at t = {}",
+                                                                      names(s_.system, state.sliding), occasion_.t));
     }
   }
   for (const int j : state.sliding) {
@@ -244,10 +245,10 @@ bool Decider::check() {
                                   std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front()));
     const Motion motion = fields_.motion(state.alpha, j, velocity, scale);
     if (static_cast<int>(motion.side.drift) != mode) {
-      return fail(result::Termination::no_admissible_mode,
-                  fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not",
-                              occasion_.t, mode > 0 ? "the positive side" : "the negative side",
-                              s_.system.switching[at(j)].name));
+      return fail(
+          result::Termination::no_admissible_mode,
+          fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not", occasion_.t,
+                      mode > 0 ? "the positive side" : "the negative side", s_.system.switching[at(j)].name));
     }
     transition_.zero_order[at(j)] = std::min(motion.order, 2);
   }
@@ -274,8 +275,8 @@ Transition Decider::run() {
   for (const auto& [surface, decision] : decisions_) {
     if (contains(standing_, surface)) continue;
     if (decision.mode != before_.mode[at(surface)] || occasion_.start) {
-      transition_.reason += (transition_.reason.empty() ? "" : "; ") + s_.system.switching[at(surface)].name + ": " +
-                            decision.reason;
+      transition_.reason +=
+          (transition_.reason.empty() ? "" : "; ") + s_.system.switching[at(surface)].name + ": " + decision.reason;
     }
     for (const int other : decision.other_modes) {
       transition_.unique = false;

@@ -1,4 +1,5 @@
-// From "these surfaces are at zero here" to the next mode: gathers projected fields, asks the switching, checks the answer.
+// From "these surfaces are at zero here" to the next mode: gathers projected fields, asks the switching, checks the
+// answer.
 #pragma once
 
 #include <string>
@@ -15,12 +16,12 @@ namespace saltus::event_integrator {
 /// Why the mode is decided afresh.
 struct Occasion {
   double t = 0.0;
-  const double* x = nullptr;       ///< n_x, on all surfaces of `at_zero`
-  std::vector<int> at_zero;        ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
-  std::vector<int> exit_below;     ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
-  std::vector<int> exit_above;     ///< … upper field (alpha = 1)
-  bool start = false;              ///< no mode before
-  double time_scale = 1.0;         ///< a step of the integrator: derivatives that do not move psi over it vanish
+  const double* x = nullptr;    ///< n_x, on all surfaces of `at_zero`
+  std::vector<int> at_zero;     ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
+  std::vector<int> exit_below;  ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
+  std::vector<int> exit_above;  ///< … upper field (alpha = 1)
+  bool start = false;           ///< no mode before
+  double time_scale = 1.0;      ///< a step of the integrator: derivatives that do not move psi over it vanish
 };
 
 struct Transition {
@@ -42,10 +43,11 @@ struct Surroundings {
 
 /// The mode behind an event, or a start, at one point.
 /// Surfaces that do not influence each other are decided one by one, the others in groups; switching functions nested
-/// around a surface that changes are read anew. The new mode is checked along its own field: it must move to where it says.
-/// Terminations: outside_class (two-fold, psi stays 0, coupled surfaces), no_admissible_mode (the check failed),
+/// around a surface that changes are read anew. The new mode is checked along its own field: it must move to where it
+/// says. Terminations: outside_class (two-fold, psi stays 0, coupled surfaces), no_admissible_mode (the check failed),
 /// evaluation_failed (fields undefined at the point).
-[[nodiscard]] Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion);
+[[nodiscard]] Transition decide_mode(const Surroundings& surroundings, const ModeState& before,
+                                     const Occasion& occasion);
 
 /// A mode that the user forces at the start: only the check along its own field.
 [[nodiscard]] Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced,

@@ -13,8 +13,8 @@ class UserEvents {
  public:
   UserEvents(const evaluation::ModelKernel& kernel, const model::System& system);
 
-  /// Takes the signs (-1, 0, 1) of all user functions in force from now on and returns which entries of [[events]] fire:
-  /// expressions whose sign changed in their direction, conditions whose truth did. The first call only sets up.
+  /// Takes the signs (-1, 0, 1) of all user functions in force from now on and returns which entries of [[events]]
+  /// fire: expressions whose sign changed in their direction, conditions whose truth did. The first call only sets up.
   [[nodiscard]] std::vector<int> update(double t, const double* x, const std::vector<double>& alpha,
                                         const std::vector<int>& signs);
   [[nodiscard]] bool stops(int event) const;

@@ -62,7 +62,7 @@ class Stepper {
   Attempt attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
                   const Tolerances& tolerances);
 
-  /// Root mean square of the local error estimate over atol + rtol max(|x|, |x_new|); <= 1 is acceptable, infinite if
+  /// Largest component of the local error estimate over atol + rtol max(|x|, |x_new|); <= 1 is acceptable, infinite if
   /// it overflows, never NaN. Valid after a finite attempt.
   [[nodiscard]] double error_norm() const { return error_norm_; }
   [[nodiscard]] const double* x_new() const { return x_new_.data(); }

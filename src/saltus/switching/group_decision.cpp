@@ -88,7 +88,8 @@ bool same_side(const Side& a, const Side& b, double scale) {
 }
 
 /// The situation of a surface whose sides depend on its own selection only.
-std::optional<SurfaceSituation> own_situation(const CornerTable& table, const RestrictedTable& restricted, int surface) {
+std::optional<SurfaceSituation> own_situation(const CornerTable& table, const RestrictedTable& restricted,
+                                              int surface) {
   std::optional<Side> below;
   std::optional<Side> above;
   double scale = 0.0;
@@ -115,7 +116,10 @@ std::optional<SurfaceDecision> decide_by_rule(const CornerTable& table, const Re
   }
   if (const auto drift = definite_drift(table, restricted, j)) {
     const int side = static_cast<int>(*drift);
-    return SurfaceDecision{Verdict::decided, side, side > 0 ? 1.0 : 0.0, {},
+    return SurfaceDecision{Verdict::decided,
+                           side,
+                           side > 0 ? 1.0 : 0.0,
+                           {},
                            side > 0 ? "all fields point to psi > 0" : "all fields point to psi < 0"};
   }
   return std::nullopt;

@@ -23,18 +23,18 @@ struct CornerTable {
 
 struct GroupDecision {
   Verdict verdict = Verdict::decided;
-  int culprit = -1;  ///< the surface that could not be decided, if any
+  int culprit = -1;                       ///< the surface that could not be decided, if any
   std::vector<SurfaceDecision> surfaces;  ///< m
 };
 
 /// Decides m surfaces (1 <= m <= 12) by elimination, which is exact where it applies:
 ///   (1) a surface whose normal component has one sign at all remaining corners is left in that direction;
 ///   (2) a surface whose normal component depends on its own selection only is decided by itself;
-///   each decision restricts the table (multi-affine interpolation in a sliding selection) and the rest is looked at again.
-/// The hidden dynamics u_j' = g_j(pi(u)) confirms both: under (1) u_j leaves the cube monotonically, under (2) u_j does not
-/// feel the others. Where neither applies, or where a restricted surface turns out repelling so that the transient would
-/// decide, the verdict is `coupled`.
-/// Cost: O(m^2 2^m).
+///   each decision restricts the table (multi-affine interpolation in a sliding selection) and the rest is looked at
+///   again.
+/// The hidden dynamics u_j' = g_j(pi(u)) confirms both: under (1) u_j leaves the cube monotonically, under (2) u_j does
+/// not feel the others. Where neither applies, or where a restricted surface turns out repelling so that the transient
+/// would decide, the verdict is `coupled`. Cost: O(m^2 2^m).
 [[nodiscard]] GroupDecision decide_group(const CornerTable& table);
 
 }  // namespace saltus::switching

@@ -17,7 +17,10 @@ SurfaceDecision slides(const SurfaceSituation& s) {
   if (s.below.velocity == 0.0 && s.above.velocity == 0.0) {
     return {Verdict::two_fold, 0, 0.5, {}, "both fields are tangent to the surface (two-fold)"};
   }
-  return {Verdict::decided, 0, sliding_alpha(s.below.velocity, s.above.velocity), {},
+  return {Verdict::decided,
+          0,
+          sliding_alpha(s.below.velocity, s.above.velocity),
+          {},
           "both fields point to the surface: sliding"};
 }
 
@@ -41,8 +44,9 @@ SurfaceDecision decide_surface(const SurfaceSituation& s) {
   }
   // One field moves along the surface, the other is transversal.
   if (below == Drift::stays) {
-    return above == Drift::down ? SurfaceDecision{Verdict::decided, 0, 0.0, {}, "the field below moves along the surface"}
-                                : not_unique(+1, {0}, "the field above leaves, the one below moves along the surface");
+    return above == Drift::down
+               ? SurfaceDecision{Verdict::decided, 0, 0.0, {}, "the field below moves along the surface"}
+               : not_unique(+1, {0}, "the field above leaves, the one below moves along the surface");
   }
   return below == Drift::up ? SurfaceDecision{Verdict::decided, 0, 1.0, {}, "the field above moves along the surface"}
                             : not_unique(-1, {0}, "the field below leaves, the one above moves along the surface");

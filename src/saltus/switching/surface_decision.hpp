@@ -40,10 +40,10 @@ enum class Verdict {
 
 struct SurfaceDecision {
   Verdict verdict = Verdict::decided;
-  int mode = 0;        ///< -1, 0 (sliding), +1
-  double alpha = 0.0;  ///< selection behind the event: 0, 1, or the sliding value
+  int mode = 0;                  ///< -1, 0 (sliding), +1
+  double alpha = 0.0;            ///< selection behind the event: 0, 1, or the sliding value
   std::vector<int> other_modes;  ///< further continuations in the sense of Filippov; empty = unique
-  std::string reason;  ///< which rule decided, in words
+  std::string reason;            ///< which rule decided, in words
 };
 
 /// Sliding selection alpha = g- / (g- - g+) from g- = below.velocity >= 0 >= g+ = above.velocity, not both 0
