@@ -131,6 +131,7 @@ TEST_P(Catalogue, ScalingPsiByOtherFactorsStaysWithinTenTolerances) {
   for (const double factor : {1e8, 1e-8}) {
     const Simulator scaled = Simulator::from_reference(GetParam(), factor);
     const Result result = scaled.run(scaled.options());
+    ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
     ASSERT_EQ(result.events.size(), unscaled.events.size());
     for (std::size_t i = 0; i < result.events.size(); ++i) {
       EXPECT_EQ(result.events[i].kind, unscaled.events[i].kind) << "event " << i + 1;

@@ -39,6 +39,8 @@ TEST_P(Restarts, FromTheStateBehindAnEventTheNextEventsFollow) {
   Simulator model = Simulator::from_reference(problem);
   const pipeline::SimulateOptions options = with(model.options(), fine);
   const Result whole = model.run(options);
+  ASSERT_EQ(whole.status.termination, result::Termination::completed) << whole.status.message;
+  ASSERT_EQ(whole.events.size(), problem.events.size());
   for (std::size_t i = 0; i < whole.events.size(); ++i) {
     SCOPED_TRACE("restart from event " + std::to_string(i + 1));
     pipeline::SimulateOptions rest = options;

@@ -47,6 +47,7 @@ TEST(Surfaces, DenseOutputBetweenLongStepsStaysNearACurvedSurface) {
     pipeline::SimulateOptions options = with(model.options(), accuracy);
     options.output = pipeline::NumberOfPoints{3001};
     const result::Result result = model.run(options);
+    ASSERT_EQ(result.events.size(), 1u);
     const double tolerance = 2.0 * (options.atol + options.rtol);
     for (std::size_t row = 0; row < result.trajectory.t.size(); ++row) {
       if (result.trajectory.mode[row][0] != 0) continue;
