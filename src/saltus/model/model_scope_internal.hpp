@@ -20,16 +20,22 @@ enum class Reach {
   everything,
 };
 
-class ModelScope final : public Scope {
+class ModelScope {
  public:
   ModelScope(const Description& description, Recognition& recognition, Statement& statement);
 
   /// All names of the description, in the order of the file; the first clash is an error.
   [[nodiscard]] std::optional<Error> declare_names();
 
-  [[nodiscard]] Expected<SXElem> number(const std::string& name, const SourceLocation& location) override;
-  [[nodiscard]] Expected<Condition> condition(const std::string& name, const SourceLocation& location) override;
-  [[nodiscard]] bool is_condition(const std::string& name) const override;
+  ModelScope(const ModelScope&) = delete;  // the translation refers to it
+  ModelScope& operator=(const ModelScope&) = delete;
+  ~ModelScope() = default;
+
+  /// The expression a name stands for (pi excepted, which the translation knows).
+  [[nodiscard]] Expected<SXElem> number(const std::string& name, const SourceLocation& location);
+  /// The condition a name stands for; only for names of which is_condition is true.
+  [[nodiscard]] Expected<Condition> condition(const std::string& name, const SourceLocation& location);
+  [[nodiscard]] bool is_condition(const std::string& name) const;
 
   /// The whole expression of an entry.
   [[nodiscard]] Expected<SXElem> expression(const saltus::expression::Node& node, Reach reach = Reach::everything);

@@ -31,7 +31,11 @@ void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& 
   // Small points separate thresholds that large ones cannot tell apart, and the other way round.
   constexpr std::array<double, 16> magnitudes{1.0,  1.0, 1e-2, 1e2,  1.0, 1e-5, 10.0, 1e-9,
                                               1e-1, 1.0, 1e2,  1e-3, 1.0, 1e-7, 0.3,  30.0};
-  const double magnitude = magnitudes[static_cast<std::size_t>(k) % magnitudes.size()];
+  // Far out, thresholds like 1e-20 and 1e20 come apart; these points only tell functions apart, see extreme_points.
+  constexpr std::array<double, extreme_points> extremes{1e6,   1e12,  1e20,  1e30,  1e60,   1e120,
+                                                        1e240, 1e-15, 1e-25, 1e-50, 1e-100, 1e-200};
+  const double magnitude = k < pool_points ? magnitudes[static_cast<std::size_t>(k) % magnitudes.size()]
+                                           : extremes[static_cast<std::size_t>(k - pool_points) % extremes.size()];
   for (const int node : cone) {
     if (tape[node].variable < 0) continue;
     const auto i = static_cast<std::size_t>(tape[node].variable);
@@ -53,7 +57,8 @@ std::optional<double> constant_value(const Tape& tape, int node) {
   // Two values differ if they differ by more than rounding; 24 points with the alphas at random corners.
   std::optional<double> first;
   int finite = 0;
-  for (int k = 0; k < 24; ++k) {
+  for (int number = 0; number < 24 + 2 * extreme_points; ++number) {
+    const int k = number < 24 ? number : pool_points + number - 24;
     draw_pool_point(tape, cone, k, point);
     for (const int leaf : cone) {
       if (tape[leaf].psi < 0) continue;
@@ -67,7 +72,7 @@ std::optional<double> constant_value(const Tape& tape, int node) {
     const double cleaned = std::abs(value) <= error ? 0.0 : value;
     if (!first) first = cleaned;
     if (std::abs(cleaned - *first) > 2.0 * error + 4.0 * epsilon * std::abs(*first)) return std::nullopt;
-    ++finite;
+    finite += number < 24 ? 1 : 0;
   }
   return finite >= 8 ? first : std::nullopt;
 }
@@ -78,7 +83,7 @@ SharingIndex::Samples SharingIndex::sample(const Tape& tape, int psi) {
   const auto cone = tape.cone(std::span(&psi, 1), Links::through_alpha);
   TapeValues values;
   Point point = blank_point(tape);
-  for (int k = 0; k < pool_size; ++k) {
+  for (int k = 0; k < pool_points + extreme_points; ++k) {
     draw_pool_point(tape, cone, k, point);
     evaluate_with_bounds(tape, cone, point, {}, epsilon, values);
     samples.value[static_cast<std::size_t>(k)] = values.value[static_cast<std::size_t>(psi)];
@@ -99,14 +104,16 @@ int SharingIndex::same(const Samples& known, const Samples& asked) {
   if (known.psi == asked.psi) return 1;
   double factor = 0.0;
   int compared = 0;
-  for (std::size_t k = 0; k < pool_size && compared < 16; ++k) {
+  for (std::size_t k = 0; k < known.value.size(); ++k) {
+    const bool extreme = k >= static_cast<std::size_t>(pool_points);
+    if (compared >= 16 && !extreme) continue;
     const double a = known.value[k], b = asked.value[k];
     if (!std::isfinite(a) || !std::isfinite(b)) continue;
     if (!std::isfinite(known.error[k]) || !std::isfinite(asked.error[k])) continue;
     const double noise_a = 8.0 * known.error[k], noise_b = 8.0 * asked.error[k];
     const bool zero_a = std::abs(a) <= noise_a, zero_b = std::abs(b) <= noise_b;
     if (zero_a != zero_b) return 0;
-    ++compared;
+    compared += extreme ? 0 : 1;
     if (zero_a) continue;
     if (factor == 0.0) factor = b / a;
     if (std::abs(b - factor * a) > 1e-12 * std::abs(b) + noise_b + std::abs(factor) * noise_a) return 0;

@@ -14,6 +14,11 @@ namespace saltus::model {
 /// depend on the order of declarations.
 [[nodiscard]] double seeded_draw(std::uint64_t point, std::uint64_t variable);
 
+/// Points of the pool: 16 common finite ones are found among the first for all but contrived domains; the extreme ones
+/// after them only tell functions apart that look alike nearer by, as x - 1e20 and x - 2e20 do.
+inline constexpr int pool_points = 64;
+inline constexpr int extreme_points = 12;
+
 /// Sets the variables of a cone to those of point number k of the pool: several magnitudes, the first four with
 /// positive coordinates (where logarithms and roots are defined). Parameters and alphas stay as they are.
 void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& point);
@@ -35,11 +40,10 @@ class SharingIndex {
   [[nodiscard]] std::optional<SharedFunction> find(const Tape& tape, int psi) const;
 
  private:
-  static constexpr int pool_size = 64;  ///< 16 common finite points are found among them for all but contrived domains
   struct Samples {
     int psi = 0;
     int function = 0;
-    std::array<double, pool_size> value{}, error{};
+    std::array<double, pool_points + extreme_points> value{}, error{};
   };
   [[nodiscard]] static Samples sample(const Tape& tape, int psi);
   [[nodiscard]] static std::optional<double> key(const Samples& samples);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/model_scope_internal.hpp"
 #include "saltus/model/translation_internal.hpp"
 
 namespace saltus::model {

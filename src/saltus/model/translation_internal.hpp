@@ -3,30 +3,17 @@
 
 #include <string>
 
-#include "saltus/base/function_ref.hpp"
 #include "saltus/expression/syntax_tree.hpp"
 #include "saltus/model/recognition_internal.hpp"
 
 namespace saltus::model {
 
-/// What names mean; implemented by whoever knows the tables.
-class Scope {
- public:
-  Scope() = default;
-  Scope(const Scope&) = delete;
-  Scope& operator=(const Scope&) = delete;
-  virtual ~Scope() = default;
+class ModelScope;
 
-  /// The expression a name stands for (t and pi excepted).
-  [[nodiscard]] virtual Expected<SXElem> number(const std::string& name, const SourceLocation& location) = 0;
-  /// The condition a name stands for; called only if is_condition(name).
-  [[nodiscard]] virtual Expected<Condition> condition(const std::string& name, const SourceLocation& location) = 0;
-  [[nodiscard]] virtual bool is_condition(const std::string& name) const = 0;
-};
-
+/// Resolves names through the scope, which in turn has definitions translated here.
 class Translation {
  public:
-  Translation(Recognition& recognition, Scope& scope) : recognition_(recognition), scope_(scope) {}
+  Translation(Recognition& recognition, ModelScope& scope) : recognition_(recognition), scope_(scope) {}
 
   /// @return the expression, or the first error with the position of the part it is about.
   [[nodiscard]] Expected<SXElem> number(const expression::Node& node);
@@ -43,7 +30,7 @@ class Translation {
   [[nodiscard]] Expected<Condition> equality(const expression::Binary& binary, const SourceLocation& location);
 
   Recognition& recognition_;
-  Scope& scope_;
+  ModelScope& scope_;
 };
 
 }  // namespace saltus::model

@@ -45,6 +45,15 @@ TEST(Recognition, NearlyEqualThresholdsStayApart) {
   EXPECT_EQ(system.switching.size(), 2U);
 }
 
+TEST(Recognition, ThresholdsOfAnySizeStayApart) {
+  const System system =
+      built({.states = {{"x", "1"}},
+             .dynamics = {{"x", "step(x - 1e20) + step(x - 2e20) + step(x - 1e-20) + step(x - 2e-20)"}},
+             .events = {{"", "x > 1e30"}}});
+  EXPECT_EQ(columns(system), (Names{"x-1e20", "x-2e20", "x-1e-20", "x-2e-20"}));
+  EXPECT_TRUE(system.warnings.empty());
+}
+
 TEST(Recognition, EqualityIsDecidedWithTheParametersValues) {
   const ModelText text{.parameters = {{"a", "2"}, {"b", "1"}},
                        .states = {{"x", "1"}},
