@@ -88,13 +88,15 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   if (!state.sliding.empty()) field_.exits(t, x, exits_.data());
   for (std::size_t row = 0; row < state.sliding.size(); ++row) {
     const int r = static_cast<int>(row);
-    functions_.push_back({FunctionKind::exit_below, state.sliding[row], r, +1, 0});
-    functions_.push_back({FunctionKind::exit_above, state.sliding[row], r, -1, 0});
+    // On a repelling surface (a forced mode) both fields leave and the signs are the other way round.
+    const int arriving = exits_[row].below >= exits_[row].above ? +1 : -1;
+    functions_.push_back({FunctionKind::exit_below, state.sliding[row], r, arriving});
+    functions_.push_back({FunctionKind::exit_above, state.sliding[row], r, -arriving});
     if (field_.solve() == SlidingSolve::nonaffine) {
-      functions_.push_back({FunctionKind::loss, state.sliding[row], r, sign_of(exits_[row].loss), 0});
+      functions_.push_back({FunctionKind::loss, state.sliding[row], r, sign_of(exits_[row].loss)});
     }
   }
-  for (int u = n_psi; u < kernel_.event_functions(); ++u) functions_.push_back({FunctionKind::user, u, 0, 0, 0});
+  for (int u = n_psi; u < kernel_.event_functions(); ++u) functions_.push_back({FunctionKind::user, u, 0, 0});
   // Functions that are not affine in the state may oscillate within a step: five nodes do not speak for them.
   prefilter_.clear();
   for (const auto& function : functions_) {
@@ -106,12 +108,15 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   samples_.resize(functions_.size() * ode::event_nodes);
   rescale(t, x);
   read_user_signs(t, x);
-  // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
   evaluate(t, x, point_);
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     auto& function = functions_[i];
     const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
+    // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
     if (is_exit && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
+    // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
+    // zero of this start.
+    if (function.zero_order > 0) function.offset = point_[i];
   }
 }
 
@@ -183,6 +188,7 @@ void EventSearch::evaluate(double t, const double* x, std::vector<double>& value
         values[i] = exits_[at(function.row)].loss;
         break;
     }
+    values[i] -= function.offset;
   }
 }
 
@@ -219,14 +225,14 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
 
 /// Whether the interpolant of function i misses the function's values between the nodes.
 bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std::size_t i,
-                         const ode::BernsteinCoefficients& coefficients) {
+                         const ode::BernsteinCoefficients& coefficients, double accuracy) {
   // Three places that are not symmetric to each other: a periodic function does not fool the nodes and these as well.
   for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{6}}) {
     const double local = ode::check_nodes()[place];
     const double theta = from + (to - from) * local;
     step.evaluate(theta, x_.data());
     evaluate(step.t + theta * step.h, x_.data(), point_);
-    if (!(std::abs(point_[i] - ode::evaluate(coefficients, local)) <= accuracy_[i])) return true;
+    if (!(std::abs(point_[i] - ode::evaluate(coefficients, local)) <= accuracy)) return true;
   }
   return false;
 }
@@ -248,15 +254,18 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
   const int zero_order = from == 0.0 ? function.zero_order : 0;
   const bool is_exit = !uses_phi(function);
   if (is_exit || !kernel_.is_affine(function.index)) {
-    const double error = chebyshev_tail(values);
-    if (is_exit &&
-        std::all_of(coefficients.begin(), coefficients.end(), [&](double b) { return sign * b > 8.0 * error; })) {
-      return {};
+    // Where the interpolant stays away from zero it need not be better than that distance.
+    double margin = std::numeric_limits<double>::max();
+    for (const double b : coefficients) margin = std::min(margin, sign * b);
+    const double wanted = std::max(accuracy_[i], 0.125 * margin);
+    if (chebyshev_tail(values) > wanted || (!is_exit && misses(step, from, to, i, coefficients, wanted))) {
+      return {false, {}};
     }
-    if (error > accuracy_[i] || (!is_exit && misses(step, from, to, i, coefficients))) return {false, {}};
   }
-  if (ode::certainly_no_sign_change(coefficients, sign, zero_order, noise_[i])) return {};
-  const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise_[i]);
+  double noise = noise_[i];
+  for (const double b : coefficients) noise = std::max(noise, 8.0 * epsilon * std::abs(b));
+  if (ode::certainly_no_sign_change(coefficients, sign, zero_order, noise)) return {};
+  const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise);
   if (!change) return {};
   const double local = 0.5 * (change->lower + change->upper);
   return {true, Hit{i, from + (to - from) * local, slope_at(coefficients, local) / ((to - from) * step.h), sign}};
@@ -287,9 +296,14 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
 
 void EventSearch::settle(double t, const double* x) {
   bool unknown = false;
-  for (auto& function : functions_) {
+  const bool offset = std::any_of(functions_.begin(), functions_.end(), [](const auto& f) { return f.offset != 0.0; });
+  if (offset) evaluate(t, x, point_);
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    auto& function = functions_[i];
     function.zero_order = 0;
     unknown = unknown || function.sign == 0;
+    // Far enough behind the start that what was left there cannot be mistaken for a new zero.
+    if (function.offset != 0.0 && function.sign * point_[i] > 2.0 * std::abs(function.offset)) function.offset = 0.0;
   }
   if (!unknown) return;
   rescale(t, x);

@@ -24,10 +24,11 @@ enum class FunctionKind {
 
 struct EventFunction {
   FunctionKind kind = FunctionKind::surface;
-  int index = 0;       ///< event function of the kernel; the surface for exits
-  int row = 0;         ///< exits: position in the sliding set
-  int sign = 1;        ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
-  int zero_order = 0;  ///< of the zero at the start of the next step (left behind by an event), 0 = none
+  int index = 0;        ///< event function of the kernel; the surface for exits
+  int row = 0;          ///< exits: position in the sliding set
+  int sign = 1;         ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
+  int zero_order = 0;   ///< of the zero at the start of the next step (left behind by an event), 0 = none
+  double offset = 0.0;  ///< value left at that zero by rounding; subtracted until the function has moved away
 };
 
 /// A sign change along a step of length h: function, place and slope to start the correction with.
@@ -57,7 +58,7 @@ class EventSearch {
 
   /// The first sign change in (0, 1] of any function.
   SearchOutcome search(const ode::DenseStep& step, Hit& hit);
-  /// Values of all functions at one point.
+  /// Values of all functions at one point, less their offsets.
   void evaluate(double t, const double* x, std::vector<double>& values);
 
   [[nodiscard]] const std::vector<EventFunction>& functions() const { return functions_; }
@@ -77,7 +78,7 @@ class EventSearch {
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
-              const ode::BernsteinCoefficients& coefficients);
+              const ode::BernsteinCoefficients& coefficients, double accuracy);
   bool all_far(const ode::DenseStep& step);
   void sample_node(const ode::DenseStep& step, double theta, std::size_t node);
   [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;

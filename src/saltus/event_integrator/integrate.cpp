@@ -366,6 +366,7 @@ bool Run::change_mode(const Located& located) {
       return false;
     }
     occasion.at_zero.push_back(function.index);
+    occasion.touched.push_back(function.index);
   }
   if (!any) return true;
   std::sort(occasion.at_zero.begin(), occasion.at_zero.end());

@@ -263,7 +263,10 @@ Transition Decider::run() {
     decisions_.clear();
     standing_.clear();
     for (const auto& group : groups) {
-      if (!decide(group)) return transition_;
+      // Sliding that nothing has touched goes on, also where it was forced on a repelling surface.
+      const bool touched =
+          std::any_of(group.begin(), group.end(), [&](int j) { return contains(occasion_.touched, j); });
+      if ((touched || pass > 0 || occasion_.start) && !decide(group)) return transition_;
     }
     for (const auto& [surface, decision] : decisions_) {
       set_surface(transition_.state, surface, decision.mode, decision.alpha);

@@ -18,6 +18,7 @@ struct Occasion {
   double t = 0.0;
   const double* x = nullptr;    ///< n_x, on all surfaces of `at_zero`
   std::vector<int> at_zero;     ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
+  std::vector<int> touched;     ///< those of `at_zero` whose event this is
   std::vector<int> exit_below;  ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
   std::vector<int> exit_above;  ///< … upper field (alpha = 1)
   bool start = false;           ///< no mode before
