@@ -11,6 +11,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Sign tests: a quantity below this fraction of its scale counts as 0 (switching.md section 8).
 constexpr double sign_tolerance = 1e-10;
+/// Velocities below this fraction of their scale are rounding.
+constexpr double velocity_rounding = 1e-14;
 /// Derivatives looked at before psi is said to stay 0.
 constexpr int highest_order = 5;
 
@@ -92,11 +94,10 @@ std::vector<double> ProjectedFields::velocities(const std::vector<double>& alpha
 }
 
 Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const {
-  if (std::abs(velocity) > sign_tolerance * scale) {
-    return {{velocity, velocity > 0.0 ? switching::Drift::up : switching::Drift::down}, 1};
-  }
+  const Motion by_velocity{{velocity, velocity > 0.0 ? switching::Drift::up : switching::Drift::down}, 1};
+  if (std::abs(velocity) > sign_tolerance * scale) return by_velocity;
   const double tau = occasion_.time_scale;
-  const double threshold = std::max(noise_[at(surface)], sign_tolerance * scale * tau);
+  const double threshold = std::max(noise_[at(surface)], std::abs(velocity) * tau);
   double weight = tau;  // tau^k / k!
   for (int order = 2; order <= highest_order; ++order) {
     weight *= tau / order;
@@ -105,6 +106,8 @@ Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, do
       return {{0.0, derivative > 0.0 ? switching::Drift::up : switching::Drift::down}, order};
     }
   }
+  // Small, but not rounding, and no later derivative overrules it.
+  if (std::abs(velocity) > velocity_rounding * scale) return by_velocity;
   return {};
 }
 

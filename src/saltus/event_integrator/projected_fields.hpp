@@ -27,8 +27,8 @@ class ProjectedFields {
                                                  std::size_t corner) const;
   /// Normal components of f(alpha) on the surfaces of `group`.
   [[nodiscard]] std::vector<double> velocities(const std::vector<double>& alpha, const std::vector<int>& group) const;
-  /// Where psi_surface goes along f(alpha). Velocities up to 1e-10 `scale` count as 0 and the next derivatives decide,
-  /// of which those count that move psi over the occasion's time scale beyond rounding.
+  /// Where psi_surface goes along f(alpha). A velocity up to 1e-10 `scale` gives way to the first higher derivative
+  /// that moves psi further than it does, and further than rounding, over the occasion's time scale.
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
 
   /// The table of all 2^m corners of a group.
