@@ -65,9 +65,12 @@ SourceLocation content_start(const SourceText& source, const toml::source_positi
   return location;
 }
 
-TomlTable converted(const SourceText& source, const toml::table& table);
+/// Deeper than any table of a model file; what lies below is left out, since nothing reads there.
+constexpr int most_levels = 16;
 
-TomlValue converted(const SourceText& source, const toml::node& node) {
+TomlTable converted(const SourceText& source, const toml::table& table, int level);
+
+TomlValue converted(const SourceText& source, const toml::node& node, int level) {
   TomlValue result{TomlDate{}, source.location(node.source().begin)};
   if (const auto* truth = node.as_boolean()) {
     result.value = truth->get();
@@ -79,20 +82,22 @@ TomlValue converted(const SourceText& source, const toml::node& node) {
     result.value = TomlString{text->get(), content_start(source, node.source().begin)};
   } else if (const auto* array = node.as_array()) {
     TomlArray elements;
-    for (const auto& element : *array) elements.push_back(converted(source, element));
+    if (level < most_levels) {
+      for (const auto& element : *array) elements.push_back(converted(source, element, level + 1));
+    }
     result.value = std::move(elements);
   } else if (const auto* table = node.as_table()) {
-    result.value = converted(source, *table);
+    result.value = level < most_levels ? converted(source, *table, level + 1) : TomlTable{};
   }
   return result;
 }
 
-TomlTable converted(const SourceText& source, const toml::table& table) {
+TomlTable converted(const SourceText& source, const toml::table& table, int level) {
   TomlTable entries;
   for (const auto& [key, node] : table) {
     auto position = key.source().begin;
     if (!position) position = node.source().begin;
-    entries.push_back({std::string(key.str()), source.location(position), converted(source, node)});
+    entries.push_back({std::string(key.str()), source.location(position), converted(source, node, level)});
   }
   std::stable_sort(entries.begin(), entries.end(), [](const TomlEntry& a, const TomlEntry& b) {
     return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
@@ -192,7 +197,7 @@ Expected<TomlTable> parse_toml(std::string_view text, const std::string& file) {
   }
   const SourceText source(text, file);
   try {
-    return converted(source, toml::parse(text, file));
+    return converted(source, toml::parse(text, file), 0);
   } catch (const toml::parse_error& failure) {
     return tl::unexpected(syntax_error(source, failure));
   }

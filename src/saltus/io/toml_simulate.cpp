@@ -29,19 +29,28 @@ std::optional<std::vector<double>> numbers(TomlReader& reader, const TomlArray& 
 }
 
 std::optional<OptionValue> option_value(TomlReader& reader, std::string_view key, const TomlValue& value) {
-  if (const auto* truth = std::get_if<bool>(&value.value)) return OptionValue(*truth);
-  if (const auto* integer = std::get_if<std::int64_t>(&value.value)) return OptionValue(*integer);
-  if (const auto* real = std::get_if<double>(&value.value)) return OptionValue(*real);
-  if (const auto* text = std::get_if<TomlString>(&value.value)) return OptionValue(text->text);
-  if (const auto* array = std::get_if<TomlArray>(&value.value)) {
-    if (auto list = numbers(reader, *array)) return OptionValue(std::move(*list));
-    return std::nullopt;
+  // Built in place: moving a variant into the optional makes g++ 12 with sanitizers warn of what it never reads.
+  std::optional<OptionValue> result;
+  if (const auto* truth = std::get_if<bool>(&value.value)) {
+    result.emplace(*truth);
+  } else if (const auto* integer = std::get_if<std::int64_t>(&value.value)) {
+    result.emplace(*integer);
+  } else if (const auto* real = std::get_if<double>(&value.value)) {
+    result.emplace(*real);
+  } else if (const auto* text = std::get_if<TomlString>(&value.value)) {
+    result.emplace(text->text);
+  } else if (const auto* array = std::get_if<TomlArray>(&value.value)) {
+    if (auto list = numbers(reader, *array)) result.emplace(std::move(*list));
+  } else {
+    // No option is a table or a date; whether there is one of that name is for the option table to say.
+    const auto known = pipeline::with_value({}, key, false);
+    if (!known && known.error().code == ErrorCode::unknown_name) {
+      result.emplace(false);
+    } else {
+      reader.wrong_type("a number, a word in quotes or a list of numbers", value);
+    }
   }
-  // No option is a table or a date; whether there is one of that name is for the option table to say.
-  const auto known = pipeline::with_value({}, key, OptionValue(false));
-  if (!known && known.error().code == ErrorCode::unknown_name) return OptionValue(false);
-  reader.wrong_type("a number, a word in quotes or a list of numbers", value);
-  return std::nullopt;
+  return result;
 }
 
 /// Whether some option's key begins with this one and a dot: then it is a table.

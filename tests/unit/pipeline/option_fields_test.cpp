@@ -1,0 +1,73 @@
+#include "saltus/pipeline/option_fields.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saltus::pipeline {
+namespace {
+
+SimulateOptions uncommon_options() {
+  SimulateOptions options;
+  options.until = 3.0;
+  options.from = -1.0;
+  options.rtol = 1e-3;
+  options.atol = 0.0;
+  options.native = Native::off;
+  options.max_steps = 7;
+  options.max_events = 8;
+  options.initial_mode = {{"a", -1}, {"v-0.2", 0}};
+  options.event.integrator = Integrator::dop853;
+  options.event.max_step = 0.25;
+  options.event.scaling = {{"a", 2.0}};
+  return options;
+}
+
+TEST(OptionFields, WhatIsRecordedSetsTheSameOptionsAgain) {
+  const std::vector<OutputGrid> grids{EveryStep{}, EveryInterval{0.5}, NumberOfPoints{11}, AtTimes{{0.0, 1.0}}};
+  for (const auto& grid : grids) {
+    auto original = uncommon_options();
+    original.output = grid;
+    const auto record = option_record(original);
+    SimulateOptions copy;
+    for (const auto& [name, value] : record) {
+      ASSERT_TRUE(name.starts_with("simulate.")) << name;
+      auto changed = with_value(copy, name.substr(9), value);
+      ASSERT_TRUE(changed) << name << ": " << changed.error().message;
+      copy = *changed;
+    }
+    EXPECT_EQ(option_record(copy), record);
+    EXPECT_EQ(copy.until, original.until);
+    EXPECT_EQ(copy.initial_mode, original.initial_mode);
+    EXPECT_EQ(copy.output.index(), original.output.index());
+  }
+}
+
+TEST(OptionFields, EveryOptionIsOnThePage) {
+  const auto page = options_page();
+  const auto help = options_help();
+  for (const auto& field : simulate_fields()) {
+    EXPECT_NE(page.find("| `" + std::string(field.key) + "` |"), std::string::npos) << field.key;
+    EXPECT_NE(help.find(field.key), std::string::npos) << field.key;
+  }
+  EXPECT_NE(page.find("| `rtol` | a finite number > 0 | `1e-08` |"), std::string::npos);
+}
+
+TEST(OptionFields, ProblemsBetweenOptionsAreFound) {
+  SimulateOptions options;
+  ASSERT_TRUE(find_problem(options));
+  EXPECT_EQ(find_problem(options)->key, "until");
+  options.until = 1.0;
+  EXPECT_FALSE(find_problem(options));
+  options.from = 1.0;
+  EXPECT_EQ(find_problem(options)->key, "until");
+  options.from = 0.0;
+  options.rtol = options.atol = 0.0;
+  EXPECT_EQ(find_problem(options)->key, "atol");
+  options.rtol = 1e-8;
+  options.output = AtTimes{{0.0, 1.0}};
+  EXPECT_FALSE(find_problem(options));
+  options.output = AtTimes{{0.0, 1.0 + 1e-15}};
+  EXPECT_EQ(find_problem(options)->key, "output.times");
+}
+
+}  // namespace
+}  // namespace saltus::pipeline

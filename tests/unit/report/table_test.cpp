@@ -1,0 +1,95 @@
+#include "saltus/report/table.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace saltus::report {
+namespace {
+
+result::Event crossing(double t, std::string surface) {
+  result::Event event;
+  event.t = t;
+  event.surfaces = {std::move(surface)};
+  event.mode_before = result::Mode{-1, 0};
+  event.mode_after = result::Mode{1, 0};
+  return event;
+}
+
+result::Result sample() {
+  result::Result r;
+  r.model.name = "m";
+  r.states = {"x"};
+  r.switching_functions = {"a", "b"};
+  r.final = {2.0, {0.1}, {1, 0}, {1.0, 0.25}, {}};
+  r.status.time_reached = 2.0;
+  return r;
+}
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> list;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) list.push_back(line);
+  return list;
+}
+
+/// Characters on the screen, of UTF-8 text.
+std::ptrdiff_t columns(const std::string& line) {
+  return std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+}
+
+TEST(Table, ShowsTheEndAndWhereItSlides) {
+  const auto text = to_table(sample());
+  EXPECT_NE(text.find("end state   x = 0.1\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("sliding on  b = 0 (alpha 0.25)\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("events      none\n"), std::string::npos) << text;
+}
+
+TEST(Table, ColumnsOfEventsAreAligned) {
+  auto r = sample();
+  r.events = {crossing(1.0 / 3.0, "a"), crossing(1.5, "größer")};
+  r.events[1].unique = false;
+  const auto table = lines(to_table(r));
+  const auto head = std::find_if(table.begin(), table.end(), [](const auto& line) { return line.starts_with("  #"); });
+  ASSERT_NE(head, table.end());
+  EXPECT_EQ(head[1].find("crossing"), head->find("kind"));
+  EXPECT_EQ(head[1].find("-0 > +0"), head->find("mode"));
+  EXPECT_EQ(columns(head[2].substr(0, head[2].find("-0 > +0"))), static_cast<std::ptrdiff_t>(head->find("mode")));
+  EXPECT_TRUE(head[2].ends_with("not unique")) << head[2];
+}
+
+TEST(Table, LongListsShowTheFirstAndTheLastTen) {
+  auto r = sample();
+  for (int i = 0; i < 20; ++i) r.events.push_back(crossing(i, "a"));
+  EXPECT_EQ(to_table(r).find("…"), std::string::npos);
+  r.events.push_back(crossing(20, "a"));
+  const auto text = to_table(r);
+  EXPECT_NE(text.find("events      21, the first and the last 10\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("\n  11 "), std::string::npos);
+  EXPECT_NE(text.find("\n  10 "), std::string::npos);
+  EXPECT_NE(text.find("\n  12 "), std::string::npos);
+  EXPECT_NE(text.find("\n  21 "), std::string::npos);
+}
+
+TEST(Table, FitsAHundredColumnsWhateverTheModel) {
+  auto r = sample();
+  r.model.description = std::string(30, 'w') + " " + std::string(30, 'w') + " " + std::string(30, 'w');
+  r.status = {result::Termination::outside_class, "", 2.0};
+  for (int i = 0; i < 40; ++i) r.status.message += "word ";
+  r.states.clear();
+  r.final.x.clear();
+  for (int i = 0; i < 30; ++i) {
+    r.states.push_back(fmt::format("state{}", i));
+    r.final.x.push_back(-1.0 / 3.0 * i);
+  }
+  r.switching_functions = {std::string(200, 's'), "b"};
+  r.events = {crossing(-1.23456789012e-100, std::string(200, 's'))};
+  r.events[0].kind = result::EventKind::change_sliding;
+  r.events[0].unique = std::nullopt;
+  for (const auto& line : lines(to_table(r))) EXPECT_LE(columns(line), 100) << line;
+}
+
+}  // namespace
+}  // namespace saltus::report
