@@ -15,8 +15,8 @@ for preset in "${presets[@]}"; do
   report="$PWD/build/$preset/ctest.xml"
   reports+=("$preset=$report")
   rm -f "$report"
-  # A preset that does not build is one failure in the summary; the others still run.
-  cmake --preset "$preset" --log-level=NOTICE && cmake --build --preset "$preset" --parallel "$(nproc)" || continue
+  # A preset that does not build is one failure in the summary; the others still run. All errors of a build are shown.
+  cmake --preset "$preset" --log-level=NOTICE && cmake --build --preset "$preset" --parallel "$(nproc)" -- -k 0 || continue
   ctest --preset "$preset" --parallel "$(nproc)" --output-junit "$report" || true
 done
 python3 scripts/summarise_tests.py "${reports[@]}"
