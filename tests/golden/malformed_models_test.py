@@ -119,8 +119,18 @@ FILES = {
     "name of two things": (with_line(4, "x = 0.8"), None, "x"),
     "name with a blank": (with_line(4, '"m u" = 0.8'), 4, "m u"),
     "cycle": (after("[definitions]\na = 'b'\nb = 'a'\n"), None, "a"),
+    # modes
+    "mode without dynamics": (after("[[modes]]\nwhen = 'x > 0'\n"), 13, "no `dynamics`", "absent get 0"),
+    "mode without region": (after("[[modes]]\ndynamics = { x = 1 }\n"), 13, "no `when`", "otherwise"),
+    "mode of a number": (after("[[modes]]\nwhen = 'x'\ndynamics = { x = 1 }\n"), 14, "expected a condition"),
+    "mode misspelt": (after("[[modes]]\nwen = 'x > 0'\n"), 14, "did you mean 'when'"),
+    "mode of another state": (after("[[modes]]\nwhen = 'x > 0'\ndynamics = { y = 1 }\n"), 15, "'y'", "x"),
+    "modes uncovered": (after("[[modes]]\nwhen = 'x > 1'\ndynamics = { x = 1 }\n"), 14, "x-1 < 0", "uncovered"),
+    "modes overlap": (after("[[modes]]\nwhen = 'x > 1'\ndynamics = { x = 1 }\n[[modes]]\nwhen = 'x > 0'\n"
+                            "dynamics = { x = 2 }\n"), 17, "overlaps", "x-1 > 0"),
+    "modes is a table": (after("[modes]\nwhen = 'x > 0'\n"), 13, "[[modes]]"),
     # later versions
-    "modes": (after("[[modes]]\nwhen = 'x > 0'\n"), 13, "[[modes]] is not available in this version"),
+    "indicators": (after("[[modes]]\nindicator = 'x'\ndynamics = { x = 1 }\n"), 13, "run by a later version"),
     "jumps": (after("[[jumps]]\nwhen = 'x > 0'\n"), 13, "[[jumps]]", "a later one brings it"),
     "tables": (after("[tables.road]\nx = [0, 1]\n"), 13, "[tables]", "a later one brings it"),
     "mechanics": (after("[mechanics]\npositions = ['x']\n"), 13, "[mechanics]", "a later one brings it"),
@@ -132,7 +142,7 @@ FILES = {
     "smoothed": (after("[simulate.smoothed]\nepsilon = 1\n"), 13, "[simulate.smoothed]", "a later one brings it"),
     "method": (after("method = 'fesd'\n"), 13, "method \"fesd\" is not available", "a later one brings it"),
     "radau5": (after("event.integrator = 'radau5'\n"), 13, "radau5", "a later one brings it"),
-    "native": (after("native = 'on'\n"), 13, "native", "a later one brings it"),
+    "native": (after("native = 'never'\n"), 13, "native", "auto, on, off"),
     "selection": (after("event.selection = 'scaled'\n"), 13, "selection", "a later one brings it"),
     "branches": (after("event.branches = 'all'\n"), 13, "branches", "a later one brings it"),
     "input from a file": (after("inputs.u = { file = 'u.csv' }\n"), 13, "from a file", "a later one brings it"),

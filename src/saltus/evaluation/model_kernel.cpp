@@ -2,11 +2,15 @@
 
 #include <exception>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include <casadi/core/code_generator.hpp>
+
 #include "saltus/base/contracts.hpp"
-#include "saltus/evaluation/interpreted_function_internal.hpp"
+#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/evaluation/native_code.hpp"
 
 namespace saltus::evaluation {
 namespace {
@@ -38,22 +42,73 @@ struct ModelKernel::Implementation {
   std::vector<double> parameters;
   int n_psi = 0;
 
-  InterpretedFunction field, functions, scales, output_function, input_function;
-  std::vector<InterpretedFunction> conditions;  ///< one per [[events]] entry; null for expressions
+  ModelFunction field, functions, scales, output_function, input_function;
+  std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
   std::vector<bool> affine, time_only;
   std::vector<std::vector<int>> inner;
   std::vector<std::vector<bool>> depends;
-  std::map<int, InterpretedFunction> gradients;
-  std::map<std::pair<int, int>, InterpretedFunction> lie_derivatives;
+  std::map<int, ModelFunction> gradients;
+  std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
   std::map<std::pair<int, int>, SX> lie_expressions;
   long field_evaluations = 0;
+
+  NativeCode native = NativeCode::off;
+  double operations = 0.0;    ///< interpreted so far
+  double next_attempt = 0.0;  ///< to find or compile native code, in operations
+  std::string source;         ///< C source, once it was needed
+  std::optional<NativeLibrary> library;
 
   explicit Implementation(const model::System& system);
   SX phi_row(int j) const { return phi(j); }
   SX lie_expression(int j, int order);
   void find_structure();
   void compile_conditions(const model::System& system);
+  void count(const ModelFunction& function);
+  void look_for_native();
+  void write_source();
+  void use(NativeLibrary loaded);
 };
+
+/// Interpreted operations (about 5 ns each) after which looking into the cache, then compiling (tenths of a second)
+/// pays.
+constexpr double look_after = 2e6;
+constexpr double compile_after = 1e8;
+
+void ModelKernel::Implementation::write_source() {
+  if (!source.empty()) return;
+  casadi::CodeGenerator generator("saltus_model.c", {{"with_header", false}});
+  for (const auto* function : {&field, &functions, &scales, &output_function, &input_function}) {
+    generator.add(function->function());
+  }
+  source = generator.dump();
+}
+
+void ModelKernel::Implementation::use(NativeLibrary loaded) {
+  for (auto* function : {&field, &functions, &scales, &output_function, &input_function}) {
+    function->use_native(reinterpret_cast<ModelFunction::Native>(loaded.symbol(function->function().name())));
+  }
+  library = std::move(loaded);
+}
+
+/// native = auto: the cache after some work, the compiler after more. Results are bit-identical, so the moment is free.
+void ModelKernel::Implementation::look_for_native() {
+  write_source();
+  auto found = find_native(source);
+  if (!found && operations >= compile_after) {
+    if (auto compiled = compile_native(source)) found = std::move(*compiled);
+    native = NativeCode::off;  // one attempt: without a compiler the interpreter goes on
+  }
+  next_attempt = compile_after;
+  if (!found) return;
+  native = NativeCode::off;
+  use(std::move(*found));
+}
+
+void ModelKernel::Implementation::count(const ModelFunction& function) {
+  if (native != NativeCode::automatic) return;
+  operations += static_cast<double>(function.operations());
+  if (operations >= next_attempt) look_for_native();
+}
 
 ModelKernel::Implementation::Implementation(const model::System& system)
     : t(system.t),
@@ -79,14 +134,14 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
 
   const std::vector<SX> arguments{t, x, p, alpha};
-  field = InterpretedFunction("field", arguments, {f});
-  functions = InterpretedFunction("functions", arguments, {phi});
-  output_function = InterpretedFunction("outputs", arguments, {outputs});
-  input_function = InterpretedFunction("inputs", arguments, {input});
+  field = ModelFunction("saltus_field", arguments, {f});
+  functions = ModelFunction("saltus_functions", arguments, {phi});
+  output_function = ModelFunction("saltus_outputs", arguments, {outputs});
+  input_function = ModelFunction("saltus_inputs", arguments, {input});
   const SX slope = SX::jacobian(phi, x);
   const SX rate = SX::jacobian(phi, t);
   const SX magnitude = SX::mtimes(fabs(slope), fabs(x)) + fabs(rate * t);
-  scales = InterpretedFunction("scales", arguments, {magnitude, SX::sum2(fabs(slope))});
+  scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
   find_structure();
   compile_conditions(system);
 }
@@ -141,9 +196,23 @@ ModelKernel::ModelKernel(ModelKernel&&) noexcept = default;
 ModelKernel& ModelKernel::operator=(ModelKernel&&) noexcept = default;
 ModelKernel::~ModelKernel() = default;
 
-Expected<ModelKernel> ModelKernel::compile(const model::System& system) {
+Expected<ModelKernel> ModelKernel::compile(const model::System& system, NativeCode native) {
   try {
-    return ModelKernel(std::make_unique<Implementation>(system));
+    auto implementation = std::make_unique<Implementation>(system);
+    if (native == NativeCode::on) {
+      implementation->write_source();
+      auto library = find_native(implementation->source);
+      if (!library) {
+        auto compiled = compile_native(implementation->source);
+        if (!compiled) return tl::unexpected(compiled.error());
+        library = std::move(*compiled);
+      }
+      implementation->use(std::move(*library));
+    } else {
+      implementation->native = native;
+      implementation->next_attempt = look_after;
+    }
+    return ModelKernel(std::move(implementation));
   } catch (const std::exception& error) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
                                 std::string("the model's expressions cannot be compiled: ") + error.what(),
@@ -163,11 +232,13 @@ long ModelKernel::field_evaluations() const { return implementation_->field_eval
 void ModelKernel::field(double t, const double* x, const double* alpha, double* xdot) const {
   auto& self = *implementation_;
   ++self.field_evaluations;
+  self.count(self.field);
   self.field(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{xdot});
 }
 
 void ModelKernel::functions(double t, const double* x, const double* alpha, double* values) const {
   auto& self = *implementation_;
+  self.count(self.functions);
   self.functions(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{values});
 }
 
@@ -184,8 +255,8 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
   auto& compiled = self.gradients[function];
   if (compiled.is_null()) {
     const SX phi = self.phi_row(function);
-    compiled = InterpretedFunction("gradient", {self.t, self.x, self.p, self.alpha},
-                                   {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
+    compiled = ModelFunction("gradient", {self.t, self.x, self.p, self.alpha},
+                             {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
   }
   compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
 }
@@ -195,8 +266,8 @@ double ModelKernel::lie_derivative(int function, int order, double t, const doub
   auto& self = *implementation_;
   auto& compiled = self.lie_derivatives[{function, order}];
   if (compiled.is_null()) {
-    compiled = InterpretedFunction("lie_derivative", {self.t, self.x, self.p, self.alpha},
-                                   {self.lie_expression(function, order)});
+    compiled =
+        ModelFunction("lie_derivative", {self.t, self.x, self.p, self.alpha}, {self.lie_expression(function, order)});
   }
   double value = 0.0;
   compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{&value});

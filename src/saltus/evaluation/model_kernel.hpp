@@ -9,6 +9,11 @@
 
 namespace saltus::evaluation {
 
+/// Whether the functions that every step needs run as native code: compiled C, cached by content. Bit-identical to the
+/// interpreter. `automatic`: from the cache, or compiled once a run is long enough that it pays; interpreted where
+/// there is no compiler.
+enum class NativeCode { automatic, on, off };
+
 /// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons
 /// (guards) of their conditions.
 ///
@@ -18,8 +23,9 @@ namespace saltus::evaluation {
 class ModelKernel {
  public:
   /// Compiles the functions that every run needs; derivatives of single functions are compiled when first asked for.
-  /// Fails (invalid_model) only if the symbolic layer refuses an expression.
-  [[nodiscard]] static Expected<ModelKernel> compile(const model::System& system);
+  /// Fails (invalid_model) if the symbolic layer refuses an expression, (not_available) if native code is insisted on
+  /// and cannot be had.
+  [[nodiscard]] static Expected<ModelKernel> compile(const model::System& system, NativeCode native = NativeCode::off);
 
   ModelKernel(ModelKernel&&) noexcept;
   ModelKernel& operator=(ModelKernel&&) noexcept;

@@ -114,7 +114,7 @@ constexpr Choices<Method, 4> methods{"method",
 constexpr Choices<Integrator, 3> integrators{
     "integrator", {"dopri5", "dop853", "radau5"}, {Integrator::dopri5, Integrator::dop853, Integrator::radau5}, 2};
 constexpr Choices<Native, 3> natives{
-    "native =", {"auto", "off", "on"}, {Native::automatic, Native::off, Native::on}, 2};
+    "native =", {"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}, 3};
 constexpr Choices<Selection, 4> selections{
     "selection",
     {"active_dominant", "passive_dominant", "scaled", "report"},
@@ -288,7 +288,8 @@ constexpr std::array fields{
                 set_output_points, record_output<NumberOfPoints>},
     OptionField{"output.times", "increasing numbers", "Instead: rows at these times, all within the span.",
                 set_output_times, record_output<AtTimes>},
-    OptionField{"native", "auto, off", "Compiled model functions; on comes with a later version, both run interpreted.",
+    OptionField{"native", "auto, on, off",
+                "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler.",
                 set_choice<native, natives>, record_choice<native, natives>},
     OptionField{"max_steps", "a whole number >= 1", "Stop with iteration_limit after so many steps.",
                 set_count<max_steps>, record_count<max_steps>},

@@ -102,6 +102,18 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
   return integration;
 }
 
+evaluation::NativeCode native_code(Native native) {
+  switch (native) {
+    case Native::automatic:
+      return evaluation::NativeCode::automatic;
+    case Native::on:
+      return evaluation::NativeCode::on;
+    case Native::off:
+      return evaluation::NativeCode::off;
+  }
+  __builtin_unreachable();
+}
+
 result::Result frame(const model::System& system, const SimulateOptions& options) {
   result::Result result;
   result.model.name = system.name;
@@ -131,7 +143,7 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   const auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   const auto begin = std::chrono::steady_clock::now();
-  auto kernel = evaluation::ModelKernel::compile(system);
+  auto kernel = evaluation::ModelKernel::compile(system, native_code(options.native));
   if (!kernel) return tl::unexpected(kernel.error());
 
   event_integrator::StepObserver observer;

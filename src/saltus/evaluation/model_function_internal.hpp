@@ -1,4 +1,4 @@
-// A CasADi function with its work space: call with raw pointers, no allocation per call.
+// A CasADi function with its work space, interpreted or as native code: call with raw pointers, no allocation per call.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace saltus::evaluation {
 
-class InterpretedFunction {
+class ModelFunction {
  public:
-  InterpretedFunction() = default;
-  InterpretedFunction(const std::string& name, const std::vector<casadi::SX>& in, std::vector<casadi::SX> out) {
+  ModelFunction() = default;
+  ModelFunction(const std::string& name, const std::vector<casadi::SX>& in, std::vector<casadi::SX> out) {
     for (auto& expression : out) expression = casadi::SX::densify(expression);
     function_ = casadi::Function(name, in, out);
     memory_ = static_cast<int>(function_.checkout());
@@ -21,14 +21,14 @@ class InterpretedFunction {
     integers_.resize(function_.sz_iw());
     work_.resize(function_.sz_w());
   }
-  InterpretedFunction(InterpretedFunction&& other) noexcept { swap(other); }
-  InterpretedFunction& operator=(InterpretedFunction&& other) noexcept {
+  ModelFunction(ModelFunction&& other) noexcept { swap(other); }
+  ModelFunction& operator=(ModelFunction&& other) noexcept {
     swap(other);
     return *this;
   }
-  InterpretedFunction(const InterpretedFunction&) = delete;
-  InterpretedFunction& operator=(const InterpretedFunction&) = delete;
-  ~InterpretedFunction() {
+  ModelFunction(const ModelFunction&) = delete;
+  ModelFunction& operator=(const ModelFunction&) = delete;
+  ~ModelFunction() {
     if (!function_.is_null()) function_.release(memory_);
   }
 
@@ -36,15 +36,27 @@ class InterpretedFunction {
   void operator()(const std::array<const double*, n_in>& in, const std::array<double*, n_out>& out) {
     for (std::size_t i = 0; i < n_in; ++i) arguments_[i] = in[i];
     for (std::size_t i = 0; i < n_out; ++i) results_[i] = out[i];
+    if (native_ != nullptr) {
+      native_(arguments_.data(), results_.data(), integers_.data(), work_.data(), 0);
+      return;
+    }
     function_(arguments_.data(), results_.data(), integers_.data(), work_.data(), memory_);
   }
+
+  /// Signature of the functions that CasADi's code generator writes.
+  using Native = int (*)(const double** arguments, double** results, casadi_int* integers, double* work, int memory);
+  void use_native(Native native) { native_ = native; }
+  [[nodiscard]] const casadi::Function& function() const { return function_; }
+  /// Elementary operations of one interpreted evaluation.
+  [[nodiscard]] long operations() const { return static_cast<long>(function_.n_instructions()); }
 
   [[nodiscard]] bool is_null() const { return function_.is_null(); }
 
  private:
-  void swap(InterpretedFunction& other) noexcept {
+  void swap(ModelFunction& other) noexcept {
     std::swap(function_, other.function_);
     std::swap(memory_, other.memory_);
+    std::swap(native_, other.native_);
     std::swap(arguments_, other.arguments_);
     std::swap(results_, other.results_);
     std::swap(integers_, other.integers_);
@@ -53,6 +65,7 @@ class InterpretedFunction {
 
   casadi::Function function_;
   int memory_ = 0;
+  Native native_ = nullptr;
   std::vector<const double*> arguments_;
   std::vector<double*> results_;
   std::vector<casadi_int> integers_;
