@@ -79,7 +79,10 @@ class HandWritten {
       rejected_ = false;
       ++run_.steps;
       if (problem_.left(step_.x_new().data()) || (!Problem::monotone && any_dip(h))) [[unlikely]] {
-        if (!cross_first(h)) return failed();
+        if (!cross_first(h)) {  // a cubic saw what is not there: a shorter step tells
+          h_ = 0.5 * h;
+          if (h_ < 1e-14 * Problem::until) return failed();
+        }
         continue;
       }
       t_ = last ? Problem::until : t_ + h;

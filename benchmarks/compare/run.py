@@ -51,7 +51,7 @@ def compare(options, lineup):
     results = {}
     for problem in problems:
         like = "gene-ring" if problem == "gene-ring-active" else problem
-        entries = [c for c in lineup if like in c.problems]
+        entries = [c for c in lineup if like in c.problems and not (problem != like and c.time_stepping)]
         sweeps = {c: [] for c in entries}
         for turn in range(options.rounds):
             for contender in entries:
@@ -71,7 +71,7 @@ def compare(options, lineup):
 def count_events(options, lineup):
     counts = []
     for contender in lineup:
-        if "relay-feedback" not in contender.problems or contender.time_stepping:
+        if "relay-feedback" not in contender.problems or contender.time_stepping or contender.variant == "trajectory":
             continue
         points = [] if contender.missing else contender.run("relay-feedback", 0.0, EVENT_TOLERANCES, options.timeout)
         counts.append((contender, [accuracy.judge("relay-feedback", p, False) for p in points]))

@@ -98,8 +98,8 @@ class Relay {
   using State = std::array<double, n>;
 
   [[nodiscard]] static State start() { return {0.0, -0.001, -0.02}; }
-  /// Off the surface the system swings with period 0.25: a longer step may leap over the way back.
-  [[nodiscard]] double longest_step() const { return mode_ == Mode::sliding ? until : 0.1; }
+  /// Off the surface the system swings with period 0.25: longer steps leap over short visits.
+  [[nodiscard]] double longest_step() const { return mode_ == Mode::sliding ? until : 0.05; }
   [[nodiscard]] std::size_t mode() const { return static_cast<std::size_t>(mode_); }
 
   void operator()(const double* x, double* slope) const {
