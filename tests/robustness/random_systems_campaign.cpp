@@ -1,0 +1,121 @@
+#include "random_systems_campaign.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "random_systems_check.hpp"
+#include "random_systems_model.hpp"
+
+namespace saltus::robustness {
+namespace {
+
+using result::Result;
+using result::Termination;
+
+constexpr Accuracy standard_accuracies[] = {{Integrator::dopri5, 1e-8}, {Integrator::dop853, 1e-8}};
+constexpr Accuracy fine{Integrator::dop853, 1e-11};
+
+bool is_completed(const Result& result) { return result.status.termination == Termination::completed; }
+
+bool is_unique(const Result& result) {
+  return std::all_of(result.events.begin(), result.events.end(),
+                     [](const result::Event& event) { return event.unique.value_or(false); });
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+/// How far neighbours that start `nearby` away end up, per unit of that distance; infinite if one meets another fate.
+double sensitivity(const Model& model, const RandomSystem& system, const Result& reference) {
+  constexpr double nearby = 1e-8;
+  double largest = 1.0;
+  for (std::size_t i = 0; i < 2 * system.states; ++i) {
+    auto start = system.start;
+    start[i / 2] += (i % 2 == 0 ? 1.0 : -1.0) * nearby;
+    const Result neighbour = model.run(fine, start);
+    if (neighbour.events.size() != reference.events.size() || !is_completed(neighbour)) return INFINITY;
+    largest = std::max(largest, distance(neighbour.final.x, reference.final.x) / nearby);
+  }
+  return largest;
+}
+
+class Campaign {
+ public:
+  Campaign(const Model& model, const RandomSystem& system, Tally& tally)
+      : model_(model), system_(system), tally_(tally) {}
+
+  void run() {
+    ++tally_.systems;
+    std::vector<Result> results;
+    for (const auto& accuracy : standard_accuracies) {
+      results.push_back(model_.run(accuracy, system_.start));
+      const std::string problem = complaint(system_, model_.listed(), results.back(), accuracy.rtol);
+      if (!problem.empty()) fail(accuracy.integrator == Integrator::dopri5 ? "dopri5" : "dop853", problem);
+      tally_.events += static_cast<long>(results.back().events.size());
+    }
+    const bool outside = std::any_of(results.begin(), results.end(), [](const Result& result) {
+      return result.status.termination == Termination::outside_class;
+    });
+    if (outside) ++tally_.outside_class;
+    if (std::all_of(results.begin(), results.end(), is_completed)) {
+      ++tally_.completed;
+      compare(results);
+    }
+  }
+
+ private:
+  void fail(const std::string& where, const std::string& what) {
+    tally_.failures.push_back(fmt::format("{} {} {}: {}", name(system_.family), system_.seed, where, what));
+  }
+
+  void compare(const std::vector<Result>& results) {
+    if (!std::all_of(results.begin(), results.end(), is_unique)) {
+      ++tally_.not_unique;
+      return;
+    }
+    const Result reference = model_.run(fine, system_.start);
+    const std::string problem = complaint(system_, model_.listed(), reference, fine.rtol);
+    if (!problem.empty()) return fail("fine", problem);
+    double worst = 0.0;
+    double size = 1.0;
+    for (const double value : reference.final.x) size = std::max(size, std::abs(value));
+    for (const auto& result : results) worst = std::max(worst, distance(result.final.x, reference.final.x));
+    if (worst <= 1e-7 * size) return;
+    const double factor = sensitivity(model_, system_, reference);
+    // Beyond 1e6 a rounding error of the start is visible in the eighth digit of the end.
+    if (factor > 1e6 || !is_completed(reference)) {
+      ++tally_.sensitive;
+    } else if (worst > 1e-7 * size * factor) {
+      fail("end",
+           fmt::format("differs by {} from the run at 1e-11 where neighbours part by a factor {}", worst, factor));
+    }
+  }
+
+  const Model& model_;
+  const RandomSystem& system_;
+  Tally& tally_;
+};
+
+}  // namespace
+
+Tally run_campaign(Family family, std::uint64_t first, std::uint64_t count) {
+  Tally tally;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    const RandomSystem system = draw(family, seed);
+    try {
+      const Model model(system);
+      if (!model.has_equal_surfaces()) Campaign(model, system, tally).run();
+    } catch (const std::exception& error) {
+      tally.failures.push_back(fmt::format("{} {}: {}", name(family), seed, error.what()));
+    }
+  }
+  return tally;
+}
+
+}  // namespace saltus::robustness

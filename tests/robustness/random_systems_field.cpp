@@ -1,0 +1,141 @@
+#include "random_systems_field.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/LU>
+
+namespace saltus::robustness {
+namespace {
+
+/// A number and its derivative along a direction.
+struct Dual {
+  double value = 0.0;
+  double derivative = 0.0;
+  Dual() = default;
+  Dual(double v, double d = 0.0) : value(v), derivative(d) {}
+};
+Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.derivative + b.derivative}; }
+Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.derivative - b.derivative}; }
+Dual operator-(const Dual& a) { return {-a.value, -a.derivative}; }
+Dual operator*(const Dual& a, const Dual& b) {
+  return {a.value * b.value, a.derivative * b.value + a.value * b.derivative};
+}
+Dual sin(const Dual& a) { return {std::sin(a.value), std::cos(a.value) * a.derivative}; }
+
+double value_of(double a) { return a; }
+double value_of(const Dual& a) { return a.value; }
+
+/// Answers with given selections and notes the switching functions.
+template <class Scalar>
+struct FixedSwitches {
+  std::vector<double> alpha;
+  const std::vector<bool>& read_anew;
+  std::vector<Scalar> psi;
+  double kink_distance = std::numeric_limits<double>::infinity();
+
+  FixedSwitches(const std::vector<double>& selections, const std::vector<bool>& read)
+      : alpha(selections), read_anew(read), psi(selections.size()) {}
+
+  Scalar step(std::size_t surface, const Scalar& e) {
+    psi[surface] = e;
+    if (read_anew[surface]) alpha[surface] = value_of(e) > 0.0 ? 1.0 : 0.0;
+    return alpha[surface];
+  }
+  Scalar max(const Scalar& a, const Scalar& b) {
+    kink_distance = std::min(kink_distance, std::abs(value_of(a) - value_of(b)));
+    return value_of(a) > value_of(b) ? a : b;
+  }
+  Scalar abs(const Scalar& a) { return max(a, -a); }
+};
+
+}  // namespace
+
+OwnField::OwnField(const RandomSystem& system, const std::vector<int>& mode)
+    : system_(system), selections_(mode.size()), read_anew_(mode.size()) {
+  for (std::size_t j = 0; j < mode.size(); ++j) {
+    selections_[j] = mode[j] > 0 ? 1.0 : mode[j] < 0 ? 0.0 : 0.5;
+    if (mode[j] == 0) sliding_.push_back(j);
+  }
+  for (std::size_t j = 0; j < mode.size(); ++j) {
+    const auto& inner = system.inner[j];
+    read_anew_[j] = mode[j] != 0 && std::any_of(inner.begin(), inner.end(), [&](auto i) { return mode[i] == 0; });
+  }
+}
+
+FieldValue OwnField::at_selections(double t, const std::vector<double>& x, const std::vector<double>& alpha) const {
+  FixedSwitches<double> switches(alpha, read_anew_);
+  FieldValue value;
+  value.xdot = rates(system_, t, x, switches);
+  value.alpha = std::move(switches.alpha);
+  value.psi = std::move(switches.psi);
+  value.kink_distance = switches.kink_distance;
+  return value;
+}
+
+/// d psi / dt of all surfaces along the field of `value`.
+std::vector<double> OwnField::psi_rates(double t, const std::vector<double>& x, const FieldValue& value) const {
+  std::vector<Dual> direction;
+  for (std::size_t i = 0; i < x.size(); ++i) direction.emplace_back(x[i], value.xdot[i]);
+  FixedSwitches<Dual> switches(value.alpha, read_anew_);
+  static_cast<void>(rates(system_, Dual(t, 1.0), direction, switches));
+  std::vector<double> rates_of_psi;
+  for (const auto& psi : switches.psi) rates_of_psi.push_back(psi.derivative);
+  return rates_of_psi;
+}
+
+FieldValue OwnField::slide_on_one(double t, const std::vector<double>& x, std::vector<double> alpha) const {
+  const std::size_t j = sliding_.front();
+  alpha[j] = 0.0;
+  const FieldValue lower = at_selections(t, x, alpha);
+  alpha[j] = 1.0;
+  const FieldValue upper = at_selections(t, x, alpha);
+  FieldValue value = lower;
+  value.below = psi_rates(t, x, lower)[j];
+  value.above = psi_rates(t, x, upper)[j];
+  const double selection = value.below / (value.below - value.above);
+  value.alpha[j] = selection;
+  for (std::size_t i = 0; i < x.size(); ++i) value.xdot[i] += selection * (upper.xdot[i] - lower.xdot[i]);
+  return value;
+}
+
+FieldValue OwnField::slide_on_several(double t, const std::vector<double>& x, std::vector<double> alpha) const {
+  const auto m = static_cast<Eigen::Index>(sliding_.size());
+  const auto velocities = [&](const std::vector<double>& selections) {
+    const auto all = psi_rates(t, x, at_selections(t, x, selections));
+    Eigen::VectorXd own(m);
+    for (Eigen::Index i = 0; i < m; ++i) own[i] = all[sliding_[static_cast<std::size_t>(i)]];
+    return own;
+  };
+  double pivot = 0.0;
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    Eigen::MatrixXd matrix(m, m);
+    for (Eigen::Index column = 0; column < m; ++column) {
+      auto corner = alpha;
+      double& selection = corner[sliding_[static_cast<std::size_t>(column)]];
+      selection = 1.0;
+      const Eigen::VectorXd upper = velocities(corner);
+      selection = 0.0;
+      matrix.col(column) = upper - velocities(corner);
+    }
+    const Eigen::FullPivLU<Eigen::MatrixXd> factors(matrix);
+    pivot = std::abs(factors.matrixLU()(m - 1, m - 1));
+    const Eigen::VectorXd change = factors.solve(velocities(alpha));
+    for (Eigen::Index i = 0; i < m; ++i) alpha[sliding_[static_cast<std::size_t>(i)]] -= change[i];
+    if (change.cwiseAbs().maxCoeff() < 1e-13) break;
+  }
+  FieldValue value = at_selections(t, x, alpha);
+  value.residual = velocities(alpha).cwiseAbs().maxCoeff();
+  value.pivot = pivot;
+  return value;
+}
+
+FieldValue OwnField::operator()(double t, const std::vector<double>& x, const std::vector<double>& guess) const {
+  std::vector<double> alpha = selections_;
+  if (sliding_.empty()) return at_selections(t, x, alpha);
+  if (sliding_.size() == 1) return slide_on_one(t, x, std::move(alpha));
+  for (const auto j : sliding_) alpha[j] = guess[j];
+  return slide_on_several(t, x, std::move(alpha));
+}
+
+}  // namespace saltus::robustness
