@@ -13,6 +13,7 @@ ROOT = HERE.parents[1]
 BUILD = ROOT / "build" / "benchmarks"
 MODELS = BUILD / "models"
 PLUGIN = BUILD / "siconos_plugin.so"
+CACHE = BUILD / "cache"  # of Saltus' native code; emptied before a run
 DEBIAN_PYTHON = "/usr/bin/python3"
 
 PROBLEMS = ("irma", "stick-slip", "relay-feedback", "gene-ring")
@@ -47,7 +48,7 @@ class Contender:
         else:
             what = problem
         command = [*self.command, what, self.method, self.variant, repr(seconds), *map(repr, tolerances)]
-        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1",
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(CACHE),
                        "COMPARE_SICONOS_PLUGIN": str(PLUGIN)}
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
         try:
@@ -106,8 +107,9 @@ def line_up(programs):
     siconos = (DEBIAN_PYTHON, str(HERE / "siconos_runner.py"))
     contenders = []
     for method in ("dopri5", "dop853"):
-        contenders.append(Contender("Saltus", method, "events", (str(saltus),)))
-    contenders.append(Contender("Saltus", "dop853", "trajectory", (str(saltus),)))
+        contenders.append(Contender("Saltus", method, "native", (str(saltus),)))
+    for variant in ("interpreted", "trajectory"):
+        contenders.append(Contender("Saltus", "dop853", variant, (str(saltus),)))
     for method in ("dopri5", "dop853"):
         contenders.append(Contender("by hand", method, "relevant", (str(hand),)))
         contenders.append(Contender("by hand", method, "all", (str(hand),), ("irma", "gene-ring")))

@@ -10,6 +10,7 @@ Needs nothing but Python; the competitors that cannot be installed become rows "
 import argparse
 import pathlib
 import platform
+import shutil
 import statistics
 import subprocess
 import sys
@@ -42,6 +43,7 @@ def merged(rounds):
             values = [one[k][key] for one in rounds if k < len(one) and key in one[k]]
             if values:
                 point[key] = statistics.median(values)
+                point[f"first_{key}"] = values[0]
     return points
 
 
@@ -71,7 +73,8 @@ def compare(options, lineup):
 def count_events(options, lineup):
     counts = []
     for contender in lineup:
-        if "relay-feedback" not in contender.problems or contender.time_stepping or contender.variant == "trajectory":
+        if "relay-feedback" not in contender.problems or contender.time_stepping or contender.variant in (
+                "trajectory", "interpreted"):
             continue
         points = [] if contender.missing else contender.run("relay-feedback", 0.0, EVENT_TOLERANCES, options.timeout)
         counts.append((contender, [accuracy.judge("relay-feedback", p, False) for p in points]))
@@ -111,6 +114,7 @@ def main():
         subprocess.run([contenders.ROOT / "scripts" / "install_benchmarks.sh"], check=False)
     programs = contenders.build(options.build)
     contenders.write_models()
+    shutil.rmtree(contenders.CACHE, ignore_errors=True)
     lineup = contenders.line_up(programs)
     if options.contenders:
         lineup = [c for c in lineup if c.name in options.contenders]

@@ -36,13 +36,15 @@ event_integrator::IntegrationOptions options_of(const Request& request, double u
   }
   options.until = until;
   // The competitors keep events and end state; `trajectory` is what a user gets by default: every step.
-  if (request.variant == "events") {
-    options.output.rows = event_integrator::OutputTimes::Rows::at_times;
-  } else if (request.variant != "trajectory") {
-    unknown(request);
-  }
+  if (request.variant != "trajectory") options.output.rows = event_integrator::OutputTimes::Rows::at_times;
   options.max_steps = 100000000;
   return options;
+}
+
+evaluation::NativeCode native_code_of(const Request& request) {
+  if (request.variant == "native" || request.variant == "trajectory") return evaluation::NativeCode::on;
+  if (request.variant == "interpreted") return evaluation::NativeCode::off;
+  unknown(request);
 }
 
 Run run_of(const event_integrator::Integration& integration) {
@@ -65,7 +67,7 @@ void sweep(Request request) {
   const auto model_file = value_or_exit(saltus::io::read_model(file));
   const model::System system = value_or_exit(model::build(model_file.description));
   const double built = cpu_seconds();
-  auto kernel = value_or_exit(evaluation::ModelKernel::compile(system));
+  auto kernel = value_or_exit(evaluation::ModelKernel::compile(system, native_code_of(request)));
   const double compiled = cpu_seconds();
   auto options = options_of(request, model_file.simulate.until.value_or(1.0));
   char parts[120];
