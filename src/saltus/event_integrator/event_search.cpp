@@ -254,10 +254,15 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
   const int zero_order = from == 0.0 ? function.zero_order : 0;
   const bool is_exit = !uses_phi(function);
   if (is_exit || !kernel_.is_affine(function.index)) {
-    // Where the interpolant stays away from zero it need not be better than that distance.
+    // Where the interpolant stays away from zero it need not be better than that distance; functions of time only, or
+    // with a vanishing gradient, have no other measure than their own size.
     double margin = std::numeric_limits<double>::max();
-    for (const double b : coefficients) margin = std::min(margin, sign * b);
-    const double wanted = std::max(accuracy_[i], 0.125 * margin);
+    double size = 0.0;
+    for (const double b : coefficients) {
+      margin = std::min(margin, sign * b);
+      size = std::max(size, std::abs(b));
+    }
+    const double wanted = std::max({accuracy_[i], 0.125 * margin, 0.1 * tolerances_.rtol * size});
     if (chebyshev_tail(values) > wanted || (!is_exit && misses(step, from, to, i, coefficients, wanted))) {
       return {false, {}};
     }
@@ -294,7 +299,7 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
   return SearchOutcome::none;
 }
 
-void EventSearch::settle(double t, const double* x) {
+bool EventSearch::settle(double t, const double* x) {
   bool unknown = false;
   const bool offset = std::any_of(functions_.begin(), functions_.end(), [](const auto& f) { return f.offset != 0.0; });
   if (offset) evaluate(t, x, point_);
@@ -305,9 +310,10 @@ void EventSearch::settle(double t, const double* x) {
     // Far enough behind the start that what was left there cannot be mistaken for a new zero.
     if (function.offset != 0.0 && function.sign * point_[i] > 2.0 * std::abs(function.offset)) function.offset = 0.0;
   }
-  if (!unknown) return;
+  if (!unknown) return false;
   rescale(t, x);
   read_user_signs(t, x);
+  return true;
 }
 
 void EventSearch::set_user_sign(std::size_t function, int sign) {

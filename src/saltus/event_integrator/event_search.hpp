@@ -65,8 +65,9 @@ class EventSearch {
   [[nodiscard]] double noise(std::size_t function) const { return noise_[function]; }
   /// Signs of the user functions in force, 0 where not known yet.
   [[nodiscard]] const std::vector<int>& user_signs() const { return user_sign_; }
-  /// Behind an accepted step that ends at (t, x): zeros at its start are history, unknown signs can be read.
-  void settle(double t, const double* x);
+  /// Behind an accepted step that ends at (t, x): zeros at its start are history, unknown signs are read. Returns
+  /// whether there were such signs.
+  bool settle(double t, const double* x);
   /// Sets the sign of a user function.
   void set_user_sign(std::size_t function, int sign);
 

@@ -100,6 +100,7 @@ class Run {
   ModeField field_;
   ode::Stepper stepper_;
   ode::StepControl control_;
+  ode::StiffnessWatch stiffness_;
   ode::Tolerances tolerances_;  ///< of a step
   ode::DenseStep dense_;
   EventSearch search_;
@@ -110,9 +111,10 @@ class Run {
   std::vector<double> x_, slope_;
   std::vector<double> row_x_, row_slope_;
   ModeState state_;
-  double h_ = 0.0;        ///< proposed step
-  double h_try_ = 0.0;    ///< step under trial
-  double h_scale_ = 0.0;  ///< of the last full step: time scale of the second-order sign tests
+  std::optional<double> stiff_at_;  ///< where the explicit method first looked out of place
+  double h_ = 0.0;                  ///< proposed step
+  double h_try_ = 0.0;              ///< step under trial
+  double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
   std::size_t next_output_ = 0;
   long switches_in_a_row_ = 0;  ///< without the time having advanced noticeably
   double series_start_ = 0.0;
@@ -158,6 +160,8 @@ void Run::rows_until(double t_end) {
 bool Run::enter(const Transition& transition) {
   state_ = transition.state;
   field_.enter(state_);
+  stepper_.restart();
+  stiffness_.reset();
   field_.project(t_, x_.data());
   field_(t_, x_.data(), slope_.data());
   if (!is_finite(slope_)) {
@@ -250,7 +254,11 @@ Run::Step Run::accept(double t_new) {
     std::copy(stepper_.slope_new(), stepper_.slope_new() + slope_.size(), slope_.begin());
   }
   h_ = h * control_.accepted(stepper_.error_norm());
-  search_.settle(t_, x_.data());
+  if (!stiff_at_ && stiffness_.looks_stiff(stepper_)) stiff_at_ = t_;
+  if (search_.settle(t_, x_.data())) {
+    // What a user function turns to from a zero at the start is its first sign, not a change of it.
+    static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
+  }
   const bool requested = next_output_ < options_.output.times.size() && options_.output.times[next_output_] == t_;
   if (requested) ++next_output_;
   if (options_.output.rows == OutputTimes::Rows::at_steps || requested || t_ >= options_.until) row(t_, x_);
@@ -437,6 +445,11 @@ Integration Run::to_end() {
     }
   }
   if (!recorder_.ends_at(t_)) row(t_, x_);
+  if (stiff_at_) {
+    result_.status.message +=
+        fmt::format("{}the model looks stiff from t = {:.6g} on: integrator = \"radau5\" may need far fewer steps",
+                    result_.status.message.empty() ? "" : "; ", *stiff_at_);
+  }
   result_.status.time_reached = t_;
   result_.statistics.rhs_evaluations = kernel_.field_evaluations();
   result_.events = recorder_.take_events();

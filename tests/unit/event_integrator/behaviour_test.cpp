@@ -1,0 +1,195 @@
+// What the engine does with the richer parts of a model: nested terms, time events, inputs, [[events]], inclusions.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/builder.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+using model::Builder;
+using model::greater;
+using model::less;
+using result::EventKind;
+using result::Termination;
+
+Integration run(Builder& builder, double until, const std::vector<std::pair<int, int>>& forced = {}) {
+  const auto system = builder.build();
+  EXPECT_TRUE(system.has_value()) << (system ? "" : system.error().message);
+  auto kernel = evaluation::ModelKernel::compile(*system);
+  EXPECT_TRUE(kernel.has_value());
+  IntegrationOptions options;
+  options.method = ode::Method::dop853;
+  options.tolerances = {1e-10, 1e-12};
+  options.until = until;
+  options.initial_mode = forced;
+  return integrate(*kernel, *system, options);
+}
+
+TEST(Behaviour, SlidingGoesOnWithANewGradientAcrossAKinkInsidePsi) {
+  // Sliding on v + max(x, 0) = 0: v' = 0 before x = 0, v' = -1 behind it, alpha 1/2 then 3/4.
+  Builder b("nested");
+  const SX x = b.state("x", {-1});
+  const SX v = b.state("v", {-0.5});
+  b.dynamics("x", 1);
+  b.dynamics("v", -2 * b.sign(v + b.max(x, 0)));
+  const auto result = run(b, 4);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_NEAR(result.events[0].t, 0.25, 1e-14);
+  EXPECT_NEAR(result.final.x[1], -3.0, 1e-12);
+  EXPECT_NEAR(result.final.alpha[0], 0.75, 1e-12);
+}
+
+TEST(Behaviour, SlidingEndsAtAKinkInsidePsiWhereTheNewGradientNeedsTooMuch) {
+  // Behind x = 0 sliding would need v' = -3, but |v'| <= 2.
+  Builder b("nested");
+  const SX x = b.state("x", {-1});
+  const SX v = b.state("v", {-0.5});
+  b.dynamics("x", 1);
+  b.dynamics("v", -2 * b.sign(v + 3 * b.max(x, 0)));
+  const auto result = run(b, 2);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_EQ(result.events[1].kind, EventKind::leave_sliding);
+  EXPECT_NEAR(result.events[1].t, 1.0, 1e-14);
+  EXPECT_NEAR(result.final.x[1], -2.0, 1e-12);
+}
+
+TEST(Behaviour, NestedPsiThatJumpsIsReadAnew) {
+  // psi = y + 2 sign(x) changes its sign when x does, without passing 0.
+  Builder b("jumping psi");
+  const SX x = b.state("x", {-1});
+  const SX y = b.state("y", {1});
+  b.dynamics("x", 1);
+  b.dynamics("y", 0.25 * b.sign(y + 2 * b.sign(x)));
+  const auto result = run(b, 2);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, EventKind::crossing);
+  EXPECT_NEAR(result.events[0].t, 1.0, 1e-15);
+  EXPECT_NEAR(result.final.x[1], 1.0, 1e-14);
+}
+
+TEST(Behaviour, TimeEventsRestartAndAreNotListed) {
+  Builder b("clock");
+  b.state("x", {0});
+  b.dynamics("x", b.if_(less(b.time(), 1.0), 1.0, -2.0) + b.step(sin(b.time())));
+  const auto result = run(b, 4);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_TRUE(result.events.empty());
+  EXPECT_NEAR(result.final.x[0], 1.0 - 6.0 + std::acos(-1.0), 1e-13);
+}
+
+TEST(Behaviour, SteppedInputFlipsAStateSurfaceWithoutPassingZero) {
+  Builder b("stepped input");
+  const SX x = b.state("x", {1});
+  const SX u = b.control("u", {0});
+  b.input("u", b.if_(less(b.time(), 1.0), 0.0, 2.0));
+  b.dynamics("x", -0.1 * b.sign(x - u));
+  const auto result = run(b, 3);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, EventKind::crossing);
+  EXPECT_EQ(result.events[0].t, 1.0);
+  EXPECT_NEAR(result.final.x[0], 1.1, 1e-14);
+  EXPECT_EQ(result.trajectory.u.back()[0], 2.0);
+}
+
+TEST(Behaviour, AizermanPyatnitskiiSlidesAtItsOwnRoot) {
+  // -(1 + 3 a)(2 a - 1) + t / 10 = 0 has the root (1 + sqrt(25 + 24 t / 10)) / 12.
+  Builder b("ap");
+  b.set_inclusion(model::Inclusion::aizerman_pyatnitskii);
+  const SX x = b.state("x", {-1});
+  b.dynamics("x", -b.if_(greater(x, 0), 4.0, 1.0) * b.sign(x) + 0.1 * b.time());
+  const auto result = run(b, 30);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_EQ(result.final.x[0], 0.0);
+  EXPECT_NEAR(result.final.alpha[0], (1.0 + std::sqrt(97.0)) / 12.0, 1e-12);
+}
+
+TEST(Behaviour, FilippovInterpolatesTheSameModelLinearly) {
+  Builder b("filippov");
+  const SX x = b.state("x", {-1});
+  b.dynamics("x", -b.if_(greater(x, 0), 4.0, 1.0) * b.sign(x) + 0.1 * b.time());
+  const auto result = run(b, 30);
+  EXPECT_NEAR(result.final.alpha[0], 0.8, 1e-12);
+}
+
+TEST(Behaviour, UserEventsHaveDirectionsAndMayStop) {
+  Builder b("oscillator");
+  const SX q = b.state("q", {1});
+  const SX v = b.state("v", {0});
+  b.dynamics("q", v);
+  b.dynamics("v", -q);
+  b.event(q, {"down", model::Direction::down});
+  b.event(greater(q, 0.5) && greater(v, 0.0), {"both_hold", model::Direction::up});
+  b.event(v - 0.9, {"fast", model::Direction::both, model::AtEvent::stop});
+  const auto result = run(b, 10);
+  const double pi = std::acos(-1.0);
+  ASSERT_EQ(result.status.termination, Termination::stopped_by_event);
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_EQ(*result.events[0].name, "down");
+  EXPECT_NEAR(result.events[0].t, pi / 2, 1e-9);
+  EXPECT_EQ(*result.events[1].name, "fast");
+  EXPECT_NEAR(result.final.t, pi + std::asin(0.9), 1e-9);
+}
+
+TEST(Behaviour, ConditionThatHoldsFromTheStartHasNoEdgeThere) {
+  Builder b("fall");
+  const SX x = b.state("x", {3});
+  const SX v = b.state("v", {0});
+  b.dynamics("x", v);
+  b.dynamics("v", -1 + 0.0 * x);
+  b.event(less(v, 0.0), {"moves_down"});
+  b.event(less(x, 1.0), {"low", model::Direction::up});
+  const auto result = run(b, 3);
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(*result.events[0].name, "low");
+  EXPECT_NEAR(result.events[0].t, 2.0, 1e-12);
+}
+
+TEST(Behaviour, ForcedModeOnARepellingSurfaceIsKept) {
+  Builder b("repelling");
+  const SX x = b.state("x", {0});
+  b.dynamics("x", b.sign(x));
+  const auto result = run(b, 1, {{0, 0}});
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_EQ(result.final.x[0], 0.0);
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].unique, std::optional<bool>(false));
+}
+
+TEST(Behaviour, CoupledSurfacesStopOutsideTheClassWithEverythingSoFar) {
+  Builder b("coupled");
+  const SX x = b.state("x", {1});
+  const SX y = b.state("y", {1});
+  b.dynamics("x", -b.sign(x) + 0.5 * b.sign(y));
+  b.dynamics("y", -b.sign(y) - 0.5 * b.sign(x));
+  const auto result = run(b, 5);
+  EXPECT_EQ(result.status.termination, Termination::outside_class);
+  EXPECT_NEAR(result.status.time_reached, 1.2, 1e-12);
+  EXPECT_FALSE(result.trajectory.t.empty());
+}
+
+TEST(Behaviour, EveryEventHasTwoRowsAndTheEndIsARow) {
+  Builder b("friction");
+  const SX q = b.state("q", {3});
+  const SX v = b.state("v", {0});
+  b.dynamics("q", v);
+  b.dynamics("v", -q - 0.4 * b.sign(v));
+  const auto result = run(b, 15);
+  ASSERT_EQ(result.events.size(), 5U);
+  for (const auto& event : result.events) {
+    EXPECT_EQ(std::count(result.trajectory.t.begin(), result.trajectory.t.end(), event.t), 2) << event.t;
+  }
+  EXPECT_EQ(result.trajectory.t.back(), 15.0);
+  EXPECT_TRUE(std::is_sorted(result.trajectory.t.begin(), result.trajectory.t.end()));
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
