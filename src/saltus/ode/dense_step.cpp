@@ -87,6 +87,8 @@ void DenseStep::evaluate(double theta, double* x) const {
       return evaluate_nearer<4>(coefficients, end_.data(), n, theta, x);
     case Method::dop853:
       return evaluate_nearer<7>(coefficients, end_.data(), n, theta, x);
+    case Method::radau5:
+      return evaluate_nearer<3>(coefficients, end_.data(), n, theta, x);
   }
 }
 
@@ -97,6 +99,8 @@ void DenseStep::derivative(double theta, double* xdot) const {
       return evaluate_slope<4>(coefficients_.data(), n, theta, h, xdot);
     case Method::dop853:
       return evaluate_slope<7>(coefficients_.data(), n, theta, h, xdot);
+    case Method::radau5:
+      return evaluate_slope<3>(coefficients_.data(), n, theta, h, xdot);
   }
 }
 

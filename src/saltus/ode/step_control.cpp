@@ -10,7 +10,7 @@
 namespace saltus::ode {
 namespace {
 
-/// Constants of the codes DOPRI5 and DOP853 of Hairer & Wanner.
+/// Constants of the codes DOPRI5, DOP853 and RADAU5 of Hairer & Wanner.
 struct Gains {
   double exponent;  ///< of the error of this step
   double beta;      ///< of the error of the step before: 0 is the plain controller
@@ -24,9 +24,14 @@ Gains gains(Method method) {
       return {.exponent = 0.2 - 0.75 * 0.04, .beta = 0.04, .smallest = 0.2, .largest = 10.0};
     case Method::dop853:
       return {.exponent = 0.125, .beta = 0.0, .smallest = 0.333, .largest = 6.0};
+    case Method::radau5:
+      return {.exponent = 0.25, .beta = 0.0, .smallest = 0.2, .largest = 8.0};
   }
   __builtin_unreachable();
 }
+
+/// Power of h in the error norm, about: what the exponents above are made for.
+int error_order(Method method) { return method == Method::radau5 ? 4 : order(method) + 1; }
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -89,6 +94,8 @@ double StepControl::accepted(double error_norm) {
   const double largest = last_rejected_ ? 1.0 : gain.largest;
   previous_error_ = std::max(error_norm, least_error);
   last_rejected_ = false;
+  // An increase that is worth less than a factorisation.
+  if (method_ == Method::radau5 && raw >= 1.0 && raw <= 1.2) return 1.0;
   return std::clamp(raw, gain.smallest, largest);
 }
 
@@ -96,6 +103,20 @@ double StepControl::rejected(double error_norm) {
   const Gains gain = gains(method_);
   last_rejected_ = true;
   return std::clamp(safety / std::pow(error_norm, gain.exponent), gain.smallest, safety);
+}
+
+bool StiffnessWatch::looks_stiff(const Stepper& stepper) {
+  // Without suspicion a sample is enough.
+  constexpr long interval = 16;
+  constexpr int enough = 15;
+  constexpr int acquitted = 6;
+  if (suspicions_ == 0 && ++steps_ % interval != 0) return false;
+  if (stepper.stability_ratio() > 1.0) {
+    innocent_ = 0;
+    return ++suspicions_ == enough;
+  }
+  if (++innocent_ == acquitted) suspicions_ = innocent_ = 0;
+  return false;
 }
 
 double initial_step(Method method, RightHandSide f, double t, const double* x, const double* slope, int n, double span,
@@ -122,7 +143,7 @@ double initial_step(Method method, RightHandSide f, double t, const double* x, c
   // Attributes an error of amplitude (h / time)^(order + 1) to a step of length h, and allows 0.01.
   const double amplitude = has_size ? size : std::max(speed * length, bend * length * length);
   const double time = has_size ? std::min(size / speed, std::sqrt(size / bend)) : length;
-  const double step = time * std::pow(0.01 / amplitude, 1.0 / (order(method) + 1));
+  const double step = time * std::pow(0.01 / amplitude, 1.0 / error_order(method));
   if (!(step > 0.0)) return trial;  // overflow
   return std::copysign(std::min({reach * std::abs(trial), step, length}), span);
 }

@@ -5,7 +5,8 @@
 
 namespace saltus::ode {
 
-/// PI controller (Gustafsson; Hairer, Norsett & Wanner IV.2): a value, one per run; reset at every restart.
+/// PI controller (Gustafsson; Hairer & Wanner IV.2; dop853 and radau5: without memory of errors): a value, one per run;
+/// reset at every restart.
 class StepControl {
  public:
   explicit StepControl(Method method);
@@ -19,6 +20,22 @@ class StepControl {
   Method method_;
   double previous_error_;
   bool last_rejected_ = false;
+};
+
+/// Tells whether stability limits the accepted steps of an explicit method: 15 suspicious ones, and not six others in a
+/// row between them (codes DOPRI5 and DOP853 of Hairer & Wanner; here one step of 16 is looked at while there is no
+/// suspicion).
+class StiffnessWatch {
+ public:
+  /// To be asked after every accepted step; true once, when the suspicion is enough.
+  [[nodiscard]] bool looks_stiff(const Stepper& stepper);
+  /// A new right-hand side.
+  void reset() { *this = StiffnessWatch{}; }
+
+ private:
+  long steps_ = 0;
+  int suspicions_ = 0;
+  int innocent_ = 0;
 };
 
 /// First step size, signed like `span` and at most as long (Hairer, Norsett & Wanner, II.4, algorithm 4.14), from the

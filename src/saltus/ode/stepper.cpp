@@ -1,15 +1,15 @@
 #include "saltus/ode/stepper.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/dop853_tableau.hpp"
 #include "saltus/ode/dopri5_tableau.hpp"
+#include "saltus/ode/radau5_internal.hpp"
 #include "saltus/ode/stage_sums_internal.hpp"
+#include "saltus/ode/step_checks_internal.hpp"
 
 namespace saltus::ode {
 namespace {
@@ -20,6 +20,8 @@ std::size_t stage_count(Method method) {
       return Dopri5Tableau::dense_stages;
     case Method::dop853:
       return Dop853Tableau::dense_stages;
+    case Method::radau5:
+      return 2;
   }
   __builtin_unreachable();
 }
@@ -31,18 +33,10 @@ std::size_t last_stage(Method method) {
       return Dopri5Tableau::stages - 1;
     case Method::dop853:
       return Dop853Tableau::stages - 1;
+    case Method::radau5:
+      return 1;
   }
   __builtin_unreachable();
-}
-
-bool all_finite(const double* values, std::size_t n) {
-  // A carry out of an exponent of ones only, into the sign's place: unlike comparisons, this loop vectorises
-  // everywhere.
-  constexpr std::uint64_t exponent = 0x7ff0'0000'0000'0000;
-  constexpr std::uint64_t lowest_bit = 0x0010'0000'0000'0000;
-  std::uint64_t carries = 0;
-  for (std::size_t i = 0; i < n; ++i) carries |= (std::bit_cast<std::uint64_t>(values[i]) & exponent) + lowest_bit;
-  return (carries >> 63) == 0;
 }
 
 /// What the stages of one attempt share.
@@ -90,19 +84,6 @@ bool take_step(const StageRun& run, double* argument, double* x_new) {
   return evaluate_stages<Tableau, 1>(run, argument, std::make_index_sequence<last - 1>{}) &&
          evaluate_stage<Tableau, last>(run, x_new);
 }
-
-struct ErrorScale {
-  Tolerances tolerances;
-  const double* x;
-  const double* x_new;
-
-  double operator()(std::size_t i) const {
-    // A component that is 0 on both sides with atol = 0 has no scale: its error is 0 or far too large, but 0 / 0 is
-    // not.
-    return std::max(tolerances.atol + tolerances.rtol * std::max(std::abs(x[i]), std::abs(x_new[i])),
-                    std::numeric_limits<double>::min());
-  }
-};
 
 /// Largest component of an embedded error estimate in units of its scale. The largest, not the mean: a state that
 /// slides or rests has no error and must not buy the others a larger one. NaN if a component is (overflow), which a
@@ -164,6 +145,24 @@ void hermite_coefficients(const StageRun& run, const double* x_new, const double
 
 constexpr std::size_t hermite_count = 4;
 
+/// h |k_last - k_before| / |x_new - x_before|, both stages at t + h: about h times the largest eigenvalue.
+template <class Tableau>
+double stage_stiffness(const std::vector<double>& x, const std::vector<double>& x_new, const double* stages, double h) {
+  constexpr std::size_t last = Tableau::stages - 1;
+  const std::size_t n = x.size();
+  double slopes = 0.0, states = 0.0, size = 0.0;  // squares
+  for (std::size_t i = 0; i < n; ++i) {
+    const double before = x[i] + h * stage_sum<Tableau::a, last - 1>(stages, n, i);
+    const double slope = stages[last * n + i] - stages[(last - 1) * n + i];
+    const double state = x_new[i] - before;
+    slopes += slope * slope;
+    states += state * state;
+    size += x_new[i] * x_new[i];
+  }
+  constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
+  return states > rounding * rounding * size ? std::abs(h) * std::sqrt(slopes / states) : 0.0;
+}
+
 template <class Tableau>
 void dense_coefficients(const StageRun& run, double* result) {
   dense_rows<Tableau>(run, result, std::make_index_sequence<Tableau::dense.size()>{});
@@ -177,6 +176,8 @@ int order(Method method) {
       return 5;
     case Method::dop853:
       return 8;
+    case Method::radau5:
+      return 5;
   }
   __builtin_unreachable();
 }
@@ -187,6 +188,8 @@ int dense_degree(Method method) {
       return 4;
     case Method::dop853:
       return 7;
+    case Method::radau5:
+      return 3;
   }
   __builtin_unreachable();
 }
@@ -196,6 +199,15 @@ Stepper::Stepper(Method method, int n) : method_(method), n_(n) {
   const auto size = static_cast<std::size_t>(n);
   for (auto* vector : {&start_, &x_new_, &argument_}) vector->resize(size);
   stages_.resize(size * stage_count(method));
+  if (method == Method::radau5 && n > 0) radau_ = std::make_unique<Radau5>(n);
+}
+
+Stepper::Stepper(Stepper&&) noexcept = default;
+Stepper& Stepper::operator=(Stepper&&) noexcept = default;
+Stepper::~Stepper() = default;
+
+void Stepper::restart() {
+  if (radau_) radau_->restart();
 }
 
 Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
@@ -217,6 +229,14 @@ Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const doubl
       if (!take_step<Dop853Tableau>(run, argument_.data(), x_new_.data())) return Attempt::undefined;
       error_norm_ = dop853_error(run, scale, argument_.data());
       break;
+    case Method::radau5:
+      if (n == 0) break;
+      if (radau_->attempt({f, t, h, start_.data(), stages_.data(), tolerances}, x_new_.data(), stages_.data() + n,
+                          evaluations_) == Attempt::undefined) {
+        return Attempt::undefined;
+      }
+      error_norm_ = radau_->error_norm();
+      break;
   }
   if (n == 0) error_norm_ = 0.0;
   if (std::isnan(error_norm_)) error_norm_ = std::numeric_limits<double>::infinity();  // overflow of both estimates
@@ -224,6 +244,19 @@ Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const doubl
 }
 
 const double* Stepper::slope_new() const { return stages_.data() + last_stage(method_) * static_cast<std::size_t>(n_); }
+
+/// Limits of the codes DOPRI5 and DOP853 of Hairer & Wanner.
+double Stepper::stability_ratio() const {
+  switch (method_) {
+    case Method::dopri5:
+      return stage_stiffness<Dopri5Tableau>(start_, x_new_, stages_.data(), h_) / 3.25;
+    case Method::dop853:
+      return stage_stiffness<Dop853Tableau>(start_, x_new_, stages_.data(), h_) / 6.1;
+    case Method::radau5:
+      return 0.0;
+  }
+  __builtin_unreachable();
+}
 
 Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
   const auto n = static_cast<std::size_t>(n_);
@@ -235,6 +268,11 @@ Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
   output.end_.resize(n);
   output.coefficients_.resize(n * static_cast<std::size_t>(dense_degree(method_) + 1));
   std::copy_n(x_new_.begin(), n, output.end_.begin());
+  if (method_ == Method::radau5) {
+    std::copy_n(start_.begin(), n, output.coefficients_.begin());
+    if (radau_) radau_->dense(output.coefficients_.data() + n);
+    return Attempt::finite;
+  }
   hermite_coefficients(run, x_new_.data(), slope_new(), output.coefficients_.data());
   double* upper = output.coefficients_.data() + hermite_count * n;
   switch (method_) {
@@ -248,6 +286,8 @@ Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
       dense_coefficients<Dop853Tableau>(run, upper);
       return Attempt::finite;
     }
+    case Method::radau5:
+      break;  // above
   }
   __builtin_unreachable();
 }

@@ -1,16 +1,18 @@
-// One explicit Runge-Kutta step with error estimate and dense output. Knows no modes and no events.
+// One Runge-Kutta step with error estimate and dense output. Knows no modes and no events.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "saltus/base/function_ref.hpp"
 
 namespace saltus::ode {
 
-enum class Method { dopri5, dop853 };
+/// Explicit methods of Dormand and Prince, and for stiff problems the implicit three-stage Radau IIA method.
+enum class Method { dopri5, dop853, radau5 };
 
-/// Order of the propagated solution (5, 8) and degree in theta of the dense output (4, 7).
+/// Order of the propagated solution (5, 8, 5) and degree in theta of the dense output (4, 7, 3).
 [[nodiscard]] int order(Method method);
 [[nodiscard]] int dense_degree(Method method);
 
@@ -46,18 +48,25 @@ class DenseStep {
 
 enum class Attempt {
   finite,     ///< error_norm() is valid
-  undefined,  ///< some stage, or the result, is not finite: shorten the step
+  undefined,  ///< some stage, or the result, is not finite, or radau5 does not find its stages: shorten the step
 };
+
+class Radau5;
 
 /// Workspace of one method for n states; allocates in the constructor only (and for a DenseStep filled the first time).
 class Stepper {
  public:
   /// @param n  number of states, >= 0
   Stepper(Method method, int n);
+  Stepper(Stepper&&) noexcept;
+  Stepper& operator=(Stepper&&) noexcept;
+  ~Stepper();
 
   /// Tries a step of length h != 0 from (t, x) with slope = f(t, x).
   ///
   /// x and slope are copied first: they may be x_new() and slope_new() of the attempt before.
+  /// With radau5 the same start may be tried with other lengths; a start at the end of the last attempt continues it
+  /// (its polynomial gives starting values, its Jacobian is kept while that pays).
   /// @return `undefined` at the first stage that is not finite, without evaluating the others.
   Attempt attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
                   const Tolerances& tolerances);
@@ -73,6 +82,14 @@ class Stepper {
   /// finite, and `output` is then not to be used).
   Attempt dense(RightHandSide f, DenseStep& output);
 
+  /// The right-hand side has changed: radau5 keeps nothing of the steps before. No effect on the explicit methods.
+  void restart();
+
+  /// Length of the last attempt, which was finite, over the one at which an explicit method becomes unstable, from its
+  /// two last stages (Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2): about 1 or more in step after
+  /// step means that stability, not accuracy, limits the steps. 0 where that is not known, and for radau5.
+  [[nodiscard]] double stability_ratio() const;
+
   [[nodiscard]] long evaluations() const { return evaluations_; }  ///< of f, since construction
 
  private:
@@ -85,7 +102,8 @@ class Stepper {
   std::vector<double> start_;  ///< x
   std::vector<double> x_new_;
   std::vector<double> argument_;  ///< of the stage being evaluated
-  std::vector<double> stages_;    ///< k_1, k_2, ..., n doubles each
+  std::vector<double> stages_;    ///< k_1, k_2, ..., n doubles each; radau5: the slopes at both ends
+  std::unique_ptr<Radau5> radau_;
 };
 
 }  // namespace saltus::ode

@@ -32,7 +32,7 @@ TEST(Allocation, is_counted) {
 }
 
 TEST(Allocation, none_in_the_loop_over_steps) {
-  for (const Method method : both_methods) {
+  for (const Method method : all_methods) {
     Stepper stepper(method, Kepler::n);
     StepControl control(method);
     DenseStep dense;

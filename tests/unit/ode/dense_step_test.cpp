@@ -12,12 +12,13 @@ using namespace trial;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 class DenseOutput : public ::testing::TestWithParam<Method> {};
-INSTANTIATE_TEST_SUITE_P(DenseStep, DenseOutput, ::testing::ValuesIn(both_methods));
+INSTANTIATE_TEST_SUITE_P(DenseStep, DenseOutput, ::testing::ValuesIn(all_methods));
 
-DenseStep one_step(Stepper& stepper, RightHandSide f, double t, const std::vector<double>& x, double h) {
+DenseStep one_step(Stepper& stepper, RightHandSide f, double t, const std::vector<double>& x, double h,
+                   const Tolerances& tolerances = {}) {
   std::vector<double> slope(x.size());
   f(t, x.data(), slope.data());
-  EXPECT_EQ(stepper.attempt(f, t, x.data(), slope.data(), h, {}), Attempt::finite);
+  EXPECT_EQ(stepper.attempt(f, t, x.data(), slope.data(), h, tolerances), Attempt::finite);
   DenseStep dense;
   EXPECT_EQ(stepper.dense(f, dense), Attempt::finite);
   return dense;
@@ -45,6 +46,7 @@ TEST_P(DenseOutput, is_exact_at_both_ends) {
   std::vector<double> expected(x.size());
   dense.derivative(1.0, slope.data());
   EXPECT_LT(distance(stepper.slope_new(), slope), 64 * epsilon / dense.h);
+  if (GetParam() == Method::radau5) return;  // a collocation polynomial, from the start's value and the stages' slopes
   dense.derivative(0.0, slope.data());
   Kepler{}(0.3, start.data(), expected.data());
   EXPECT_LT(distance(expected.data(), slope), 64 * epsilon / dense.h);
@@ -128,7 +130,7 @@ TEST_P(DenseOutput, reproduces_powers_up_to_its_degree_and_no_further) {
 }
 
 TEST_P(DenseOutput, derivative_is_that_of_the_polynomial) {
-  const DenseStep dense = kepler_step(GetParam(), 0.0, 0.7);
+  const DenseStep dense = kepler_step(GetParam(), 0.0, 0.35);
   std::vector<double> above(Kepler::n);
   std::vector<double> below(Kepler::n);
   std::vector<double> slope(Kepler::n);
@@ -171,7 +173,8 @@ TEST_P(DenseOutput, powers_of_two_scale_exactly) {
   };
   Stepper stepper(GetParam(), 1);
   const DenseStep plain = one_step(stepper, f, 0.5, {0.3}, 0.25);
-  const DenseStep other = one_step(stepper, scaled, 0.5 * 0x1p7, {0.3 * 0x1p-20}, 0.25 * 0x1p7);
+  const DenseStep other =
+      one_step(stepper, scaled, 0.5 * 0x1p7, {0.3 * 0x1p-20}, 0.25 * 0x1p7, {.rtol = 1e-8, .atol = 1e-10 * 0x1p-20});
   for (int k = 0; k <= 100; ++k) {
     double x = 0.0;
     double y = 0.0;

@@ -12,7 +12,8 @@
 
 namespace saltus::ode::trial {
 
-inline constexpr std::array both_methods{Method::dopri5, Method::dop853};
+inline constexpr std::array all_methods{Method::dopri5, Method::dop853, Method::radau5};
+inline constexpr std::array explicit_methods{Method::dopri5, Method::dop853};
 
 /// Motion of two bodies with eccentricity e, from the closest point: (q1, q2, v1, v2), period 2 pi.
 struct Kepler {

