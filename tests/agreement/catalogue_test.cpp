@@ -97,9 +97,20 @@ TEST_P(Catalogue, AgreesToSixDigitsWithDefaults) {
   expect_reference(model.run(model.options()), GetParam(), 1e-6);
 }
 
+TEST_P(Catalogue, AgreesToSixDigitsWithRadau5) {
+  const Simulator model = Simulator::from_reference(GetParam());
+  expect_reference(model.run(with(model.options(), implicit)), GetParam(), 1e-6);
+}
+
+TEST_P(Catalogue, AgreesToEightDigitsWithRadau5) {
+  const Simulator model = Simulator::from_reference(GetParam());
+  const Accuracy accuracy{pipeline::Integrator::radau5, 1e-9, 1e-11};
+  expect_reference(model.run(with(model.options(), accuracy)), GetParam(), 1e-8);
+}
+
 TEST_P(Catalogue, OutputGridChangesNothing) {
   const Simulator model = Simulator::from_reference(GetParam());
-  for (const Accuracy& accuracy : {standard, fine}) {
+  for (const Accuracy& accuracy : {standard, fine, implicit}) {
     pipeline::SimulateOptions options = with(model.options(), accuracy);
     options.output = pipeline::EveryStep{};
     const Result every_step = model.run(options);
@@ -118,7 +129,7 @@ TEST_P(Catalogue, ScalingPsiByAPowerOfTwoChangesNothing) {
   const Simulator model = Simulator::from_reference(GetParam());
   for (const double factor : {0x1p26, 0x1p-26}) {
     const Simulator scaled = Simulator::from_reference(GetParam(), factor);
-    for (const Accuracy& accuracy : {standard, fine}) {
+    for (const Accuracy& accuracy : {standard, fine, implicit}) {
       expect_identical(scaled.run(with(scaled.options(), accuracy)), model.run(with(model.options(), accuracy)));
     }
   }

@@ -78,7 +78,6 @@ class BadInput(tool.ToolTest):
         for later in ("optimize", "compare", "order", "mpcc"):
             self.refused("a later one brings it", later, "crossing")
         self.refused("a later one brings it", "simulate", "crossing", "--method", "fesd")
-        self.refused("a later one brings it", "simulate", "crossing", "--integrator", "radau5")
         self.refused("a later one brings it", "simulate", "crossing", "--branch", "all")
         self.refused("a later one brings it", "simulate", "crossing", "--branch", "3")
 

@@ -34,7 +34,8 @@ struct OrderCase {
 };
 
 std::string test_name(const OrderCase& c) {
-  std::string text = c.model + (c.integrator == Integrator::dopri5 ? "_dopri5" : "_dop853");
+  constexpr const char* endings[] = {"_dopri5", "_dop853", "_radau5"};
+  std::string text = c.model + endings[static_cast<std::size_t>(c.integrator)];
   std::replace(text.begin(), text.end(), '-', '_');
   return text;
 }
@@ -110,20 +111,27 @@ INSTANTIATE_TEST_SUITE_P(
     Integrators, Order,
     testing::Values(OrderCase{"rotating-oscillator", Integrator::dopri5, 5, 0.015, 1.06},
                     OrderCase{"rotating-oscillator", Integrator::dop853, 8, 0.08, 1.04},
+                    OrderCase{"rotating-oscillator", Integrator::radau5, 5, 0.015, 1.06},
                     OrderCase{"relay-oscillator", Integrator::dopri5, 5, 0.4, 1.06},
                     OrderCase{"relay-oscillator", Integrator::dop853, 8, 0.6, 1.04},
+                    OrderCase{"relay-oscillator", Integrator::radau5, 5, 0.4, 1.06},
                     OrderCase{"dry-friction-oscillator", Integrator::dopri5, 5, 0.4, 1.06},
                     OrderCase{"dry-friction-oscillator", Integrator::dop853, 8, 1.0, 1.04},
+                    OrderCase{"dry-friction-oscillator", Integrator::radau5, 5, 0.4, 1.06},
                     OrderCase{"stick-slip", Integrator::dopri5, 5, 0.2, 1.06},
                     // On this field, without any event, the slope of DOP853 rises from 6.6 to 7.8 between h = 0.23 and
                     // h = 0.06, and then rounding takes over: order 8 is out of reach in double precision.
                     OrderCase{"stick-slip", Integrator::dop853, 7.4, 0.24, 1.03},
+                    OrderCase{"stick-slip", Integrator::radau5, 5, 0.2, 1.06},
                     OrderCase{"friction-blocks", Integrator::dopri5, 5, 0.3, 1.06},
                     OrderCase{"friction-blocks", Integrator::dop853, 8, 0.6, 1.04},
+                    OrderCase{"friction-blocks", Integrator::radau5, 5, 0.3, 1.06},
                     OrderCase{"circle", Integrator::dopri5, 5, 0.2, 1.06},
                     OrderCase{"circle", Integrator::dop853, 8, 0.4, 1.04},
+                    OrderCase{"circle", Integrator::radau5, 5, 0.2, 1.06},
                     OrderCase{"sweeping-disc", Integrator::dopri5, 5, 0.3, 1.06},
-                    OrderCase{"sweeping-disc", Integrator::dop853, 8, 0.5, 1.04}),
+                    OrderCase{"sweeping-disc", Integrator::dop853, 8, 0.5, 1.04},
+                    OrderCase{"sweeping-disc", Integrator::radau5, 5, 0.3, 1.06}),
     [](const auto& instance) { return test_name(instance.param); });
 
 }  // namespace

@@ -33,7 +33,7 @@ constexpr std::array shortcuts{
     Shortcut{"--method", "simulate.method", "METHOD", "event (others come with later versions)"},
     Shortcut{"--rtol", "simulate.rtol", "R", "relative tolerance"},
     Shortcut{"--atol", "simulate.atol", "A", "absolute tolerance"},
-    Shortcut{"--integrator", "simulate.event.integrator", "I", "dopri5 or dop853"},
+    Shortcut{"--integrator", "simulate.event.integrator", "I", "dopri5, dop853 or radau5"},
     Shortcut{"--branch", "simulate.event.branches", "B", "report (following branches comes with a later version)"},
 };
 

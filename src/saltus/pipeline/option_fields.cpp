@@ -112,7 +112,7 @@ constexpr Choices<Method, 4> methods{"method",
                                      {Method::event, Method::fesd, Method::timestepping, Method::smoothed},
                                      1};
 constexpr Choices<Integrator, 3> integrators{
-    "integrator", {"dopri5", "dop853", "radau5"}, {Integrator::dopri5, Integrator::dop853, Integrator::radau5}, 2};
+    "integrator", {"dopri5", "dop853", "radau5"}, {Integrator::dopri5, Integrator::dop853, Integrator::radau5}, 3};
 constexpr Choices<Native, 3> natives{
     "native =", {"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}, 3};
 constexpr Choices<Selection, 4> selections{
@@ -297,7 +297,8 @@ constexpr std::array fields{
                 set_count<max_events>, record_count<max_events>},
     OptionField{"initial_mode.*", "-1, 0, 1", "Force the side of a switching function at the start (0: slide on it).",
                 set_initial_mode, record_initial_mode},
-    OptionField{"event.integrator", "dopri5, dop853", "Runge-Kutta pair of order 5 or 8; radau5 comes later.",
+    OptionField{"event.integrator", "dopri5, dop853, radau5",
+                "Explicit Runge-Kutta method of order 5 or 8, or implicit one of order 5 for stiff models.",
                 set_choice<integrator, integrators>, record_choice<integrator, integrators>},
     OptionField{"event.max_step", "none, or a number > 0", "Longest step.", set_max_step, record_max_step},
     OptionField{"event.selection", "active_dominant",

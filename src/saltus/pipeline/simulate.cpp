@@ -76,11 +76,8 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
       integration.method = ode::Method::dop853;
       break;
     case Integrator::radau5:
-      return tl::unexpected(Error{ErrorCode::not_available,
-                                  "integrator 'radau5' is not available in this version",
-                                  "use 'dopri5' or 'dop853'; a later version brings radau5",
-                                  {},
-                                  {}});
+      integration.method = ode::Method::radau5;
+      break;
   }
   integration.from = options.from;
   integration.until = *options.until;
