@@ -1,0 +1,128 @@
+// Stiff models with switches and sliding: radau5 takes steps of the solution's own scale, the explicit methods say that
+// they cannot.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "problems/references.hpp"
+#include "problems/simulator.hpp"
+
+namespace saltus::problems {
+namespace {
+
+using pipeline::Integrator;
+using result::Result;
+using result::Termination;
+
+/// Robertson's reactions, the first of them faster while the intermediate is above a threshold.
+constexpr const char* robertson = R"toml([model]
+name = "robertson-with-switch"
+[states]
+x1 = 1
+x2 = 0
+x3 = 0
+[switching]
+level = "x2 - 3e-5"
+[definitions]
+k1 = "if(level > 0, 0.05, 0.04)"
+[dynamics]
+x1 = "-k1*x1 + 1e4*x2*x3"
+x2 = "k1*x1 - 1e4*x2*x3 - 3e7*x2^2"
+x3 = "3e7*x2^2"
+[simulate]
+until = 40
+)toml";
+
+/// Dry friction, driven by a sensor that follows cos t with the rate 1e6. It starts on its smooth solution.
+constexpr const char* sensor = R"toml([model]
+name = "fast-sensor"
+[parameters]
+rate = 1e6
+[states]
+z = "rate^2/(rate^2 + 1)"
+v = 0
+[dynamics]
+z = "-rate*(z - cos(t))"
+v = "1.5*z - sign(v)"
+[simulate]
+until = 3
+)toml";
+
+constexpr double rate = 1e6;
+double sensor_value(double t) { return (rate * rate * std::cos(t) + rate * std::sin(t)) / (rate * rate + 1.0); }
+double sensor_integral(double t) {
+  return (rate * rate * std::sin(t) + rate * (1.0 - std::cos(t))) / (rate * rate + 1.0);
+}
+
+template <class Function>
+double zero(Function&& function, double lower, double upper) {
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (lower + upper);
+    (function(middle) > 0.0 ? lower : upper) = middle;
+  }
+  return lower;
+}
+
+TEST(Stiff, SwitchedRobertsonTakesAHundredthOfTheSteps) {
+  const Simulator model = Simulator::from_text(robertson);
+  const auto run = [&](Integrator integrator, double rtol) {
+    Result result = model.run(with(model.options(), {integrator, rtol, 1e-6 * rtol}));
+    EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    EXPECT_EQ(result.events.size(), 2u);
+    return result;
+  };
+  const Result exact = run(Integrator::radau5, 1e-11);
+  const Result implicit_run = run(Integrator::radau5, 1e-5);
+  const Result explicit_run = run(Integrator::dopri5, 1e-5);
+  EXPECT_GT(explicit_run.statistics.steps, 100 * implicit_run.statistics.steps);
+  for (const Result* result : {&implicit_run, &explicit_run}) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(result->events[i].t, exact.events[i].t, 1e-4 * exact.events[i].t) << i;
+    }
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(result->final.x[i], exact.final.x[i], 1e-5 * exact.final.x[i]) << i;
+  }
+  EXPECT_NE(explicit_run.status.message.find("radau5"), std::string::npos) << explicit_run.status.message;
+  EXPECT_EQ(implicit_run.status.message, "");
+}
+
+TEST(Stiff, SlidingOfAStiffModelBeginsAndEndsOnTime) {
+  const Simulator model = Simulator::from_text(sensor);
+  const double sticks = zero([](double t) { return 1.5 * sensor_integral(t) - t; }, 1.0, 2.0);
+  const double slips = zero([](double t) { return 1.5 * sensor_value(t) + 1.0; }, 2.0, 3.0);
+  const double end = 1.5 * (sensor_integral(3.0) - sensor_integral(slips)) + (3.0 - slips);
+  const Result result = model.run(with(model.options(), {Integrator::radau5, 1e-9, 1e-11}));
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  const auto events = switches_of(result);
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].mode_after, std::vector<int>{0});
+  EXPECT_EQ(events[1].mode_after, std::vector<int>{-1});
+  EXPECT_NEAR(events[0].t, sticks, 1e-9);
+  EXPECT_NEAR(events[1].t, slips, 1e-9);
+  EXPECT_NEAR(result.final.x[1], end, 1e-9);
+  EXPECT_EQ(events[1].x[1], 0.0);
+  EXPECT_LT(result.statistics.steps, 3000);
+}
+
+TEST(Stiff, ExplicitMethodsPointToRadau5) {
+  const Simulator model = Simulator::from_text(sensor);
+  for (const Integrator integrator : {Integrator::dopri5, Integrator::dop853}) {
+    auto options = with(model.options(), {integrator, 1e-6, 1e-8});
+    options.max_steps = 1000;
+    const Result result = model.run(options);
+    EXPECT_EQ(result.status.termination, Termination::iteration_limit);
+    EXPECT_NE(result.status.message.find("stiff"), std::string::npos) << result.status.message;
+    EXPECT_NE(result.status.message.find("radau5"), std::string::npos) << result.status.message;
+  }
+}
+
+TEST(Stiff, NoFalseAlarmInTheCatalogue) {
+  for (const std::string& name : catalogue()) {
+    const Simulator model = Simulator::from_catalogue(name);
+    const Result result = model.run(model.options());
+    EXPECT_EQ(result.status.message.find("stiff"), std::string::npos) << name << ": " << result.status.message;
+  }
+}
+
+}  // namespace
+}  // namespace saltus::problems
