@@ -14,7 +14,7 @@ namespace {
 using pipeline::Integrator;
 using result::EventKind;
 
-constexpr Integrator integrators[] = {Integrator::dopri5, Integrator::dop853};
+constexpr Integrator integrators[] = {Integrator::dopri5, Integrator::dop853, Integrator::radau5};
 
 /// 10^-3 … 10^-12 in steps of a factor 10^(9/(count - 1)).
 std::vector<double> tolerances(int count) {
@@ -24,7 +24,8 @@ std::vector<double> tolerances(int count) {
 }
 
 std::string setting(Integrator integrator, double rtol) {
-  return (integrator == Integrator::dopri5 ? "dopri5, rtol = " : "dop853, rtol = ") + std::to_string(std::log10(rtol));
+  constexpr const char* names[] = {"dopri5", "dop853", "radau5"};
+  return names[static_cast<std::size_t>(integrator)] + (", rtol = " + std::to_string(std::log10(rtol)));
 }
 
 // https://github.com/scipy/scipy/issues/9228: y = (t + 6)(t + 2)(t - 2) in one or two steps of a high order method.
@@ -55,7 +56,7 @@ TEST(Roots, ScipyIssue9228FindsThreeRootsAtEveryTolerance) {
       for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(result.events[i].kind, EventKind::user);
         EXPECT_EQ(result.events[i].name, "zero");
-        // both methods integrate a cubic exactly; rounding of |y| <= 120 at slopes of 16 and more
+        // all methods integrate a cubic exactly; rounding of |y| <= 120 at slopes of 16 and more
         EXPECT_NEAR(result.events[i].t, roots[i], 1e-11);
       }
     }
@@ -106,6 +107,43 @@ TEST(Roots, TwoRootsInOneStepAreFound) {
       EXPECT_NEAR(result.events[0].t, 2 - half_width, 1e-12);
       EXPECT_NEAR(result.events[1].t, 2 + half_width, 1e-12);
       EXPECT_NEAR(result.final.x[1], 4 + 2 * 2 * half_width, 1e-12);
+    }
+  }
+}
+
+// The solution comes close to the surface in every turn; an interpolant may cross where the solution does not.
+constexpr const char* near_touch = R"toml(
+[model]
+name = "near-touch"
+[parameters]
+gap = 0
+[states]
+x = 1
+y = 0
+[switching]
+surface = "x - 1 - gap"
+[dynamics]
+x = "y"
+y = "-x + if(surface > 0, 1, 0)"
+[simulate]
+until = 30
+)toml";
+
+TEST(Roots, NoEventWithoutARoot) {
+  for (int k = 4; k <= 22; ++k) {
+    const std::string gap_text = std::to_string(std::pow(10.0, -0.25 * k));
+    const double gap = std::stod(gap_text);
+    std::string text = near_touch;
+    text.replace(text.find("gap = 0"), 7, "gap = " + gap_text);
+    const Simulator model = Simulator::from_text(text);
+    for (const Integrator integrator : integrators) {
+      for (const double rtol : tolerances(10)) {
+        SCOPED_TRACE(setting(integrator, rtol) + ", gap = " + gap_text);
+        const result::Result result = model.run(with(model.options(), {integrator, rtol, rtol / 100}));
+        // Accumulated errors may reach the surface; where an event is reported, it has been reached.
+        for (const result::Event& event : result.events) EXPECT_NEAR(event.x[0], 1 + gap, 1e-12);
+        EXPECT_TRUE(result.events.empty() || rtol > 1e-3 * gap);
+      }
     }
   }
 }
