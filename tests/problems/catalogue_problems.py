@@ -186,6 +186,16 @@ def circle():
                    max_step=0.3)
 
 
+def quadrants():
+    def f(c, x, a):
+        apart = a[0] * (1 - a[1]) + (1 - a[0]) * a[1]
+        return [-x[0] / 10 + mix(apart, 1, 4) * x[1], -mix(apart, 4, 1) * x[0] - x[1] / 10]
+
+    return Problem(model="quadrants", names=["right", "upper"], x0=lambda: [decimal("0.1")] * 2, f=f,
+                   psi=lambda c, x: list(x), psi_dot=lambda c, x, v: list(v), until=lambda: 6, source=CLOSED,
+                   max_step=0.3)
+
+
 def problems():
     yield from four_cases()
     yield from scalar_problems()
@@ -200,6 +210,7 @@ def problems():
     yield half_plane()
     yield sweeping_disc()
     yield circle()
+    yield quadrants()
 
 
 # ------------------------------------------------------------------------------------------------------------ closed forms
@@ -218,6 +229,8 @@ def closed_forms():
     pi, sqrt, exp = mpmath.pi, mpmath.sqrt, mpmath.exp
     turn = mpf(1.5707963267948966) - 1
     reach = mpmath.findroot(lambda t: -1 + t + (1 - mpmath.cos(5 * t)) / 25, 0.94)
+    first, last = mpmath.atan(2) / 2, 6 - mpmath.atan(2) / 2 - 3 * pi / 2
+    far = 64 * sqrt(mpf(1) / 20) * exp(-mpf(6) / 10)
     end = mpf(4.611844073359521) - 5 * pi / 12 - sqrt(3)
     return {
         ("crossing", ""): ([mpf(1) / 3], [mpf(2) / 3]),
@@ -239,6 +252,10 @@ def closed_forms():
         ("two-lines", ""): ([mpf(1) / 7], [mpf(31) / 34] * 2),
         ("two-lines", "from below"): ([mpf(1) / 10], [mpf(6) / 5 - mpf(6) / 17 * mpf(9) / 10] * 2),
         ("half-plane", ""): ([5 * pi / 12, 5 * pi / 12 + sqrt(3)], [-mpmath.sin(end), -mpmath.cos(end)]),
+        ("quadrants", ""): (
+            [first + k * pi / 4 for k in range(7)],
+            [-far * mpmath.cos(2 * last), 2 * far * mpmath.sin(2 * last)],
+        ),
         ("sweeping-disc", ""): ([2 * mpmath.asin(mpf(1) / 4)], swept_point(mpf(10))),
     }
 

@@ -89,6 +89,16 @@ std::string switching_text(const model::System& system) {
   return text;
 }
 
+std::string modes_text(const model::System& system) {
+  if (system.mode_groups.empty()) return "";
+  std::string text = heading("groups of modes", system.mode_groups.size());
+  for (const auto& group : system.mode_groups) {
+    const std::string name = group.name.empty() ? "(without name)" : group.name;
+    text += fmt::format("  {}: {} region{}\n", name, group.regions, group.regions == 1 ? "" : "s");
+  }
+  return text;
+}
+
 std::string inclusion_text(const model::System& system) {
   const bool filippov = system.inclusion == model::Inclusion::filippov;
   std::string text = fmt::format("\ninclusion: {}\n", filippov ? "filippov" : "aizerman_pyatnitskii");
@@ -115,7 +125,7 @@ std::string events_text(const model::System& system) {
 std::string description_of(const model::System& system, const std::string& path) {
   std::string text = fmt::format("{}: {}\n{}\n", system.name, system.description, path);
   text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
-  text += events_text(system) + inclusion_text(system);
+  text += modes_text(system) + events_text(system) + inclusion_text(system);
   text += heading("warnings", system.warnings.size());
   for (const auto& warning : system.warnings) text += fmt::format("  {}\n", warning);
   return text;

@@ -35,6 +35,7 @@ constexpr std::array sections{
     Section{"definitions", read_into<&model::Description::definitions>},
     Section{"switching", read_into<&model::Description::switching>},
     Section{"dynamics", read_into<&model::Description::dynamics>},
+    Section{"modes", read_modes},
     Section{"outputs", read_into<&model::Description::outputs>},
     Section{"events", read_events},
     Section{"simulate", read_simulate},
@@ -45,10 +46,9 @@ struct LaterTable {
   std::string_view written;
 };
 constexpr std::array later_tables{
-    LaterTable{"modes", "[[modes]]"},           LaterTable{"jumps", "[[jumps]]"},
-    LaterTable{"tables", "[tables]"},           LaterTable{"mechanics", "[mechanics]"},
-    LaterTable{"contacts", "[[contacts]]"},     LaterTable{"optimize", "[optimize]"},
-    LaterTable{"sensitivity", "[sensitivity]"},
+    LaterTable{"jumps", "[[jumps]]"},       LaterTable{"tables", "[tables]"},
+    LaterTable{"mechanics", "[mechanics]"}, LaterTable{"contacts", "[[contacts]]"},
+    LaterTable{"optimize", "[optimize]"},   LaterTable{"sensitivity", "[sensitivity]"},
 };
 
 std::vector<std::string> known_tables() {
@@ -61,7 +61,8 @@ std::vector<std::string> known_tables() {
 void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   for (const auto& section : sections) {
     if (section.name != entry.key) continue;
-    reader.enter(entry.key == "events" ? "[[events]]" : fmt::format("[{}]", entry.key));
+    reader.enter(entry.key == "events" || entry.key == "modes" ? fmt::format("[[{}]]", entry.key)
+                                                               : fmt::format("[{}]", entry.key));
     section.read(reader, entry, model);
     reader.enter("");
     return;

@@ -113,6 +113,38 @@ void read_event(TomlReader& reader, const TomlValue& value, ModelFile& model) {
   model.description.events.push_back(std::move(event));
 }
 
+void read_mode(TomlReader& reader, const TomlValue& value, ModelFile& model) {
+  const auto* table = reader.table(value, "a table with `when` and `dynamics`");
+  if (table == nullptr) return;
+  model::ModeDescription mode;
+  mode.location = value.location;
+  bool has_dynamics = false;
+  for (const auto& entry : *table) {
+    if (entry.key == "when") {
+      mode.when = reader.expression(entry.value);
+    } else if (entry.key == "indicator") {
+      mode.indicator = reader.expression(entry.value);
+    } else if (entry.key == "group") {
+      mode.group = reader.string(entry.value, "a name in quotes");
+    } else if (entry.key == "name") {
+      mode.name = reader.string(entry.value, "a name in quotes");
+    } else if (entry.key == "dynamics") {
+      has_dynamics = true;
+      read_expressions(reader, entry, mode.dynamics);
+    } else {
+      reader.unknown_key(entry, {"when", "dynamics", "group", "indicator", "name"});
+    }
+  }
+  if (!has_dynamics) {
+    reader.fail({ErrorCode::parse_failure,
+                 "this mode has no `dynamics`",
+                 "write dynamics = { x = \"…\" }; states that are absent get 0",
+                 value.location,
+                 {}});
+  }
+  model.description.modes.push_back(std::move(mode));
+}
+
 }  // namespace
 
 Expected<model::Inclusion> inclusion_named(const std::string& word) { return enum_named(word, inclusions); }
@@ -193,6 +225,15 @@ void read_events(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
     return;
   }
   for (const auto& value : *array) read_event(reader, value, model);
+}
+
+void read_modes(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* array = std::get_if<TomlArray>(&entry.value.value);
+  if (array == nullptr) {
+    reader.wrong_type("tables that begin with [[modes]]", entry.value);
+    return;
+  }
+  for (const auto& value : *array) read_mode(reader, value, model);
 }
 
 }  // namespace saltus::io

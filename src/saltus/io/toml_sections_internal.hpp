@@ -11,6 +11,7 @@ void read_parameters(TomlReader& reader, const TomlEntry& entry, ModelFile& mode
 void read_states(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_events(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_modes(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
 /// A table of name = expression.

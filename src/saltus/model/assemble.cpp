@@ -55,10 +55,13 @@ class Assembly {
       if (!state.dynamics) {
         return Error{ErrorCode::invalid_model,
                      fmt::format("the state '{}' has no right-hand side", state.name),
-                     fmt::format("add {} = \"…\" to [dynamics]; a constant state gets 0", state.name),
+                     fmt::format("add {} = \"…\" to [dynamics] or to a mode; a constant state gets 0", state.name),
                      state.location,
                      {}};
       }
+    }
+    for (const auto& group : statement_.mode_groups) {
+      system_.mode_groups.push_back({group.name, static_cast<int>(group.modes.size())});
     }
     for (const auto& control : statement_.controls) {
       system_.control_names.push_back(control.name);

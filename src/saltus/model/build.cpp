@@ -8,6 +8,7 @@
 
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/model_scope_internal.hpp"
+#include "saltus/model/modes_internal.hpp"
 
 namespace saltus::model {
 namespace {
@@ -28,9 +29,9 @@ class Build {
     statement_.time = recognition_.graph.symbol("t", {.kind = VariableKind::time});
     note_all_names();
     using Step = MaybeError (Build::*)();
-    constexpr Step steps[] = {&Build::names,   &Build::overrides, &Build::parameters, &Build::controls,
-                              &Build::states,  &Build::bounds,    &Build::switching,  &Build::dynamics,
-                              &Build::outputs, &Build::events,    &Build::inputs,     &Build::definitions};
+    constexpr Step steps[] = {&Build::names,  &Build::overrides, &Build::parameters, &Build::controls, &Build::states,
+                              &Build::bounds, &Build::switching, &Build::dynamics,   &Build::modes,    &Build::outputs,
+                              &Build::events, &Build::inputs,    &Build::definitions};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }
@@ -189,6 +190,11 @@ class Build {
     return std::nullopt;
   }
 
+  MaybeError modes() {
+    if (auto error = state_modes(description_, scope_, statement_)) return error;
+    return add_modes(recognition_, statement_);
+  }
+
   Error no_such_state(const NamedExpression& entry, const Meaning* meaning) const {
     const std::string found = meaning == nullptr ? "" : fmt::format(", which is {}", with_article(meaning->kind));
     return {ErrorCode::unknown_name,
@@ -266,6 +272,10 @@ class Build {
       for (const auto* node : {&control.initial, &control.lower, &control.upper}) scope_.note_names(*node);
     }
     for (const auto& event : description_.events) scope_.note_names(event.when);
+    for (const auto& mode : description_.modes) {
+      for (const auto* node : {&mode.when, &mode.indicator}) scope_.note_names(*node);
+      for (const auto& entry : mode.dynamics) scope_.note_names(entry.expression);
+    }
   }
 
   template <class Entries>

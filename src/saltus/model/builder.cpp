@@ -1,5 +1,6 @@
 #include "saltus/model/builder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/function_ref.hpp"
+#include "saltus/model/modes_internal.hpp"
 #include "saltus/model/names_internal.hpp"
 #include "saltus/model/statement_internal.hpp"
 
@@ -55,6 +57,20 @@ struct Builder::Parts {
   }
 
   SX symbol(const std::string& name, const Variable& variable) { return SX(recognition.graph.symbol(name, variable)); }
+
+  void add_mode(std::optional<Condition> when, const std::map<std::string, SX>& rates, const std::string& group) {
+    ModeStatement mode{.when = std::move(when)};
+    for (const auto& [name, rate] : rates) {
+      const auto* state = find(statement.states, name, NameKind::state);
+      if (state == nullptr) return;
+      const auto index = static_cast<int>(state - statement.states.data());
+      mode.rates.push_back({.state = index, .rate = entry(rate, "a mode's dynamics of " + name)});
+    }
+    auto& groups = statement.mode_groups;
+    auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.name == group; });
+    if (known == groups.end()) known = groups.insert(groups.end(), {group, {}});
+    known->modes.push_back(std::move(mode));
+  }
 
   template <class Entries>
   typename Entries::value_type* find(Entries& entries, const std::string& name, NameKind kind) {
@@ -178,6 +194,14 @@ void Builder::dynamics(const std::string& state, const SX& rate) {
   entry->dynamics = e;
 }
 
+void Builder::mode(const Condition& when, const std::map<std::string, SX>& rates, const std::string& group) {
+  parts_->add_mode(when, rates, group);
+}
+
+void Builder::otherwise(const std::map<std::string, SX>& rates, const std::string& group) {
+  parts_->add_mode(std::nullopt, rates, group);
+}
+
 void Builder::output(const std::string& name, const SX& expression) {
   auto& outputs = parts_->statement.outputs;
   if (!parts_->declare(name, NameKind::output, outputs.size())) return;
@@ -210,7 +234,9 @@ void Builder::input(const std::string& control, const SX& expression) {
 Expected<System> Builder::build() {
   if (parts_->error) return tl::unexpected(*parts_->error);
   try {
-    return assemble(parts_->recognition, parts_->statement);
+    Statement statement = parts_->statement;  // more may be stated later
+    if (auto error = add_modes(parts_->recognition, statement)) return tl::unexpected(*error);
+    return assemble(parts_->recognition, statement);
   } catch (const std::exception& exception) {
     return tl::unexpected(
         Error{ErrorCode::invalid_model, fmt::format("CasADi refused the model: {}", exception.what()), "", {}, {}});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,8 +70,14 @@ class Builder {
   /// a where the condition holds, else b; NaN of the branch not taken does not spread.
   casadi::SX if_(const Condition& condition, const casadi::SX& a, const casadi::SX& b);
 
-  /// d state / dt; exactly once for every state.
+  /// d state / dt; at most once for every state, and exactly once for one that no mode mentions.
   void dynamics(const std::string& state, const casadi::SX& rate);
+  /// One mode of a group: where the condition holds, the rates are added to those of dynamics() and of the modes of
+  /// other groups; a state that is not among them gets 0. The modes of a group cover every sign pattern of their
+  /// switching functions exactly once.
+  void mode(const Condition& when, const std::map<std::string, casadi::SX>& rates, const std::string& group = "");
+  /// The mode that holds where no other one of the group does.
+  void otherwise(const std::map<std::string, casadi::SX>& rates, const std::string& group = "");
   void output(const std::string& name, const casadi::SX& expression);
   /// Zeros of an expression, or edges of a condition.
   void event(const casadi::SX& expression, const EventOptions& options = {});

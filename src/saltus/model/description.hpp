@@ -44,6 +44,17 @@ struct UserEventDescription {
   SourceLocation location;
 };
 
+/// One of [[modes]]. The modes of one group share out the sign patterns of their switching functions; groups are
+/// summed.
+struct ModeDescription {
+  std::string group;                      ///< empty: the group without a name
+  expression::NodePtr when;               ///< a condition or the name `otherwise`; null with an indicator
+  expression::NodePtr indicator;          ///< Stewart's form: the mode with the smallest one holds; null with `when`
+  std::optional<std::string> name;        ///< only with an indicator
+  std::vector<NamedExpression> dynamics;  ///< added to [dynamics]; absent states get 0
+  SourceLocation location;
+};
+
 /// A model file without its [simulate] table. All vectors are in the order of the file.
 struct Description {
   std::string file;
@@ -56,6 +67,7 @@ struct Description {
   std::vector<NamedExpression> definitions;
   std::vector<NamedExpression> switching;
   std::vector<NamedExpression> dynamics;
+  std::vector<ModeDescription> modes;
   std::vector<NamedExpression> outputs;
   std::vector<UserEventDescription> events;
   std::vector<NamedExpression> inputs;  ///< values of controls during a simulation, over t and parameters

@@ -44,6 +44,9 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> min(const SXElem& a, const SXElem& b, const std::string& name);
   [[nodiscard]] Expected<SXElem> select(const Condition& condition, const SXElem& a, const SXElem& b);
 
+  /// Where a condition holds, over the functions it consists of (literals by their numbers).
+  [[nodiscard]] Expected<Truth> truth(TruthDiagram& diagram, const Condition& condition);
+
   /// Declares a named switching function. Its scaling is kept, even if an unnamed multiple was met before.
   [[nodiscard]] Expected<DeclaredFunction> declare(const std::string& name, const SXElem& psi);
 
@@ -65,7 +68,6 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> choose(const SXElem& difference, const std::string& name, const SXElem& a,
                                         const SXElem& b);
   [[nodiscard]] SXElem value(const Selection& selection);
-  [[nodiscard]] Expected<Truth> truth(TruthDiagram& diagram, const Condition& condition);
   [[nodiscard]] Expected<Truth> comparison_truth(TruthDiagram& diagram, const Comparison& comparison);
   int append(const std::string& name, const SXElem& psi, int psi_node);
   [[nodiscard]] std::vector<int> alphas_in(int node) const;

@@ -122,6 +122,43 @@ int SharingIndex::same(const Samples& known, const Samples& asked) {
   return factor > 0.0 ? 1 : (factor < 0.0 ? -1 : 0);
 }
 
+ThresholdSamples threshold_samples(const Tape& tape, int psi) {
+  ThresholdSamples samples;
+  const auto cone = tape.cone(std::span(&psi, 1), Links::through_alpha);
+  TapeValues values;
+  Point point = blank_point(tape);
+  for (int k = 0; k < pool_points; ++k) {
+    draw_pool_point(tape, cone, k, point);
+    evaluate(tape, cone, point, values);
+    samples.value[static_cast<std::size_t>(k)] = values.value[static_cast<std::size_t>(psi)];
+  }
+  return samples;
+}
+
+std::optional<std::pair<bool, bool>> impossible_signs(const ThresholdSamples& a, const ThresholdSamples& b) {
+  std::vector<std::size_t> points;
+  for (std::size_t k = 0; k < a.value.size(); ++k) {
+    if (std::isfinite(a.value[k]) && std::isfinite(b.value[k])) points.push_back(k);
+  }
+  if (points.size() < 16) return std::nullopt;
+  const auto by_b = [&](std::size_t left, std::size_t right) { return b.value[left] < b.value[right]; };
+  const auto [low, high] = std::minmax_element(points.begin(), points.end(), by_b);
+  const double factor = (a.value[*high] - a.value[*low]) / (b.value[*high] - b.value[*low]);
+  if (!std::isfinite(factor) || factor == 0.0) return std::nullopt;
+  // The distance of the thresholds is most accurate where the functions are smallest.
+  const auto size = [&](std::size_t k) { return std::abs(a.value[k]) + std::abs(factor * b.value[k]); };
+  const auto nearest = *std::min_element(points.begin(), points.end(),
+                                         [&](std::size_t left, std::size_t right) { return size(left) < size(right); });
+  const double distance = a.value[nearest] - factor * b.value[nearest];
+  if (std::abs(distance) <= 1e-12 * size(nearest)) return std::nullopt;
+  for (const std::size_t k : points) {
+    if (std::abs(a.value[k] - factor * b.value[k] - distance) > 1e-12 * size(k)) return std::nullopt;
+  }
+  // With d > 0, a > c b: a cannot be negative where c b is positive. With d < 0 it cannot be positive where c b is not.
+  const bool a_positive = distance < 0.0;
+  return std::pair(a_positive, (factor > 0.0) != a_positive);
+}
+
 void SharingIndex::insert(const Tape& tape, int psi, int function) {
   Samples samples = sample(tape, psi);
   samples.function = function;

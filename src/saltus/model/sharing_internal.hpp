@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "saltus/model/tape_internal.hpp"
@@ -53,5 +54,16 @@ class SharingIndex {
   std::multimap<double, int> by_ratio_;  ///< value at the second point over value at the first
   std::vector<int> irregular_;           ///< those without such a ratio
 };
+
+/// A switching function at the first points of the pool where it is finite or not (NaN).
+struct ThresholdSamples {
+  std::array<double, pool_points> value{};
+};
+[[nodiscard]] ThresholdSamples threshold_samples(const Tape& tape, int psi);
+
+/// The signs (true: positive) that two parallel thresholds, a = c b + d with constants c and d, cannot have together.
+/// @return nothing if they are not parallel: equal to 1e-12 relative at 16 points where both are finite
+[[nodiscard]] std::optional<std::pair<bool, bool>> impossible_signs(const ThresholdSamples& a,
+                                                                    const ThresholdSamples& b);
 
 }  // namespace saltus::model

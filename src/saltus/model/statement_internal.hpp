@@ -65,6 +65,24 @@ struct SwitchingStatement {
   bool referenced = false;  ///< by its name
 };
 
+/// What a mode adds to the right-hand side of state number `state`.
+struct ModeRate {
+  int state = 0;
+  SXElem rate;
+  SourceLocation location{};
+};
+
+struct ModeStatement {
+  std::optional<Condition> when{};  ///< absent: otherwise
+  std::vector<ModeRate> rates{};
+  SourceLocation location{};
+};
+
+struct ModeGroupStatement {
+  std::string name;
+  std::vector<ModeStatement> modes;
+};
+
 struct Statement {
   std::string name;
   std::string description;
@@ -74,6 +92,7 @@ struct Statement {
   std::vector<StateStatement> states;
   std::vector<ControlStatement> controls;
   std::vector<SwitchingStatement> switching;  ///< in the order of the file
+  std::vector<ModeGroupStatement> mode_groups;
   std::vector<OutputStatement> outputs;
   std::vector<EventStatement> events;
   std::vector<std::string> warnings;

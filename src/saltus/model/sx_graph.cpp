@@ -153,9 +153,9 @@ SXElem SxGraph::with_alphas(int root, const std::map<int, double>& fixed) {
   return rebuilt.at(root);
 }
 
-/// weight * branch, and 0 where the weight is 0 whatever the branch is.
-SXElem SxGraph::guarded(const SXElem& weight, const SXElem& branch) {
-  if (branch.is_zero()) return SXElem(0.0);
+SXElem SxGraph::weighted(const SXElem& weight, const SXElem& branch) {
+  if (weight.is_zero() || branch.is_zero()) return SXElem(0.0);
+  if (weight.is_one()) return branch;
   if (!tape_[node(branch)].may_be_nonfinite) return weight * branch;
   const SXElem taken = SXElem::binary(casadi::OP_NE, weight, SXElem(0.0));
   return SXElem::binary(casadi::OP_IF_ELSE_ZERO, taken, weight * branch);
@@ -164,7 +164,7 @@ SXElem SxGraph::guarded(const SXElem& weight, const SXElem& branch) {
 SXElem SxGraph::blend(const SXElem& c, const SXElem& a, const SXElem& b) {
   if (c.is_one() || node(a) == node(b)) return a;
   if (c.is_zero()) return b;
-  return guarded(c, a) + guarded(1.0 - c, b);
+  return weighted(c, a) + weighted(1.0 - c, b);
 }
 
 SXElem SxGraph::polynomial(const TruthDiagram& diagram, Truth truth, const std::vector<SXElem>& literals) {

@@ -43,6 +43,9 @@ class SxGraph {
   /// too.
   [[nodiscard]] SXElem blend(const SXElem& c, const SXElem& a, const SXElem& b);
 
+  /// weight * branch, and 0 where the weight is 0 whatever the branch is; the weight is made of alphas.
+  [[nodiscard]] SXElem weighted(const SXElem& weight, const SXElem& branch);
+
   /// The multi-affine polynomial of a condition in the selections of its literals.
   [[nodiscard]] SXElem polynomial(const TruthDiagram& diagram, Truth truth, const std::vector<SXElem>& literals);
 
@@ -52,7 +55,6 @@ class SxGraph {
  private:
   [[nodiscard]] Expected<int> add_one(const SXElem& expression);
   int remember(const SXElem& expression, int node);
-  [[nodiscard]] SXElem guarded(const SXElem& weight, const SXElem& branch);
 
   Tape tape_;
   std::unordered_map<const void*, int> numbers_;

@@ -47,6 +47,12 @@ struct UserEvent {
   AtEvent action = AtEvent::record;
 };
 
+/// A group of [[modes]], of which one holds at a time; its part of the right-hand side is in f.
+struct ModeGroup {
+  std::string name;  ///< empty for the group without a name
+  int regions = 0;
+};
+
 /// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j). With Inclusion::filippov f is multi-affine in the alphas of
 /// listed functions (those of kinks and time events are 0 or 1 wherever their value matters). All expressions are over
 /// the symbols t, x, u, p, alpha of this value. Units are the model's. Structure (which functions exist, what folded,
@@ -75,6 +81,7 @@ struct System {
   std::vector<SwitchingFunction> switching;
   std::vector<SwitchingColumn> columns;  ///< of the result: order of appearance, named ones first in file order
   std::vector<UserEvent> events;
+  std::vector<ModeGroup> mode_groups;
 
   bool multi_affine = true;                        ///< f_as_written is, in the alphas of listed functions, by its form
   std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ on a surface
