@@ -21,6 +21,7 @@ def reference(problem):
 def judge(problem, point, time_stepping):
     """Adds end_error, time_error, error and expected (number of events) to a point of a sweep."""
     exact = reference(problem)
+    point["time_stepping"] = time_stepping
     point["expected"] = len(exact["events"])
     point["found"] = len(point["events"])
     point["end_error"] = max(abs(own - true) / size for own, true, size in zip(point["x"], exact["x"], SIZES[problem]))
@@ -38,22 +39,23 @@ def judge(problem, point, time_stepping):
 def at_error(points, target, key):
     """(value of `key` at an error of `target`, how), by interpolation in log-log between neighbours of a sweep.
 
-    how: "" interpolated; "<" even the loosest setting is more accurate; "~" extrapolated; "-" not possible.
+    how: "" interpolated; "<" even the loosest setting is more accurate; "~" extrapolated by at most two decades; "≈" by
+    order 1 from the best point of a time stepping; "-" not reached.
     """
     usable = [p for p in points if math.isfinite(p["error"]) and p["error"] > 0.0]
-    found = []
-    for loose, tight in zip(usable, usable[1:]):
-        if loose["error"] > target >= tight["error"]:
-            found.append(along(loose, tight, target, key))
-    if found:
-        return min(found), ""
     if not usable:
         return math.nan, "-"
+    between = [along(loose, tight, target, key) for loose, tight in zip(usable, usable[1:])
+               if loose["error"] > target >= tight["error"]]
+    if between:
+        return min(between), ""
     if all(p["error"] <= target for p in usable):
         return min(p[key] for p in usable), "<"
-    if len(usable) >= 2 and usable[-1]["error"] < usable[0]["error"]:
-        value = along(usable[0], usable[-1], target, key)
-        return value, "~"
+    best = min(usable, key=lambda p: p["error"])
+    if best["time_stepping"]:
+        return best[key] * best["error"] / target, "≈"
+    if target >= 0.01 * best["error"] < 0.01 * usable[0]["error"]:
+        return along(usable[0], best, target, key), "~"
     return math.nan, "-"
 
 

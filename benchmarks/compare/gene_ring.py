@@ -1,8 +1,8 @@
 """The network of 500 thresholds: ten proteins in a ring, fifty thresholds each, of which the trajectory meets two.
 
-Every protein activates the next one, the last one represses the first; each protein decays. A threshold acts on the next
-protein only, never on its own one, so nothing slides. Around two thresholds within its range each protein has 24 below
-and 24 above it; they act weakly and are never met. Run as a program it prints the model file:
+Every protein activates the next one, the last one represses the first; each protein decays. A threshold acts on the
+next protein only, never on its own one, so nothing slides. Around two thresholds within its range each protein has 24
+below and 24 above it; they act weakly and are never met. Run as a program it prints the model file:
 
     python3 benchmarks/compare/gene_ring.py > gene-ring.toml
     python3 benchmarks/compare/gene_ring.py 0 > gene-ring-active.toml      without the thresholds that are never met

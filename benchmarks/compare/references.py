@@ -1,8 +1,8 @@
 """Reference solutions of the four problems, independent of every competitor.
 
-IRMA and relay feedback: tests/problems/references.json (Taylor series with 50 digits). Stick-slip: the same file, continued
-from t = 40 by its exact period (every slip starts at q = 1, v = 0.2). Gene ring: closed form between switches, in decimal
-arithmetic with 50 digits.
+IRMA and relay feedback: tests/problems/references.json (Taylor series with 50 digits). Stick-slip: the same file,
+continued from t = 40 by its exact period (every slip starts at q = 1, v = 0.2). Gene ring: closed form between
+switches, in decimal arithmetic with 50 digits.
 """
 
 import decimal

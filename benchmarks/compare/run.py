@@ -93,14 +93,17 @@ def machine():
     compiler = subprocess.run(["c++", "--version"], capture_output=True, text=True, check=False).stdout
     revision = subprocess.run(["git", "-C", contenders.ROOT, "rev-parse", "--short", "HEAD"], capture_output=True,
                               text=True, check=False).stdout.strip()
-    return f"{model}, {platform.system()}, {compiler.splitlines()[0] if compiler else 'no compiler'}, revision {revision}"
+    compiler = compiler.splitlines()[0] if compiler else "no compiler"
+    return f"{model}, {platform.system()}, {compiler}, revision {revision}"
 
 
 def page(results, counts):
     parts = ["# Comparison: time at equal achieved error\n",
-             f"Made by `benchmarks/compare/run.py` on {machine()}. How to read it: [benchmarks/README.md](../README.md).\n",
+             f"Made by `benchmarks/compare/run.py` on {machine()}. How to read it: "
+             "[benchmarks/README.md](../README.md).\n",
              table.markdown(table.main_table(results)),
-             "`<`: the loosest setting is already more accurate; `~`: extrapolated from the sweep's ends; –: not reached.\n",
+             "`<`: the loosest setting is already more accurate; `~`: extrapolated by at most two decades; `≈`: by "
+             "order 1 from the finest step; –: not reached.\n",
              "## Events of relay feedback at 41 tolerances between 1e-3 and 1e-12 (34 each)\n",
              table.markdown(table.event_table(counts)) if counts else "Not measured.\n",
              "## What an inactive threshold costs\n", table.markdown(table.threshold_table(results)),
@@ -111,6 +114,7 @@ def page(results, counts):
 def main():
     options = arguments()
     if not options.no_install:
+        subprocess.run([contenders.ROOT / "scripts" / "install.sh"], check=True)
         subprocess.run([contenders.ROOT / "scripts" / "install_benchmarks.sh"], check=False)
     programs = contenders.build(options.build)
     contenders.write_models()

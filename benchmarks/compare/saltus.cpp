@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <sys/resource.h>
 #include <utility>
 
 #include "protocol.hpp"
@@ -47,6 +48,16 @@ evaluation::NativeCode native_code_of(const Request& request) {
   unknown(request);
 }
 
+/// Together with the processes it has started and waited for: the compiler of the native code is one.
+double all_cpu_seconds() {
+  rusage children{};
+  getrusage(RUSAGE_CHILDREN, &children);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return cpu_seconds() + seconds(children.ru_utime) + seconds(children.ru_stime);
+}
+
 Run run_of(const event_integrator::Integration& integration) {
   Run run;
   run.status = std::string(saltus::result::name(integration.status.termination));
@@ -63,12 +74,12 @@ Run run_of(const event_integrator::Integration& integration) {
 void sweep(Request request) {
   const std::filesystem::path file = request.problem;
   request.problem = file.stem().string();
-  const double begin = cpu_seconds();
+  const double begin = all_cpu_seconds();
   const auto model_file = value_or_exit(saltus::io::read_model(file));
   const model::System system = value_or_exit(model::build(model_file.description));
-  const double built = cpu_seconds();
+  const double built = all_cpu_seconds();
   auto kernel = value_or_exit(evaluation::ModelKernel::compile(system, native_code_of(request)));
-  const double compiled = cpu_seconds();
+  const double compiled = all_cpu_seconds();
   auto options = options_of(request, model_file.simulate.until.value_or(1.0));
   char parts[120];
   std::snprintf(parts, sizeof parts, ",\"build_seconds\":%.6g,\"compile_seconds\":%.6g", built - begin,

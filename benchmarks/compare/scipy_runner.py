@@ -1,5 +1,5 @@
-"""Competitor (c): SciPy's solve_ivp with one terminal event at a time and a restart behind each; modes, sliding fields and
-the choice of the next event by hand. Every mode has one guard: positive in the mode, zero at its end."""
+"""Competitor (c): SciPy's solve_ivp with one terminal event at a time and a restart behind each; modes, sliding fields
+and the choice of the next event by hand. Every mode has one guard: positive in the mode, zero at its end."""
 
 import sys
 
@@ -61,7 +61,7 @@ class Relay:
 
 
 class Network:
-    """x' = production - decay x, monotone between switches: the guard is the distance to the nearest threshold ahead."""
+    """x' = production - decay x, monotone between switches: the guard is the distance to the nearest threshold."""
 
     def __init__(self, start, decay, thresholds, produce):
         self.start, self.decay = numpy.array(start), numpy.array(decay)
@@ -125,8 +125,8 @@ class Ring(Network):
                          produced)
 
 
-PROBLEMS = {"stick-slip": StickSlip, "relay-feedback": Relay, "irma": Irma, "gene-ring": lambda: Ring(gene_ring.INACTIVE),
-            "gene-ring-active": lambda: Ring(0)}
+PROBLEMS = {"stick-slip": StickSlip, "relay-feedback": Relay, "irma": Irma,
+            "gene-ring": lambda: Ring(gene_ring.INACTIVE), "gene-ring-active": lambda: Ring(0)}
 METHODS = {"dopri5": "RK45", "dop853": "DOP853"}
 
 

@@ -1,5 +1,5 @@
-/* Functions of the nonlinear relations for Siconos (siconos_runner.py): y = h(x), r = g(x, lambda), and their Jacobians,
- * column by column. Siconos' relays give lambda in -sign(y). */
+/* Functions of the nonlinear relations for Siconos (siconos_runner.py): y = h(x), r = g(x, lambda), and their
+ * Jacobians, column by column. Siconos' relays give lambda in -sign(y). */
 
 #define ARGUMENTS \
   double time, unsigned x_size, double *x, unsigned lambda_size, double *lambda, double *result, unsigned z_size, \

@@ -1,6 +1,7 @@
 """Competitor (d): time stepping of Siconos, Euler-Moreau with theta = 1/2 ("midpoint") or 1 ("euler"); the tolerance is
 the length of the step. No event times: a switch is a change of lambda between -1, the inside and 1 from step to step.
-Runs with Debian's python3; the nonlinear relations are compiled C functions, the loop over the steps is Siconos' own."""
+Runs with Debian's python3; the nonlinear relations are compiled C functions, the loop over the steps is that of
+Siconos."""
 
 import os
 import sys
@@ -47,7 +48,8 @@ def relay_feedback():
 def ring(inactive):
     network = gene_ring.Network(inactive)
     n = gene_ring.PROTEINS
-    system = siconos.FirstOrderLinearDS(numpy.array(network.start) / 1000, -numpy.diag([float(d) for d in network.decay]))
+    system = siconos.FirstOrderLinearDS(numpy.array(network.start) / 1000,
+                                        -numpy.diag([float(decay) for decay in network.decay]))
     thresholds = [(i, j) for i in range(n) for j in range(len(network.thresholds[i]))]
     to_y, to_r = numpy.zeros((len(thresholds), n)), numpy.zeros((n, len(thresholds)))
     shift, constant = numpy.zeros(len(thresholds)), numpy.array([float(c) for c in network.constant])

@@ -16,6 +16,8 @@ COLUMNS = ("problem", "contender", "method", "variant", "tolerance", "seconds", 
 def duration(seconds):
     if not math.isfinite(seconds):
         return "–"
+    if seconds >= 1000.0:
+        return f"{seconds:.1e} s"
     for unit, factor in (("s", 1.0), ("ms", 1e3), ("µs", 1e6)):
         if seconds * factor >= 1.0:
             break
@@ -24,7 +26,9 @@ def duration(seconds):
 
 
 def number(value):
-    return "–" if not math.isfinite(value) else f"{value:.0f}" if value >= 100 else f"{value:.2g}"
+    if not math.isfinite(value):
+        return "–"
+    return f"{value:.1e}" if value >= 1e6 else f"{value:.0f}" if value >= 100 else f"{value:.2g}"
 
 
 def passes(contender, points):
@@ -33,11 +37,11 @@ def passes(contender, points):
     return bool(errors) and min(errors) <= REQUIRED[contender.time_stepping]
 
 
-def best(results, problem, name, variant, target=MAIN):
-    """Smallest time at the target error among the methods of a contender; extrapolations do not count."""
+def best(results, problem, name, target=MAIN):
+    """Smallest time at the target error among the rows of a contender; extrapolations do not count."""
     times = []
     for contender, points in results[problem]:
-        if contender.name == name and contender.variant == variant:
+        if contender.name == name:
             value, how = accuracy.at_error(points, target, "seconds")
             if how in ("", "<"):
                 times.append(value)
@@ -54,7 +58,7 @@ def row(problem, contender, points, saltus, hand):
         cells.append("–" if how == "-" else f"{how} {duration(value)}".strip())
     time, how = accuracy.at_error(points, MAIN, "seconds")
     work, _ = accuracy.at_error(points, MAIN, "evaluations")
-    mark = "~ " if how == "~" else ""
+    mark = f"{how} " if how in ("~", "≈") else ""
     complete = sum(p["found"] == p["expected"] for p in points)
     check = "yes" if passes(contender, points) else "**NO**"
     return [*title, *cells, f"{mark}{number(time / hand)}", f"{mark}{number(time / saltus)}", f"{mark}{number(work)}",
@@ -69,8 +73,8 @@ def main_table(results):
     for problem, entries in results.items():
         if problem == "gene-ring-active":
             continue
-        saltus = best(results, problem, "Saltus", "native")
-        hand = best(results, problem, "by hand", "relevant")
+        saltus = best(results, problem, "Saltus")
+        hand = best(results, problem, "by hand")
         lines += [row(problem, contender, points, saltus, hand) for contender, points in entries]
     return lines
 
