@@ -135,7 +135,7 @@ Expected<void> write_file(const fs::path& path, std::string_view content) {
                  "an earlier file of that name is as it was");
 }
 
-Expected<std::string> read_file(const fs::path& path) {
+Expected<std::string> read_file(const fs::path& path, std::size_t limit) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return failure(path, "cannot read: this is a folder", "name a file in it");
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
@@ -152,6 +152,9 @@ Expected<std::string> read_file(const fs::path& path) {
     if (count < 0) return failure(path, fmt::format("cannot read: {}", reason(errno)));
     if (count == 0) return content;
     content.append(buffer, 0, static_cast<std::size_t>(count));
+    if (content.size() > limit) {
+      return failure(path, fmt::format("cannot read: larger than {} MiB", limit >> 20));
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // Whole files or none: a half-written output never replaces a good one.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -13,7 +14,8 @@ namespace saltus::io {
 [[nodiscard]] Expected<void> check_writable(const std::filesystem::path& path);
 /// Writes to a temporary file beside `path`, flushes it to disk, and renames it over `path`.
 [[nodiscard]] Expected<void> write_file(const std::filesystem::path& path, std::string_view content);
-/// The whole content of a file.
-[[nodiscard]] Expected<std::string> read_file(const std::filesystem::path& path);
+/// The whole content of a file, device or pipe; more than `limit` bytes are an error (a device has no end).
+[[nodiscard]] Expected<std::string> read_file(const std::filesystem::path& path,
+                                              std::size_t limit = std::size_t{2} << 30);
 
 }  // namespace saltus::io

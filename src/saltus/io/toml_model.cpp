@@ -113,7 +113,7 @@ Expected<ModelFile> read_model(const std::filesystem::path& file) {
                                 {file.string(), 0, 0},
                                 {}});
   }
-  const auto text = read_file(file);
+  const auto text = read_file(file, std::size_t{64} << 20);
   if (!text) return tl::unexpected(text.error());
   return parse_model(*text, file.string());
 }

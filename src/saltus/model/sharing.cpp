@@ -54,6 +54,7 @@ std::optional<double> constant_value(const Tape& tape, int node) {
     evaluate(tape, cone, point, values);
     return values.value[static_cast<std::size_t>(node)];
   }
+  if (!is_polynomial(tape, cone)) return std::nullopt;
   // Two values differ if they differ by more than rounding; 24 points with the alphas at random corners.
   std::optional<double> first;
   int finite = 0;

@@ -24,7 +24,7 @@ inline constexpr int extreme_points = 12;
 /// positive coordinates (where logarithms and roots are defined). Parameters and alphas stay as they are.
 void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& point);
 
-/// The value of an expression that does not change with t, x, u, whatever its alphas (corners) are; with the
+/// The value of a polynomial expression that does not change with t, x, u, whatever its alphas (corners) are; with the
 /// parameters' values, to rounding. A value that is 0 to rounding is 0.
 [[nodiscard]] std::optional<double> constant_value(const Tape& tape, int node);
 

@@ -14,6 +14,26 @@
 namespace saltus::model {
 namespace {
 
+/// Operations that make polynomials of polynomials; the comparisons are those of selections in guarded branches.
+bool is_polynomial_operation(int operation) {
+  switch (operation) {
+    case casadi::OP_CONST:
+    case casadi::OP_PARAMETER:
+    case casadi::OP_ADD:
+    case casadi::OP_SUB:
+    case casadi::OP_MUL:
+    case casadi::OP_NEG:
+    case casadi::OP_SQ:
+    case casadi::OP_TWICE:
+    case casadi::OP_NE:
+    case casadi::OP_EQ:
+    case casadi::OP_IF_ELSE_ZERO:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// Operations that give finite results for finite arguments of moderate size.
 bool stays_finite(int operation) {
   switch (operation) {
@@ -129,6 +149,15 @@ std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
   }
   std::sort(nodes.begin(), nodes.end());
   return nodes;
+}
+
+bool is_polynomial(const Tape& tape, std::span<const int> cone) {
+  constexpr KindSet moving = kind_bit(VariableKind::time) | kind_bit(VariableKind::state) | kind_bit(VariableKind::control);
+  return std::all_of(cone.begin(), cone.end(), [&](int i) {
+    const TapeNode& node = tape[i];
+    if ((node.written & moving) == 0 || is_polynomial_operation(node.operation)) return true;
+    return node.operation == casadi::OP_DIV && (tape[node.right].written & moving) == 0;
+  });
 }
 
 Point blank_point(const Tape& tape) {

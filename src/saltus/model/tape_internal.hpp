@@ -60,6 +60,10 @@ class Tape {
   std::unordered_map<std::uint64_t, std::vector<int>> by_key_;
 };
 
+/// Whether the nodes of a cone are polynomials in t, x, u (for fixed selections): two that agree at seeded points are then
+/// the same, which a narrow bell exp(-(x - 30)^2) is not to a constant.
+[[nodiscard]] bool is_polynomial(const Tape& tape, std::span<const int> cone);
+
 /// One value per variable of a tape. NaN for an alpha means: the step of its switching function at this point.
 using Point = std::vector<double>;
 

@@ -41,7 +41,8 @@ Expected<OutputTimes> output_times(const OutputGrid& grid, double from, double u
   }
   for (double i = 0.0; i <= count; i += 1.0) {
     const double t = points ? from + (until - from) * (i / count) : from + i * every->interval;
-    output.times.push_back(std::min(t, until));
+    // The last multiple may miss `until` by its rounding: one row, not two.
+    output.times.push_back(until - t <= 1e-12 * (until - from) ? until : t);
   }
   return output;
 }

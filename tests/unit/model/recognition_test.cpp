@@ -24,6 +24,14 @@ TEST(Recognition, SignIsTwoStepsMinusOne) {
   EXPECT_TRUE(system.multi_affine);
 }
 
+TEST(Recognition, NarrowFunctionsOfTheStateAreNoConstants) {
+  for (const std::string centre : {"30", "1000", "-65"}) {
+    const System system =
+        built({.states = {{"x", "1"}}, .dynamics = {{"x", "if(exp(-(x - (" + centre + "))^2) > 0.5, 1, 0)"}}});
+    EXPECT_EQ(system.switching.size(), 1U) << centre;
+  }
+}
+
 TEST(Recognition, StatesKeepTheOrderOfTheFile) {
   const System system = built({.states = {{"z", "1"}, {"a", "2"}}, .dynamics = {{"a", "10"}, {"z", "20"}}});
   EXPECT_EQ(system.state_names, (Names{"z", "a"}));
