@@ -148,6 +148,10 @@ void EventSearch::rescale(double t, const double* x) {
       const double size =
           function.kind == FunctionKind::loss ? std::abs(exit.loss) : std::abs(exit.below) + std::abs(exit.above);
       noise_[i] = 32.0 * epsilon * size;
+      // Near a two-fold point both fields vanish, but not the terms they are the sum of.
+      if (field_.solve() == SlidingSolve::decoupled) {
+        noise_[i] = std::max(noise_[i], 8.0 * epsilon * field_.normal_terms(at(function.row)));
+      }
       accuracy_[i] = 0.1 * tolerances_.rtol * size;
     }
     if (!std::isfinite(noise_[i])) noise_[i] = 0.0;

@@ -13,6 +13,7 @@
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/recorder.hpp"
 #include "saltus/event_integrator/start.hpp"
+#include "saltus/event_integrator/switch_series.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/event_integrator/user_events.hpp"
 #include "saltus/ode/step_control.hpp"
@@ -58,7 +59,8 @@ class Run {
         x_(system.initial_state),
         slope_(x_.size()),
         row_x_(x_.size()),
-        row_slope_(x_.size()) {}
+        row_slope_(x_.size()),
+        series_(options.until - options.from) {}
 
   Integration to_end();
 
@@ -78,6 +80,8 @@ class Run {
   bool enter(const Transition& transition);
   bool fire_user_events(const ModeState& before);
   bool too_many_events();
+  void accumulates();
+  bool stopped_by_two_fold();
   bool shorten(double factor);
   void rows_until(double t_end);
   void row(double t, const std::vector<double>& x);
@@ -116,8 +120,7 @@ class Run {
   double h_try_ = 0.0;              ///< step under trial
   double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
   std::size_t next_output_ = 0;
-  long switches_in_a_row_ = 0;  ///< without the time having advanced noticeably
-  double series_start_ = 0.0;
+  SwitchSeries series_;
   Integration result_;
   bool running_ = true;
 };
@@ -220,6 +223,13 @@ bool Run::shorten(double factor) {
   return false;
 }
 
+/// Whether the steps got short because the sliding selection has no limit here.
+bool Run::stopped_by_two_fold() {
+  const auto message = two_fold_message(surroundings_, state_, t_, x_.data());
+  if (message) fail(Termination::outside_class, *message);
+  return message.has_value();
+}
+
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
   std::vector<double> values(search_.functions().size());
@@ -234,6 +244,7 @@ Run::Step Run::undefined_step() {
                                  : std::abs(values[i]) < 1e-3;
     if (reached) return handle({t_, x_, {i}, {function.sign}});
   }
+  if (stopped_by_two_fold()) return Step::failed;
   fail(Termination::evaluation_failed,
        fmt::format("the right-hand side is not finite beyond {}, however short the step; guard the expression with "
                    "if(…), or end the simulation before",
@@ -274,6 +285,7 @@ Run::Step Run::attempt() {
   }
   if (const double error = stepper_.error_norm(); !(error <= 1.0)) {
     if (shorten(control_.rejected(error))) return Step::shortened;
+    if (stopped_by_two_fold()) return Step::failed;
     fail(Termination::step_size_too_small,
          fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
                      "there, or rtol is below what doubles carry",
@@ -317,24 +329,23 @@ bool Run::fire_user_events(const ModeState& before) {
   return !fired.empty();
 }
 
-/// Budget that ends chattering and accumulations which no rule of this version resolves.
 bool Run::too_many_events() {
   if (recorder_.events() >= options_.max_events) {
     fail(Termination::iteration_limit, fmt::format("max_events = {} reached at {}", options_.max_events, where()));
     return true;
   }
-  // 500 switches within 1e-9 of the span: no model lives on that scale, a spiral or Zeno sequence does.
-  if (switches_in_a_row_ == 0 || t_ - series_start_ > 1e-9 * span()) {
-    switches_in_a_row_ = 0;
-    series_start_ = t_;
-  }
-  if (++switches_in_a_row_ < 500) return false;
+  if (!series_.too_dense(t_)) return false;
+  accumulates();
+  return true;
+}
+
+void Run::accumulates() {
+  if (stopped_by_two_fold()) return;
   fail(Termination::outside_class,
        fmt::format(
            "switches accumulate at t = {:.17g} (spiral into an intersection of surfaces, or chattering): passing "
            "the limit needs the codimension-2 switching of a later version",
            t_));
-  return true;
 }
 
 /// Whether a function nested around the one sliding surface has the same value on both sides of it here.
@@ -383,6 +394,10 @@ bool Run::change_mode(const Located& located) {
   auto transition = decide_mode(surroundings_, before, occasion);
   if (transition.termination != Termination::completed) {
     fail(transition.termination, std::move(transition.message));
+    return false;
+  }
+  if (series_.repeats(t_, before.mode, transition.state.mode)) {
+    accumulates();
     return false;
   }
   if (!enter(transition)) return false;

@@ -148,6 +148,8 @@ std::optional<Located> Locator::run(Hit hit) {
     hit.slope = value / h;
     if (!correct(hit)) return std::nullopt;
   }
+  // A shorter step than the accepted one can only be worse where the field is singular (a selection that is 0/0).
+  if (trial_.h > 0.0 && !(stepper_.error_norm() <= 2.0)) return std::nullopt;
   Located located;
   located.t = start_.t + trial_.h;
   const Trial final = trial_;

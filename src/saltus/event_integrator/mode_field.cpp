@@ -85,6 +85,15 @@ double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f)
   return sum;
 }
 
+double ModeField::normal_terms(std::size_t row) const {
+  const auto r = static_cast<Eigen::Index>(row);
+  double sum = std::abs(rates_[r]);
+  for (std::size_t i = 0; i < f_[0].size(); ++i) {
+    sum += std::abs(rows_(r, static_cast<Eigen::Index>(i))) * std::max(std::abs(f_[0][i]), std::abs(f_[1][i]));
+  }
+  return sum;
+}
+
 void ModeField::evaluate_one(double t, const double* x) {
   const auto j = at(sliding_[0]);
   kernel_.field(t, x, corner_[0].data(), f_[0].data());

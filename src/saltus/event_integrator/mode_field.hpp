@@ -45,6 +45,9 @@ class ModeField {
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   /// Exit functions at a point, one per sliding surface.
   void exits(double t, const double* x, ExitValues* values);
+  /// Behind exits(): size of the terms whose sum is the normal component on a sliding surface, which bounds its
+  /// rounding.
+  [[nodiscard]] double normal_terms(std::size_t row) const;
   /// Newton steps onto psi_I(t, x) = 0 along the normals; returns whether x changed.
   bool project(double t, double* x);
 

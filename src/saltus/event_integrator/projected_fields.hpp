@@ -31,6 +31,11 @@ class ProjectedFields {
   /// that moves psi further than it does, and further than rounding, over the occasion's time scale.
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
 
+  /// Whether the fields on both sides of a surface are nearly tangent to it: their normal components are below 1e-6 of
+  /// |grad psi| |f|. Their quotient, the sliding selection, has lost its meaning there. Mixes the units of the states:
+  /// to choose between reasons to stop, not to decide a motion.
+  [[nodiscard]] bool nearly_two_fold(const std::vector<double>& alpha, int surface) const;
+
   /// The table of all 2^m corners of a group.
   [[nodiscard]] switching::CornerTable table(const ModeState& before, const std::vector<int>& group) const;
   /// Whether the fields of all corners of the group are one and the same (relative 1e-12).

@@ -12,14 +12,32 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// psi_j, or where it holds signs that are not decided yet, and that it depends on, the value in one of their regions:
+/// 0 at a selection of 1/2 means nothing.
+double value_in_a_region(const Surroundings& s, double t, const double* x, const ModeState& state, int j,
+                         double noise) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  if (std::abs(values[at(j)]) > noise) return values[at(j)];
+  for (const double region : {0.0, 1.0}) {
+    std::vector<double> alpha = state.alpha;
+    for (const int inner : s.kernel.inner(j)) {
+      if (state.mode[at(inner)] == 0) alpha[at(inner)] = region;
+    }
+    s.kernel.functions(t, x, alpha.data(), values.data());
+    if (std::abs(values[at(j)]) > noise) break;
+  }
+  return values[at(j)];
+}
+
 /// Signs of all switching functions, inner ones first; those at zero get 0.
 void read_signs(const Surroundings& s, double t, const double* x, const ProjectedFields& fields, ModeState& state,
                 std::vector<int>& at_zero) {
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
-    if (!s.kernel.inner(j).empty()) s.kernel.functions(t, x, state.alpha.data(), values.data());
-    const double psi = values[at(j)];
+    const double psi =
+        s.kernel.inner(j).empty() ? values[at(j)] : value_in_a_region(s, t, x, state, j, fields.noise(j));
     if (std::abs(psi) <= fields.noise(j)) {
       at_zero.push_back(j);
       set_surface(state, j, 0, 0.5);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -31,6 +32,12 @@ std::string names(const model::System& system, const std::vector<int>& surfaces)
   std::string text;
   for (const int j : surfaces) text += (text.empty() ? "" : ", ") + system.switching[at(j)].name;
   return text;
+}
+
+std::string two_fold_at(const std::string& surface, double t) {
+  return fmt::format(
+      "both fields are tangent to '{}' at t = {} (two-fold point): the sliding motion is not determined there", surface,
+      t);
 }
 
 /// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
@@ -78,6 +85,7 @@ class Decider {
 
   Transition run();
   Transition run_forced();
+  Transition run_crossing(int jumping);
 
  private:
   bool decide(const std::vector<int>& group);
@@ -143,10 +151,7 @@ bool Decider::decide(const std::vector<int>& group) {
       }
       break;
     case Verdict::two_fold:
-      return fail(result::Termination::outside_class,
-                  fmt::format("both fields are tangent to '{}' at t = {} (two-fold point): the sliding motion is not "
-                              "determined there",
-                              culprit(), occasion_.t));
+      return fail(result::Termination::outside_class, two_fold_at(culprit(), occasion_.t));
     case Verdict::coupled:
       return fail(result::Termination::outside_class,
                   fmt::format("the surfaces {} meet at t = {} and influence each other: the continuation needs the "
@@ -225,9 +230,14 @@ bool Decider::check() {
     const double selection = field.alpha()[at(j)];
     // 1e-9: an exit located to rounding leaves the selection at its bound only to the conditioning of the quotient.
     if (!(selection >= -1e-9 && selection <= 1.0 + 1e-9)) {
+      const auto& name = s_.system.switching[at(j)].name;
+      // Behind an exit located on one field the selection is at its bound, unless the other field vanishes with it.
+      const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
+      if (at_exit || fields_.nearly_two_fold(state.alpha, j)) {
+        return fail(result::Termination::outside_class, two_fold_at(name, occasion_.t));
+      }
       return fail(result::Termination::no_admissible_mode,
-                  fmt::format("sliding on '{}' at t = {} would need the selection {}", s_.system.switching[at(j)].name,
-                              occasion_.t, selection));
+                  fmt::format("sliding on '{}' at t = {} would need the selection {}", name, occasion_.t, selection));
     }
     state.alpha[at(j)] = std::clamp(selection, 0.0, 1.0);
   }
@@ -296,10 +306,84 @@ Transition Decider::run_forced() {
   return transition_;
 }
 
+/// The mode behind a crossing where function `jumping` gets away from zero: given, only its consequences are looked at.
+Transition Decider::run_crossing(int jumping) {
+  const std::string& name = s_.system.switching[at(jumping)].name;
+  read_nested_anew();
+  if (set_corners()) check();
+  if (transition_.termination == result::Termination::no_admissible_mode) {
+    fail(result::Termination::outside_class,
+         fmt::format("'{}' jumps away from 0 at t = {} on a surface inside it, and the field behind does not lead on: "
+                     "the continuation needs the codimension-2 switching of a later version",
+                     name, occasion_.t));
+  }
+  transition_.reason = fmt::format("'{}' jumps away from 0 on a surface inside it, which is crossed", name);
+  return transition_;
+}
+
+/// While it slides on an inner surface a nested function is recorded between its selections in both regions; the mode
+/// decides what it is.
+ModeState with_exact_selections(ModeState state) {
+  for (std::size_t j = 0; j < state.mode.size(); ++j) {
+    if (state.mode[j] != 0) state.alpha[j] = state.mode[j] > 0 ? 1.0 : 0.0;
+  }
+  return state;
+}
+
+/// Crosses the touched surfaces inside function j, which is at zero: whether j is not, behind them, but jumps away.
+bool jumps_away(const Surroundings& s, const Occasion& occasion, int j, ModeState& state) {
+  const auto& inner = s.kernel.inner(j);
+  ModeState behind = state;
+  bool crosses = false;
+  for (const int i : occasion.touched) {
+    if (i == j || !contains(inner, i) || state.mode[at(i)] == 0) continue;
+    set_surface(behind, i, -state.mode[at(i)], state.mode[at(i)] > 0 ? 0.0 : 1.0);
+    crosses = true;
+  }
+  if (!crosses) return false;
+  const auto n_phi = at(s.kernel.event_functions());
+  std::vector<double> values(n_phi), magnitude(n_phi), slope(n_phi);
+  s.kernel.functions(occasion.t, occasion.x, behind.alpha.data(), values.data());
+  s.kernel.scales(occasion.t, occasion.x, behind.alpha.data(), magnitude.data(), slope.data());
+  const double psi = values[at(j)];
+  // Four digits above rounding, as for jumps on sliding surfaces: a kink leaves rounding, a jump something of size.
+  if (!(std::abs(psi) > 1e5 * std::numeric_limits<double>::epsilon() * magnitude[at(j)])) return false;
+  set_surface(behind, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
+  state = std::move(behind);
+  return true;
+}
+
 }  // namespace
 
 Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion) {
-  return Decider(surroundings, before, occasion).run();
+  const ModeState exact = with_exact_selections(before);
+  ModeState behind = exact;
+  Occasion rest = occasion;
+  int jumping = -1;
+  for (const int j : occasion.at_zero) {
+    ModeState own = exact;
+    if (!jumps_away(surroundings, occasion, j, own)) continue;
+    jumping = j;
+    for (auto* surfaces : {&rest.at_zero, &rest.touched, &rest.exit_below, &rest.exit_above}) std::erase(*surfaces, j);
+    for (std::size_t k = 0; k < own.mode.size(); ++k) {
+      if (own.mode[k] != exact.mode[k]) set_surface(behind, static_cast<int>(k), own.mode[k], own.alpha[k]);
+    }
+  }
+  if (jumping >= 0) return Decider(surroundings, behind, rest).run_crossing(jumping);
+  return Decider(surroundings, exact, occasion).run();
+}
+
+std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state, double t,
+                                            const double* x) {
+  Occasion occasion;
+  occasion.t = t;
+  occasion.x = x;
+  occasion.at_zero = state.sliding;
+  const ProjectedFields fields(surroundings.kernel, occasion);
+  for (const int j : state.sliding) {
+    if (fields.nearly_two_fold(state.alpha, j)) return two_fold_at(surroundings.system.switching[at(j)].name, t);
+  }
+  return std::nullopt;
 }
 
 Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced, const Occasion& occasion) {

@@ -2,6 +2,7 @@
 // answer.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,5 +54,10 @@ struct Surroundings {
 /// A mode that the user forces at the start: only the check along its own field.
 [[nodiscard]] Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced,
                                            const Occasion& occasion);
+
+/// What to say where sliding has run into a point at which both fields are tangent to the surface (two-fold), so that
+/// its selection has no limit; nullopt if there is none near by.
+[[nodiscard]] std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state,
+                                                          double t, const double* x);
 
 }  // namespace saltus::event_integrator

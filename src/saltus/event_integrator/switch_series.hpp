@@ -1,0 +1,31 @@
+// The budget of switches: ends accumulations and chattering that no rule resolves.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+namespace saltus::event_integrator {
+
+/// Watches the switches of a run. Spirals into an intersection of surfaces and Zeno sequences have infinitely many in
+/// finite time; in doubles they end in a loop of modes at one time.
+class SwitchSeries {
+ public:
+  /// @param span  of the whole run, in units of time
+  explicit SwitchSeries(double span) : span_(span) {}
+
+  /// Whether the solution changes from `before` to `after` at t, as it already did at this very time: a loop. Notes the
+  /// change. There and back once is none: a surface may be touched more shallowly than time resolves.
+  [[nodiscard]] bool repeats(double t, const std::vector<int>& before, const std::vector<int>& after);
+  /// Counts an event at t; whether there were too many in too short a time.
+  [[nodiscard]] bool too_dense(double t);
+
+ private:
+  using Change = std::pair<std::vector<int>, std::vector<int>>;
+  double span_;
+  double last_ = 0.0;
+  std::vector<Change> changes_;  ///< at last_
+  long in_a_row_ = 0;            ///< without the time having advanced noticeably
+  double start_ = 0.0;
+};
+
+}  // namespace saltus::event_integrator
