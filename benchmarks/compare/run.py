@@ -91,15 +91,16 @@ def machine():
     except OSError:
         pass
     compiler = subprocess.run(["c++", "--version"], capture_output=True, text=True, check=False).stdout
-    revision = subprocess.run(["git", "-C", contenders.ROOT, "rev-parse", "--short", "HEAD"], capture_output=True,
+    revision = subprocess.run(["git", "-C", contenders.ROOT, "describe", "--always", "--dirty=, changed"], capture_output=True,
                               text=True, check=False).stdout.strip()
     compiler = compiler.splitlines()[0] if compiler else "no compiler"
     return f"{model}, {platform.system()}, {compiler}, revision {revision}"
 
 
-def page(results, counts):
+def page(options, results, counts):
     parts = ["# Comparison: time at equal achieved error\n",
-             f"Made by `benchmarks/compare/run.py` on {machine()}. How to read it: "
+             f"Made by `benchmarks/compare/run.py --rounds {options.rounds} --seconds {options.seconds}` on {machine()}. "
+             "How to read it: "
              "[benchmarks/README.md](../README.md).\n",
              table.markdown(table.main_table(results)),
              "`<`: the loosest setting is already more accurate; `~`: extrapolated by at most two decades; `≈`: by "
@@ -125,7 +126,7 @@ def main():
     results = compare(options, lineup)
     counts = count_events(options, lineup) if "relay-feedback" in options.problems else []
     options.output.mkdir(parents=True, exist_ok=True)
-    text = page(results, counts)
+    text = page(options, results, counts)
     (options.output / "compare.md").write_text(text)
     table.write_csv(options.output / "compare.csv", results)
     print(text)
