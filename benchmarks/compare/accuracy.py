@@ -39,8 +39,8 @@ def judge(problem, point, time_stepping):
 def at_error(points, target, key):
     """(value of `key` at an error of `target`, how), by interpolation in log-log between neighbours of a sweep.
 
-    how: "" interpolated; "<" even the loosest setting is more accurate; "~" extrapolated by at most two decades; "≈" by
-    order 1 from the best point of a time stepping; "-" not reached.
+    how: "" interpolated; "<" even the loosest setting is more accurate; "~" extrapolated by at most two decades; "≈" from
+    the finest step of a time stepping by the order seen last, at least 1; "-" not reached.
     """
     usable = [p for p in points if math.isfinite(p["error"]) and p["error"] > 0.0]
     if not usable:
@@ -52,8 +52,10 @@ def at_error(points, target, key):
     if all(p["error"] <= target for p in usable):
         return min(p[key] for p in usable), "<"
     best = min(usable, key=lambda p: p["error"])
-    if best["time_stepping"]:
-        return best[key] * best["error"] / target, "≈"
+    if usable[-1]["time_stepping"] and len(usable) >= 2:
+        coarse, finest = usable[-2:]
+        order = max(1.0, math.log(coarse["error"] / finest["error"]) / math.log(finest[key] / coarse[key]))
+        return finest[key] * (finest["error"] / target) ** (1.0 / order), "≈"
     if target >= 0.01 * best["error"] < 0.01 * usable[0]["error"]:
         return along(usable[0], best, target, key), "~"
     return math.nan, "-"

@@ -19,9 +19,9 @@ DEBIAN_PYTHON = "/usr/bin/python3"
 PROBLEMS = ("irma", "stick-slip", "relay-feedback", "gene-ring")
 NETWORKS = ("irma", "gene-ring", "gene-ring-active")
 TOLERANCES = tuple(10.0**-k for k in range(4, 13))
-# Length of the steps of time stepping: as many as fit into about a minute.
-STEPS = {"irma": (1.0, 0.3, 0.1, 0.03), "stick-slip": (0.03, 0.01, 3e-3), "relay-feedback": (1e-2, 1e-3, 1e-4, 3e-5),
-         "gene-ring": (0.1, 0.03, 0.01, 3e-3)}
+# Lengths of the steps of time stepping: they divide the time span, so that the last step ends at its end.
+STEPS = {"irma": (1.0, 0.25, 0.1, 0.025), "stick-slip": (0.04, 0.01, 0.004),
+         "relay-feedback": (1e-2, 1e-3, 1e-4, 2.5e-5), "gene-ring": (0.1, 0.01, 0.004, 0.002)}
 
 
 @dataclasses.dataclass(frozen=True)

@@ -91,8 +91,8 @@ def machine():
     except OSError:
         pass
     compiler = subprocess.run(["c++", "--version"], capture_output=True, text=True, check=False).stdout
-    revision = subprocess.run(["git", "-C", contenders.ROOT, "describe", "--always", "--dirty=, changed"], capture_output=True,
-                              text=True, check=False).stdout.strip()
+    revision = subprocess.run(["git", "-C", contenders.ROOT, "describe", "--always", "--dirty=, changed"],
+                              capture_output=True, text=True, check=False).stdout.strip()
     compiler = compiler.splitlines()[0] if compiler else "no compiler"
     return f"{model}, {platform.system()}, {compiler}, revision {revision}"
 
@@ -103,8 +103,8 @@ def page(options, results, counts):
              "How to read it: "
              "[benchmarks/README.md](../README.md).\n",
              table.markdown(table.main_table(results)),
-             "`<`: the loosest setting is already more accurate; `~`: extrapolated by at most two decades; `≈`: by "
-             "order 1 from the finest step; –: not reached.\n",
+             "`<`: the loosest setting is already more accurate; `~`: extrapolated by at most two decades; `≈`: from the "
+             "finest step by the order seen last, at least 1; –: not reached.\n",
              "## Events of relay feedback at 41 tolerances between 1e-3 and 1e-12 (34 each)\n",
              table.markdown(table.event_table(counts)) if counts else "Not measured.\n",
              "## What an inactive threshold costs\n", table.markdown(table.threshold_table(results)),

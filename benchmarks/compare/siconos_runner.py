@@ -96,6 +96,9 @@ def switches(problem, theta, h):
         if modes is not None and (now != modes).any():
             events.append(steps * h)
         modes = now
+    until = PROBLEMS[problem]()[3]
+    if abs(steps * h - until) > 1e-6 * h:  # another time would be another solution
+        sys.exit(f"{steps} steps of {h} do not end at {until}")
     return {"status": "completed", "x": [float(value) for value in system.x()], "events": events, "steps": steps,
             "evaluations": steps}
 
