@@ -65,6 +65,7 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
   for (auto* vector : {&phi_, &phi_below_, &phi_above_, &magnitude_, &slope_}) vector->resize(n_phi);
   x_.resize(at(kernel.states()));
   user_sign_.assign(n_phi - at(kernel.switching_functions()), 0);
+  user_vanishes_.assign(user_sign_.size(), false);
 }
 
 void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
@@ -125,8 +126,9 @@ void EventSearch::read_user_signs(double t, const double* x) {
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     auto& function = functions_[i];
     if (function.kind != FunctionKind::user) continue;
-    auto& sign = user_sign_[at(function.index - kernel_.switching_functions())];
-    const bool at_zero = std::abs(point_[i]) <= noise_[i];
+    const auto user = at(function.index - kernel_.switching_functions());
+    auto& sign = user_sign_[user];
+    const bool at_zero = user_vanishes_[user] || std::abs(point_[i]) <= noise_[i];
     if (!at_zero) sign = sign_of(point_[i]);
     function.sign = sign;
     function.zero_order = at_zero ? 1 : 0;
@@ -305,6 +307,7 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
 
 bool EventSearch::settle(double t, const double* x) {
   bool unknown = false;
+  user_vanishes_.assign(user_vanishes_.size(), false);
   const bool offset = std::any_of(functions_.begin(), functions_.end(), [](const auto& f) { return f.offset != 0.0; });
   if (offset) evaluate(t, x, point_);
   for (std::size_t i = 0; i < functions_.size(); ++i) {
@@ -320,11 +323,15 @@ bool EventSearch::settle(double t, const double* x) {
   return true;
 }
 
-void EventSearch::set_user_sign(std::size_t function, int sign) {
+void EventSearch::set_user_sign(std::size_t function, int sign, double t, const double* x) {
   auto& entry = functions_[function];
+  const auto user = at(entry.index - kernel_.switching_functions());
   entry.sign = sign;
   entry.zero_order = 1;
-  user_sign_[at(entry.index - kernel_.switching_functions())] = sign;
+  kernel_.functions(t, x, state_.alpha.data(), phi_.data());
+  entry.offset = phi_[at(entry.index)];
+  user_sign_[user] = sign;
+  user_vanishes_[user] = true;
 }
 
 }  // namespace saltus::event_integrator

@@ -68,8 +68,8 @@ class EventSearch {
   /// Behind an accepted step that ends at (t, x): zeros at its start are history, unknown signs are read. Returns
   /// whether there were such signs.
   bool settle(double t, const double* x);
-  /// Sets the sign of a user function.
-  void set_user_sign(std::size_t function, int sign);
+  /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.
+  void set_user_sign(std::size_t function, int sign, double t, const double* x);
 
  private:
   struct Finding {
@@ -91,7 +91,8 @@ class EventSearch {
   ode::Tolerances tolerances_;
   ModeState state_;
   std::vector<EventFunction> functions_;
-  std::vector<int> user_sign_;  ///< kept over changes of mode
+  std::vector<int> user_sign_;       ///< kept over changes of mode
+  std::vector<bool> user_vanishes_;  ///< at the start of the next step
   std::vector<double> phi_, phi_below_, phi_above_, magnitude_, slope_;
   std::vector<ExitValues> exits_;
   std::vector<double> x_, point_;

@@ -79,10 +79,12 @@ class Run {
   bool continuous_across(int nested);
   bool enter(const Transition& transition);
   bool fire_user_events(const ModeState& before);
+  void flip_user_functions(const Located& located);
   bool too_many_events();
   void accumulates();
   bool stopped_by_two_fold();
   bool shorten(double factor);
+  void move_onto(int surface, std::vector<double>& x);
   void rows_until(double t_end);
   void row(double t, const std::vector<double>& x);
   void fail(Termination termination, std::string message);
@@ -120,6 +122,7 @@ class Run {
   double h_try_ = 0.0;              ///< step under trial
   double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
   std::size_t next_output_ = 0;
+  double last_event_time_ = -std::numeric_limits<double>::infinity();
   SwitchSeries series_;
   Integration result_;
   bool running_ = true;
@@ -167,6 +170,11 @@ bool Run::enter(const Transition& transition) {
   stiffness_.reset();
   field_.project(t_, x_.data());
   field_(t_, x_.data(), slope_.data());
+  if (!is_finite(slope_) && !transition.beside.empty()) {
+    // The field is undefined on the far side of its own surface, where rounding has put the state.
+    x_ = transition.beside;
+    field_(t_, x_.data(), slope_.data());
+  }
   if (!is_finite(slope_)) {
     fail(Termination::evaluation_failed,
          fmt::format("the right-hand side is not finite at {}; change the initial values, or guard the expression with "
@@ -230,6 +238,19 @@ bool Run::stopped_by_two_fold() {
   return message.has_value();
 }
 
+/// One Newton step along the normal onto psi_j = 0: the last bit of way that a field undefined behind it did not permit.
+void Run::move_onto(int surface, std::vector<double>& x) {
+  std::vector<double> row(x.size());
+  std::vector<double> values(at(kernel_.event_functions()));
+  double rate = 0.0;
+  kernel_.gradient(surface, t_, x.data(), state_.alpha.data(), row.data(), &rate);
+  kernel_.functions(t_, x.data(), state_.alpha.data(), values.data());
+  double square = 0.0;
+  for (const double d : row) square += d * d;
+  if (!(square > 0.0) || !std::isfinite(square)) return;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= values[at(surface)] * row[i] / square;
+}
+
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
   std::vector<double> values(search_.functions().size());
@@ -242,7 +263,11 @@ Run::Step Run::undefined_step() {
     const double rate = surface ? kernel_.lie_derivative(function.index, 1, t_, x_.data(), state_.alpha.data()) : 0.0;
     const bool reached = surface ? values[i] * rate < 0.0 && std::abs(values[i] / rate) <= 1e3 * smallest_step()
                                  : std::abs(values[i]) < 1e-3;
-    if (reached) return handle({t_, x_, {i}, {function.sign}});
+    if (reached) {
+      Located located{t_, x_, {i}, {function.sign}};
+      if (surface) move_onto(function.index, located.x);
+      return handle(std::move(located));
+    }
   }
   if (stopped_by_two_fold()) return Step::failed;
   fail(Termination::evaluation_failed,
@@ -407,8 +432,22 @@ bool Run::change_mode(const Located& located) {
   return true;
 }
 
+/// User functions that vanish here continue with the other sign.
+void Run::flip_user_functions(const Located& located) {
+  const auto each = [&](auto&& set) {
+    for (std::size_t k = 0; k < located.functions.size(); ++k) {
+      if (search_.functions()[located.functions[k]].kind == FunctionKind::user) set(located.functions[k], located.signs[k]);
+    }
+  };
+  // The signs before become known now, if they were not; only then do all of them change.
+  each([&](std::size_t function, int sign) { search_.set_user_sign(function, sign, t_, x_.data()); });
+  static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
+  each([&](std::size_t function, int sign) { search_.set_user_sign(function, -sign, t_, x_.data()); });
+}
+
 /// The state is at a located event: rows before and behind, user events, the next mode.
 Run::Step Run::handle(Located located) {
+  const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
   t_ = located.t;
   x_ = std::move(located.x);
   const long events_before = recorder_.events();
@@ -417,17 +456,12 @@ Run::Step Run::handle(Located located) {
   if (!state_.sliding.empty()) state_.alpha = field_.alpha();
   const std::vector<double> x_before = x_;
   const auto alpha_before = state_.sliding.empty() ? state_.alpha : field_.alpha();
-  for (std::size_t k = 0; k < located.functions.size(); ++k) {
-    if (search_.functions()[located.functions[k]].kind != FunctionKind::user) continue;
-    // The sign before becomes known now, if it was not; then the function continues with the other one.
-    search_.set_user_sign(located.functions[k], located.signs[k]);
-    static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
-    search_.set_user_sign(located.functions[k], -located.signs[k]);
-  }
+  flip_user_functions(located);
   static_cast<void>(change_mode(located));
   if (running_) fire_user_events(before);
   if (recorder_.events() > events_before || !running_) {
-    recorder_.row(t_, x_before, before.mode, alpha_before);
+    // A step that ended exactly here has written the row before the event.
+    if (!ended_here) recorder_.row(t_, x_before, before.mode, alpha_before);
     if (recorder_.events() > events_before) row(t_, x_);
   } else if (options_.output.rows == OutputTimes::Rows::at_steps) {
     row(t_, x_);
@@ -439,6 +473,7 @@ Run::Step Run::handle(Located located) {
     if (wanted) row(t_, x_);
     ++next_output_;
   }
+  if (recorder_.events() > events_before) last_event_time_ = t_;
   if (running_) static_cast<void>(too_many_events());
   return running_ ? Step::taken : Step::failed;
 }

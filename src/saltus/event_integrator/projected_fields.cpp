@@ -56,9 +56,11 @@ std::vector<double> ProjectedFields::point_beside(const std::vector<double>& alp
   const auto n = at(kernel_.states());
   std::vector<double> x(occasion_.x, occasion_.x + n);
   std::vector<double> row(n);
+  std::vector<double> values(at(kernel_.event_functions()));
   double largest = 0.0;
   for (const double value : x) largest = std::max(largest, std::abs(value));
   for (const int j : occasion_.at_zero) {
+    kernel_.functions(occasion_.t, x.data(), alpha.data(), values.data());
     double rate = 0.0;
     kernel_.gradient(j, occasion_.t, occasion_.x, alpha.data(), row.data(), &rate);
     double square = 0.0;
@@ -66,8 +68,10 @@ std::vector<double> ProjectedFields::point_beside(const std::vector<double>& alp
     if (!(square > 0.0) || !std::isfinite(square)) continue;
     // Just enough to be on the right side after rounding.
     const double distance = 4.0 * std::max({noise_[at(j)], epsilon * slope_[at(j)] * largest, 1e-30 * slope_[at(j)]});
-    const double side = alpha[at(j)] > 0.5 ? 1.0 : -1.0;
-    for (std::size_t i = 0; i < n; ++i) x[i] += side * distance * row[i] / square;
+    const double side = alpha[at(j)] == 1.0 ? 1.0 : alpha[at(j)] == 0.0 ? -1.0 : 0.0;
+    const double step = side * distance - values[at(j)];
+    if (!std::isfinite(step)) continue;
+    for (std::size_t i = 0; i < n; ++i) x[i] += step * row[i] / square;
   }
   return x;
 }

@@ -41,12 +41,14 @@ class ProjectedFields {
   /// Whether the fields of all corners of the group are one and the same (relative 1e-12).
   [[nodiscard]] bool fields_agree(const ModeState& before, const std::vector<int>& group) const;
 
+  /// The point moved off the surfaces by a few roundings, to the sides that `alpha` says; onto those with a selection
+  /// strictly between.
+  [[nodiscard]] std::vector<double> point_beside(const std::vector<double>& alpha) const;
+
   /// Rounding level of psi at the point.
   [[nodiscard]] double noise(int surface) const { return noise_[static_cast<std::size_t>(surface)]; }
 
  private:
-  [[nodiscard]] std::vector<double> point_beside(const std::vector<double>& alpha) const;
-
   const evaluation::ModelKernel& kernel_;
   const Occasion& occasion_;
   std::vector<double> noise_;  ///< per event function

@@ -219,6 +219,9 @@ bool Decider::check() {
   field.enter(state);
   std::vector<double> xdot(at(s_.kernel.states()));
   field(occasion_.t, occasion_.x, xdot.data());
+  transition_.beside = fields_.point_beside(state.alpha);
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) field(occasion_.t, transition_.beside.data(), xdot.data());
   if (!std::all_of(xdot.begin(), xdot.end(), [](double v) { return std::isfinite(v); })) {
     // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
     if (!state.sliding.empty()) {
@@ -353,6 +356,33 @@ bool jumps_away(const Surroundings& s, const Occasion& occasion, int j, ModeStat
   return true;
 }
 
+/// Sliding on functions that have a kink on the touched surfaces: goes on, or ends, with their new gradients behind the
+/// kinks. nullopt if other surfaces are touched, or if the new motion does not lead away from the kinks.
+std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
+  if (occasion.start) return std::nullopt;
+  ModeState behind = before;
+  Occasion rest = occasion;
+  rest.touched.clear();
+  for (const int i : occasion.touched) {
+    if (s.system.switching[at(i)].role != model::SwitchingRole::kink || before.mode[at(i)] == 0) return std::nullopt;
+    set_surface(behind, i, -before.mode[at(i)], before.mode[at(i)] > 0 ? 0.0 : 1.0);
+    std::erase(rest.at_zero, i);
+    for (const int j : before.sliding) {
+      if (contains(s.kernel.inner(j), i) && !contains(rest.touched, j)) rest.touched.push_back(j);
+    }
+  }
+  Transition transition = Decider(s, behind, rest).run();
+  if (transition.termination != result::Termination::completed) return std::nullopt;
+  const ProjectedFields fields(s.kernel, occasion);
+  for (const int i : occasion.touched) {
+    if (!(fields.velocities(transition.state.alpha, {i}).front() * transition.state.mode[at(i)] > 0.0)) {
+      return std::nullopt;
+    }
+    transition.zero_order[at(i)] = 1;
+  }
+  return transition;
+}
+
 }  // namespace
 
 Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion) {
@@ -370,7 +400,12 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     }
   }
   if (jumping >= 0) return Decider(surroundings, behind, rest).run_crossing(jumping);
-  return Decider(surroundings, exact, occasion).run();
+  Transition transition = Decider(surroundings, exact, occasion).run();
+  if (transition.termination == result::Termination::outside_class) {
+    // The codimension of a kink and a surface is 2, but the kink itself does not hold the solution.
+    if (auto crossed = cross_kinks(surroundings, exact, occasion)) return std::move(*crossed);
+  }
+  return transition;
 }
 
 std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state, double t,

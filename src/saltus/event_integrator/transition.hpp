@@ -30,6 +30,7 @@ struct Transition {
   result::Termination termination = result::Termination::completed;  ///< completed = a mode was found
   std::string message;
   ModeState state;
+  std::vector<double> beside;   ///< the point moved into the new regions by a few roundings
   std::vector<int> zero_order;  ///< n_psi: order in t of the zero of psi_j at this time along the new field, 0 = none
   bool unique = true;
   std::vector<std::vector<int>> alternatives;  ///< modes

@@ -14,6 +14,7 @@ using casadi::SX;
 using model::Builder;
 using model::greater;
 using model::less;
+using model::less_equal;
 using result::EventKind;
 using result::Termination;
 
@@ -151,6 +152,81 @@ TEST(Behaviour, ConditionThatHoldsFromTheStartHasNoEdgeThere) {
   ASSERT_EQ(result.events.size(), 1U);
   EXPECT_EQ(*result.events[0].name, "low");
   EXPECT_NEAR(result.events[0].t, 2.0, 1e-12);
+}
+
+TEST(Behaviour, SurfaceThatStepsAwayIsLeftNotFollowed) {
+  // Sliding on y = 0; at t = 0.7 the surface steps to y = 0.3: y rises at 3.5 and arrives after 0.3 / 3.5.
+  Builder b("stepping surface");
+  const SX y = b.state("y", {1});
+  b.dynamics("y", -3 * b.sign(y - b.if_(less(b.time(), 0.7), 0.0, 0.3)) + 0.5);
+  const auto result = run(b, 2);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 3U);
+  EXPECT_EQ(result.events[1].t, 0.7);
+  EXPECT_EQ(result.events[1].kind, EventKind::leave_sliding);
+  EXPECT_EQ(result.events[1].x[0], 0.0);
+  EXPECT_EQ(result.events[1].x_after[0], 0.0);
+  EXPECT_NEAR(result.events[2].t, 0.7 + 0.3 / 3.5, 1e-14);
+}
+
+TEST(Behaviour, UserEventsThatVanishTogetherAreAllRecorded) {
+  Builder b("together");
+  const SX x = b.state("x", {1});
+  const SX z = b.state("z", {1});
+  b.dynamics("x", -1);
+  b.dynamics("z", -1);
+  b.event(z, {"u1", model::Direction::both, model::AtEvent::stop});
+  b.event(x, {"u2"});
+  b.event(less_equal(x, 0.0), {"u3"});
+  const auto result = run(b, 3);
+  EXPECT_EQ(result.status.termination, Termination::stopped_by_event);
+  ASSERT_EQ(result.events.size(), 3U);
+  for (const auto& event : result.events) EXPECT_NEAR(event.t, 1.0, 1e-15);
+}
+
+TEST(Behaviour, UserEventTogetherWithASwitchIsRecordedOnce) {
+  Builder b("with a switch");
+  const SX x = b.state("x", {1});
+  b.dynamics("x", -2 - b.sign(x));
+  b.event(x + 0.0 * b.time(), {"zero"});
+  const auto result = run(b, 3);
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_NEAR(result.events[0].t, 1.0 / 3.0, 1e-15);
+  EXPECT_EQ(result.events[0].t, result.events[1].t);
+}
+
+TEST(Behaviour, TimeFunctionsMayVanishAtTheStart) {
+  Builder b("square wave");
+  const SX x = b.state("x", {1});
+  const double pi = std::acos(-1.0);
+  b.dynamics("x", -x + b.sign(sin(2 * pi * b.time())));
+  const auto result = run(b, 1);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  // One period of x' = -x +- 1 from 1: first x stays 1, then it falls towards -1.
+  EXPECT_NEAR(result.final.x[0], -1.0 + 2.0 * std::exp(-0.5), 1e-9);
+}
+
+TEST(Behaviour, RootOfPsiOnBothSidesIsCrossed) {
+  // x' = -1 - sqrt|x| sign x: finite and continuous at x = 0, undefined for each branch on the other side.
+  Builder b("root");
+  const SX x = b.state("x", {1});
+  b.dynamics("x", -1 - sqrt(b.abs(x)) * b.sign(x) - 0.25 * b.sign(x));
+  const auto result = run(b, 1);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, EventKind::crossing);
+  // From 1 to 0: integral of dx / (1.25 + sqrt x) = 2 (1 - 1.25 ln(1 + 1 / 1.25)).
+  EXPECT_NEAR(result.events[0].t, 2.0 * (1.0 - 1.25 * std::log(1.8)), 1e-9);
+}
+
+TEST(Behaviour, OutflowStandsStillAtTheEmptyTankAndFillsAgain) {
+  // h' = -sqrt(max(h, 0)) / 2 + inflow from t = 6 on: empty at t = 4.
+  Builder b("tank");
+  const SX h = b.state("h", {1});
+  b.dynamics("h", -0.5 * sqrt(b.max(h, 0)) + b.if_(greater(b.time(), 6.0), 0.1, 0.0));
+  const auto result = run(b, 5);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.final.x[0], 0.0, 1e-12);
 }
 
 TEST(Behaviour, ForcedModeOnARepellingSurfaceIsKept) {

@@ -78,6 +78,22 @@ TEST(TortureFindings, SlidingEndsWhereItsFunctionJumpsAway) {
   EXPECT_DOUBLE_EQ(result.final.x[1], -0.5);
 }
 
+TEST(TortureFindings, SlidingGoesOnBehindAKinkThatItsSelectionMoves) {
+  // E = x2 + max(x1, 0). Behind the kink -4 s + 1 + 1.5 s = 0: s = 0.4 and x1' = 1.6; the field below E moves x1 back.
+  auto s = testing::blank(2, 2);
+  testing::add_surface(s, "kink", s.x(0));
+  s.switching[0].role = model::SwitchingRole::kink;
+  testing::add_surface(s, "E", s.x(1) + s.alpha(0) * s.x(0));
+  const SX sign = sign_of(s.alpha(1));
+  testing::set_field(s, {1 + 1.5 * sign, -4 * sign}, {-1.0, 0.0});
+  const auto result = run(s, 2.0);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_EQ(result.events.size(), 1U);
+  EXPECT_NEAR(result.final.x[0], 1.6, 1e-14);
+  EXPECT_NEAR(result.final.x[1], -1.6, 1e-14);
+  EXPECT_NEAR(result.final.alpha[1], 0.7, 1e-14);
+}
+
 TEST(TortureFindings, SelectionsBesideSlidingAreExact) {
   // While the inner surface slides, the outer function has a sign in each region and is recorded between them.
   auto s = testing::blank(2, 2);
