@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/event_integrator/at_surface.hpp"
+#include "saltus/event_integrator/continuations.hpp"
 #include "saltus/event_integrator/event_search.hpp"
 #include "saltus/event_integrator/locate.hpp"
 #include "saltus/event_integrator/mode_field.hpp"
@@ -76,7 +78,6 @@ class Run {
   Step accept(double t_new);
   Step handle(Located located);
   bool change_mode(const Located& located);
-  bool continuous_across(int nested);
   bool enter(const Transition& transition);
   bool fire_user_events(const ModeState& before);
   void flip_user_functions(const Located& located);
@@ -84,7 +85,6 @@ class Run {
   void accumulates();
   bool stopped_by_two_fold();
   bool shorten(double factor);
-  void move_onto(int surface, std::vector<double>& x);
   void rows_until(double t_end);
   void row(double t, const std::vector<double>& x);
   void fail(Termination termination, std::string message);
@@ -238,19 +238,6 @@ bool Run::stopped_by_two_fold() {
   return message.has_value();
 }
 
-/// One Newton step along the normal onto psi_j = 0: the last bit of way that a field undefined behind it did not permit.
-void Run::move_onto(int surface, std::vector<double>& x) {
-  std::vector<double> row(x.size());
-  std::vector<double> values(at(kernel_.event_functions()));
-  double rate = 0.0;
-  kernel_.gradient(surface, t_, x.data(), state_.alpha.data(), row.data(), &rate);
-  kernel_.functions(t_, x.data(), state_.alpha.data(), values.data());
-  double square = 0.0;
-  for (const double d : row) square += d * d;
-  if (!(square > 0.0) || !std::isfinite(square)) return;
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= values[at(surface)] * row[i] / square;
-}
-
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
   std::vector<double> values(search_.functions().size());
@@ -265,7 +252,7 @@ Run::Step Run::undefined_step() {
                                  : std::abs(values[i]) < 1e-3;
     if (reached) {
       Located located{t_, x_, {i}, {function.sign}};
-      if (surface) move_onto(function.index, located.x);
+      if (surface) move_onto(kernel_, state_, function.index, t_, located.x);
       return handle(std::move(located));
     }
   }
@@ -373,19 +360,6 @@ void Run::accumulates() {
            t_));
 }
 
-/// Whether a function nested around the one sliding surface has the same value on both sides of it here.
-bool Run::continuous_across(int nested) {
-  std::vector<double> below(at(kernel_.event_functions()));
-  std::vector<double> above(below.size());
-  std::vector<double> magnitude(below.size());
-  std::vector<double> slope(below.size());
-  kernel_.functions(t_, x_.data(), state_.corner_alpha[0].data(), below.data());
-  kernel_.functions(t_, x_.data(), state_.corner_alpha[1].data(), above.data());
-  kernel_.scales(t_, x_.data(), state_.corner_alpha[1].data(), magnitude.data(), slope.data());
-  // Four digits above rounding: the point is on the surface to rounding, a jump is not of that size.
-  return std::abs(below[at(nested)] - above[at(nested)]) <= 1e5 * epsilon * magnitude[at(nested)];
-}
-
 bool Run::change_mode(const Located& located) {
   Occasion occasion;
   occasion.t = t_;
@@ -400,7 +374,7 @@ bool Run::change_mode(const Located& located) {
     if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
     if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
     const bool nested = function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
-    if (nested && !continuous_across(function.index)) {
+    if (nested && !continuous_across(kernel_, state_, function.index, t_, x_)) {
       fail(Termination::outside_class,
            fmt::format(
                "'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
@@ -425,6 +399,7 @@ bool Run::change_mode(const Located& located) {
     accumulates();
     return false;
   }
+  other_continuations(surroundings_, before, occasion, transition);
   if (!enter(transition)) return false;
   transition.state = state_;
   recorder_.switched(t_, x_, before, transition);
@@ -436,7 +411,8 @@ bool Run::change_mode(const Located& located) {
 void Run::flip_user_functions(const Located& located) {
   const auto each = [&](auto&& set) {
     for (std::size_t k = 0; k < located.functions.size(); ++k) {
-      if (search_.functions()[located.functions[k]].kind == FunctionKind::user) set(located.functions[k], located.signs[k]);
+      if (search_.functions()[located.functions[k]].kind == FunctionKind::user)
+        set(located.functions[k], located.signs[k]);
     }
   };
   // The signs before become known now, if they were not; only then do all of them change.

@@ -50,15 +50,8 @@ void Recorder::add_transition(result::Event event, const Transition& transition)
   event.alpha_after = alpha_columns(transition.state.alpha);
   event.unique = transition.unique;
   event.reason = transition.reason;
-  for (const auto& mode : transition.alternatives) {
-    std::vector<double> alpha(mode.size());
-    for (std::size_t j = 0; j < mode.size(); ++j) {
-      // A sliding alternative's selection is not computed where it was not taken.
-      alpha[j] = mode[j] == transition.state.mode[j] ? transition.state.alpha[j]
-                 : mode[j] == 0                      ? std::numeric_limits<double>::quiet_NaN()
-                                                     : (mode[j] > 0 ? 1.0 : 0.0);
-    }
-    event.alternatives.push_back({mode_columns(mode), alpha_columns(alpha)});
+  for (const auto& other : transition.alternatives) {
+    event.alternatives.push_back({mode_columns(other.mode), alpha_columns(other.alpha)});
   }
   events_.push_back(std::move(event));
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/event_integrator/continuations.hpp"
 #include "saltus/event_integrator/projected_fields.hpp"
 
 namespace saltus::event_integrator {
@@ -82,11 +83,11 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   if (!finite_at_start(s, t, x, state, start.transition)) return start;
   occasion.at_zero = start.at_zero;
   start.transition = decide_mode(s, state, occasion);
+  other_continuations(s, state, occasion, start.transition);
   if (forced.empty()) return start;
 
   start.forced = true;
   const auto decided = start.transition;
-  ModeState wanted = decided.termination == result::Termination::completed ? decided.state : state;
   for (const auto& [surface, mode] : forced) {
     const bool at_zero = std::find(start.at_zero.begin(), start.at_zero.end(), surface) != start.at_zero.end();
     if (!at_zero && mode != state.mode[at(surface)]) {
@@ -96,19 +97,22 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
                       s.system.switching[at(surface)].name, mode);
       return start;
     }
-    set_surface(wanted, surface, mode, mode > 0 ? 1.0 : mode < 0 ? 0.0 : 0.5);
   }
-  start.transition = check_forced_mode(s, wanted, occasion);
-  start.transition.reason = "initial_mode";
-  if (decided.termination == result::Termination::completed && decided.state.mode != start.transition.state.mode) {
-    start.transition.unique = false;
-    start.transition.alternatives = {decided.state.mode};
-    for (const auto& mode : decided.alternatives) {
-      if (mode != start.transition.state.mode) start.transition.alternatives.push_back(mode);
-    }
-  } else {
-    start.transition.unique = decided.unique;
-    start.transition.alternatives = decided.alternatives;
+  auto chosen = decide_with(s, state, occasion, forced);
+  if (!chosen) {
+    start.transition.termination = result::Termination::no_admissible_mode;
+    start.transition.message = "initial_mode does not continue the solution: its field does not move to where it says";
+    return start;
+  }
+  chosen->reason = "initial_mode" + (chosen->reason.empty() ? "" : "; " + chosen->reason);
+  start.transition = std::move(*chosen);
+  if (decided.termination != result::Termination::completed) return start;
+  start.transition.unique = decided.unique && decided.state.mode == start.transition.state.mode;
+  if (decided.state.mode != start.transition.state.mode) {
+    start.transition.alternatives.push_back({decided.state.mode, decided.state.alpha});
+  }
+  for (const auto& other : decided.alternatives) {
+    if (other.mode != start.transition.state.mode) start.transition.alternatives.push_back(other);
   }
   return start;
 }

@@ -296,8 +296,7 @@ Transition Decider::run() {
     }
     for (const int other : decision.other_modes) {
       transition_.unique = false;
-      transition_.alternatives.push_back(transition_.state.mode);
-      transition_.alternatives.back()[at(surface)] = other;
+      transition_.other_choices.emplace_back(surface, other);
     }
   }
   if (set_corners()) check();

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -26,6 +27,12 @@ struct Occasion {
   double time_scale = 1.0;      ///< a step of the integrator: derivatives that do not move psi over it vanish
 };
 
+/// A mode of all switching functions with its selections.
+struct Continuation {
+  std::vector<int> mode;
+  std::vector<double> alpha;
+};
+
 struct Transition {
   result::Termination termination = result::Termination::completed;  ///< completed = a mode was found
   std::string message;
@@ -33,7 +40,10 @@ struct Transition {
   std::vector<double> beside;   ///< the point moved into the new regions by a few roundings
   std::vector<int> zero_order;  ///< n_psi: order in t of the zero of psi_j at this time along the new field, 0 = none
   bool unique = true;
-  std::vector<std::vector<int>> alternatives;  ///< modes
+  /// Surfaces on which another mode than the chosen one continues the solution, with that mode: what
+  /// other_continuations() starts from.
+  std::vector<std::pair<int, int>> other_choices;
+  std::vector<Continuation> alternatives;  ///< the other admissible modes as a whole
   std::string reason;
 };
 

@@ -240,6 +240,41 @@ TEST(Behaviour, ForcedModeOnARepellingSurfaceIsKept) {
   EXPECT_EQ(result.events[0].unique, std::optional<bool>(false));
 }
 
+/// v leaves 0.2 upwards or stays; w + 1/2 - v slides if v allows it.
+Builder two_choices() {
+  Builder b("two choices");
+  const SX v = b.state("v", {0.2});
+  const SX w = b.state("w", {0.7});
+  b.dynamics("v", b.sign(v - 0.2) + 0.1);
+  b.dynamics("w", b.if_(greater(w, v + 0.5), -1, 1));
+  return b;
+}
+
+TEST(Behaviour, AlternativesAreAdmissibleModesWithTheirSelections) {
+  auto b = two_choices();
+  const auto result = run(b, 1);
+  ASSERT_EQ(result.events.size(), 1U);
+  const auto& event = result.events[0];
+  EXPECT_EQ(*event.mode_after, (result::Mode{1, -1}));
+  ASSERT_EQ(event.alternatives.size(), 2U);
+  for (const auto& other : event.alternatives) {
+    EXPECT_EQ(other.mode[1], 0);
+    EXPECT_NEAR(other.alpha[0], other.mode[0] == 0 ? 0.45 : 0.0, 1e-14);
+    EXPECT_NEAR(other.alpha[1], other.mode[0] == 0 ? 0.5 : 0.95, 1e-14);
+  }
+}
+
+TEST(Behaviour, AForcedModeHasTheRestDecidedForIt) {
+  for (const int mode : {-1, 0}) {
+    auto b = two_choices();
+    const auto result = run(b, 1, {{0, mode}});
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    EXPECT_EQ(*result.events[0].mode_after, (result::Mode{mode, 0}));
+    EXPECT_EQ(result.events[0].unique, std::optional<bool>(false));
+    EXPECT_NE(result.events[0].reason.find("initial_mode"), std::string::npos);
+  }
+}
+
 TEST(Behaviour, CoupledSurfacesStopOutsideTheClassWithEverythingSoFar) {
   Builder b("coupled");
   const SX x = b.state("x", {1});

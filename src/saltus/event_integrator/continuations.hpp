@@ -1,0 +1,25 @@
+// The other admissible modes at a point where the solution is not unique, and modes that a user prefers there.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "saltus/event_integrator/transition.hpp"
+
+namespace saltus::event_integrator {
+
+/// The mode behind an occasion with the modes of some surfaces at zero given and the rest decided for them.
+/// @return nullopt if it does not continue the solution: the rest has no mode, or one of the given ones does not move
+/// to
+///         where it says.
+[[nodiscard]] std::optional<Transition> decide_with(const Surroundings& surroundings, const ModeState& before,
+                                                    const Occasion& occasion,
+                                                    const std::vector<std::pair<int, int>>& given);
+
+/// Fills `alternatives` from `other_choices`: every other choice with the rest decided for it; those that are
+/// admissible, each once.
+void other_continuations(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion,
+                         Transition& transition);
+
+}  // namespace saltus::event_integrator
