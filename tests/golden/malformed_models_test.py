@@ -142,7 +142,7 @@ FILES = {
     "smoothed": (after("[simulate.smoothed]\nepsilon = 1\n"), 13, "[simulate.smoothed]", "a later one brings it"),
     "method": (after("method = 'fesd'\n"), 13, "method \"fesd\" is not available", "a later one brings it"),
     "integrator": (after("event.integrator = 'radau'\n"), 13, "radau", "did you mean 'radau5'?"),
-    "native": (after("native = 'never'\n"), 13, "native", "auto, on, off"),
+    "native": (after("native = 'never'\n"), 13, "native", 'expected "auto" or "on" or "off"'),
     "selection": (after("event.selection = 'scaled'\n"), 13, "selection", "a later one brings it"),
     "branches": (after("event.branches = 'all'\n"), 13, "branches", "a later one brings it"),
     "input from a file": (after("inputs.u = { file = 'u.csv' }\n"), 13, "from a file", "a later one brings it"),
