@@ -30,16 +30,14 @@ class Dice {
 
 Form constant_form(std::size_t states, double value) { return {value, std::vector<double>(states), 0.0, {}}; }
 
-void add_curvature(Dice& dice, Form& form, double size) {
+void add_curvature(Dice& dice, Form& form, double size, Form::Term::Kind product) {
   const auto n = form.slope.size();
   for (int k = 0; k < 2; ++k) {
     if (dice.chance(0.5)) {
       form.terms.push_back(
           {Form::Term::Kind::sine_of_state, dice.coefficient(size), dice.below(n), 0, dice.uniform(0.5, 2.0)});
     } else {
-      // |x_i x_j| grows faster than the damping: only a little of it.
-      form.terms.push_back(
-          {Form::Term::Kind::product, 0.1 * dice.coefficient(size), dice.below(n), dice.below(n), 1.0});
+      form.terms.push_back({product, dice.uniform(-0.3, 0.3), dice.below(n), dice.below(n), 1.0});
     }
   }
 }
@@ -57,7 +55,7 @@ Form surface(Dice& dice, std::size_t states, Family family) {
   if (dice.chance(0.15)) {
     form.terms.push_back({Form::Term::Kind::sine_of_time, dice.coefficient(1.0), 0, 0, dice.uniform(0.5, 3.0)});
   }
-  if (family == Family::smooth && dice.chance(0.7)) add_curvature(dice, form, 0.8);
+  if (family == Family::smooth && dice.chance(0.7)) add_curvature(dice, form, 0.8, Form::Term::Kind::product);
   return form;
 }
 
@@ -86,7 +84,7 @@ void draw_table(Dice& dice, RandomSystem& system) {
     for (std::size_t i = 0; i < system.states; ++i) {
       if (constant_difference) own[i].slope = common[i].slope;
       if (!dice.chance(share)) own[i] = common[i];
-      if (system.family == Family::smooth) add_curvature(dice, own[i], 0.8);
+      if (system.family == Family::smooth) add_curvature(dice, own[i], 0.8, Form::Term::Kind::bounded_product);
     }
     system.corners.push_back(own);
   }
@@ -102,6 +100,8 @@ void draw_nested(Dice& dice, RandomSystem& system) {
     term.row = dice.below(system.states);
     term.coefficient = dice.uniform(-2.0, 1.0);
     for (Form* form : {&term.e0, &term.e1, &term.e2}) *form = surface(dice, system.states, system.family);
+    // The branches of a maximum must part with the state, not with time only.
+    if (term.e1.slope == term.e2.slope) term.e2.slope.front() += 1.0;
     term.surface = surface_of_term;
     system.terms.push_back(term);
   };

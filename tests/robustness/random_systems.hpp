@@ -18,10 +18,10 @@ enum class Family {
 inline constexpr Family families[] = {Family::affine, Family::nested, Family::friction, Family::smooth};
 [[nodiscard]] std::string name(Family family);
 
-/// c + sum a_i x_i + rate t + sum of products x_i x_j and sines.
+/// c + sum a_i x_i + rate t + sum of products and sines.
 struct Form {
   struct Term {
-    enum class Kind { product, sine_of_state, sine_of_time };
+    enum class Kind { product, bounded_product, sine_of_state, sine_of_time };
     Kind kind = Kind::product;
     double coefficient = 0.0;
     std::size_t i = 0, j = 0;
@@ -91,6 +91,9 @@ Scalar evaluate(const Form& form, const Scalar& t, const std::vector<Scalar>& x)
     switch (term.kind) {
       case Form::Term::Kind::product:
         sum = sum + term.coefficient * (x[term.i] * x[term.j]);
+        break;
+      case Form::Term::Kind::bounded_product:  // grows linearly: the solution exists for ever
+        sum = sum + term.coefficient * (x[term.i] * sin(x[term.j]));
         break;
       case Form::Term::Kind::sine_of_state:
         sum = sum + term.coefficient * sin(term.frequency * x[term.i]);

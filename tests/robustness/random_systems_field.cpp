@@ -39,7 +39,10 @@ struct FixedSwitches {
 
   Scalar step(std::size_t surface, const Scalar& e) {
     psi[surface] = e;
-    if (read_anew[surface]) alpha[surface] = value_of(e) > 0.0 ? 1.0 : 0.0;
+    if (read_anew[surface]) {
+      alpha[surface] = value_of(e) > 0.0 ? 1.0 : 0.0;
+      kink_distance = std::min(kink_distance, std::abs(value_of(e)));
+    }
     return alpha[surface];
   }
   Scalar max(const Scalar& a, const Scalar& b) {
@@ -91,6 +94,7 @@ FieldValue OwnField::slide_on_one(double t, const std::vector<double>& x, std::v
   alpha[j] = 1.0;
   const FieldValue upper = at_selections(t, x, alpha);
   FieldValue value = lower;
+  value.kink_distance = std::min(lower.kink_distance, upper.kink_distance);
   value.below = psi_rates(t, x, lower)[j];
   value.above = psi_rates(t, x, upper)[j];
   const double selection = value.below / (value.below - value.above);

@@ -17,7 +17,7 @@ struct FieldValue {
   double below = 0.0, above = 0.0;
   /// Several sliding surfaces: largest |d psi/dt| that is left, and the smallest pivot of the linear system.
   double residual = 0.0, pivot = 0.0;
-  /// Smallest distance of the argument of an abs or max from its kink.
+  /// Smallest distance of the argument of an abs or max from its kink, and of a sign read anew from its change.
   double kink_distance = 0.0;
 };
 

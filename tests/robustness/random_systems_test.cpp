@@ -1,8 +1,14 @@
 // Random systems of four families: every run ends with a status, solves its system, and agrees between integrators.
-#include <fmt/format.h>
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "random_systems_campaign.hpp"
+#include "random_systems_check.hpp"
+#include "random_systems_model.hpp"
 
 namespace saltus::robustness {
 namespace {
@@ -18,6 +24,49 @@ TEST_P(RandomSystems, AreSolvedOrRefusedWithAStatus) {
 
 INSTANTIATE_TEST_SUITE_P(Families, RandomSystems, testing::ValuesIn(families),
                          [](const auto& instance) { return name(instance.param); });
+
+enum class Motion { sliding, classical };
+
+/// The first row inside the run that begins a stretch of this motion; 0 if there is none.
+std::size_t row_of(const result::Result& result, Motion motion) {
+  for (std::size_t row = 2; row + 2 < result.trajectory.t.size(); ++row) {
+    const auto& mode = result.trajectory.mode[row];
+    const bool slides = std::find(mode.begin(), mode.end(), 0) != mode.end();
+    if (slides == (motion == Motion::sliding) && result.trajectory.t[row + 1] > result.trajectory.t[row]) return row;
+  }
+  return 0;
+}
+
+TEST(RandomSystemsJudge, FindsPlantedMistakes) {
+  const RandomSystem system = draw(Family::friction, 0);
+  const Model model(system);
+  const result::Result good = model.run({Integrator::dopri5, 1e-8}, system.start);
+  ASSERT_EQ(complaint(system, model.listed(), good, 1e-8), "");
+  const std::size_t sliding = row_of(good, Motion::sliding);
+  const std::size_t classical = row_of(good, Motion::classical);
+  ASSERT_GT(sliding * classical, 0U);
+  const std::function<void(result::Result&)> mistakes[] = {
+      [](result::Result& r) { r.status.termination = result::Termination::iteration_limit; },
+      [](result::Result& r) { r.events.erase(r.events.begin() + 1); },
+      [](result::Result& r) { r.events.insert(r.events.begin() + 1, r.events[1]); },
+      [](result::Result& r) { r.events[1].t += 1e-12; },
+      [](result::Result& r) { std::swap(r.events[1].mode_before, r.events[1].mode_after); },
+      [](result::Result& r) { r.trajectory.x.back()[0] += 1e-6; },
+      [&](result::Result& r) { r.trajectory.x[classical][0] += 1e-6; },
+      [&](result::Result& r) { r.trajectory.mode[classical][0] *= -1; },
+      [&](result::Result& r) {
+        for (auto& alpha : r.trajectory.alpha[sliding]) alpha += 1e-8;
+      },
+      [&](result::Result& r) {
+        for (auto& x : r.trajectory.x[sliding]) x += 1e-10;
+      },
+  };
+  for (std::size_t i = 0; i < std::size(mistakes); ++i) {
+    result::Result bad = good;
+    mistakes[i](bad);
+    EXPECT_NE(complaint(system, model.listed(), bad, 1e-8), "") << "mistake " << i;
+  }
+}
 
 }  // namespace
 }  // namespace saltus::robustness

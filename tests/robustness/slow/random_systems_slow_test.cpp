@@ -1,0 +1,25 @@
+// Ten thousand random systems: what random_systems_test.cpp does with a few hundred.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "random_systems_campaign.hpp"
+
+namespace saltus::robustness {
+namespace {
+
+class TenThousandSystems : public testing::TestWithParam<Family> {};
+
+TEST_P(TenThousandSystems, AreSolvedOrRefusedWithAStatus) {
+  const Tally tally = run_campaign(GetParam(), 0, 2500);
+  for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
+  fmt::print("{}: {} systems, {} completed, {} outside the class; of the completed {} not unique, {} sensitive\n",
+             name(GetParam()), tally.systems, tally.completed, tally.outside_class, tally.not_unique, tally.sensitive);
+  // Codimension 2 is met by a fifth of the coupled systems.
+  EXPECT_GE(tally.completed - tally.not_unique - tally.sensitive, tally.systems * 7 / 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, TenThousandSystems, testing::ValuesIn(families),
+                         [](const auto& instance) { return name(instance.param); });
+
+}  // namespace
+}  // namespace saltus::robustness
