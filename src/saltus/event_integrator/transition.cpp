@@ -130,6 +130,15 @@ switching::GroupDecision Decider::ask(const std::vector<int>& group) {
 }
 
 bool Decider::decide(const std::vector<int>& group) {
+  for (const int j : group) {
+    const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
+    // An exit is located where one field is tangent: its selection is at its bound to rounding over the other field,
+    // unless that vanishes, too. Ten times less or more makes no difference: it is 1e-9 or of the order of one.
+    constexpr double lost = 1e-6;
+    if (at_exit && !(before_.alpha[at(j)] >= -lost && before_.alpha[at(j)] <= 1.0 + lost)) {
+      return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
+    }
+  }
   if (group.size() > largest_group || (!s_.affine_in_alpha && group.size() > 1)) {
     return fail(result::Termination::outside_class,
                 fmt::format("{} surfaces that influence each other meet at t = {}: {}; sliding there needs the general "
