@@ -60,7 +60,7 @@ class RestrictedTable {
       const bool bit = (corner >> i & 1U) != 0;
       if (fixed_[i]) {
         weight *= bit ? *fixed_[i] : 1.0 - *fixed_[i];
-      } else if (bit != ((free_corner >> i & 1U) != 0)) {
+      } else if (((corner ^ free_corner) >> i & 1U) != 0) {  // NOTE: comparing two bits is miscompiled by g++ 12.2 -O1
         return 0.0;
       }
     }
