@@ -86,7 +86,6 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   other_continuations(s, state, occasion, start.transition);
   if (forced.empty()) return start;
 
-  start.forced = true;
   const auto decided = start.transition;
   for (const auto& [surface, mode] : forced) {
     const bool at_zero = std::find(start.at_zero.begin(), start.at_zero.end(), surface) != start.at_zero.end();

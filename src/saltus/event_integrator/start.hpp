@@ -11,7 +11,6 @@ namespace saltus::event_integrator {
 struct Start {
   Transition transition;
   std::vector<int> at_zero;  ///< surfaces the solution starts on
-  bool forced = false;       ///< some mode was given by the user
 };
 
 /// Decides the mode at the start by the same switching as at an event; `forced` modes override it.

@@ -231,7 +231,7 @@ bool Decider::check() {
   transition_.beside = fields_.point_beside(state.alpha);
   const auto is_number = [](double value) { return std::isfinite(value); };
   if (!std::all_of(xdot.begin(), xdot.end(), is_number)) field(occasion_.t, transition_.beside.data(), xdot.data());
-  if (!std::all_of(xdot.begin(), xdot.end(), [](double v) { return std::isfinite(v); })) {
+  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) {
     // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
     if (!state.sliding.empty()) {
       return fail(result::Termination::evaluation_failed, fmt::format("the sliding field on {} is not finite at t = {}",
