@@ -59,6 +59,8 @@ std::string_view role_text(model::SwitchingRole role) {
       return "kink: the integrator restarts there, nothing slides";
     case model::SwitchingRole::time_event:
       return "time event: the integrator restarts there";
+    case model::SwitchingRole::discrete:
+      return "discrete: changed by jumps only, nothing slides";
   }
   __builtin_unreachable();
 }

@@ -14,8 +14,15 @@ namespace saltus::evaluation {
 /// there is no compiler.
 enum class NativeCode { automatic, on, off };
 
+/// A guard of a jump whose executions have accumulated: it and its derivative along the motion stay 0, the continuous
+/// states that the jump sets absorb what is needed.
+struct Hold {
+  int jump = 0;
+  int function = 0;  ///< event function of the guard g
+};
+
 /// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons
-/// (guards) of their conditions.
+/// (guards) of their conditions, then the guards of [[jumps]], jump by jump.
 ///
 /// All functions take t (model time), x (n_x), alpha (n_psi, in [0, 1]) and write to the caller's memory; values that
 /// are not finite mark points where the model is undefined. Controls are replaced by their inputs u(t). Not thread
@@ -54,6 +61,24 @@ class ModelKernel {
   /// Truth (0 or 1) of the condition of [[events]] entry `event` from the steps of its guards.
   [[nodiscard]] bool condition(int event, double t, const double* x, const double* alpha,
                                const double* guard_alpha) const;
+
+  /// Event function of guard `guard` of jump `jump`.
+  [[nodiscard]] int jump_guard(int jump, int guard) const;
+  /// Truth (0 or 1) of the condition of a jump from the steps of its guards.
+  [[nodiscard]] bool jump_condition(int jump, double t, const double* x, const double* alpha,
+                                    const double* guard_alpha) const;
+  /// Right-hand sides of `set`, one per target.
+  void jump_values(int jump, double t, const double* x, const double* alpha, double* values) const;
+  [[nodiscard]] double jump_priority(int jump, double t, const double* x, const double* alpha) const;
+  [[nodiscard]] double jump_delay(int jump, double t, const double* x, const double* alpha) const;
+
+  /// From now on field(), lie_derivative() and depends() are those of the held system
+  ///   xdot = f + D mu,  d_k = (d set_k/dx - I) w_k,  w_k = d/dx (d g_k/dt) restricted to the continuous states that
+  ///   jump k sets,  mu from d^2 g/dt^2 = 0 for all held guards.
+  /// An empty list releases all. Fails (outside_class's message) where d g/dt does not hold the states the jump sets.
+  [[nodiscard]] Expected<void> hold(const std::vector<Hold>& holds);
+  /// mu of the holds, each with the sign of its d^2 g_k/dt^2 without it if it were alone: release where it passes 0.
+  void hold_pressure(double t, const double* x, const double* alpha, double* pressure) const;
 
   /// Whether phi_j is affine in (t, x) for fixed alpha.
   [[nodiscard]] bool is_affine(int function) const;

@@ -14,6 +14,17 @@ enum class Inclusion { filippov, aizerman_pyatnitskii };
 enum class Direction { up, down, both };
 enum class AtEvent { record, stop };
 
+/// What turns a jump on (interface.md, [[jumps]]).
+enum class JumpTrigger {
+  condition,   ///< a condition becomes true
+  guard_down,  ///< g < 0 becomes true
+  guard_up,    ///< g > 0 becomes true
+  guard_both,  ///< either
+  times,       ///< given times
+};
+/// When the right-hand sides of `set` are evaluated.
+enum class JumpValues { at_trigger, at_execution };
+
 /// name = "expression"; location is that of the name, the expression carries its own positions.
 struct NamedExpression {
   std::string name;
@@ -55,6 +66,22 @@ struct ModeDescription {
   SourceLocation location;
 };
 
+/// One of [[jumps]].
+struct JumpDescription {
+  std::optional<std::string> name;
+  JumpTrigger trigger = JumpTrigger::condition;
+  expression::NodePtr when;             ///< condition or guard; null with times
+  expression::NodePtr every;            ///< period, counted from the start; null without
+  std::vector<expression::NodePtr> at;  ///< times
+  std::vector<NamedExpression> set;     ///< state = new value
+  bool at_start = false;
+  expression::NodePtr priority;  ///< null means 0
+  expression::NodePtr delay;     ///< null means 0
+  bool persistent = true;
+  JumpValues values = JumpValues::at_trigger;
+  SourceLocation location;
+};
+
 /// A model file without its [simulate] table. All vectors are in the order of the file.
 struct Description {
   std::string file;
@@ -70,6 +97,7 @@ struct Description {
   std::vector<ModeDescription> modes;
   std::vector<NamedExpression> outputs;
   std::vector<UserEventDescription> events;
+  std::vector<JumpDescription> jumps;
   std::vector<NamedExpression> inputs;  ///< values of controls during a simulation, over t and parameters
 };
 

@@ -16,6 +16,7 @@ enum class SwitchingRole {
   listed,      ///< makes a jump somewhere: column in the result, each change of sign is an event
   kink,        ///< nothing jumps on its surface: restart only (column if named)
   time_event,  ///< depends on time and controls only: restart only (column if named)
+  discrete,    ///< depends on discrete states only: changes by jumps only, never slides; at zero it is as written
 };
 
 /// psi_j(t, x, u, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index (nesting).
@@ -25,6 +26,9 @@ struct SwitchingFunction {
   SwitchingRole role = SwitchingRole::listed;
   bool named = false;      ///< declared in [switching]
   std::vector<int> inner;  ///< indices of the switching functions whose alpha occurs in psi, ascending
+  /// Role discrete: alpha where psi is 0, as written (1 for >=, 0 for >, 1/2 for step). Functions that are the same but
+  /// for this are two.
+  double alpha_at_zero = 0.5;
 };
 
 /// A column of the result: a switching function, or an alias of one (the same surface named twice).
@@ -45,6 +49,27 @@ struct UserEvent {
   std::vector<bool> true_at_equality;  ///< step(guard) counts as 1 where the guard is 0
   Direction direction = Direction::both;
   AtEvent action = AtEvent::record;
+};
+
+/// One of [[jumps]]: x[targets] <- values when it is executed. Conditions hold pointwise, as in UserEvent: `value` is a
+/// polynomial (0 or 1) in `guard_alpha`; a comparison that may stand at equality on discrete states (==, !=) is two
+/// guards. A guard with a direction is guards = g (1 x 1) and no value.
+struct Jump {
+  std::string name;  ///< given, or jump1, jump2, … by position
+  bool named = false;
+  JumpTrigger trigger = JumpTrigger::condition;
+  casadi::SX value;                    ///< trigger condition: over t, x, u, p, alpha, guard_alpha
+  casadi::SX guards;                   ///< over t, x, u, p, alpha; 0 x 1 for times
+  casadi::SX guard_alpha;              ///< one symbol per guard
+  std::vector<bool> true_at_equality;  ///< step(guard) counts as 1 where the guard is 0
+  std::vector<double> times;           ///< trigger times: `at`, ascending
+  double every = 0.0;                  ///< trigger times: at from + every, from + 2 every, …; 0 without
+  std::vector<int> targets;            ///< states that are set
+  casadi::SX values;                   ///< one per target, over t, x, u, p, alpha
+  casadi::SX priority, delay;          ///< scalars over t, x, u, p, alpha
+  bool at_start = false;
+  bool persistent = true;
+  JumpValues evaluated = JumpValues::at_trigger;
 };
 
 /// A group of [[modes]], of which one holds at a time; its part of the right-hand side is in f.
@@ -81,6 +106,8 @@ struct System {
   std::vector<SwitchingFunction> switching;
   std::vector<SwitchingColumn> columns;  ///< of the result: order of appearance, named ones first in file order
   std::vector<UserEvent> events;
+  std::vector<Jump> jumps;
+  std::vector<bool> discrete_states;  ///< n_x: dynamics 0, changed by jumps only
   std::vector<ModeGroup> mode_groups;
 
   bool multi_affine = true;                        ///< f_as_written is, in the alphas of listed functions, by its form
