@@ -3,10 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/event_integrator/small_internal.hpp"
+
 namespace saltus::event_integrator {
-namespace {
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-}  // namespace
 
 void move_onto(const evaluation::ModelKernel& kernel, const ModeState& state, int surface, double t,
                std::vector<double>& x) {

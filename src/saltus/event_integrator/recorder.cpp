@@ -4,12 +4,9 @@
 #include <limits>
 #include <utility>
 
+#include "saltus/event_integrator/small_internal.hpp"
+
 namespace saltus::event_integrator {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& system)
     : kernel_(kernel), system_(system) {}

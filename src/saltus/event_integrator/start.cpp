@@ -7,11 +7,10 @@
 
 #include "saltus/event_integrator/continuations.hpp"
 #include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// psi_j, or where it holds signs that are not decided yet, and that it depends on, the value in one of their regions:
 /// 0 at a selection of 1/2 means nothing.

@@ -1,9 +1,8 @@
 #include "saltus/event_integrator/user_events.hpp"
 
+#include "saltus/event_integrator/small_internal.hpp"
+
 namespace saltus::event_integrator {
-namespace {
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-}  // namespace
 
 UserEvents::UserEvents(const evaluation::ModelKernel& kernel, const model::System& system)
     : kernel_(kernel), system_(system), places_(system.events.size()), state_(system.events.size(), 0) {

@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/at_surface.hpp"
+#include "saltus/event_integrator/continuations.hpp"
+#include "saltus/event_integrator/run_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using result::Termination;
+
+bool Run::fire_user_events(const ModeState& before) {
+  const auto fired = user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs());
+  for (const int event : fired) {
+    recorder_.user(t_, x_, before, state_, event);
+    if (user_events_.stops(event) && running_) {
+      fail(Termination::stopped_by_event,
+           fmt::format("stopped by the event '{}'", surroundings_.system.events[at(event)].name));
+    }
+  }
+  return !fired.empty();
+}
+
+bool Run::too_many_events() {
+  if (recorder_.events() >= options_.max_events) {
+    fail(Termination::iteration_limit, fmt::format("max_events = {} reached at {}", options_.max_events, where()));
+    return true;
+  }
+  if (!series_.too_dense(t_)) return false;
+  accumulates();
+  return true;
+}
+
+void Run::accumulates() {
+  if (stopped_by_two_fold()) return;
+  fail(Termination::outside_class,
+       fmt::format(
+           "switches accumulate at t = {:.17g} (spiral into an intersection of surfaces, or chattering): passing "
+           "the limit needs the codimension-2 switching of a later version",
+           t_));
+}
+
+bool Run::change_mode(const Located& located) {
+  Occasion occasion;
+  occasion.t = t_;
+  occasion.x = x_.data();
+  occasion.time_scale = h_scale_;
+  occasion.at_zero = state_.sliding;
+  bool any = false;
+  for (std::size_t k = 0; k < located.functions.size(); ++k) {
+    const auto& function = search_.functions()[located.functions[k]];
+    if (function.kind == FunctionKind::user) continue;
+    any = true;
+    if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
+    if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
+    const bool nested = function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
+    if (nested && !continuous_across(kernel_, state_, function.index, t_, x_)) {
+      fail(Termination::outside_class,
+           fmt::format(
+               "'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
+               "it at t = {:.17g}: rewrite the nested term with named switching functions",
+               surroundings_.system.switching[at(function.index)].name,
+               surroundings_.system.switching[at(state_.sliding.front())].name, t_));
+      return false;
+    }
+    occasion.at_zero.push_back(function.index);
+    occasion.touched.push_back(function.index);
+  }
+  if (!any) return true;
+  std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
+  occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
+  const ModeState before = state_;
+  auto transition = decide_mode(surroundings_, before, occasion);
+  if (transition.termination != Termination::completed) {
+    fail(transition.termination, std::move(transition.message));
+    return false;
+  }
+  if (series_.repeats(t_, before.mode, transition.state.mode)) {
+    accumulates();
+    return false;
+  }
+  other_continuations(surroundings_, before, occasion, transition);
+  if (!enter(transition)) return false;
+  transition.state = state_;
+  recorder_.switched(t_, x_, before, transition);
+  control_.reset();
+  return true;
+}
+
+/// User functions that vanish here continue with the other sign.
+void Run::flip_user_functions(const Located& located) {
+  const auto each = [&](auto&& set) {
+    for (std::size_t k = 0; k < located.functions.size(); ++k) {
+      if (search_.functions()[located.functions[k]].kind == FunctionKind::user)
+        set(located.functions[k], located.signs[k]);
+    }
+  };
+  // The signs before become known now, if they were not; only then do all of them change.
+  each([&](std::size_t function, int sign) { search_.set_user_sign(function, sign, t_, x_.data()); });
+  static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
+  each([&](std::size_t function, int sign) { search_.set_user_sign(function, -sign, t_, x_.data()); });
+}
+
+/// The state is at a located event: rows before and behind, user events, the next mode.
+Run::Step Run::handle(Located located) {
+  const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
+  t_ = located.t;
+  x_ = std::move(located.x);
+  const long events_before = recorder_.events();
+  const ModeState before = state_;
+  field_(t_, x_.data(), slope_.data());
+  if (!state_.sliding.empty()) state_.alpha = field_.alpha();
+  const std::vector<double> x_before = x_;
+  const auto alpha_before = state_.sliding.empty() ? state_.alpha : field_.alpha();
+  flip_user_functions(located);
+  static_cast<void>(change_mode(located));
+  if (running_) fire_user_events(before);
+  if (recorder_.events() > events_before || !running_) {
+    // A step that ended exactly here has written the row before the event.
+    if (!ended_here) recorder_.row(t_, x_before, before.mode, alpha_before);
+    if (recorder_.events() > events_before) row(t_, x_);
+  } else if (options_.output.rows == OutputTimes::Rows::at_steps) {
+    row(t_, x_);
+  }
+  while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) {
+    // A requested time at a restart that is no event still gets its row.
+    const bool wanted = options_.output.times[next_output_] == t_ && recorder_.events() == events_before &&
+                        options_.output.rows == OutputTimes::Rows::at_times && running_;
+    if (wanted) row(t_, x_);
+    ++next_output_;
+  }
+  if (recorder_.events() > events_before) last_event_time_ = t_;
+  if (running_) static_cast<void>(too_many_events());
+  return running_ ? Step::taken : Step::failed;
+}
+
+}  // namespace saltus::event_integrator

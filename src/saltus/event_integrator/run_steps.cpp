@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/at_surface.hpp"
+#include "saltus/event_integrator/run_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using result::Termination;
+
+void Run::row(double t, const std::vector<double>& x) {
+  if (!state_.sliding.empty()) field_(t, x.data(), row_slope_.data());
+  recorder_.row(t, x, state_.mode, state_.sliding.empty() ? state_.alpha : field_.alpha());
+}
+
+/// Rows at requested times in (t_, t_end), from the dense output of the step under way.
+void Run::rows_until(double t_end) {
+  const auto& times = options_.output.times;
+  for (; next_output_ < times.size() && times[next_output_] <= t_end; ++next_output_) {
+    const double t = times[next_output_];
+    if (t <= t_ || t == t_end) {
+      if (t == t_end) break;
+      continue;
+    }
+    dense_.evaluate((t - dense_.t) / dense_.h, row_x_.data());
+    field_.project(t, row_x_.data());
+    row(t, row_x_);
+  }
+}
+
+bool Run::shorten(double factor) {
+  ++result_.statistics.rejected;
+  h_try_ *= factor;
+  h_ = h_try_;
+  if (h_try_ > smallest_step()) return true;
+  return false;
+}
+
+/// Whether the steps got short because the sliding selection has no limit here.
+bool Run::stopped_by_two_fold() {
+  const auto message = two_fold_message(surroundings_, state_, t_, x_.data());
+  if (message) fail(Termination::outside_class, *message);
+  return message.has_value();
+}
+
+/// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
+Run::Step Run::undefined_step() {
+  std::vector<double> values(search_.functions().size());
+  search_.evaluate(t_, x_.data(), values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& function = search_.functions()[i];
+    const bool surface = function.kind == FunctionKind::surface;
+    if (!surface && function.kind != FunctionKind::loss) continue;
+    // The zero lies within the time that can no longer be resolved, or the selection has become double.
+    const double rate = surface ? kernel_.lie_derivative(function.index, 1, t_, x_.data(), state_.alpha.data()) : 0.0;
+    const bool reached = surface ? values[i] * rate < 0.0 && std::abs(values[i] / rate) <= 1e3 * smallest_step()
+                                 : std::abs(values[i]) < 1e-3;
+    if (reached) {
+      Located located{t_, x_, {i}, {function.sign}};
+      if (surface) move_onto(kernel_, state_, function.index, t_, located.x);
+      return handle(std::move(located));
+    }
+  }
+  if (stopped_by_two_fold()) return Step::failed;
+  fail(Termination::evaluation_failed,
+       fmt::format("the right-hand side is not finite beyond {}, however short the step; guard the expression with "
+                   "if(…), or end the simulation before",
+                   where()));
+  return Step::failed;
+}
+
+Run::Step Run::accept(double t_new) {
+  ++result_.statistics.steps;
+  rows_until(t_new);
+  const double h = t_new - t_;
+  std::copy(stepper_.x_new(), stepper_.x_new() + x_.size(), x_.begin());
+  t_ = t_new;
+  h_scale_ = h;
+  if (field_.project(t_, x_.data())) {
+    field_(t_, x_.data(), slope_.data());
+  } else {
+    std::copy(stepper_.slope_new(), stepper_.slope_new() + slope_.size(), slope_.begin());
+  }
+  h_ = h * control_.accepted(stepper_.error_norm());
+  if (!stiff_at_ && stiffness_.looks_stiff(stepper_)) stiff_at_ = t_;
+  if (search_.settle(t_, x_.data())) {
+    // What a user function turns to from a zero at the start is its first sign, not a change of it.
+    static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
+  }
+  const bool requested = next_output_ < options_.output.times.size() && options_.output.times[next_output_] == t_;
+  if (requested) ++next_output_;
+  if (options_.output.rows == OutputTimes::Rows::at_steps || requested || t_ >= options_.until) row(t_, x_);
+  return Step::taken;
+}
+
+Run::Step Run::attempt() {
+  const bool to_the_end = t_ + h_try_ * (1.0 + 4.0 * rounding_unit) >= options_.until;
+  const double t_new = to_the_end ? options_.until : t_ + h_try_;
+  const double h = t_new - t_;
+  if (stepper_.attempt(right_hand_side(), t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
+    return shorten(0.25) ? Step::shortened : undefined_step();
+  }
+  if (const double error = stepper_.error_norm(); !(error <= 1.0)) {
+    if (shorten(control_.rejected(error))) return Step::shortened;
+    if (stopped_by_two_fold()) return Step::failed;
+    fail(Termination::step_size_too_small,
+         fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
+                     "there, or rtol is below what doubles carry",
+                     where(), h));
+    return Step::failed;
+  }
+  const bool rows_inside = next_output_ < options_.output.times.size() && options_.output.times[next_output_] < t_new;
+  if (!search_.functions().empty() || rows_inside) {
+    if (stepper_.dense(right_hand_side(), dense_) == ode::Attempt::undefined) {
+      return shorten(0.5) ? Step::shortened : undefined_step();
+    }
+    Hit hit;
+    switch (search_.search(dense_, hit)) {
+      case SearchOutcome::none:
+        break;
+      case SearchOutcome::unresolved:
+        return shorten(0.5) ? Step::shortened : undefined_step();
+      case SearchOutcome::hit: {
+        const StepStart start{t_, x_.data(), slope_.data()};
+        h_scale_ = h;
+        auto located = locate(stepper_, field_, search_, tolerances_, start, dense_, hit);
+        if (!located) return shorten(0.5) ? Step::shortened : undefined_step();
+        ++result_.statistics.steps;
+        rows_until(located->t);
+        return handle(std::move(*located));
+      }
+    }
+  }
+  return accept(t_new);
+}
+
+}  // namespace saltus::event_integrator
