@@ -131,7 +131,6 @@ FILES = {
     "modes is a table": (after("[modes]\nwhen = 'x > 0'\n"), 13, "[[modes]]"),
     # later versions
     "indicators": (after("[[modes]]\nindicator = 'x'\ndynamics = { x = 1 }\n"), 13, "run by a later version"),
-    "jumps": (after("[[jumps]]\nwhen = 'x > 0'\n"), 13, "[[jumps]]", "a later one brings it"),
     "tables": (after("[tables.road]\nx = [0, 1]\n"), 13, "[tables]", "a later one brings it"),
     "mechanics": (after("[mechanics]\npositions = ['x']\n"), 13, "[mechanics]", "a later one brings it"),
     "contacts": (after("[[contacts]]\nname = 'c'\n"), 13, "[[contacts]]", "a later one brings it"),

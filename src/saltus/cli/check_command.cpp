@@ -28,8 +28,9 @@ std::string heading(std::string_view title, std::size_t count) { return fmt::for
 std::string states_text(const model::System& system) {
   std::string text = heading("states", system.state_names.size());
   for (std::size_t i = 0; i < system.state_names.size(); ++i) {
-    text += fmt::format("  {} = {}{}\n", system.state_names[i], system.initial_state[i],
-                        bounds(system.state_lower[i], system.state_upper[i]));
+    text += fmt::format("  {} = {}{}{}\n", system.state_names[i], system.initial_state[i],
+                        bounds(system.state_lower[i], system.state_upper[i]),
+                        system.discrete_states[i] ? "  discrete: changed by jumps only" : "");
   }
   return text;
 }
@@ -124,10 +125,38 @@ std::string events_text(const model::System& system) {
   return text;
 }
 
+std::string trigger_text(const model::Jump& jump) {
+  switch (jump.trigger) {
+    case model::JumpTrigger::condition:
+      return "when its condition becomes true";
+    case model::JumpTrigger::guard_down:
+      return "when its guard falls below 0";
+    case model::JumpTrigger::guard_up:
+      return "when its guard rises above 0";
+    case model::JumpTrigger::guard_both:
+      return "when its guard passes 0";
+    case model::JumpTrigger::times:
+      break;
+  }
+  return jump.every > 0.0 ? fmt::format("every {}", jump.every)
+                          : fmt::format("at {} given time{}", jump.times.size(), jump.times.size() == 1 ? "" : "s");
+}
+
+std::string jumps_text(const model::System& system) {
+  if (system.jumps.empty()) return "";
+  std::string text = heading("jumps", system.jumps.size());
+  for (const auto& jump : system.jumps) {
+    std::vector<std::string> targets;
+    for (const int target : jump.targets) targets.push_back(system.state_names[static_cast<std::size_t>(target)]);
+    text += fmt::format("  {}: {}; sets {}\n", jump.name, trigger_text(jump), fmt::join(targets, ", "));
+  }
+  return text;
+}
+
 std::string description_of(const model::System& system, const std::string& path) {
   std::string text = fmt::format("{}: {}\n{}\n", system.name, system.description, path);
   text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
-  text += modes_text(system) + events_text(system) + inclusion_text(system);
+  text += modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system);
   text += heading("warnings", system.warnings.size());
   for (const auto& warning : system.warnings) text += fmt::format("  {}\n", warning);
   return text;

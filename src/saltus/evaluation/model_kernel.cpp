@@ -9,6 +9,7 @@
 #include <casadi/core/code_generator.hpp>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/evaluation/jump_functions_internal.hpp"
 #include "saltus/evaluation/model_function_internal.hpp"
 #include "saltus/evaluation/native_code.hpp"
 
@@ -44,6 +45,7 @@ struct ModelKernel::Implementation {
 
   ModelFunction field, functions, scales, output_function, input_function;
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
+  JumpFunctions jumps;
   std::vector<bool> affine, time_only;
   std::vector<std::vector<int>> inner;
   std::vector<std::vector<bool>> depends;
@@ -131,6 +133,8 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   for (const auto& event : system.events) {
     if (event.guards.numel() > 0) rows.push_back(SX::vec(event.guards));
   }
+  const auto jump_guards = static_cast<int>(SX::vertcat(rows).numel());
+  for (const auto& jump : system.jumps) rows.push_back(SX::vec(jump.guards));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
 
   const std::vector<SX> arguments{t, x, p, alpha};
@@ -144,6 +148,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
   find_structure();
   compile_conditions(system);
+  jumps = JumpFunctions(system, arguments, input, jump_guards);
 }
 
 void ModelKernel::Implementation::find_structure() {
@@ -293,6 +298,29 @@ bool ModelKernel::condition(int event, double t, const double* x, const double* 
   self.conditions[index(event)](std::array<const double*, 5>{&t, x, self.parameters.data(), alpha, guard_alpha},
                                 std::array<double*, 1>{&value});
   return value > 0.5;
+}
+
+int ModelKernel::jump_guard(int jump, int guard) const { return implementation_->jumps.guard(jump, guard); }
+
+bool ModelKernel::jump_condition(int jump, double t, const double* x, const double* alpha,
+                                 const double* guard_alpha) const {
+  auto& self = *implementation_;
+  return self.jumps.condition(jump, {&t, x, self.parameters.data(), alpha}, guard_alpha);
+}
+
+void ModelKernel::jump_values(int jump, double t, const double* x, const double* alpha, double* values) const {
+  auto& self = *implementation_;
+  self.jumps.values(jump, {&t, x, self.parameters.data(), alpha}, values);
+}
+
+double ModelKernel::jump_priority(int jump, double t, const double* x, const double* alpha) const {
+  auto& self = *implementation_;
+  return self.jumps.priority(jump, {&t, x, self.parameters.data(), alpha});
+}
+
+double ModelKernel::jump_delay(int jump, double t, const double* x, const double* alpha) const {
+  auto& self = *implementation_;
+  return self.jumps.delay(jump, {&t, x, self.parameters.data(), alpha});
 }
 
 bool ModelKernel::is_affine(int function) const { return implementation_->affine[index(function)]; }

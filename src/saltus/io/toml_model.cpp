@@ -36,6 +36,7 @@ constexpr std::array sections{
     Section{"switching", read_into<&model::Description::switching>},
     Section{"dynamics", read_into<&model::Description::dynamics>},
     Section{"modes", read_modes},
+    Section{"jumps", read_jumps},
     Section{"outputs", read_into<&model::Description::outputs>},
     Section{"events", read_events},
     Section{"simulate", read_simulate},
@@ -46,9 +47,9 @@ struct LaterTable {
   std::string_view written;
 };
 constexpr std::array later_tables{
-    LaterTable{"jumps", "[[jumps]]"},       LaterTable{"tables", "[tables]"},
-    LaterTable{"mechanics", "[mechanics]"}, LaterTable{"contacts", "[[contacts]]"},
-    LaterTable{"optimize", "[optimize]"},   LaterTable{"sensitivity", "[sensitivity]"},
+    LaterTable{"tables", "[tables]"},           LaterTable{"mechanics", "[mechanics]"},
+    LaterTable{"contacts", "[[contacts]]"},     LaterTable{"optimize", "[optimize]"},
+    LaterTable{"sensitivity", "[sensitivity]"},
 };
 
 std::vector<std::string> known_tables() {
@@ -61,8 +62,8 @@ std::vector<std::string> known_tables() {
 void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   for (const auto& section : sections) {
     if (section.name != entry.key) continue;
-    reader.enter(entry.key == "events" || entry.key == "modes" ? fmt::format("[[{}]]", entry.key)
-                                                               : fmt::format("[{}]", entry.key));
+    const bool is_array = entry.key == "events" || entry.key == "modes" || entry.key == "jumps";
+    reader.enter(is_array ? fmt::format("[[{}]]", entry.key) : fmt::format("[{}]", entry.key));
     section.read(reader, entry, model);
     reader.enter("");
     return;

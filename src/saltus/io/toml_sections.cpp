@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "saltus/io/toml_sections_internal.hpp"
+#include "saltus/io/toml_words_internal.hpp"
 
 namespace saltus::io {
 namespace {
@@ -48,37 +49,6 @@ void require_initial(TomlReader& reader, const TomlEntry& entry, const Quantity&
 
 const std::vector<std::string> quantity_keys{"initial", "lower", "upper", "free"};
 const std::vector<std::string> control_keys{"initial", "lower", "upper"};
-
-template <class Enum>
-Expected<Enum> enum_named(const std::string& word, const std::vector<std::pair<std::string, Enum>>& choices) {
-  std::vector<std::string> known;
-  for (const auto& [name, value] : choices) {
-    if (name == word) return value;
-    known.push_back(name);
-  }
-  return tl::unexpected(
-      Error{ErrorCode::invalid_option,
-            fmt::format("expected \"{}\", found the string \"{}\"", fmt::join(known, "\" or \""), word),
-            nearest_names(word, known).empty() ? "" : suggest(word, known),
-            {},
-            {}});
-}
-
-/// Reads a word out of a closed set; `fallback` after an error.
-template <class Enum>
-Enum read_enum(TomlReader& reader, const TomlValue& value, const std::vector<std::pair<std::string, Enum>>& choices,
-               Enum fallback) {
-  const auto* word = std::get_if<TomlString>(&value.value);
-  if (word == nullptr) {
-    reader.wrong_type(fmt::format("\"{}\" or another of its words", choices.front().first), value);
-    return fallback;
-  }
-  auto found = enum_named(word->text, choices);
-  if (found) return *found;
-  found.error().location = value.location;
-  reader.fail(found.error());
-  return fallback;
-}
 
 const std::vector<std::pair<std::string, model::Inclusion>> inclusions{
     {"filippov", model::Inclusion::filippov}, {"aizerman_pyatnitskii", model::Inclusion::aizerman_pyatnitskii}};

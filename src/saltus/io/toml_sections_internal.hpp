@@ -12,6 +12,7 @@ void read_states(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_events(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_modes(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_jumps(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
 /// A table of name = expression.

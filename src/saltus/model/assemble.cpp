@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "saltus/model/guards_internal.hpp"
+#include "saltus/model/jumps_internal.hpp"
 #include "saltus/model/reduction_internal.hpp"
 #include "saltus/model/statement_internal.hpp"
 #include "saltus/model/surfaces_internal.hpp"
@@ -21,6 +22,7 @@ class Assembly {
     if (auto error = take_values()) return tl::unexpected(*error);
     if (auto error = take_expressions()) return tl::unexpected(*error);
     if (auto error = take_events()) return tl::unexpected(*error);
+    if (auto error = take_jumps()) return tl::unexpected(*error);
     keep_used_functions();
     classify_functions();
     if (auto error = take_right_hand_side()) return tl::unexpected(*error);
@@ -78,6 +80,8 @@ class Assembly {
     for (const auto& state : statement_.states) {
       x.push_back(state.symbol);
       if (auto error = take_root(*state.dynamics, f_)) return located_error(*error, state.dynamics_location);
+      const auto& rate = graph_.tape()[f_.back()];
+      system_.discrete_states.push_back(rate.written == 0 && constant_value(graph_.tape(), f_.back()) == 0.0);
     }
     for (const auto& output : statement_.outputs) {
       system_.output_names.push_back(output.name);
@@ -156,6 +160,18 @@ class Assembly {
     if (constant) {
       event_warnings_.push_back(
           located(stated.location, fmt::format("event '{}' never happens: its 'when' is constant", event.name)));
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> take_jumps() {
+    for (const auto& stated : statement_.jumps) {
+      auto jump = jump_of(recognition_, stated, static_cast<int>(system_.jumps.size()) + 1, event_warnings_);
+      if (!jump) return located_error(jump.error(), stated.location);
+      for (const auto* expressions : {&jump->guards, &jump->values, &jump->priority, &jump->delay}) {
+        for (const SXElem& e : expressions->nonzeros()) others_.push_back(graph_.node(e));
+      }
+      system_.jumps.push_back(std::move(*jump));
     }
     return std::nullopt;
   }
@@ -285,7 +301,7 @@ class Assembly {
   SxGraph& graph_;
   const Statement& statement_;
   System system_;
-  std::vector<int> f_, others_, inputs_;  ///< nodes: right-hand sides; outputs and events; inputs
+  std::vector<int> f_, others_, inputs_;  ///< nodes: right-hand sides; outputs, events, jumps; inputs
   std::vector<bool> used_;                ///< by met function: something but a named psi needs it
   std::vector<int> kept_, new_index_;     ///< met functions that stay, and the new number of every one
   std::vector<Surface> surfaces_;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/jumps_internal.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
 
@@ -29,9 +30,10 @@ class Build {
     statement_.time = recognition_.graph.symbol("t", {.kind = VariableKind::time});
     note_all_names();
     using Step = MaybeError (Build::*)();
-    constexpr Step steps[] = {&Build::names,  &Build::overrides, &Build::parameters, &Build::controls, &Build::states,
-                              &Build::bounds, &Build::switching, &Build::dynamics,   &Build::modes,    &Build::outputs,
-                              &Build::events, &Build::inputs,    &Build::definitions};
+    constexpr Step steps[] = {&Build::names,  &Build::overrides,  &Build::parameters, &Build::controls,
+                              &Build::states, &Build::bounds,     &Build::switching,  &Build::dynamics,
+                              &Build::modes,  &Build::outputs,    &Build::events,     &Build::jumps,
+                              &Build::inputs, &Build::definitions};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }
@@ -231,6 +233,8 @@ class Build {
     return std::nullopt;
   }
 
+  MaybeError jumps() { return state_jumps(description_, scope_, statement_); }
+
   MaybeError inputs() {
     for (const auto& entry : description_.inputs) {
       const Meaning* meaning = scope_.names().find(entry.name);
@@ -275,6 +279,11 @@ class Build {
     for (const auto& mode : description_.modes) {
       for (const auto* node : {&mode.when, &mode.indicator}) scope_.note_names(*node);
       for (const auto& entry : mode.dynamics) scope_.note_names(entry.expression);
+    }
+    for (const auto& jump : description_.jumps) {
+      for (const auto* node : {&jump.when, &jump.every, &jump.priority, &jump.delay}) scope_.note_names(*node);
+      for (const auto& time : jump.at) scope_.note_names(time);
+      for (const auto& entry : jump.set) scope_.note_names(entry.expression);
     }
   }
 

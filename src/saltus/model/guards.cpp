@@ -23,18 +23,21 @@ Expected<Truth> Guards::truth(const Condition& condition) {
   return condition.kind() == Condition::Kind::conjunction ? diagram_.conjunction(*a, *b) : diagram_.disjunction(*a, *b);
 }
 
-/// A condition that folded still is one: it gets a guard that never changes.
-void Guards::fill(UserEvent& event, Truth truth) {
+/// One symbol per guard. A condition that folded still is one: it gets a guard that never changes.
+std::vector<SXElem> Guards::finish(std::vector<bool>& true_at_equality) {
   if (guards_.empty()) static_cast<void>(guard(recognition_.graph.node(SXElem(1.0)), AtEquality::is_false));
-  std::vector<SXElem> symbols, differences;
+  std::vector<SXElem> symbols;
   for (std::size_t i = 0; i < guards_.size(); ++i) {
     symbols.push_back(SXElem::sym(fmt::format("guard_alpha_{}", i)));
-    differences.push_back(recognition_.graph.expression(guards_[i].node));
-    event.true_at_equality.push_back(guards_[i].at_equality == AtEquality::is_true);
+    true_at_equality.push_back(guards_[i].at_equality == AtEquality::is_true);
   }
-  event.guards = column(differences);
-  event.guard_alpha = column(symbols);
-  event.value = recognition_.graph.polynomial(diagram_, truth, symbols);
+  return symbols;
+}
+
+casadi::SX Guards::differences() const {
+  std::vector<SXElem> differences;
+  for (const auto& guard : guards_) differences.push_back(recognition_.graph.expression(guard.node));
+  return column(differences);
 }
 
 int Guards::guard(int node, AtEquality at_equality) {

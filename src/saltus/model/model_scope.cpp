@@ -33,6 +33,11 @@ std::optional<Error> ModelScope::declare_names() {
     const std::string name = event.name.value_or(fmt::format("event{}", position + 1));
     found.push_back({name, {NameKind::event, position++, event.location}});
   }
+  position = 0;
+  for (const auto& jump : description_.jumps) {
+    const std::string name = jump.name.value_or(fmt::format("jump{}", position + 1));
+    found.push_back({name, {NameKind::jump, position++, jump.location}});
+  }
   // The later one of two equal names is the wrong one.
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.second.location.line < b.second.location.line; });
@@ -120,6 +125,7 @@ Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meani
     }
     case NameKind::output:
     case NameKind::event:
+    case NameKind::jump:
       break;
   }
   return tl::unexpected(

@@ -23,6 +23,8 @@ std::string with_article(NameKind kind) {
       return "an output";
     case NameKind::event:
       return "an event";
+    case NameKind::jump:
+      return "a jump";
   }
   return "";
 }

@@ -59,6 +59,32 @@ struct EventStatement {
   SourceLocation location{};
 };
 
+/// State number `state` <- value.
+struct AssignmentStatement {
+  int state = 0;
+  SXElem value;
+  SourceLocation location{};
+};
+
+/// By its trigger: a condition, a guard, or times.
+struct JumpStatement {
+  std::optional<std::string> name{};
+  JumpTrigger trigger = JumpTrigger::condition;
+  std::optional<Condition> condition{};
+  std::optional<SXElem> guard{};
+  std::vector<double> times{};
+  double every = 0.0;
+  std::vector<AssignmentStatement> set{};
+  SXElem priority = 0.0;
+  SXElem delay = 0.0;
+  bool at_start = false;
+  bool persistent = true;
+  JumpValues evaluated = JumpValues::at_trigger;
+  SourceLocation location{};
+  SourceLocation when_location{};
+  SourceLocation delay_location{};
+};
+
 struct SwitchingStatement {
   DeclaredFunction declared;
   SourceLocation location{};
@@ -95,6 +121,7 @@ struct Statement {
   std::vector<ModeGroupStatement> mode_groups;
   std::vector<OutputStatement> outputs;
   std::vector<EventStatement> events;
+  std::vector<JumpStatement> jumps;
   std::vector<std::string> warnings;
 };
 

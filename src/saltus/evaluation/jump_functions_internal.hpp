@@ -1,0 +1,40 @@
+// What the kernel knows of [[jumps]]: conditions, values, priorities and delays as compiled functions.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::evaluation {
+
+class JumpFunctions {
+ public:
+  JumpFunctions() = default;
+  /// @param arguments       t, x, p, alpha
+  /// @param input           u as an expression of t, p, alpha; replaces system.u
+  /// @param first_function  event function of the first guard of the first jump
+  JumpFunctions(const model::System& system, const std::vector<casadi::SX>& arguments, const casadi::SX& input,
+                int first_function);
+
+  /// t, x, p, alpha
+  using Arguments = std::array<const double*, 4>;
+
+  [[nodiscard]] int guard(int jump, int guard) const;
+  [[nodiscard]] bool condition(int jump, const Arguments& at, const double* guard_alpha);
+  void values(int jump, const Arguments& at, double* values);
+  [[nodiscard]] double priority(int jump, const Arguments& at);
+  [[nodiscard]] double delay(int jump, const Arguments& at);
+
+ private:
+  struct Entry {
+    int first_guard = 0, guards = 0;
+    ModelFunction condition;  ///< null unless the trigger is a condition
+    ModelFunction values, priority, delay;
+  };
+  Entry& entry(int jump);
+  std::vector<Entry> entries_;
+};
+
+}  // namespace saltus::evaluation
