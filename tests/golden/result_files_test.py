@@ -8,7 +8,7 @@ import re
 import tool
 
 KEYS = ["format", "saltus", "model", "command", "method", "status", "states", "controls", "switching_functions",
-        "outputs", "final", "events", "trajectory", "statistics", "options"]
+        "outputs", "final", "events", "trajectory", "surfaces", "statistics", "options"]
 EVENT_KEYS = ["t", "kind", "name", "surfaces", "mode_before", "mode_after", "alpha_before", "alpha_after", "x",
               "x_after", "unique", "alternatives", "reason"]
 
@@ -41,6 +41,16 @@ class Json(tool.ToolTest):
         self.assertEqual(result["options"]["simulate.rtol"], 1e-8)
         self.assertEqual(result["options"]["simulate.event.integrator"], "dopri5")
         self.assertEqual(result["options"]["simulate.output.points"], 1001)
+
+    def test_surfaces_are_recorded(self):
+        surface, = self.result["surfaces"]
+        self.assertEqual((surface["name"], surface["role"], surface["states"]), ("slip", "switching", ["v"]))
+        self.assertEqual(surface["affine"], {"gradient": [1.0], "rate": 0.0, "constant": -0.2})
+        self.run_tool("simulate", "circle", "--out", "circle.json", "--quiet", code=0)
+        circle = json.loads((self.folder / "circle.json").read_text(encoding="utf-8"))["surfaces"][0]
+        self.assertIsNone(circle["affine"])
+        self.assertEqual(len(circle["curves"]), 1)
+        self.assertGreater(len(circle["curves"][0][0]), 50)
 
     def test_every_event_has_two_rows(self):
         times = self.result["trajectory"]["t"]

@@ -1,5 +1,6 @@
 #include "saltus/cli/outputs.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <string_view>
@@ -70,6 +71,11 @@ Expected<Outputs> Outputs::make(const std::vector<std::string>& files, const std
     outputs.plotly_ = std::move(*plotly);
   }
   return outputs;
+}
+
+bool Outputs::show_surfaces() const {
+  return !report_.empty() || std::any_of(files_.begin(), files_.end(),
+                                         [](const std::string& file) { return fs::path(file).extension() != ".csv"; });
 }
 
 Expected<void> Outputs::write(const result::Result& result) const {

@@ -21,6 +21,9 @@ class Outputs {
   [[nodiscard]] static Expected<Outputs> make(const std::vector<std::string>& files, const std::string& report,
                                               const std::string& input);
 
+  /// Whether any of them has the surfaces of the model in it.
+  [[nodiscard]] bool show_surfaces() const;
+
   /// Writes all it can; returns the first failure.
   [[nodiscard]] Expected<void> write(const result::Result& result) const;
 

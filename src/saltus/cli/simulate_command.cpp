@@ -16,6 +16,7 @@
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 #include "saltus/pipeline/simulate.hpp"
+#include "saltus/pipeline/surfaces.hpp"
 #include "saltus/report/table.hpp"
 
 namespace saltus::cli {
@@ -68,7 +69,7 @@ void complete_record(const ModelInput& input, result::Result& result) {
   }
 }
 
-Expected<result::Result> compute(const Arguments& arguments, const ModelInput& input) {
+Expected<result::Result> compute(const Arguments& arguments, const ModelInput& input, const Outputs& outputs) {
   const auto system = model::build(input.file.description, input.overrides);
   if (!system) return tl::unexpected(system.error());
   for (const auto& warning : system->warnings) print_error(fmt::format("warning: {}", warning));
@@ -79,7 +80,11 @@ Expected<result::Result> compute(const Arguments& arguments, const ModelInput& i
     return interrupted() ? pipeline::Proceed::stop : pipeline::Proceed::on;
   };
   catch_interrupt();
-  return pipeline::simulate(*system, input.file.simulate, observers);
+  auto result = pipeline::simulate(*system, input.file.simulate, observers);
+  if (!result) return result;
+  complete_record(input, *result);
+  if (outputs.show_surfaces()) result->surfaces = pipeline::surfaces(*system, *result);
+  return result;
 }
 
 ExitCode run(const Arguments& arguments) {
@@ -90,17 +95,18 @@ ExitCode run(const Arguments& arguments) {
   const auto outputs = Outputs::make(arguments.outputs, arguments.report, input->path);
   if (!outputs) return refuse(outputs.error());
 
-  auto result = compute(arguments, *input);
+  auto result = compute(arguments, *input, *outputs);
   if (!result) return refuse(io::located(result.error(), input->file));
-  complete_record(*input, *result);
 
   const auto written = outputs->write(*result);
   if (!arguments.quiet) print(report::to_table(*result));  // also if nothing could be written: it is all that is left
   if (!written) return refuse(written.error());
   if (is_done(result->status.termination)) return ExitCode::done;
-  print_error(fmt::format("stopped early: {} at t = {}{}{}", name(result->status.termination),
-                          result->status.time_reached, result->status.message.empty() ? "" : ": ",
-                          result->status.message));
+  const auto& status = result->status;
+  const bool says_when = status.message.find("t = ") != std::string::npos;
+  print_error(fmt::format("stopped early: {}{}{}{}", name(status.termination),
+                          says_when ? "" : fmt::format(" at t = {}", status.time_reached),
+                          status.message.empty() ? "" : ": ", status.message));
   return ExitCode::stopped_early;
 }
 

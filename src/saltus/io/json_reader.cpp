@@ -95,6 +95,43 @@ void read_trajectory(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_member(json, path, "outputs", trajectory.outputs);
 }
 
+void read_affine(JsonReader& reader, const Json& json, const std::string& path, result::Surface& surface) {
+  if (json.is_null()) return;
+  surface.affine.emplace();
+  reader.read_member(json, path, "gradient", surface.affine->gradient);
+  reader.read_member(json, path, "rate", surface.affine->rate);
+  reader.read_member(json, path, "constant", surface.affine->constant);
+}
+
+result::Surface read_surface(JsonReader& reader, const Json& json, const std::string& path) {
+  result::Surface surface;
+  std::string word;
+  reader.read_member(json, path, "name", surface.name);
+  reader.read_member(json, path, "role", word);
+  const auto role = result::surface_role_named(word);
+  if (!role) reader.fail(path + "/role", fmt::format("'{}' is no role of a surface", word));
+  surface.role = role.value_or(result::SurfaceRole::switching);
+  reader.read_member(json, path, "states", surface.states);
+  reader.read_member(json, path, "depends_on_time", surface.depends_on_time);
+  if (const auto* affine = reader.member(json, path, "affine")) {
+    read_affine(reader, *affine, path + "/affine", surface);
+  }
+  std::vector<std::vector<std::vector<double>>> curves;
+  reader.read_member(json, path, "curves", curves);
+  for (auto& coordinates : curves) surface.curves.push_back({std::move(coordinates)});
+  return surface;
+}
+
+void read_surfaces(JsonReader& reader, const Json& json, const std::string& path,
+                   std::vector<result::Surface>& surfaces) {
+  if (!json.is_array()) {
+    reader.mismatch(path, "a list", json);
+    return;
+  }
+  for (std::size_t i = 0; i < json.size(); ++i)
+    surfaces.push_back(read_surface(reader, json[i], fmt::format("{}/{}", path, i)));
+}
+
 void read_final(JsonReader& reader, const Json& json, const std::string& path, result::Final& final) {
   reader.read_member(json, path, "t", final.t);
   reader.read_member(json, path, "x", final.x);
@@ -164,6 +201,21 @@ void check_event_lengths(JsonReader& reader, const result::Event& event, const s
   if (event.alpha_after) check_length(reader, path + "/alpha_after", *event.alpha_after, columns);
 }
 
+void check_surface(JsonReader& reader, const result::Surface& surface, const std::string& path,
+                   const std::vector<std::string>& states) {
+  for (const auto& name : surface.states) {
+    if (std::find(states.begin(), states.end(), name) != states.end()) continue;
+    reader.fail(path + "/states", fmt::format("'{}' is no state", name));
+  }
+  if (surface.affine) check_length(reader, path + "/affine/gradient", surface.affine->gradient, surface.states.size());
+  for (std::size_t i = 0; i < surface.curves.size(); ++i) {
+    const auto& coordinates = surface.curves[i].coordinates;
+    const auto here = fmt::format("{}/curves/{}", path, i);
+    check_length(reader, here, coordinates, surface.states.size());
+    for (const auto& column : coordinates) check_length(reader, here, column, coordinates.front().size());
+  }
+}
+
 /// What tables and reports rely on when they index.
 void check_shapes(JsonReader& reader, const result::Result& result) {
   const auto& trajectory = result.trajectory;
@@ -180,6 +232,9 @@ void check_shapes(JsonReader& reader, const result::Result& result) {
   check_length(reader, "/final/outputs", result.final.outputs, result.outputs.size());
   for (std::size_t i = 0; i < result.events.size(); ++i) {
     check_event_lengths(reader, result.events[i], fmt::format("/events/{}", i), result.states.size(), columns);
+  }
+  for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
+    check_surface(reader, result.surfaces[i], fmt::format("/surfaces/{}", i), result.states);
   }
 }
 
@@ -211,6 +266,8 @@ result::Result read_whole(JsonReader& reader, const Json& json) {
   read_part(reader, json, "final", read_final, result.final);
   read_part(reader, json, "events", read_events, result.events);
   read_part(reader, json, "trajectory", read_trajectory, result.trajectory);
+  // Results of versions before surfaces were recorded have none.
+  if (json.contains("surfaces")) read_part(reader, json, "surfaces", read_surfaces, result.surfaces);
   read_part(reader, json, "statistics", read_statistics, result.statistics);
   read_part(reader, json, "options", read_options, result.options);
   if (!reader.error()) check_shapes(reader, result);

@@ -72,6 +72,25 @@ Json trajectory_json(const result::Trajectory& trajectory) {
   return json;
 }
 
+Json surface_json(const result::Surface& surface) {
+  Json curves = Json::array();
+  for (const auto& curve : surface.curves) curves.push_back(curve.coordinates);
+  Json json = Json::object();
+  json["name"] = surface.name;
+  json["role"] = name(surface.role);
+  json["states"] = surface.states;
+  json["depends_on_time"] = surface.depends_on_time;
+  json["affine"] = nullptr;
+  if (surface.affine) {
+    json["affine"] = Json::object();
+    json["affine"]["gradient"] = surface.affine->gradient;
+    json["affine"]["rate"] = surface.affine->rate;
+    json["affine"]["constant"] = surface.affine->constant;
+  }
+  json["curves"] = std::move(curves);
+  return json;
+}
+
 Json options_json(const result::OptionRecord& options) {
   Json json = Json::object();
   for (const auto& [name, value] : options) {
@@ -83,6 +102,8 @@ Json options_json(const result::OptionRecord& options) {
 Json whole_json(const result::Result& result) {
   Json events = Json::array();
   for (const auto& event : result.events) events.push_back(event_json(event));
+  Json surfaces = Json::array();
+  for (const auto& surface : result.surfaces) surfaces.push_back(surface_json(surface));
   Json json = Json::object();
   json["format"] = "saltus-result/1";
   json["saltus"] = version;
@@ -99,6 +120,7 @@ Json whole_json(const result::Result& result) {
   json["final"] = final_json(result.final);
   json["events"] = std::move(events);
   json["trajectory"] = trajectory_json(result.trajectory);
+  json["surfaces"] = std::move(surfaces);
   json["statistics"] = {{"steps", result.statistics.steps},
                         {"rejected", result.statistics.rejected},
                         {"rhs_evaluations", result.statistics.rhs_evaluations},

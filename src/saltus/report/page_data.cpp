@@ -71,6 +71,23 @@ json event_data(const result::Event& event) {
           {"reason", event.reason}};
 }
 
+/// States as numbers of columns: names are for people.
+json surface_data(const result::Surface& surface, const std::vector<std::string>& states) {
+  json::array_t places, curves;
+  for (const auto& name : surface.states) {
+    places.emplace_back(std::find(states.begin(), states.end(), name) - states.begin());
+  }
+  for (const auto& curve : surface.curves) curves.emplace_back(curve.coordinates);
+  json affine = nullptr;
+  if (surface.affine) {
+    affine = {
+        {"gradient", surface.affine->gradient}, {"rate", surface.affine->rate}, {"constant", surface.affine->constant}};
+  }
+  return {{"name", surface.name},        {"role", result::name(surface.role)},
+          {"states", std::move(places)}, {"depends_on_time", surface.depends_on_time},
+          {"affine", std::move(affine)}, {"curves", std::move(curves)}};
+}
+
 json option_value(const result::OptionValue& value) {
   return std::visit([](const auto& v) { return json(v); }, value);
 }
@@ -111,6 +128,8 @@ json trajectory_data(const result::Result& result, std::size_t limit) {
 json page_data(const result::Result& result, std::size_t limit) {
   json events = json::array();
   for (const auto& event : result.events) events.push_back(event_data(event));
+  json surfaces = json::array();
+  for (const auto& surface : result.surfaces) surfaces.push_back(surface_data(surface, result.states));
   return {{"saltus", version},
           {"model",
            {{"name", result.model.name},
@@ -136,6 +155,7 @@ json page_data(const result::Result& result, std::size_t limit) {
             {"outputs", result.final.outputs}}},
           {"events", std::move(events)},
           {"trajectory", trajectory_data(result, limit)},
+          {"surfaces", std::move(surfaces)},
           {"statistics",
            {{"steps", result.statistics.steps},
             {"rejected", result.statistics.rejected},

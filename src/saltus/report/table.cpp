@@ -185,8 +185,12 @@ std::string to_table(const result::Result& result) {
                                             ? result.model.name
                                             : fmt::format("{}: {}", result.model.name, result.model.description));
   text += paragraph("method", method_text(result));
-  text += paragraph("status",
-                    fmt::format("{} at t = {:.12g}", name(result.status.termination), result.status.time_reached));
+  // The message mostly says when, with all digits.
+  const bool says_when = result.status.message.find("t = ") != std::string::npos;
+  text += paragraph(
+      "status", says_when && !is_done(result.status.termination)
+                    ? std::string(name(result.status.termination))
+                    : fmt::format("{} at t = {:.12g}", name(result.status.termination), result.status.time_reached));
   if (!result.status.message.empty()) text += paragraph("", result.status.message);
   text += end_state(result);
   text += event_table(result);

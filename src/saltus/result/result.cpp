@@ -37,6 +37,23 @@ std::optional<EventKind> event_kind_named(std::string_view name_of_one) {
   return std::nullopt;
 }
 
+std::string_view name(SurfaceRole role) {
+  switch (role) {
+    case SurfaceRole::switching:
+      return "switching";
+    case SurfaceRole::jump:
+      return "jump";
+  }
+  __builtin_unreachable();
+}
+
+std::optional<SurfaceRole> surface_role_named(std::string_view name_of_one) {
+  for (const auto role : {SurfaceRole::switching, SurfaceRole::jump}) {
+    if (name(role) == name_of_one) return role;
+  }
+  return std::nullopt;
+}
+
 EventKind kind_of_switch(const Mode& before, const Mode& after) {
   SALTUS_ASSERT(before.size() == after.size());
   int entered = 0;

@@ -73,6 +73,39 @@ struct ModelRecord {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
+/// What a surface belongs to.
+enum class SurfaceRole {
+  switching,  ///< a switching function: psi = 0
+  jump,       ///< a guard of a jump
+};
+[[nodiscard]] std::string_view name(SurfaceRole role);
+/// The inverse of name; nullopt if there is none of that name.
+[[nodiscard]] std::optional<SurfaceRole> surface_role_named(std::string_view name);
+
+/// gradient . x + rate t + constant = 0, the gradient over Surface::states.
+struct AffineSurface {
+  std::vector<double> gradient;
+  double rate = 0.0;
+  double constant = 0.0;
+};
+
+/// One connected piece of a surface: coordinates[i][k] is the coordinate of point k along Surface::states[i].
+struct SurfaceCurve {
+  std::vector<std::vector<double>> coordinates;
+};
+
+/// Where a switching function or a guard is zero in the space of states: what a phase plane needs.
+struct Surface {
+  std::string name;  ///< of the switching function, or of the jump
+  SurfaceRole role = SurfaceRole::switching;
+  std::vector<std::string> states;  ///< those it depends on, in the order of Result::states
+  bool depends_on_time = false;
+  std::optional<AffineSurface> affine;  ///< exact, of any number of states
+  /// Of other functions of one state (points) or two (polylines) that do not depend on time, within the range of the
+  /// trajectory and a margin; none for functions of more states.
+  std::vector<SurfaceCurve> curves;
+};
+
 /// Dotted option name ("simulate.event.integrator") and its value in force; a vector for output times.
 using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
 using OptionRecord = std::vector<std::pair<std::string, OptionValue>>;
@@ -88,6 +121,7 @@ struct Result {
   Trajectory trajectory;
   Statistics statistics;
   OptionRecord options;
+  std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)
 };
 
 }  // namespace saltus::result

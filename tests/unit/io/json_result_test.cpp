@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace saltus::io {
 namespace {
@@ -54,6 +55,14 @@ result::Result sample() {
                {"simulate.from", 0.0},
                {"simulate.output.times", std::vector<double>{0.5, 1.0}},
                {"flag", true}};
+  r.surfaces = {
+      {"slip", result::SurfaceRole::switching, {"v"}, true, result::AffineSurface{{1.0 / 3.0}, -0.5, 0.1 + 0.2}, {}},
+      {"hit",
+       result::SurfaceRole::jump,
+       {"q", "v"},
+       false,
+       std::nullopt,
+       {{{{1.0, 1e-300}, {2.0, nan}}}, {{{7.0}, {8.0}}}}}};
   return r;
 }
 
@@ -78,6 +87,19 @@ TEST(JsonResult, ReadsBackEqual) {
   EXPECT_EQ(read->events[1].mode_before, std::nullopt);
   EXPECT_EQ(read->events[1].name, "returns");
   EXPECT_EQ(read->statistics.rhs_evaluations, 9007199254740993);
+  ASSERT_EQ(read->surfaces.size(), 2U);
+  EXPECT_EQ(read->surfaces[0].affine->gradient, original.surfaces[0].affine->gradient);
+  EXPECT_EQ(read->surfaces[1].role, result::SurfaceRole::jump);
+  EXPECT_EQ(read->surfaces[1].states, (std::vector<std::string>{"q", "v"}));
+  EXPECT_EQ(read->surfaces[1].curves[0].coordinates[0], (std::vector<double>{1.0, 1e-300}));
+}
+
+TEST(JsonResult, ReadsResultsFromBeforeSurfacesWereRecorded) {
+  auto json = nlohmann::ordered_json::parse(to_json(sample()));
+  json.erase("surfaces");
+  const auto read = parse_result(json.dump(), "r.json");
+  ASSERT_TRUE(read) << to_text(read.error());
+  EXPECT_TRUE(read->surfaces.empty());
 }
 
 TEST(JsonResult, WritesNonFiniteNumbersAsNullAndReadsThemAsNan) {
@@ -91,8 +113,9 @@ TEST(JsonResult, WritesNonFiniteNumbersAsNullAndReadsThemAsNan) {
 TEST(JsonResult, KeysAreInTheOrderOfTheContract) {
   const auto text = to_json(sample());
   std::size_t place = 0;
-  for (const auto* key : {"format", "saltus", "model", "command", "method", "status", "states", "controls",
-                          "switching_functions", "outputs", "final", "events", "trajectory", "statistics", "options"}) {
+  for (const auto* key :
+       {"format", "saltus", "model", "command", "method", "status", "states", "controls", "switching_functions",
+        "outputs", "final", "events", "trajectory", "surfaces", "statistics", "options"}) {
     const auto next = text.find("\n  \"" + std::string(key) + "\": ", place);
     ASSERT_NE(next, std::string::npos) << key;
     place = next;
@@ -131,6 +154,11 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"width", "\"controls\": [\"u\"]", "\"controls\": []", "at /trajectory/u/0: expected 0 entries, found 1"},
         Damage{"rows", "\"t\": [0.0,2.0]", "\"t\": [0.0]",
                "at /trajectory/x: expected as many rows as times, 1, found 2"},
+        Damage{"role", "\"role\": \"jump\"", "\"role\": \"wall\"", "at /surfaces/1/role: 'wall' is no role"},
+        Damage{"surface state", "\"states\": [\"v\"]", "\"states\": [\"w\"]", "at /surfaces/0/states: 'w' is no state"},
+        Damage{"gradient", "\"gradient\": [", "\"gradient\": [1.0,",
+               "at /surfaces/0/affine/gradient: expected 1 entries, found 2"},
+        Damage{"curve", "[7.0],", "[7.0,5.0],", "at /surfaces/1/curves/1: expected 2 entries, found 1"},
         Damage{"syntax", "\"saltus\": ", "\"saltus\" ", "r.json:3:"}),
     [](const auto& damage) {
       std::string name = damage.param.what;

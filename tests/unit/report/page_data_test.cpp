@@ -104,6 +104,25 @@ TEST(PageData, LongTrajectoriesAreThinnedAndSayHowManyRowsThereWere) {
   EXPECT_EQ(greatest, 25.0);
 }
 
+TEST(PageData, SurfacesNameTheirStatesByColumn) {
+  auto result = report_samples::stick_slip(2, 3);
+  result.surfaces = {
+      {"slip", result::SurfaceRole::switching, {"v"}, true, result::AffineSurface{{2.0}, 0.5, -0.2}, {}},
+      {"hit</script>", result::SurfaceRole::jump, {"q", "v"}, false, std::nullopt, {{{{1.0, 2.0}, {3.0, 4.0}}}}}};
+  const std::string text = to_script_text(page_data(result));
+  EXPECT_EQ(text.find('<'), std::string::npos);
+  const json surfaces = json::parse(text)["surfaces"];
+  ASSERT_EQ(surfaces.size(), 2U);
+  EXPECT_EQ(surfaces[0]["states"], (json{1}));
+  EXPECT_EQ(surfaces[0]["affine"], (json{{"gradient", {2.0}}, {"rate", 0.5}, {"constant", -0.2}}));
+  EXPECT_EQ(surfaces[0]["depends_on_time"], true);
+  EXPECT_EQ(surfaces[1]["name"], "hit</script>");
+  EXPECT_EQ(surfaces[1]["role"], "jump");
+  EXPECT_EQ(surfaces[1]["states"], (json{0, 1}));
+  EXPECT_TRUE(surfaces[1]["affine"].is_null());
+  EXPECT_EQ(surfaces[1]["curves"], (json::array({json::array({{1.0, 2.0}, {3.0, 4.0}})})));
+}
+
 TEST(PageData, AnEmptyResultIsNoError) {
   const json data = json::parse(to_script_text(page_data(result::Result{})));
   EXPECT_EQ(data["trajectory"]["t"].size(), 0U);

@@ -73,6 +73,18 @@ TEST(Table, LongListsShowTheFirstAndTheLastTen) {
   EXPECT_NE(text.find("\n  21 "), std::string::npos);
 }
 
+TEST(Table, SaysOnceWhenARunStopped) {
+  auto r = sample();
+  r.status = {result::Termination::iteration_limit, "max_steps = 20 reached at t = 5.0893121064278066",
+              5.0893121064278066};
+  auto text = to_table(r);
+  EXPECT_EQ(text.find("5.08931210643"), std::string::npos) << text;
+  EXPECT_NE(text.find("5.0893121064278066"), std::string::npos);
+  r.status.message = "interrupted";
+  text = to_table(r);
+  EXPECT_NE(text.find("iteration_limit at t = 5.08931210643"), std::string::npos) << text;
+}
+
 TEST(Table, FitsAHundredColumnsWhateverTheModel) {
   auto r = sample();
   r.model.description = std::string(30, 'w') + " " + std::string(30, 'w') + " " + std::string(30, 'w');

@@ -1,0 +1,39 @@
+// Switching functions and guards of jumps as functions of the states they depend on: for drawing where they are zero.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/model/system.hpp"
+
+namespace saltus::evaluation {
+
+enum class SurfaceOwner { switching_function, jump };
+
+/// gradient . x[states] + rate t + constant.
+struct AffineForm {
+  std::vector<double> gradient;
+  double rate = 0.0;
+  double constant = 0.0;
+};
+
+/// psi(x[states]) with the parameters and inputs of the system put in and, for nested functions, the alphas of the
+/// inner ones as their signs say.
+struct SurfaceFunction {
+  std::string name;
+  SurfaceOwner owner = SurfaceOwner::switching_function;
+  std::vector<int> states;  ///< indices of the states it depends on, ascending
+  bool depends_on_time = false;
+  std::optional<AffineForm> affine;
+  /// psi at the coordinates of `states` (not finite where the model is undefined). Empty for affine functions, those
+  /// that depend on time, and those of more than two states. Not thread safe.
+  std::function<double(const double*)> value;
+};
+
+/// One for every column of the result, then one for every guard of [[jumps]]; without those that depend on no state.
+/// Cost: compiles one function for each that is not affine.
+[[nodiscard]] std::vector<SurfaceFunction> surface_functions(const model::System& system);
+
+}  // namespace saltus::evaluation

@@ -1,0 +1,105 @@
+#include "saltus/pipeline/surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "saltus/model/builder.hpp"
+#include "saltus/pipeline/simulate.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using casadi::SX;
+
+/// Surfaces of a system whose states x, y, z rotate slowly; `rate` adds what makes them: a sum of nonsmooth terms.
+template <class Rate>
+std::vector<result::Surface> surfaces_of(Rate rate) {
+  model::Builder model("surfaces");
+  const SX x = model.state("x", {2.0}), y = model.state("y", {0.0}), z = model.state("z", {1.0});
+  model.dynamics("x", -y);
+  model.dynamics("y", x);
+  model.dynamics("z", 1e-3 * rate(model, x, y, z));
+  const auto system = model.build();
+  EXPECT_TRUE(system.has_value()) << (system ? "" : to_text(system.error()));
+  SimulateOptions options;
+  options.until = 7.0;
+  const auto result = simulate(*system, options);
+  EXPECT_TRUE(result.has_value()) << (result ? "" : to_text(result.error()));
+  return surfaces(*system, *result);
+}
+
+TEST(Surfaces, AffineOnesAreTheirCoefficients) {
+  const auto found = surfaces_of([](model::Builder& model, const SX& x, const SX& y, const SX& z) {
+    const SX k = model.parameter("k", 3.0);
+    const SX level = model.sign(y - 0.25, "level");
+    return level + model.sign(2 * x - k * z + model.time() - 1, "moving");
+  });
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].name, "level");
+  EXPECT_EQ(found[0].role, result::SurfaceRole::switching);
+  EXPECT_EQ(found[0].states, (std::vector<std::string>{"y"}));
+  EXPECT_FALSE(found[0].depends_on_time);
+  ASSERT_TRUE(found[0].affine.has_value());
+  EXPECT_EQ(found[0].affine->gradient, (std::vector<double>{1.0}));
+  EXPECT_EQ(found[0].affine->constant, -0.25);
+  EXPECT_EQ(found[1].states, (std::vector<std::string>{"x", "z"}));
+  EXPECT_TRUE(found[1].depends_on_time);
+  ASSERT_TRUE(found[1].affine.has_value());
+  EXPECT_EQ(found[1].affine->gradient, (std::vector<double>{2.0, -3.0}));
+  EXPECT_EQ(found[1].affine->rate, 1.0);
+  EXPECT_EQ(found[1].affine->constant, -1.0);
+  EXPECT_TRUE(found[1].curves.empty());
+}
+
+TEST(Surfaces, CurvedOnesOfOneOrTwoStatesAreCurvesWithinTheRangeOfTheTrajectory) {
+  const auto found = surfaces_of([](model::Builder& model, const SX& x, const SX& y, const SX&) {
+    const SX circle = model.sign(x * x + y * y - 1, "circle");
+    return circle + model.sign(x * x - 2, "pair");
+  });
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_FALSE(found[0].affine.has_value());
+  ASSERT_EQ(found[0].curves.size(), 1U);
+  const auto& circle = found[0].curves[0].coordinates;
+  ASSERT_EQ(circle.size(), 2U);
+  for (std::size_t i = 0; i < circle[0].size(); ++i) EXPECT_NEAR(std::hypot(circle[0][i], circle[1][i]), 1.0, 1e-3);
+  ASSERT_EQ(found[1].curves.size(), 2U);
+  EXPECT_NEAR(found[1].curves[0].coordinates[0][0], -std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(found[1].curves[1].coordinates[0][0], std::sqrt(2.0), 1e-12);
+}
+
+TEST(Surfaces, OfMoreStatesOrOfTimeAreNamedWithoutCurves) {
+  const auto found = surfaces_of([](model::Builder& model, const SX& x, const SX& y, const SX& z) {
+    const SX three = model.sign(x * y * z - 5, "three");
+    return three + model.sign(x * x - model.time() - 20, "moving");
+  });
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].states, (std::vector<std::string>{"x", "y", "z"}));
+  EXPECT_TRUE(found[1].depends_on_time);
+  for (const auto& surface : found) {
+    EXPECT_FALSE(surface.affine.has_value());
+    EXPECT_TRUE(surface.curves.empty());
+  }
+}
+
+TEST(Surfaces, NestedOnesFollowTheirInnerSwitches) {
+  // y = |x| - 1: the tent with its tip at (0, -1).
+  const auto found = surfaces_of([](model::Builder& model, const SX& x, const SX& y, const SX&) {
+    return model.sign(model.abs(x) - y - 1, "tent");
+  });
+  const auto tent = std::find_if(found.begin(), found.end(), [](const auto& one) { return one.name == "tent"; });
+  ASSERT_NE(tent, found.end());
+  EXPECT_EQ(tent->states, (std::vector<std::string>{"x", "y"}));
+  ASSERT_EQ(tent->curves.size(), 1U);
+  const auto& points = tent->curves[0].coordinates;
+  double lowest = 1.0;
+  for (std::size_t i = 0; i < points[0].size(); ++i) {
+    EXPECT_NEAR(points[1][i], std::abs(points[0][i]) - 1.0, 2e-3);
+    lowest = std::min(lowest, points[1][i]);
+  }
+  EXPECT_NEAR(lowest, -1.0, 2e-3);
+}
+
+}  // namespace
+}  // namespace saltus::pipeline
