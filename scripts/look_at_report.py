@@ -55,7 +55,9 @@ class Browser:
             texts = [str(a.get("value", a.get("description"))) for a in data["args"]]
             self.complaints.append("console: " + " ".join(texts))
         elif method == "Log.entryAdded" and data["entry"]["level"] in ("error", "warning"):
-            self.complaints.append("log: " + data["entry"]["text"])
+            # What Chromium says about drawing in three dimensions without a graphics card is not about the page.
+            if not any(word in data["entry"]["text"] for word in ("WebGL", "GL Driver", "Canvas2D")):
+                self.complaints.append("log: " + data["entry"]["text"])
         elif method == "Network.requestWillBeSent":
             url = data["request"]["url"]
             if not url.startswith(("file:", "data:", "blob:")):

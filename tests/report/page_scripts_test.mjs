@@ -5,7 +5,7 @@ import test from "node:test";
 import vm from "node:vm";
 
 const page = new URL("../../src/saltus/report/page/", import.meta.url);
-const source = ["format.js", "series.js", "panels.js", "marks.js", "phase.js"]
+const source = ["format.js", "series.js", "panels.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js"]
                    .map((file) => fs.readFileSync(new URL(file, page), "utf8"))
                    .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
@@ -34,11 +34,24 @@ test("short curves are drawn whole", () => {
   assert.deepEqual(saltus.rowsToDraw([0, 1, 2], [[5, 6, 7]], [0, 3], 10), [0, 1, 2]);
 });
 
-test("a jump is a gap, a continuous event is none", () => {
+test("a jump is a gap with its two sides, a continuous event and a rounding are none", () => {
+  const t = [0, 1, 1, 2, 2, 3, 3, 4];
+  const values = [0, 1, 5, 6, 6, 7, 7 + 1e-12, 8];
+  const {x, y, jumps} = saltus.points(t, values, [0, 4], 100);
+  assert.deepEqual(x, [0, 1, 1, 1, 2, 2, 3, 3, 4]);
+  assert.deepEqual(y, [0, 1, null, 5, 6, 6, 7, 7 + 1e-12, 8]);
+  assert.deepEqual(jumps, {x: [1, 1, null], y: [1, 5, null]});
+});
+
+test("a discrete state is drawn as steps without gaps", () => {
   const t = [0, 1, 1, 2, 2, 3];
-  const {x, y} = saltus.points(t, [0, 1, 5, 6, 6, 7], [0, 3], 100);
-  assert.deepEqual(x, [0, 1, 1, 1, 2, 2, 3]);
-  assert.deepEqual(y, [0, 1, null, 5, 6, 6, 7]);
+  const steps = [0, 0, 1, 1, 2, 2];
+  assert.ok(saltus.isDiscrete(t, steps));
+  assert.ok(!saltus.isDiscrete(t, [0, 0.5, 1, 1, 2, 2]));
+  assert.ok(!saltus.isDiscrete(t, [1, 1, 1, 1, 1, 1]));
+  const {y, jumps} = saltus.points(t, steps, [0, 3], 100, true);
+  assert.deepEqual(y, steps);
+  assert.deepEqual(jumps.x, []);
 });
 
 test("sliding intervals of several switching functions are merged", () => {
@@ -71,12 +84,104 @@ test("the phase plane is cut at jumps and where sliding begins", () => {
   const result = {trajectory: {t: [0, 1, 1, 2, 2, 3]}};
   const x = [0, 1, 1, 2, 7, 8];
   const parts = saltus.phaseParts(result, [x, x], [0, 1, 2, 3, 4, 5], [[1, 2]]);
-  assert.deepEqual(parts.free.x, [0, 1, null, 7, 8]);
-  assert.deepEqual(parts.sliding.x, [1, 2, null]);
+  assert.deepEqual(parts.free[0], [0, 1, null, 7, 8]);
+  assert.deepEqual(parts.sliding[1], [1, 2, null]);
+  assert.deepEqual(parts.jumps[0], [2, 7, null]);
 });
 
 test("numbers keep all digits", () => {
   for (const value of [0.1 + 0.2, 1e-300, -2.5e-5, 123456789.123, 0]) assert.equal(Number(saltus.exact(value)), value);
   assert.equal(saltus.exact(null), "not a number");
   assert.equal(saltus.timeColumn([0, 39.123456789012345])(0.24468880178), "0.2446888018");
+});
+
+const affine = (states, gradient, constant, rate = 0) => ({
+  name: "psi",
+  role: "switching",
+  states,
+  depends_on_time: rate !== 0,
+  affine: {gradient, rate, constant},
+  curves: [],
+});
+const curved = (states, curves, depends_on_time = false) =>
+    ({name: "psi", role: "switching", states, depends_on_time, affine: null, curves});
+const box = {
+  x: [-1, 3],
+  y: [0, 100]
+};
+const near = (actual, expected) => actual.flat(2).forEach((value, i) => {
+  assert.ok(Math.abs(value - expected.flat(2)[i]) < 1e-9, `${actual} is not ${expected}`);
+});
+
+test("a line is cut by the box in which it is drawn", () => {
+  near(saltus.clipLine([1, 0, -2], box).sort(), [[2, 0], [2, 100]]);
+  near(saltus.clipLine([0, 1e-8, -5e-7], box).sort((p, q) => p[0] - q[0]), [[-1, 50], [3, 50]]);
+  near(saltus.clipLine([25, -1, 25], box).sort((p, q) => p[0] - q[0]), [[-1, 0], [3, 100]]);
+  assert.equal(saltus.clipLine([1, 0, -4], box), null);
+  assert.equal(saltus.clipLine([0, 0, 1], box), null);
+});
+
+test("a surface of the pair is exact in the plane, one that depends on more is a cut at given values", () => {
+  const at = {t: 2, x: [10, 20, 30]};
+  const own = saltus.surfaceInPlane(affine([1], [1], -0.2), [0, 1], at);
+  assert.deepEqual(own, {exact: true, lines: [[0, 1, -0.2]], curves: []});
+  const swapped = saltus.surfaceInPlane(affine([0, 1], [3, 4], 5), [1, 0], at);
+  assert.deepEqual(swapped, {exact: true, lines: [[4, 3, 5]], curves: []});
+  const cut = saltus.surfaceInPlane(affine([0, 2], [3, 4], 5, 7), [0, 1], at);
+  assert.deepEqual(cut, {exact: false, lines: [[3, 0, 5 + 7 * 2 + 4 * 30]], curves: []});
+  assert.equal(saltus.surfaceInPlane(affine([2], [1], 0), [0, 1], at), null);
+});
+
+test("curves are turned with the axes, and absent where they would not be curves", () => {
+  const at = {t: 0, x: [0, 0, 0]};
+  const surface = curved([0, 2], [[[1, 2], [3, 4]]]);
+  assert.deepEqual(saltus.surfaceInPlane(surface, [0, 2], at).curves, [{x: [1, 2], y: [3, 4]}]);
+  assert.deepEqual(saltus.surfaceInPlane(surface, [2, 0], at).curves, [{x: [3, 4], y: [1, 2]}]);
+  assert.equal(saltus.surfaceInPlane(surface, [0, 1], at), null);
+  assert.deepEqual(saltus.surfaceInPlane(curved([1], [[[5]]]), [0, 1], at).lines, [[0, 1, -5]]);
+  assert.equal(saltus.surfaceInPlane(curved([0], [], true), [0, 1], at), null);
+  const surfaces = [surface, affine([0, 2], [1, 1], 0), curved([0], [], true)];
+  assert.deepEqual(saltus.surfacesNotDrawn({surfaces}, [0, 1]), [surfaces[0], surfaces[2]]);
+});
+
+test("drawings begin with the states of the first surface", () => {
+  assert.deepEqual(saltus.firstChoice({surfaces: []}, 2), [0, 1]);
+  assert.deepEqual(saltus.firstChoice({surfaces: [affine([3], [1], 0)]}, 2), [0, 3]);
+  assert.deepEqual(saltus.firstChoice({surfaces: [affine([1, 2, 4], [1, 1, 1], 0)]}, 2), [1, 2]);
+  assert.deepEqual(saltus.firstChoice({surfaces: [affine([3], [1], 0)]}, 3), [0, 1, 3]);
+});
+
+test("a plane cuts a cube in a triangle to a hexagon", () => {
+  const corners = (g, c) => saltus.planeInBox(g, c).length;
+  assert.equal(corners([1, 0, 0], -0.5), 4);
+  assert.equal(corners([1, 1, 1], -0.5), 3);
+  assert.equal(corners([1, 1, 1], -1.5), 6);
+  assert.equal(corners([1, 1, 1], 1), 0);
+  for (const p of saltus.planeInBox([1, 2, -1], -0.7)) assert.ok(Math.abs(p[0] + 2 * p[1] - p[2] - 0.7) < 1e-12);
+});
+
+test("in space a curve is drawn out along the state it does not depend on", () => {
+  const cube = [[0, 1], [0, 1], [-2, 2]];
+  const sheet = saltus.surfaceInSpace(curved([0, 1], [[[0, 0.5, 1], [1, 0.5, 0]]]), [0, 1, 2], {t: 0, x: []}, cube);
+  assert.deepEqual(sheet.x, [0, 0, 0.5, 0.5, 1, 1]);
+  assert.deepEqual(sheet.z, [-2, 2, -2, 2, -2, 2]);
+  assert.equal(sheet.i.length, 4);
+  const plane = saltus.surfaceInSpace(affine([2], [2], -2), [0, 1, 2], {t: 0, x: []}, cube);
+  assert.deepEqual([...new Set(plane.z)], [1]);
+  assert.equal(saltus.surfaceInSpace(curved([0, 3], [[[0], [0]]]), [0, 1, 2], {t: 0, x: []}, cube), null);
+});
+
+test("the search finds numbers, kinds, names, surfaces and reasons, all words together", () => {
+  const event = (kind, name, surfaces, reason) => ({kind, name, surfaces, reason});
+  const events = [
+    event("enter_sliding", null, ["slip"], "both fields point to the surface"),
+    event("jump", "Impact", ["Impact"], "height fell below 0"),
+    ...Array.from({length: 10}, () => event("crossing", null, ["x-y"], "")),
+  ];
+  assert.deepEqual(saltus.matchingEvents(events, ""), events.map((_, i) => i));
+  assert.deepEqual(saltus.matchingEvents(events, "impact"), [1]);
+  assert.deepEqual(saltus.matchingEvents(events, "SLIDING surface"), [0]);
+  assert.deepEqual(saltus.matchingEvents(events, "#1"), [0]);
+  assert.deepEqual(saltus.matchingEvents(events, "crossing #12"), [11]);
+  assert.deepEqual(saltus.matchingEvents(events, "slip crossing"), []);
 });

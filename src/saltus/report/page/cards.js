@@ -33,11 +33,15 @@ saltus.pageHeader = (result, toggleTheme) => saltus.element(
         saltus.statusBadge(result),
         saltus.element("span", {class: "description", title: result.model.description}, result.model.description)),
     saltus.element(
-        "dl", {class: "facts"},
-        ...saltus.facts(result).map(
-            ([name, value]) =>
-                saltus.element("div", {}, saltus.element("dt", {}, name), saltus.element("dd", {}, value)))),
-    saltus.element("button", {class: "theme", title: "light or dark", onclick: toggleTheme}, "◐"));
+        "div", {class: "aside"},
+        saltus.element(
+            "dl", {class: "facts"},
+            ...saltus.facts(result).map(
+                ([name, value]) =>
+                    saltus.element("div", {}, saltus.element("dt", {}, name), saltus.element("dd", {}, value)))),
+        saltus.element(
+            "button", {class: "theme", title: "light or dark", "aria-label": "light or dark", onclick: toggleTheme},
+            "◐")));
 
 saltus.banners = (result, select) => {
   const {status, events} = result;
@@ -48,8 +52,10 @@ saltus.banners = (result, select) => {
         saltus.element(
             "strong", {},
             status.done ? "Stopped by an event" : `Not completed: ${status.termination.replaceAll("_", " ")}`),
-        ` at t = ${saltus.exact(status.time_reached)}. `, status.message));
+        status.message.includes("t = ") ? ": " : ` at t = ${saltus.exact(status.time_reached)}. `, status.message));
   }
+  if (status.termination === "completed" && status.message !== "")
+    banners.push(saltus.element("div", {class: "banner notice", role: "status"}, status.message));
   const list = (chosen, title, kind) => {
     if (chosen.length === 0) return;
     const buttons = chosen.slice(0, 8).map(
@@ -135,7 +141,7 @@ saltus.notes = (result) => {
   const drawn = [
     "Curves are drawn with the least and greatest value per pixel and, up to 2,000 events in view, both rows",
     "of every event; zoom in for every row. With more than 400 events in view one line per stretch is drawn, and",
-    "intervals of modes below a pixel are merged, sliding first. Jumps are gaps."
+    "intervals of modes below a pixel are merged, sliding first. Jumps are dotted lines."
   ].join(" ");
   const {sha256} = result.model;
   const model = sha256 === "" ? "No model file is recorded." : `SHA-256 of the model file: ${sha256}`;

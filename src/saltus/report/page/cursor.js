@@ -44,8 +44,7 @@ saltus.readoutEvent = (result, index) => {
   const uncertain = {true: null, false: "solution not unique", null: "uniqueness not decided"}[String(event.unique)];
   return saltus.element(
       "div", {class: "readout-event"}, saltus.element("strong", {}, `${index + 1}. ${saltus.kindLabel(event.kind)}`),
-      ` ${event.name ?? ""} ${event.surfaces.join(", ")} `, modes,
-      uncertain && saltus.element("div", {class: "alarm-text"}, uncertain),
+      ` ${saltus.eventPlace(event)} `, modes, uncertain && saltus.element("div", {class: "alarm-text"}, uncertain),
       event.reason === "" ? null : saltus.element("div", {class: "quiet"}, event.reason));
 };
 

@@ -14,6 +14,12 @@ saltus.modeChange = (event, which) => {
   return saltus.element("span", {}, part(before), " → ", part(after));
 };
 
+/** Name and surfaces; a jump is its own surface. */
+saltus.eventPlace = (event) => {
+  const others = event.surfaces.filter((surface) => surface !== event.name).join(", ");
+  return event.name === null ? others : `${event.name} ${others}`.trim();
+};
+
 saltus.eventColumns = (result) => {
   const time = saltus.timeColumn(result.events.map((event) => event.t));
   const alpha = (values) => (values === null ? "–" : values.map((v) => saltus.brief(v, 6)).join(", "));
@@ -28,11 +34,7 @@ saltus.eventColumns = (result) => {
     {title: "t", cell: (event) => time(event.t), class: "right digits"},
     {title: "kind", cell: (event) => saltus.kindLabel(event.kind)},
     {title: "unique", cell: unique},
-    {
-      title: "surfaces",
-      cell: (event) => (event.name === null ? event.surfaces.join(", ") : `${event.name} ${event.surfaces.join(", ")}`),
-      class: "fill"
-    },
+    {title: "surfaces", cell: saltus.eventPlace, class: "fill"},
     {title: "mode", cell: (event) => saltus.modeChange(event, "changed")},
   ];
   const wide = [
@@ -50,18 +52,51 @@ saltus.eventColumns = (result) => {
     {title: "reason", cell: (event) => event.reason},
   ];
   const several = result.switching_functions.length > 1;
-  return {narrow, all: [...narrow, ...wide.filter((column) => several || column.title !== "mode of all")]};
+  const printed = [...narrow, ...wide.filter((column) => column.title.startsWith("x ="))];
+  return {narrow, printed, all: [...narrow, ...wide.filter((column) => several || column.title !== "mode of all")]};
 };
 
-saltus.kindFilter = (result, changed) => {
+/** What a search looks through: number, kind, name, surfaces, reason. */
+saltus.eventText =
+    (event, i) => [`#${i + 1}`, saltus.kindLabel(event.kind), event.name ?? "", ...event.surfaces, event.reason]
+                      .join("\n")
+                      .toLowerCase();
+
+/** Events that have all words of the search in their text. */
+saltus.matchingEvents = (events, search) => {
+  const words = search.toLowerCase().split(/\s+/).filter((word) => word !== "");
+  return events.map((_, i) => i).filter((i) => {
+    const text = saltus.eventText(events[i], i);
+    // A number of an event is all of it: #1 is not #12.
+    return words.every((word) => (/^#\d+$/.test(word) ? word === `#${i + 1}` : text.includes(word)));
+  });
+};
+
+saltus.eventFilter = (result, changed) => {
   const counts = new Map();
   for (const event of result.events) counts.set(event.kind, (counts.get(event.kind) ?? 0) + 1);
   const hidden = new Set();
   let onlyUncertain = false;
-  const apply = () => changed(result.events.map((_, i) => i).filter((i) => {
-    const event = result.events[i];
-    return !hidden.has(event.kind) && (!onlyUncertain || event.unique !== true);
-  }));
+  const found = saltus.element("span", {class: "quiet", "aria-live": "polite"});
+  const search = saltus.element("input", {
+    type: "search",
+    class: "search",
+    placeholder: "search: name, surface, reason, #12",
+    "aria-label": "search events",
+  });
+  const apply = () => {
+    const shown = saltus.matchingEvents(result.events, search.value).filter((i) => {
+      const event = result.events[i];
+      return !hidden.has(event.kind) && (!onlyUncertain || event.unique !== true);
+    });
+    found.textContent = shown.length === result.events.length ? "" : `${shown.length} shown`;
+    changed(shown);
+  };
+  let pending = 0;
+  search.addEventListener("input", () => {
+    clearTimeout(pending);
+    pending = setTimeout(apply, 150);
+  });
   const box = (text, checked, toggle, kind) => saltus.element(
       "label", {class: kind ?? "chip"},
       saltus.element(
@@ -81,18 +116,30 @@ saltus.kindFilter = (result, changed) => {
       apply();
     }, "chip alarm-chip"));
   }
-  return saltus.element("div", {class: "chips"}, ...boxes);
+  return saltus.element("div", {class: "chips"}, ...boxes, search, found);
 };
 
-saltus.eventTable = (result, select) => {
+/** Rows of the table on paper. */
+saltus.printedRows = 400;
+
+saltus.eventTable = (result, select, zoomTo) => {
   const columns = saltus.eventColumns(result);
   const head = saltus.element("thead");
   const body = saltus.element("tbody");
   const table = saltus.element("table", {class: "events"}, head, body);
-  const scroller = saltus.element("div", {class: "scroller", tabindex: "0"}, table);
+  const scroller = saltus.element(
+      "div", {
+        class: "scroller",
+        tabindex: "0",
+        role: "region",
+        "aria-label":
+            "events; arrow keys, Home and End choose one, Enter shows its neighbourhood, Escape takes the flag away"
+      },
+      table);
   let shown = result.events.map((_, i) => i);
   let selected = null;
   let current = columns.narrow;
+  let printing = false;
 
   /** The event `step` places further among the shown ones. */
   const neighbour = (i, step) => shown[Math.min(Math.max(shown.indexOf(i) + step, 0), shown.length - 1)] ?? null;
@@ -104,26 +151,39 @@ saltus.eventTable = (result, select) => {
       return saltus.element("td", {class: column.class, title}, content);
     });
     const state = `${i === selected ? "selected " : ""}${saltus.isAlarming(event) ? "alarming" : ""}`;
-    return saltus.element("tr", {class: state, onclick: () => select(i)}, ...cells);
+    const attributes = {class: state, "aria-selected": String(i === selected), onclick: () => select(i)};
+    return saltus.element("tr", attributes, ...cells);
   };
   const space = (rows) =>
       saltus.element("tr", {class: "space", style: `height:${rows * saltus.rowHeight}px`}, saltus.element("td"));
 
+  const remark = (left) => left === 0 ?
+      "" :
+      saltus.element(
+          "tr", {}, saltus.element("td", {colspan: String(current.length)}, `and ${left} more in the result file`));
+
   const render = () => {
-    const first = Math.max(0, Math.floor(scroller.scrollTop / saltus.rowHeight) - 20);
-    const last = Math.min(shown.length, first + Math.ceil(scroller.clientHeight / saltus.rowHeight) + 40);
+    const first = printing ? 0 : Math.max(0, Math.floor(scroller.scrollTop / saltus.rowHeight) - 20);
+    const onScreen = printing ? saltus.printedRows : Math.ceil(scroller.clientHeight / saltus.rowHeight) + 40;
+    const last = Math.min(shown.length, first + onScreen);
     const rows = shown.slice(first, last).map(row);
-    body.replaceChildren(space(first), ...rows, space(shown.length - last));
+    const left = shown.length - last;
+    body.replaceChildren(space(first), ...rows, printing ? remark(left) : space(left));
   };
   const renderHead = () => head.replaceChildren(
       saltus.element("tr", {}, ...current.map((c) => saltus.element("th", {class: c.class}, c.title))));
 
   scroller.addEventListener("scroll", () => requestAnimationFrame(render));
   scroller.addEventListener("keydown", (event) => {
-    const step = {ArrowDown: 1, ArrowUp: -1}[event.key];
-    if (step === undefined || shown.length === 0) return;
+    const page = Math.max(1, Math.floor(scroller.clientHeight / saltus.rowHeight) - 2);
+    const all = shown.length;
+    const step = {ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page, Home: -all, End: all}[event.key];
+    if (event.key === "Enter" && selected !== null) return zoomTo(selected);
+    if (event.key === "Escape") return select(null);
+    if (step === undefined || all === 0) return undefined;
     event.preventDefault();
-    select(selected === null ? shown[0] : neighbour(selected, step));
+    if (selected !== null) return select(neighbour(selected, step));
+    return select(event.key === "End" ? shown[all - 1] : shown[0]);
   });
   renderHead();
   return {
@@ -132,6 +192,12 @@ saltus.eventTable = (result, select) => {
     show: (indices) => {
       shown = indices;
       scroller.scrollTop = 0;
+      render();
+    },
+    print: (on) => {
+      printing = on;
+      current = on ? columns.printed : columns.narrow;
+      renderHead();
       render();
     },
     setWide: (on) => {

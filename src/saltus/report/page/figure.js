@@ -60,23 +60,42 @@ saltus.curveColour = (panel, i, palette) => {
   return palette.curves[(panel.curves.length === 1 ? first : i) % palette.curves.length];
 };
 
-saltus.curveTraces = (result, panel, axis, view) => panel.curves.map(
-    (curve, i) => ({
-      type: "scatter",
-      mode: "lines",
-      xaxis: "x",
-      yaxis: axis,
-      hoverinfo: "none",
-      connectgaps: false,
-      ...saltus.points(result.trajectory.t, curve.values, view.window, view.pixels),
-      // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
-      line: {
-        simplify: false,
-        color: saltus.curveColour(panel, i, view.palette),
-        width: 1.6,
-        shape: curve.stepwise ? "hv" : "linear"
-      },
-    }));
+/** More jumps than this in one view: dotted lines alone, their ends would cover each other. */
+saltus.maximumJumpEnds = 80;
+
+/** Jumps of one curve: a dotted line, open where the curve ends, full where it goes on. */
+saltus.jumpTrace = (curve, jumps, axis, color) => {
+  const ends = curve.sort !== "alpha" && jumps.x.length <= 3 * saltus.maximumJumpEnds;
+  return {
+    type: "scatter",
+    mode: ends ? "lines+markers" : "lines",
+    xaxis: "x",
+    yaxis: axis,
+    hoverinfo: "none",
+    connectgaps: false,
+    ...jumps,
+    marker: {size: 5, color, symbol: jumps.x.map((_, i) => (i % 3 === 0 ? "circle-open" : "circle")), line: {width: 1}},
+    line: {simplify: false, color, width: 1, dash: "dot"},
+  };
+};
+
+saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve, i) => {
+  const color = saltus.curveColour(panel, i, view.palette);
+  const {x, y, jumps} = saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
+  const line = {
+    type: "scatter",
+    mode: "lines",
+    xaxis: "x",
+    yaxis: axis,
+    hoverinfo: "none",
+    connectgaps: false,
+    x,
+    y,
+    // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
+    line: {simplify: false, color, width: 1.6, shape: curve.stepwise ? "hv" : "linear"},
+  };
+  return jumps.x.length === 0 ? [line] : [line, saltus.jumpTrace(curve, jumps, axis, color)];
+});
 
 saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) => {
   const axis = saltus.axisName(i);

@@ -48,15 +48,15 @@ saltus.modeBoxes = (mode) => {
   return saltus.element("span", {class: "modes"}, ...boxes);
 };
 
-/** Words, the marker of plotly and a character that looks like it. */
+/** Words, the marker of plotly and a character that looks like it; a colour of its own for what is no switch. */
 saltus.kinds = {
   start: {label: "start", symbol: "circle", sign: "●"},
   crossing: {label: "crossing", symbol: "line-ns-open", sign: "│"},
   enter_sliding: {label: "enter sliding", symbol: "triangle-down", sign: "▼"},
   leave_sliding: {label: "leave sliding", symbol: "triangle-up", sign: "▲"},
   change_sliding: {label: "change sliding", symbol: "diamond", sign: "◆"},
-  accumulation: {label: "accumulation", symbol: "hourglass", sign: "⧗"},
-  jump: {label: "jump", symbol: "star", sign: "★"},
+  accumulation: {label: "accumulation", symbol: "hourglass", sign: "⋈", look: "accumulation", planeSymbol: "hourglass"},
+  jump: {label: "jump", symbol: "star", sign: "★", look: "jump", planeSymbol: "star"},
   user: {label: "user event", symbol: "square", sign: "■"},
 };
 saltus.kindSign = (kind) => saltus.kinds[kind]?.sign ?? "";

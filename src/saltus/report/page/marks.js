@@ -20,7 +20,7 @@ saltus.visibleMarks = (result, shown, [from, to]) => {
   return [...bins.values()];
 };
 
-/** All ordinary events are one path: hundreds of shapes would take plotly most of a second. */
+/** All events of one look are one path: hundreds of shapes would take plotly most of a second. */
 saltus.markShapes = (result, marks, selected, palette) => {
   const time = (i) => result.events[i].t;
   const line = (i, style) => ({
@@ -34,19 +34,26 @@ saltus.markShapes = (result, marks, selected, palette) => {
     y1: 1,
     line: style,
   });
-  const ordinary = marks.filter((i) => !saltus.isAlarming(result.events[i]));
+  const calm = marks.filter((i) => !saltus.isAlarming(result.events[i]));
   const dense = marks.length > 60;
   const shapes = marks.filter((i) => saltus.isAlarming(result.events[i]))
                      .map((i) => line(i, {color: palette.alarm, width: 2, dash: "dash"}));
-  if (ordinary.length > 0) {
+  for (const look of [undefined, "jump", "accumulation"]) {
+    const alike = calm.filter((i) => saltus.kinds[result.events[i].kind]?.look === look);
+    if (alike.length === 0) continue;
+    const style = {
+      jump: {color: palette.jump, width: dense ? 0.5 : 1, dash: "dot"},
+      accumulation: {color: palette.accumulation, width: 2, dash: "dashdot"},
+    }[look] ??
+        {color: palette.mark, width: dense ? 0.5 : 1};
     shapes.push({
       type: "path",
       layer: "below",
       xref: "x",
       yref: "paper",
-      opacity: dense ? 0.5 : 1,
-      path: ordinary.map((i) => `M${time(i)},0L${time(i)},1`).join(""),
-      line: {color: palette.mark, width: dense ? 0.5 : 1},
+      opacity: dense && look !== "accumulation" ? 0.5 : 1,
+      path: alike.map((i) => `M${time(i)},0L${time(i)},1`).join(""),
+      line: style,
     });
   }
   if (selected !== null) shapes.push(line(selected, {color: palette.select, width: 2}));
@@ -76,7 +83,8 @@ saltus.slidingShapes = (intervals, panels, totalHeight, [from, to], palette) => 
 saltus.markTrace = (result, marks, selected, palette) => {
   const colour = (i) => {
     if (i === selected) return palette.select;
-    return saltus.isAlarming(result.events[i]) ? palette.alarm : palette.text;
+    if (saltus.isAlarming(result.events[i])) return palette.alarm;
+    return palette[saltus.kinds[result.events[i].kind]?.look] ?? palette.text;
   };
   const alarming = (i) => saltus.isAlarming(result.events[i]);
   return {

@@ -1,7 +1,7 @@
 // Puts the parts together.
 "use strict";
 
-saltus.legend = (result, timeline) => {
+saltus.legend = (result, holder, timeline) => {
   const swatch = (kind, text) => saltus.element("span", {class: "swatch"}, saltus.element("i", {class: kind}), text);
   const modes = result.switching_functions.length === 0 ? [] : [
     saltus.element("span", {class: "quiet"}, "mode"), swatch("mode mode-minus", "− ψ<0"),
@@ -14,7 +14,7 @@ saltus.legend = (result, timeline) => {
           "span", {class: "quiet help", title: "A click on the line of an event shows the event."},
           "drag: zoom · double click: all"),
       saltus.element("button", {onclick: () => timeline().reset()}, "whole time"),
-      saltus.element("button", {title: "save the drawing as PNG", onclick: () => timeline().save()}, "save"));
+      ...saltus.saveButtons(result, holder, "trajectory"));
 };
 
 saltus.eventSection = (result, parts) => {
@@ -28,7 +28,7 @@ saltus.eventSection = (result, parts) => {
   return saltus.element(
       "aside", {class: "card event-list"},
       saltus.element("header", {}, saltus.element("h2", {}, saltus.count(result.events.length, "event")), wide),
-      saltus.kindFilter(result, parts.show), parts.table.element, parts.inspector.element);
+      saltus.eventFilter(result, parts.show), parts.table.element, parts.inspector.element);
 };
 
 saltus.start = () => {
@@ -37,15 +37,17 @@ saltus.start = () => {
   const holder = saltus.element("div", {class: "timeline"});
   const frame = saltus.element("div", {class: "timeline-frame"}, holder);
   let timeline = null;
-  let phase = null;
+  const phases = [];
+  const drawPhases = () => phases.forEach((phase) => phase.draw());
 
   const select = (i) => {
     table.flag(i);
     inspector.show(i);
     table.flag(i);  // again: the inspector has changed the height of the table
     timeline.flag(i);
+    drawPhases();
   };
-  const table = saltus.eventTable(result, select);
+  const table = saltus.eventTable(result, select, (i) => timeline.zoomTo(i));
   const inspector = saltus.inspector(result, {
     select,
     step: (i, step) => select(table.neighbour(i, step)),
@@ -53,7 +55,7 @@ saltus.start = () => {
   });
   const redraw = () => {
     timeline?.draw();
-    phase?.draw();
+    drawPhases();
     table.render();
   };
   const layout = saltus.element("div", {class: "layout"});
@@ -63,7 +65,7 @@ saltus.start = () => {
     show: (indices) => {
       table.show(indices);
       timeline.show(indices);
-      phase?.draw();
+      drawPhases();
     },
     toggleWide: (event) => {
       const wide = layout.classList.toggle("wide-events");
@@ -75,10 +77,10 @@ saltus.start = () => {
   const theme = saltus.followTheme(redraw);
   main.append(saltus.pageHeader(result, theme.toggle), ...saltus.banners(result, select), layout);
   layout.append(
-      saltus.element("section", {class: "card drawing"}, saltus.legend(result, () => timeline), frame),
+      saltus.element("section", {class: "card drawing"}, saltus.legend(result, holder, () => timeline), frame),
       saltus.eventSection(result, parts));
   timeline = saltus.timeline(result, holder, {
-    windowChanged: () => phase?.draw(),
+    windowChanged: drawPhases,
     // Beside the drawing the table is as tall as it, but never taller than the window.
     resized: (height) => layout.style.setProperty("--drawing-height", `${height + 92}px`),
   });
@@ -86,11 +88,14 @@ saltus.start = () => {
   const cards = saltus.element("div", {class: "cards"});
   main.append(cards, saltus.notes(result));
   if (result.states.length > 1 && result.trajectory.t.length > 0) {
-    phase = saltus.phasePlane(result, timeline, select);
-    cards.append(phase.element);
-    phase.start();
+    phases.push(saltus.phasePlane(result, timeline, select));
+    if (result.states.length > 2) phases.push(saltus.phasePortrait(result, timeline, select));
+    cards.classList.toggle("two", phases.length > 1);
+    cards.append(...phases.map((phase) => phase.element));
   }
   cards.append(saltus.element("div", {class: "info"}, ...saltus.infoCards(result)));
+  // Not before all stand at their places: a drawing takes its width from there.
+  for (const phase of phases) phase.start();
   table.render();
 
   let pending = 0;
@@ -98,6 +103,7 @@ saltus.start = () => {
     clearTimeout(pending);
     pending = setTimeout(redraw, 120);
   });
+  saltus.followPrinting(theme, table, redraw);
   const asked = /event=(\d+)/.exec(window.location.hash);
   if (asked !== null && result.events[asked[1] - 1] !== undefined) select(asked[1] - 1);
 };

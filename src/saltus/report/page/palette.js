@@ -17,6 +17,9 @@ saltus.palette = () => {
     slidingShade: colour("sliding-shade"),
     minus: colour("minus"),
     plus: colour("plus"),
+    jump: colour("jump"),
+    accumulation: colour("accumulation"),
+    surfaces: [1, 2, 3, 4, 5].map((i) => colour(`surface-${i}`)),
     curves: [1, 2, 3, 4, 5, 6].map((i) => colour(`curve-${i}`)),
   };
 };
@@ -33,5 +36,5 @@ saltus.followTheme = (changed) => {
   };
   document.documentElement.dataset.theme = asked ? asked[1] : system.matches ? "dark" : "light";
   system.addEventListener("change", () => apply(system.matches ? "dark" : "light"));
-  return {toggle: () => apply(saltus.currentTheme() === "dark" ? "light" : "dark")};
+  return {apply, toggle: () => apply(saltus.currentTheme() === "dark" ? "light" : "dark")};
 };

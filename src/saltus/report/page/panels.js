@@ -45,8 +45,14 @@ saltus.groupCurves = (curves) => {
 /** Panels of curves, top to bottom: states, outputs, inputs, alpha. */
 saltus.curvePanels = (result) => {
   const {trajectory} = result;
-  const curves = (names, columns, sort) => names.map(
-      (name, i) => ({name, sort, values: columns[i], stepwise: sort === "input" && saltus.isStepwise(columns[i])}));
+  const curves = (names, columns, sort) =>
+      names.map((name, i) => ({
+                  name,
+                  sort,
+                  values: columns[i],
+                  stepwise: sort === "input" && saltus.isStepwise(columns[i]),
+                  discrete: sort === "state" && saltus.isDiscrete(trajectory.t, columns[i]),
+                }));
   const panels = [
     ...saltus.groupCurves(curves(result.states, trajectory.x, "state")),
     ...saltus.groupCurves(curves(result.output_names, trajectory.outputs, "output")),

@@ -1,133 +1,110 @@
-// Two states against each other over the window of time of the drawing, sliding in its own colour.
+// States against each other over the window of time of the drawing: what a plane and a space of three have in common.
 "use strict";
 
-/** Points of the curve, cut where sliding begins or ends; the border belongs to both parts. */
+/** Points of the curve, cut where sliding begins or ends (the border belongs to both parts), and the jumps. */
 saltus.phaseParts = (result, columns, rows, sliding) => {
   const {t} = result.trajectory;
-  const parts = {free: {x: [], y: []}, sliding: {x: [], y: []}};
+  const part = () => columns.map(() => []);
+  const parts = {free: part(), sliding: part(), jumps: part()};
+  const leastJumps = columns.map(saltus.leastJump);
   const starts = sliding.map((interval) => interval[0]);
   const slides = (time) => {
     const i = saltus.lowerBound(starts, time);
     const interval = starts[i] === time ? sliding[i] : sliding[i - 1];
     return interval !== undefined && time < interval[1];
   };
-  const push = (part, i) => {
-    part.x.push(i === null ? null : columns[0][i]);
-    part.y.push(i === null ? null : columns[1][i]);
-  };
+  const push = (into, i) => columns.forEach((column, axis) => into[axis].push(i === null ? null : column[i]));
   let current = null;
   for (let n = 0; n + 1 < rows.length; n += 1) {
     const [i, k] = [rows[n], rows[n + 1]];
-    const jump = t[i] === t[k] && (columns[0][i] !== columns[0][k] || columns[1][i] !== columns[1][k]);
-    const part = slides((t[i] + t[k]) / 2) ? parts.sliding : parts.free;
+    const jump = t[i] === t[k] && columns.some((column, c) => Math.abs(column[i] - column[k]) > leastJumps[c]);
     if (t[i] === t[k] && !jump) continue;
-    if (jump || part !== current) {
+    const into = slides((t[i] + t[k]) / 2) ? parts.sliding : parts.free;
+    if (jump || into !== current) {
       if (current !== null) push(current, null);
-      current = jump ? null : part;
-      if (!jump) push(part, i);
+      current = jump ? null : into;
+      if (!jump) push(into, i);
     }
-    if (!jump) push(part, k);
+    if (jump)
+      [i, k, null].forEach((row) => push(parts.jumps, row));
+    else
+      push(into, k);
   }
   return parts;
 };
 
-saltus.phaseTraces = (result, choice, rows, sliding, events, palette) => {
-  const columns = choice.map((i) => result.trajectory.x[i]);
-  const parts = saltus.phaseParts(result, columns, rows, sliding);
-  const line = (part, color, width, name) =>
-      ({type: "scatter", mode: "lines", ...part, name, line: {simplify: false, color, width}});
-  const point = (i, name, symbol) => ({
-    type: "scatter",
-    mode: "markers",
-    name,
-    x: [columns[0][i]],
-    y: [columns[1][i]],
-    marker: {symbol, size: 10, color: palette.text, line: {width: 1.5, color: palette.text}},
-  });
-  const switches = {
-    type: "scatter",
-    mode: "markers",
-    name: "event",
-    customdata: events,
-    x: events.map((i) => result.events[i].x_after[choice[0]]),
-    y: events.map((i) => result.events[i].x_after[choice[1]]),
-    marker: {
-      size: events.map((i) => (saltus.isAlarming(result.events[i]) ? 11 : 5)),
-      symbol: events.map((i) => (saltus.isAlarming(result.events[i]) ? "x" : "circle")),
-      color: events.map((i) => (saltus.isAlarming(result.events[i]) ? palette.alarm : palette.mark)),
-    },
-  };
-  return [
-    line(parts.free, palette.curves[0], 1.4, "not sliding"),
-    line(parts.sliding, palette.sliding, 3, "sliding"),
-    switches,
-    point(rows[0], "begin", "circle-open"),
-    point(rows[rows.length - 1], "end", "square"),
-  ];
+/** The range of some values with a little room; one that is a point gets room of its own size. */
+saltus.roomyRange = (values, room = 0.06) => {
+  const [least, greatest] = saltus.range(values);
+  const width = greatest - least;
+  const more = width > 0 ? room * width : Math.max(0.1 * Math.abs(least), 1e-3);
+  return [least - more, greatest + more];
 };
 
-saltus.phasePlane = (result, timeline, select) => {
-  const holder = saltus.element("div", {class: "phase-plot"});
-  const choice = [0, 1];
-  const sliding = saltus.slidingIntervals(result.trajectory.modes);
-  const draw = () => {
-    const palette = saltus.palette();
-    const window_ = timeline.window();
-    const {t, x} = result.trajectory;
-    const inside = saltus.rowsInWindow(t, window_);
-    const rows = saltus.rowsToDraw(t, choice.map((i) => x[i]), inside, 1500)
-                     .filter((i) => t[i] >= window_[0] && t[i] <= window_[1]);
-    if (rows.length === 0) return Plotly.purge(holder);
-    const marks = saltus.visibleMarks(result, timeline.shown(), window_);
-    const axis = (i) => ({
-      title: {text: saltus.plain(saltus.shorten(result.states[choice[i]], 30)), standoff: 6},
-      gridcolor: palette.grid,
-      zerolinecolor: palette.axis,
-      linecolor: palette.grid,
-      showline: true,
-      mirror: true,
-      automargin: true,
-      exponentformat: "power",
-      minexponent: 5,
-    });
-    const layout = {
-      width: holder.clientWidth,
-      height: holder.clientHeight,
-      margin: {l: 60, r: 12, t: 30, b: 44},
-      hovermode: "closest",
-      separators: ".",
-      paper_bgcolor: "rgba(0,0,0,0)",
-      plot_bgcolor: palette.panel,
-      font: {family: "system-ui, sans-serif", size: 12, color: palette.text},
-      xaxis: axis(0),
-      yaxis: axis(1),
-      legend: {orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: {size: 11}},
-    };
-    return Plotly.react(
-        holder, saltus.phaseTraces(result, choice, rows, sliding, marks, palette), layout, {displayModeBar: false});
-  };
-  const picker = (i) => saltus.element(
-      "select", {
-        "aria-label": `state on axis ${i + 1}`,
-        onchange: (e) => {
-          choice[i] = Number(e.target.value);
-          draw();
-        }
-      },
-      ...result.states.map(
-          (name, k) => saltus.element(
-              "option", {value: String(k), ...(k === choice[i] ? {selected: ""} : {})}, saltus.shorten(name, 30))));
-  const element = saltus.element(
-      "section", {class: "card phase"},
-      saltus.element(
-          "header", {}, saltus.element("h2", {}, "Phase plane"), picker(1), " over ", picker(0),
-          saltus.element("span", {class: "quiet"}, "within the time shown above")),
-      holder);
-  const start = () => {
-    draw();
-    holder.on("plotly_click", ({points}) => {
-      if (points[0].customdata !== undefined) select(points[0].customdata);
-    });
-  };
-  return {element, draw, start};
+/** Where slices of surfaces are taken: the flagged event, or the end of the window. */
+saltus.slicePlace = (result, selected, rows) => {
+  if (selected !== null) return {t: result.events[selected].t, x: result.events[selected].x_after};
+  const last = rows[rows.length - 1];
+  return {t: result.trajectory.t[last], x: result.trajectory.x.map((column) => column[last])};
 };
+
+/** What a drawing in phase space shows: rows of the window, parts of the curve, events, the box around it. */
+saltus.phaseView = (result, timeline, choice, sliding, buckets) => {
+  const {t, x} = result.trajectory;
+  const window_ = timeline.window();
+  const columns = choice.map((i) => x[i]);
+  const rows = saltus.rowsToDraw(t, columns, saltus.rowsInWindow(t, window_), buckets)
+                   .filter((i) => t[i] >= window_[0] && t[i] <= window_[1]);
+  if (rows.length === 0) return null;
+  const selected = timeline.selected();
+  return {
+    rows,
+    columns,
+    selected,
+    events: saltus.visibleMarks(result, timeline.shown(), window_),
+    parts: saltus.phaseParts(result, columns, rows, sliding),
+    box: columns.map((column) => saltus.roomyRange(rows.map((i) => column[i]))),
+    at: saltus.slicePlace(result, selected, rows),
+  };
+};
+
+saltus.surfaceStyle = (index, surface, palette) =>
+    ({color: palette.surfaces[index % palette.surfaces.length], jump: surface.role === "jump"});
+
+/** What surfaces a drawing says in words: which are cuts, and which it cannot show. */
+saltus.surfaceNote = (cuts, absent, at) => {
+  const names = (list) => {
+    const unique = [...new Set(list.map((surface) => surface.name))];
+    const shown = unique.slice(0, 4).map((name) => saltus.shorten(name, 24)).join(", ");
+    return unique.length > 4 ? `${shown} and ${unique.length - 4} more` : shown;
+  };
+  return [
+    cuts.length > 0 ?
+        `Cuts at t = ${saltus.brief(at.t, 6)}, where the other states have their values: ${names(cuts)}.` :
+        null,
+    absent.length > 0 ? `Not drawn, depends on time or on further states: ${names(absent)}.` : null,
+  ].filter((text) => text !== null)
+      .join(" ");
+};
+
+/** States to begin with: those of the first surface, filled up with the first ones, in their order. */
+saltus.firstChoice = (result, size) => {
+  const chosen = new Set((result.surfaces[0]?.states ?? []).slice(0, size));
+  for (let i = 0; chosen.size < size; i += 1) chosen.add(i);
+  return [...chosen].sort((a, b) => a - b);
+};
+
+/** A choice of one state per axis; `changed` is called after every change of `choice`. */
+saltus.statePickers = (result, choice, changed) => choice.map(
+    (_, axis) => saltus.element(
+        "select", {
+          "aria-label": `state on axis ${axis + 1}`,
+          onchange: (e) => {
+            choice[axis] = Number(e.target.value);
+            changed();
+          }
+        },
+        ...result.states.map(
+            (name, k) => saltus.element(
+                "option", {value: String(k), ...(k === choice[axis] ? {selected: ""} : {})},
+                saltus.shorten(name, 30)))));

@@ -81,21 +81,48 @@ saltus.rowsToDraw = (t, columns, [begin, end], buckets) => {
   return rows;
 };
 
-/** Points of one curve; a jump (two values at one time) and a missing value are gaps. */
-saltus.points = (t, values, window, buckets) => {
+/**
+ * Smallest difference across an event that counts as a jump: a hundredth of a pixel. Below it are the roundings of a
+ * state that was put onto its surface.
+ */
+saltus.leastJump = (values) => {
+  const [least, greatest] = saltus.range(values);
+  return 1e-5 * (greatest - least);
+};
+
+/**
+ * Points of one curve; a jump (two values at one time) and a missing value are gaps. `jumps` has both sides of every
+ * jump with a gap behind. A discrete curve has no gaps: its steps are the curve.
+ */
+saltus.points = (t, values, window, buckets, discrete = false) => {
+  const leastJump = saltus.leastJump(values);
   const x = [];
   const y = [];
+  const jumps = {x: [], y: []};
   let previous = -1;
   for (const i of saltus.rowsToDraw(t, [values], saltus.rowsInWindow(t, window), buckets)) {
-    if (previous >= 0 && t[previous] === t[i] && values[previous] !== values[i]) {
+    if (previous >= 0 && t[previous] === t[i] && Math.abs(values[previous] - values[i]) > leastJump && !discrete) {
       x.push(t[i]);
       y.push(null);
+      jumps.x.push(t[i], t[i], null);
+      jumps.y.push(values[previous], values[i], null);
     }
     x.push(t[i]);
     y.push(values[i]);
     previous = i;
   }
-  return {x, y};
+  return {x, y, jumps};
+};
+
+/** Whether a column changes only at jumps, as discrete states do (one that never changes needs no steps). */
+saltus.isDiscrete = (t, values) => {
+  let changes = 0;
+  for (let i = 1; i < values.length; i += 1) {
+    if (values[i] === values[i - 1]) continue;
+    if (t[i] !== t[i - 1]) return false;
+    changes += 1;
+  }
+  return changes > 0;
 };
 
 /** Whether a column looks piecewise constant: far fewer changes than rows. */

@@ -78,7 +78,6 @@ saltus.timeline = (result, holder, listeners) => {
     draw,
     flag,
     setWindow,
-    save: () => Plotly.downloadImage(holder, {format: "png", scale: 2, filename: "trajectory"}),
     reset: () => setWindow(full),
     zoomTo: (i) => setWindow(windowAround(i)),
     show: (indices) => {
@@ -87,6 +86,7 @@ saltus.timeline = (result, holder, listeners) => {
     },
     window: () => window_,
     shown: () => shown,
+    selected: () => selected,
     panels: () => stack,
   };
 };

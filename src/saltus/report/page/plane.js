@@ -1,0 +1,167 @@
+// The phase plane of two states with the surfaces in it.
+"use strict";
+
+/** More surfaces than this have one entry of the legend together. */
+saltus.maximumLegendSurfaces = 8;
+
+saltus.planeSurfaces = (result, choice, view, palette) => {
+  // Wider than what is shown at first: lines still reach the border when one zooms out or moves.
+  const [x, y] = view.box.map(([from, to]) => [from - 2 * (to - from), to + 2 * (to - from)]);
+  const drawn = [];
+  result.surfaces.forEach((surface, index) => {
+    const parts = saltus.surfaceInPlane(surface, choice, view.at);
+    if (parts === null) return;
+    const path = saltus.surfacePath(parts, {x, y});
+    if (path.x.length > 0) drawn.push({surface, index, exact: parts.exact, path});
+  });
+  const single = drawn.length <= saltus.maximumLegendSurfaces;
+  const seen = new Set();
+  const traces = drawn.map(({surface, index, exact, path}, n) => {
+    const style = saltus.surfaceStyle(index, surface, palette);
+    const label = `${saltus.shorten(surface.name, 22)}${surface.role === "jump" ? " (jump)" : " = 0"}`;
+    const first = !seen.has(label);
+    seen.add(label);
+    return {
+      type: "scatter",
+      mode: "lines",
+      ...path,
+      name: saltus.plain(single ? label : "surfaces"),
+      legendgroup: single ? label : "surfaces",
+      showlegend: single ? first : n === 0,
+      hoverinfo: "name",
+      line:
+          {simplify: false,
+           color: style.color,
+           width: 1.3,
+           dash: style.jump ? "dashdot" :
+               exact        ? "solid" :
+                              "dash"},
+    };
+  });
+  return {traces, cuts: drawn.filter((entry) => !entry.exact).map((entry) => entry.surface)};
+};
+
+saltus.planeTraces = (result, choice, view, palette) => {
+  const {rows, columns, parts, events, selected} = view;
+  const line = ([x, y], name, style) => ({
+    type: "scatter",
+    mode: "lines",
+    x,
+    y,
+    name,
+    hoverinfo: "skip",
+    showlegend: x.length > 0,
+    line: {simplify: false, ...style},
+  });
+  const point = (i, name, symbol) => ({
+    type: "scatter",
+    mode: "markers",
+    name,
+    x: [columns[0][i]],
+    y: [columns[1][i]],
+    marker: {symbol, size: 10, color: palette.text, line: {width: 1.5, color: palette.text}},
+  });
+  const event = (i) => result.events[i];
+  const alarming = (i) => saltus.isAlarming(event(i));
+  const marks = {
+    type: "scatter",
+    mode: "markers",
+    name: "event",
+    showlegend: events.length > 0,
+    customdata: events,
+    x: events.map((i) => event(i).x_after[choice[0]]),
+    y: events.map((i) => event(i).x_after[choice[1]]),
+    text: events.map(
+        (i) => saltus.plain(`${i + 1}. ${saltus.kindLabel(event(i).kind)}, t = ${saltus.brief(event(i).t, 8)}`)),
+    hovertemplate: "%{text}<extra></extra>",
+    marker: {
+      size: events.map((i) => (alarming(i) ? 11 : 6)),
+      symbol: events.map((i) => (alarming(i) ? "x" : (saltus.kinds[event(i).kind]?.planeSymbol ?? "circle"))),
+      color: events.map((i) => (alarming(i) ? palette.alarm : palette.mark)),
+      line: {width: 0.8, color: palette.panel},
+    },
+  };
+  const flagged = selected === null ? [] : [{
+    type: "scatter",
+    mode: "markers",
+    name: `event ${selected + 1}`,
+    hoverinfo: "skip",
+    x: [event(selected).x_after[choice[0]]],
+    y: [event(selected).x_after[choice[1]]],
+    marker: {symbol: "circle-open", size: 17, color: palette.select, line: {width: 2.5}},
+  }];
+  return [
+    line(parts.free, "not sliding", {color: palette.curves[0], width: 1.4}),
+    line(parts.sliding, "sliding", {color: palette.sliding, width: 3.2}),
+    line(parts.jumps, "jump", {color: palette.jump, width: 1.4, dash: "dot"}),
+    marks,
+    point(rows[0], "begin", "circle-open"),
+    point(rows[rows.length - 1], "end", "square"),
+    ...flagged,
+  ];
+};
+
+saltus.planeLayout = (result, choice, view, holder, palette, equal) => {
+  const axis = (i) => ({
+    title: {text: saltus.plain(saltus.shorten(result.states[choice[i]], 30)), standoff: 6},
+    range: view.box[i],
+    gridcolor: palette.grid,
+    zerolinecolor: palette.axis,
+    linecolor: palette.axis,
+    showline: true,
+    mirror: true,
+    automargin: true,
+    exponentformat: "power",
+    minexponent: 5,
+  });
+  return {
+    width: holder.clientWidth,
+    height: holder.clientHeight,
+    margin: {l: 60, r: 12, t: 30, b: 44},
+    hovermode: "closest",
+    separators: ".",
+    // What the reader has zoomed to stays until other states or another time are chosen.
+    uirevision: JSON.stringify([choice, view.box, equal]),
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: palette.panel,
+    font: {family: "system-ui, sans-serif", size: 12, color: palette.text},
+    xaxis: axis(0),
+    yaxis: {...axis(1), ...(equal ? {scaleanchor: "x"} : {})},
+    legend: {orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: {size: 11}},
+  };
+};
+
+saltus.phasePlane = (result, timeline, select) => {
+  const holder = saltus.element("div", {class: "phase-plot"});
+  const note = saltus.element("p", {class: "quiet note"});
+  const choice = saltus.firstChoice(result, 2);
+  const sliding = saltus.slidingIntervals(result.trajectory.modes);
+  const equal = saltus.element("input", {type: "checkbox", onchange: () => draw()});
+  const draw = () => {
+    const palette = saltus.palette();
+    const view = saltus.phaseView(result, timeline, choice, sliding, 1500);
+    if (view === null) return Plotly.purge(holder);
+    const surfaces = saltus.planeSurfaces(result, choice, view, palette);
+    note.textContent = saltus.surfaceNote(surfaces.cuts, saltus.surfacesNotDrawn(result, choice), view.at);
+    return Plotly.react(
+        holder, [...surfaces.traces, ...saltus.planeTraces(result, choice, view, palette)],
+        saltus.planeLayout(result, choice, view, holder, palette, equal.checked), saltus.plotConfig);
+  };
+  const [first, second] = saltus.statePickers(result, choice, draw);
+  const element = saltus.element(
+      "section", {class: "card phase"},
+      saltus.element(
+          "header", {}, saltus.element("h2", {title: "within the time shown above"}, "Phase plane"), second, " over ",
+          first,
+          saltus.element("label", {class: "grow", title: "one unit is as long on both axes"}, equal, "equal scales"),
+          ...saltus.saveButtons(result, holder, "phase-plane")),
+      holder, note);
+  const start = () => {
+    draw();
+    holder.on("plotly_click", ({points}) => {
+      if (points[0].customdata !== undefined) select(points[0].customdata);
+    });
+    holder.on("plotly_doubleclick", draw);
+  };
+  return {element, draw, start};
+};

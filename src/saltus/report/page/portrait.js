@@ -1,0 +1,163 @@
+// The phase portrait of three states; needs WebGL, and says so where there is none.
+"use strict";
+
+saltus.hasWebGL = () => {
+  const canvas = document.createElement("canvas");
+  return (canvas.getContext("webgl2") ?? canvas.getContext("webgl")) !== null;
+};
+
+saltus.portraitTraces = (result, choice, view, palette) => {
+  const {rows, columns, parts, events, selected} = view;
+  const line = ([x, y, z], name, style) => ({
+    type: "scatter3d",
+    mode: "lines",
+    x,
+    y,
+    z,
+    name,
+    hoverinfo: "skip",
+    showlegend: x.length > 0,
+    connectgaps: false,
+    line: style,
+  });
+  const points = (list, name, marker, more = {}) => ({
+    type: "scatter3d",
+    mode: "markers",
+    name,
+    x: list.map((p) => p[0]),
+    y: list.map((p) => p[1]),
+    z: list.map((p) => p[2]),
+    showlegend: list.length > 0,
+    marker,
+    ...more,
+  });
+  const place = (i) => choice.map((state) => result.events[i].x_after[state]);
+  const row = (i) => columns.map((column) => column[i]);
+  const alarming = (i) => saltus.isAlarming(result.events[i]);
+  return [
+    line(parts.free, "not sliding", {color: palette.curves[0], width: 3}),
+    line(parts.sliding, "sliding", {color: palette.sliding, width: 6}),
+    line(parts.jumps, "jump", {color: palette.jump, width: 3, dash: "dot"}),
+    points(
+        events.map(place), "event", {
+          size: events.map((i) => (alarming(i) ? 6 : 3)),
+          color: events.map((i) => (alarming(i) ? palette.alarm : palette.mark))
+        },
+        {
+          customdata: events,
+          text: events.map((i) => saltus.plain(`${i + 1}. ${saltus.kindLabel(result.events[i].kind)}`)),
+          hovertemplate: "%{text}<extra></extra>",
+        }),
+    points([row(rows[0])], "begin", {size: 5, symbol: "circle-open", color: palette.text}),
+    points([row(rows[rows.length - 1])], "end", {size: 5, symbol: "square", color: palette.text}),
+    ...(selected === null ? [] : [points(
+                                     [place(selected)], `event ${selected + 1}`,
+                                     {size: 9, symbol: "circle-open", color: palette.select, line: {width: 3}})]),
+  ];
+};
+
+saltus.portraitSurfaces = (result, choice, view, palette) => {
+  const cuts = [];
+  const traces = [];
+  result.surfaces.forEach((surface, index) => {
+    const sheet = saltus.surfaceInSpace(surface, choice, view.at, view.box);
+    if (sheet === null) return;
+    if (!saltus.isExact(surface, choice)) cuts.push(surface);
+    traces.push({
+      type: "mesh3d",
+      ...sheet,
+      name: saltus.plain(`${saltus.shorten(surface.name, 22)}${surface.role === "jump" ? " (jump)" : " = 0"}`),
+      showlegend: result.surfaces.length <= saltus.maximumLegendSurfaces,
+      hoverinfo: "skip",
+      opacity: 0.22,
+      flatshading: true,
+      lighting: {ambient: 1, diffuse: 0, specular: 0},
+      color: saltus.surfaceStyle(index, surface, palette).color,
+    });
+  });
+  return {traces, cuts};
+};
+
+saltus.portraitLayout = (result, choice, view, holder, palette) => {
+  const axis = (i) => ({
+    title: {text: saltus.plain(saltus.shorten(result.states[choice[i]], 24))},
+    range: view.box[i],
+    gridcolor: palette.axis,
+    zerolinecolor: palette.axis,
+    linecolor: palette.axis,
+    showbackground: false,
+    exponentformat: "power",
+    minexponent: 5,
+    tickfont: {size: 10},
+  });
+  return {
+    width: holder.clientWidth,
+    height: holder.clientHeight,
+    margin: {l: 0, r: 0, t: 30, b: 0},
+    separators: ".",
+    uirevision: JSON.stringify(choice),
+    paper_bgcolor: "rgba(0,0,0,0)",
+    font: {family: "system-ui, sans-serif", size: 12, color: palette.text},
+    scene: {
+      xaxis: axis(0),
+      yaxis: axis(1),
+      zaxis: axis(2),
+      aspectmode: "cube",
+      dragmode: "orbit",
+      camera: {eye: {x: 1.4, y: -1.5, z: 0.85}, center: {x: 0, y: 0, z: -0.1}},
+    },
+    legend: {orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: {size: 11}},
+  };
+};
+
+saltus.phasePortrait = (result, timeline, select) => {
+  const holder = saltus.element("div", {class: "phase-plot"});
+  const note = saltus.element("p", {class: "quiet note"});
+  const choice = saltus.firstChoice(result, 3);
+  const sliding = saltus.slidingIntervals(result.trajectory.modes);
+  const possible = saltus.hasWebGL();
+  let visible = false;
+  const draw = () => {
+    // A picture of three dimensions takes the graphics card most of a second: not before somebody looks.
+    if (!possible || !visible) return null;
+    const palette = saltus.palette();
+    const view = saltus.phaseView(result, timeline, choice, sliding, 1500);
+    if (view === null) return Plotly.purge(holder);
+    const surfaces = saltus.portraitSurfaces(result, choice, view, palette);
+    const absent = result.surfaces.filter((surface) => surface.affine === null && !saltus.isExact(surface, choice));
+    note.textContent = saltus.surfaceNote(surfaces.cuts, absent, view.at);
+    return Plotly.react(
+        holder, [...saltus.portraitTraces(result, choice, view, palette), ...surfaces.traces],
+        saltus.portraitLayout(result, choice, view, holder, palette), saltus.plotConfig);
+  };
+  const [first, second, third] = saltus.statePickers(result, choice, draw);
+  const element = saltus.element(
+      "section", {class: "card phase"},
+      saltus.element(
+          "header", {}, saltus.element("h2", {}, "Phase portrait"), third, " over ", first, " and ", second,
+          saltus.element("span", {class: "quiet grow"}, possible ? "drag: turn" : ""),
+          ...(possible ? saltus.saveButtons(result, holder, "phase-portrait") : [])),
+      holder, note);
+  const begin = () => {
+    visible = true;
+    draw();
+    holder.on("plotly_click", ({points}) => {
+      if (points[0].customdata !== undefined) select(points[0].customdata);
+    });
+  };
+  const start = () => {
+    if (!possible) {
+      holder.classList.add("absent");
+      holder.textContent =
+          "This browser shows no three-dimensional drawings (it has no WebGL). The phase plane beside shows any two states.";
+      return;
+    }
+    const watch = new IntersectionObserver((entries) => {
+      if (visible || !entries.some((entry) => entry.isIntersecting)) return;
+      watch.disconnect();
+      begin();
+    }, {rootMargin: "200px"});
+    watch.observe(holder);
+  };
+  return {element, draw, start};
+};
