@@ -75,13 +75,13 @@ class Browser:
             raise RuntimeError(f"{method}: {answer['error']['message']}")
         return answer["result"]
 
-    def open(self, url, width, height, theme):
+    def open(self, url, width, height, theme, scale=1):
         self.session = None
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=False)
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
         started = time.monotonic()
         self.call("Page.navigate", url=url)
@@ -129,8 +129,13 @@ class Browser:
             raise SystemExit(f"unknown action '{word}': move, click, drag, wait or run")
         self.wait(0.3)
 
-    def picture(self, file, whole):
-        if whole:
+    def picture(self, file, whole, element):
+        if element:
+            box = json.loads(self.value(
+                f"(() => {{ const r = document.querySelector({json.dumps(element)}).getBoundingClientRect();"
+                " return JSON.stringify({x: r.x + scrollX, y: r.y + scrollY, width: r.width, height: r.height}); })()"))
+            data = self.call("Page.captureScreenshot", captureBeyondViewport=True, clip={**box, "scale": 1})
+        elif whole:
             size = self.call("Page.getLayoutMetrics")["cssContentSize"]
             clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
             data = self.call("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)
@@ -147,11 +152,11 @@ class Browser:
 
 def look(browser, page, size, theme, arguments):
     width, height = (int(part) for part in size.split("x"))
-    seconds = browser.open(f"{page.resolve().as_uri()}#{arguments.hash}", width, height, theme)
+    seconds = browser.open(f"{page.resolve().as_uri()}#{arguments.hash}", width, height, theme, arguments.scale)
     for action in arguments.do:
         browser.act(action)
     file = arguments.out / f"{page.stem}-{size}-{theme}.png"
-    browser.picture(file, arguments.whole)
+    browser.picture(file, arguments.whole, arguments.element)
     print(f"{file}  (loaded in {seconds:.2f} s)")
 
 
@@ -162,6 +167,8 @@ def main():
     parser.add_argument("--size", action="append", help="WIDTHxHEIGHT, repeatable")
     parser.add_argument("--theme", action="append", choices=["light", "dark"])
     parser.add_argument("--whole", action="store_true", help="the whole page instead of the first screen")
+    parser.add_argument("--element", help="CSS selector: only this element")
+    parser.add_argument("--scale", type=float, default=1, help="pixels of the picture per pixel of the page")
     parser.add_argument("--hash", default="", help="for example event=3")
     parser.add_argument("--do", action="append", default=[], help="an action before the picture, repeatable")
     parser.add_argument("--browser", default="chromium")

@@ -37,6 +37,9 @@ def run(command, tool, folder):
 
 def main(readme, tool):
     text = Path(readme).read_text(encoding="utf-8")
+    missing = [link for link in re.findall(r"\]\(([^)#:]+)\)", text) if not (Path(readme).parent / link).exists()]
+    if missing:
+        sys.exit(f"README.md links to what is not there: {missing}")
     model = blocks(text, "toml")[0]
     name = re.search(r"Save it as `([^`]+)`", text).group(1)
     commands = [line for block in blocks(text, "") for line in block.splitlines() if line.startswith("saltus ")]

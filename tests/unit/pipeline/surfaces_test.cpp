@@ -83,6 +83,29 @@ TEST(Surfaces, OfMoreStatesOrOfTimeAreNamedWithoutCurves) {
   }
 }
 
+TEST(Surfaces, GuardsOfJumpsAreSurfacesButTimesAreNone) {
+  model::System system;
+  system.t = SX::sym("t");
+  system.x = SX::sym("x", 2);
+  system.u = system.p = system.alpha = SX(0, 1);
+  system.input = SX(0, 1);
+  system.state_names = {"y", "v"};
+  model::Jump jump;
+  jump.name = "bounce";
+  jump.guards = SX::vertcat({-2 * system.x(0) + 1, system.t - 3});
+  system.jumps = {jump};
+  result::Result result;
+  result.states = system.state_names;
+  result.final.x = {0.0, 1.0};
+  const auto found = surfaces(system, result);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].name, "bounce");
+  EXPECT_EQ(found[0].role, result::SurfaceRole::jump);
+  EXPECT_EQ(found[0].states, (std::vector<std::string>{"y"}));
+  EXPECT_EQ(found[0].affine->gradient, (std::vector<double>{-2.0}));
+  EXPECT_EQ(found[0].affine->constant, 1.0);
+}
+
 TEST(Surfaces, NestedOnesFollowTheirInnerSwitches) {
   // y = |x| - 1: the tent with its tip at (0, -1).
   const auto found = surfaces_of([](model::Builder& model, const SX& x, const SX& y, const SX&) {

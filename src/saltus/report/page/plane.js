@@ -151,9 +151,10 @@ saltus.phasePlane = (result, timeline, select) => {
   const element = saltus.element(
       "section", {class: "card phase"},
       saltus.element(
-          "header", {}, saltus.element("h2", {title: "within the time shown above"}, "Phase plane"), second, " over ",
-          first,
-          saltus.element("label", {class: "grow", title: "one unit is as long on both axes"}, equal, "equal scales"),
+          "header", {}, saltus.element("h2", {title: "within the time shown above"}, "Phase plane"),
+          saltus.element("span", {class: "controls"}, second, " over ", first),
+          saltus.element(
+              "label", {class: "controls grow", title: "one unit is as long on both axes"}, equal, "equal scales"),
           ...saltus.saveButtons(result, holder, "phase-plane")),
       holder, note);
   const start = () => {

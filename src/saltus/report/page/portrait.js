@@ -132,14 +132,16 @@ saltus.phasePortrait = (result, timeline, select) => {
   };
   const [first, second, third] = saltus.statePickers(result, choice, draw);
   const element = saltus.element(
-      "section", {class: "card phase"},
+      "section", {class: "card phase undrawn"},
       saltus.element(
-          "header", {}, saltus.element("h2", {}, "Phase portrait"), third, " over ", first, " and ", second,
-          saltus.element("span", {class: "quiet grow"}, possible ? "drag: turn" : ""),
+          "header", {}, saltus.element("h2", {}, "Phase portrait"),
+          saltus.element("span", {class: "controls"}, third, " over ", first, " and ", second),
+          saltus.element("span", {class: "controls quiet grow"}, possible ? "drag: turn" : ""),
           ...(possible ? saltus.saveButtons(result, holder, "phase-portrait") : [])),
       holder, note);
   const begin = () => {
     visible = true;
+    element.classList.remove("undrawn");
     draw();
     holder.on("plotly_click", ({points}) => {
       if (points[0].customdata !== undefined) select(points[0].customdata);
