@@ -22,14 +22,14 @@ import time
 class Browser:
     """Chromium behind a pair of pipes (its debugging protocol, one JSON message after the other, ended by NUL)."""
 
-    def __init__(self, program):
+    def __init__(self, program, flags=""):
         to_browser, self.output = os.pipe()
         self.input, from_browser = os.pipe()
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         # Chromium reads from 3 and writes to 4.
         command = (f'exec 3<&{to_browser} 4>&{from_browser}; exec "$0" --headless --no-sandbox --disable-gpu '
                    '--no-first-run --disable-background-networking --disable-component-update --disable-sync '
-                   f'--hide-scrollbars --user-data-dir="{self.profile.name}" --remote-debugging-pipe about:blank 2>/dev/null')
+                   f'--hide-scrollbars {flags} --user-data-dir="{self.profile.name}" --remote-debugging-pipe about:blank 2>/dev/null')
         self.process = subprocess.Popen(["bash", "-c", command, program], pass_fds=(to_browser, from_browser))
         os.close(to_browser)
         os.close(from_browser)

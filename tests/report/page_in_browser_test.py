@@ -1,0 +1,149 @@
+"""The pages of reports in headless Chromium: what is drawn, what answers to whom, and that nothing complains.
+
+usage: page_in_browser_test.py TOOL SOURCE BROWSER
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+TOOL, SOURCE, BROWSER = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
+sys.path.insert(0, str(SOURCE / "scripts"))
+import look_at_report  # noqa: E402  (the path has to be known first)
+
+DRAWN = "document.querySelectorAll('.js-plotly-plot').length"
+PLANE = "document.querySelectorAll('.phase-plot')[0]"
+NAMES = PLANE + ".data.filter((trace) => trace.x.length > 0).map((trace) => trace.name)"
+SELECTED = "document.querySelector('.inspector h3').textContent"
+
+
+def key(name):
+    return ("document.querySelector('.scroller').dispatchEvent(new KeyboardEvent('keydown', "
+            f"{{key: '{name}', bubbles: true}}))")
+
+
+class Page(unittest.TestCase):
+    flags = ""
+
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="saltus-page-")
+        self.folder = pathlib.Path(self._folder.name)
+        self.browser = look_at_report.Browser(BROWSER, self.flags)
+
+    def tearDown(self):
+        self.browser.close()
+        self._folder.cleanup()
+        self.assertEqual(self.browser.complaints, [])
+
+    def tool(self, *arguments):
+        subprocess.run([TOOL, *arguments], cwd=self.folder, check=True, capture_output=True, timeout=120)
+
+    def show(self, model):
+        self.tool("simulate", model, "--quiet", "--report", "page.html")
+        self.open("page.html")
+
+    def open(self, name):
+        self.browser.open((self.folder / name).as_uri(), 1366, 768, "light")
+
+    def value(self, expression):
+        return self.browser.value(expression)
+
+    def becomes(self, expression, expected):
+        """Waits until an expression has a value: drawing takes its time on a busy machine."""
+        end = time.monotonic() + 30
+        while (found := self.value(expression)) != expected and time.monotonic() < end:
+            time.sleep(0.05)
+        self.assertEqual(found, expected, expression)
+
+
+class TwoStates(Page):
+    def test_drawings_events_and_their_links(self):
+        self.show("stick-slip")
+        self.assertEqual(self.value(DRAWN), 2)
+        self.assertEqual(self.value(NAMES), ["slip = 0", "not sliding", "sliding", "event", "begin", "end"])
+        # The surface runs through the whole plane at the speed of the belt.
+        self.assertTrue(all(abs(v - 0.2) < 1e-15 for v in self.value(PLANE + ".data[0].y.slice(0, 2)")))
+
+        self.value(key("ArrowDown"))
+        self.becomes(SELECTED, "▼ Event 1: enter sliding")
+        self.value(key("End"))
+        self.becomes(SELECTED, "▼ Event 9: enter sliding")
+        self.value(key("Enter"))
+        self.becomes("document.querySelector('.timeline').layout.xaxis.range.map((t) => t > 20)", [True, True])
+        self.becomes(NAMES + ".at(-1)", "event 9")
+        self.value(key("Escape"))
+        self.becomes("document.querySelector('.inspector').hidden", True)
+
+    def test_search_leaves_the_matching_events(self):
+        self.show("stick-slip")
+        rows = "document.querySelectorAll('.events tbody tr:not(.space)').length"
+        self.assertEqual(self.value(rows), 9)
+        self.value("(() => { const box = document.querySelector('.search'); box.value = 'leave';"
+                   " box.dispatchEvent(new Event('input')); })()")
+        self.becomes(rows, 4)
+
+    def test_a_click_on_an_event_in_the_plane_selects_it(self):
+        self.show("stick-slip")
+        self.value(f"{PLANE}.emit('plotly_click', {{points: [{{customdata: 2}}]}})")
+        self.becomes(SELECTED, "▼ Event 3: enter sliding")
+
+    def test_files_and_paper(self):
+        self.show("circle")
+        self.value("Promise.all([...document.querySelectorAll('.js-plotly-plot')].map((drawing) => Plotly.toImage("
+                   "{data: drawing.data, layout: drawing.layout}, {format: 'svg', width: 700, height: 500})))"
+                   ".then((images) => { window.images = images.map((text) => text.slice(0, 18)); })")
+        self.becomes("window.images", ["data:image/svg+xml"] * 2)
+        self.value("document.querySelector('.theme').click()")
+        self.assertEqual(self.value("document.documentElement.dataset.theme"), "dark")
+        self.value("window.dispatchEvent(new Event('beforeprint'))")
+        self.assertEqual(self.value("document.documentElement.dataset.theme"), "light")
+        self.assertEqual(self.value("document.documentElement.className"), "paper")
+        self.value("window.dispatchEvent(new Event('afterprint'))")
+        self.assertEqual(self.value("document.documentElement.dataset.theme"), "dark")
+
+    def test_names_of_others_stay_text(self):
+        self.tool("simulate", "stick-slip", "--quiet", "--out", "r.json")
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        bad = "</script><img src=x onerror=window.hit=1><b>"
+        result["model"]["name"] = result["model"]["description"] = bad
+        result["states"][1] = result["surfaces"][0]["states"][0] = bad
+        result["switching_functions"][0] = result["surfaces"][0]["name"] = bad
+        result["events"][0].update(name=bad, reason=bad, surfaces=[bad], unique=False)
+        (self.folder / "bad.json").write_text(json.dumps(result), encoding="utf-8")
+        self.tool("report", "bad.json")
+        self.open("bad.html")
+        self.assertEqual(self.value(DRAWN), 2)
+        self.value(key("ArrowDown"))
+        self.becomes("document.querySelector('.inspector').hidden", False)
+        self.assertEqual(self.value("[window.hit === undefined, document.querySelectorAll('img, b').length]"), [True, 0])
+        self.assertEqual(self.value("document.querySelector('h1').textContent"), bad)
+
+
+class ThreeStates(Page):
+    def test_the_portrait_has_curve_and_plane(self):
+        self.show("relay-feedback")
+        self.value("window.scrollTo(0, document.body.scrollHeight)")
+        self.becomes(DRAWN, 3)
+        kinds = self.value("document.querySelectorAll('.phase-plot')[1].data.map((trace) => trace.type)")
+        self.assertIn("scatter3d", kinds)
+        self.assertEqual(kinds.count("mesh3d"), 1)
+        self.assertEqual(self.value("document.querySelectorAll('.phase-plot')[1].data.at(-1).x.every((x) => "
+                                    "Math.abs(x) < 1e-15)"), True)
+
+
+class WithoutWebGL(Page):
+    flags = "--disable-3d-apis"
+
+    def test_the_page_says_so_and_shows_the_rest(self):
+        self.show("relay-feedback")
+        self.value("window.scrollTo(0, document.body.scrollHeight)")
+        self.becomes("document.querySelector('.absent').textContent.includes('WebGL')", True)
+        self.assertEqual(self.value(DRAWN), 2)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v"])
