@@ -1,5 +1,6 @@
 #include "saltus/evaluation/model_kernel.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <map>
 #include <optional>
@@ -35,6 +36,12 @@ std::vector<std::vector<int>> dependencies(const SX& expression, const SX& varia
   return rows;
 }
 
+/// d phi_j / d (x, t). Of a function that is affine, and does not hold selections, it is a constant: evaluated once.
+struct Gradient {
+  ModelFunction function;
+  std::vector<double> constant;  ///< row and rate, once known
+};
+
 }  // namespace
 
 struct ModelKernel::Implementation {
@@ -49,7 +56,7 @@ struct ModelKernel::Implementation {
   std::vector<bool> affine, time_only;
   std::vector<std::vector<int>> inner;
   std::vector<std::vector<bool>> depends;
-  std::map<int, ModelFunction> gradients;
+  std::vector<Gradient> gradients;  ///< one per event function, compiled when first asked for
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
   std::map<std::pair<int, int>, SX> lie_expressions;
   long field_evaluations = 0;
@@ -136,6 +143,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   const auto jump_guards = static_cast<int>(SX::vertcat(rows).numel());
   for (const auto& jump : system.jumps) rows.push_back(SX::vec(jump.guards));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
+  gradients.resize(index(static_cast<int>(phi.numel())));
 
   const std::vector<SX> arguments{t, x, p, alpha};
   field = ModelFunction("saltus_field", arguments, {f});
@@ -257,13 +265,24 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
                            double* rate) const {
   SALTUS_ASSERT(0 <= function && function < event_functions());
   auto& self = *implementation_;
-  auto& compiled = self.gradients[function];
-  if (compiled.is_null()) {
-    const SX phi = self.phi_row(function);
-    compiled = ModelFunction("gradient", {self.t, self.x, self.p, self.alpha},
-                             {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
+  auto& gradient = self.gradients[index(function)];
+  const auto n = self.x.numel();
+  if (!gradient.constant.empty()) {
+    std::copy_n(gradient.constant.begin(), n, row);
+    *rate = gradient.constant.back();
+    return;
   }
-  compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
+  if (gradient.function.is_null()) {
+    const SX phi = self.phi_row(function);
+    gradient.function = ModelFunction("gradient", {self.t, self.x, self.p, self.alpha},
+                                      {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
+  }
+  gradient.function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+                    std::array<double*, 2>{row, rate});
+  if (is_affine(function) && inner(function).empty()) {
+    gradient.constant.assign(row, row + n);
+    gradient.constant.push_back(*rate);
+  }
 }
 
 double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {

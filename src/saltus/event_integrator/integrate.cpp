@@ -40,6 +40,8 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       control_(options.method),
       tolerances_(local_tolerances(options.tolerances)),
       search_(kernel, field_, options.method, tolerances_),
+      locator_(options.method, kernel.states(), stepper_, field_, search_, tolerances_),
+      single_surface_(surroundings_),
       user_events_(kernel, system),
       recorder_(kernel, system),
       t_(options.from),

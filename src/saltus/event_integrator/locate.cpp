@@ -2,54 +2,39 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Newton steps before a slow correction (a multiple zero) is left to bisection.
+constexpr int newton_steps = 8;
+/// Longest way to an event, over the length of the step, that is not worth another step: the error of two stages,
+/// dt^3/12 x''', is a rounding of what the step changes.
+constexpr double two_stages_suffice = 1e-5;
+/// The same for one stage, dt^2/2 x''.
+constexpr double one_stage_suffices = 1e-8;
 
-/// One event under correction: values of all functions at the end of the retaken step.
-struct Trial {
-  double h = 0.0;
-  std::vector<double> x;
-  std::vector<double> values;
-};
+}  // namespace
 
-class Locator {
- public:
-  Locator(ode::Stepper& stepper, ModeField& field, EventSearch& search, const ode::Tolerances& tolerances,
-          const StepStart& start, const ode::DenseStep& dense)
-      : stepper_(stepper), field_(field), search_(search), tolerances_(tolerances), start_(start), dense_(dense) {
-    trial_.values.resize(search.functions().size());
-    n_ = static_cast<std::size_t>(dense.size());
-  }
+Locator::Locator(ode::Method method, int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
+                 const ode::Tolerances& tolerances)
+    : explicit_(method != ode::Method::radau5),
+      stepper_(stepper),
+      field_(field),
+      search_(search),
+      tolerances_(tolerances),
+      n_(at(states)) {
+  for (auto* x : {&trial_.x, &moved_.x, &slope_, &slope_ahead_, &x_, &located_.x}) x->resize(n_);
+}
 
-  std::optional<Located> run(Hit hit);
+/// Steps that differ by less than this end at the same time.
+double Locator::time_resolution() const { return 2.0 * rounding_unit * (std::abs(start_.t) + std::abs(trial_.h)); }
 
- private:
-  bool take(double h);
-  bool correct(const Hit& hit);
-  [[nodiscard]] std::optional<std::size_t> earlier_function(std::size_t located) const;
-  [[nodiscard]] std::vector<std::size_t> vanishing_with(std::size_t located);
-  [[nodiscard]] int sign(std::size_t function) const {
-    return function == hit_.function ? hit_.sign : search_.functions()[function].sign;
-  }
-  /// Steps that differ by less than this end at the same time.
-  [[nodiscard]] double time_resolution() const { return 2.0 * epsilon * (std::abs(start_.t) + std::abs(trial_.h)); }
-  /// Newton steps before a slow correction (a multiple zero) is left to bisection.
-  static constexpr int newton_steps = 8;
-
-  ode::Stepper& stepper_;
-  ModeField& field_;
-  EventSearch& search_;
-  const ode::Tolerances& tolerances_;
-  const StepStart& start_;
-  const ode::DenseStep& dense_;
-  std::size_t n_ = 0;
-  Hit hit_;
-  Trial trial_;
-};
+bool Locator::vanishes(double value) const {
+  return value == 0.0 || std::abs(value) <= 0.125 * search_.noise(hit_.function);
+}
 
 bool Locator::take(double h) {
   if (h <= time_resolution()) {
@@ -63,18 +48,60 @@ bool Locator::take(double h) {
   trial_.h = h;
   if (stepper_.attempt(f, start_.t, start_.x, start_.slope, h, tolerances_) == ode::Attempt::undefined) return false;
   trial_.x.assign(stepper_.x_new(), stepper_.x_new() + n_);
-  field_.project(start_.t + h, trial_.x.data());
+  const bool projected = field_.project(start_.t + h, trial_.x.data());
+  if (projected && explicit_) {
+    field_(start_.t + h, trial_.x.data(), slope_.data());
+  } else {
+    std::copy_n(stepper_.slope_new(), n_, slope_.begin());
+  }
   search_.evaluate(start_.t + h, trial_.x.data(), trial_.values);
   return std::isfinite(trial_.values[hit_.function]);
+}
+
+/// The point that lies dt ahead of the trial, into `moved_`; false where the field is undefined.
+bool Locator::move(double dt) {
+  const double t = start_.t + trial_.h + dt;
+  for (std::size_t i = 0; i < n_; ++i) moved_.x[i] = trial_.x[i] + dt * slope_[i];
+  if (std::abs(dt) > one_stage_suffices * trial_.h) {
+    field_(t, moved_.x.data(), slope_ahead_.data());
+    for (std::size_t i = 0; i < n_; ++i) moved_.x[i] = trial_.x[i] + 0.5 * dt * (slope_[i] + slope_ahead_[i]);
+    slope_.swap(slope_ahead_);
+  }
+  moved_.h = trial_.h + dt;
+  field_.project(t, moved_.x.data());
+  search_.evaluate(t, moved_.x.data(), moved_.values);
+  return std::isfinite(moved_.values[hit_.function]) && is_finite(moved_.x);
+}
+
+/// Moves the trial to the event if it is close enough for that; otherwise leaves it where it is.
+bool Locator::finish(double slope) {
+  if (!explicit_) return false;
+  double value = trial_.values[hit_.function];
+  double dt = -value / slope;
+  if (!(std::abs(dt) <= two_stages_suffice * trial_.h)) return false;
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    if (!(trial_.h + dt > 0.0 && trial_.h + dt <= dense_->h) || !move(dt)) return false;
+    const double next = moved_.values[hit_.function];
+    const bool small = std::abs(next) <= search_.noise(hit_.function);
+    const bool converges = std::abs(next) <= 0.1 * std::abs(value);
+    if (!converges && !small) return false;
+    std::swap(trial_, moved_);
+    if (vanishes(next) || !converges) return true;
+    const double secant = (next - value) / dt;
+    value = next;
+    dt = -value / secant;
+    if (std::abs(dt) <= time_resolution()) return true;
+  }
+  return false;
 }
 
 /// Newton for the function of `hit`; the last trial is the result.
 bool Locator::correct(const Hit& hit) {
   hit_ = hit;
-  double before = 0.0;       // longest step seen that ends before the event
-  double beyond = dense_.h;  // shortest one that ends behind it
+  double before = 0.0;        // longest step seen that ends before the event
+  double beyond = dense_->h;  // shortest one that ends behind it
   double slope = hit.slope;
-  double h = hit.theta * dense_.h;
+  double h = hit.theta * dense_->h;
   double previous_h = 0.0;
   double previous_value = 0.0;
   for (int iteration = 0; iteration < 60; ++iteration) {
@@ -86,7 +113,7 @@ bool Locator::correct(const Hit& hit) {
       continue;
     }
     const double value = trial_.values[hit.function];
-    if (value == 0.0 || std::abs(value) <= 0.125 * search_.noise(hit.function) || trial_.h == 0.0) return true;
+    if (vanishes(value) || trial_.h == 0.0 || finish(slope)) return true;
     (value * hit.sign > 0.0 ? before : beyond) = h;
     // The interpolant's slope is good to many digits; only where it fails (near a double zero) is a secant better.
     if (iteration > 0 && std::abs(value) > 0.1 * std::abs(previous_value) && h != previous_h &&
@@ -118,53 +145,46 @@ std::optional<std::size_t> Locator::earlier_function(std::size_t located) const 
 
 /// Functions that reach zero together with the located one: at zero to rounding of their values or of time, and away
 /// from it shortly before (a surface just left is still near zero, but moving away).
-std::vector<std::size_t> Locator::vanishing_with(std::size_t located) {
-  std::vector<std::size_t> together{located};
-  std::vector<double> x(n_);
-  std::vector<double> earlier(trial_.values.size());
+void Locator::find_vanishing_with(std::size_t located) {
+  located_.functions.assign(1, located);
   const double back = 1e-3 * trial_.h;
-  if (back == 0.0) return together;
-  dense_.evaluate((trial_.h - back) / dense_.h, x.data());
-  search_.evaluate(start_.t + trial_.h - back, x.data(), earlier);
+  if (back == 0.0 || trial_.values.size() == 1) return;
+  dense_->evaluate((trial_.h - back) / dense_->h, x_.data());
+  search_.evaluate(start_.t + trial_.h - back, x_.data(), earlier_);
   for (std::size_t i = 0; i < trial_.values.size(); ++i) {
     if (i == located || sign(i) == 0) continue;
-    const double ahead = earlier[i] * sign(i);
+    const double ahead = earlier_[i] * sign(i);
     const double rate = (ahead - trial_.values[i] * sign(i)) / back;
     const double resolution = std::max(search_.noise(i), 2.0 * rate * time_resolution());
-    if (ahead > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[i]) <= resolution) together.push_back(i);
+    if (ahead > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[i]) <= resolution) {
+      located_.functions.push_back(i);
+    }
   }
-  return together;
 }
 
-std::optional<Located> Locator::run(Hit hit) {
-  if (!correct(hit)) return std::nullopt;
+const Located* Locator::locate(const StepStart& start, const ode::DenseStep& dense, Hit hit) {
+  start_ = start;
+  dense_ = &dense;
+  for (auto* values : {&trial_.values, &moved_.values, &earlier_}) values->resize(search_.functions().size());
+  if (!correct(hit)) return nullptr;
   for (std::size_t round = 0; round < search_.functions().size(); ++round) {
     const auto earlier = earlier_function(hit.function);
     if (!earlier) break;
     const double h = trial_.h;
     const double value = trial_.values[*earlier];
-    hit = {*earlier, h / dense_.h, value, search_.functions()[*earlier].sign};
+    hit = {*earlier, h / dense.h, value, search_.functions()[*earlier].sign};
     // A slope from the sign change itself: the value falls from noise to `value` somewhere before h.
     hit.slope = value / h;
-    if (!correct(hit)) return std::nullopt;
+    if (!correct(hit)) return nullptr;
   }
   // A shorter step than the accepted one can only be worse where the field is singular (a selection that is 0/0).
-  if (trial_.h > 0.0 && !(stepper_.error_norm() <= 2.0)) return std::nullopt;
-  Located located;
-  located.t = start_.t + trial_.h;
-  const Trial final = trial_;
-  located.functions = vanishing_with(hit.function);
-  for (const auto function : located.functions) located.signs.push_back(sign(function));
-  located.x = final.x;
-  return located;
-}
-
-}  // namespace
-
-std::optional<Located> locate(ode::Stepper& stepper, ModeField& field, EventSearch& search,
-                              const ode::Tolerances& tolerances, const StepStart& start, const ode::DenseStep& dense,
-                              Hit hit) {
-  return Locator(stepper, field, search, tolerances, start, dense).run(hit);
+  if (trial_.h > 0.0 && !(stepper_.error_norm() <= 2.0)) return nullptr;
+  located_.t = start_.t + trial_.h;
+  located_.x = trial_.x;
+  find_vanishing_with(hit.function);
+  located_.signs.clear();
+  for (const auto function : located_.functions) located_.signs.push_back(sign(function));
+  return &located_;
 }
 
 }  // namespace saltus::event_integrator

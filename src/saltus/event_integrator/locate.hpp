@@ -25,13 +25,54 @@ struct Located {
   std::vector<int> signs;              ///< of `functions` before the event
 };
 
-/// Corrects a hit found on the dense output of the step (start, h).
-/// Newton in t with the slope of the interpolant, safeguarded by the bracket of signs seen; every iteration retakes the
-/// step, so the order of the method is kept. Of several functions the earliest zero is located; those that vanish with
-/// it to rounding are one event.
-/// @return nullopt if the right-hand side is undefined up to the event (shorten the step).
-[[nodiscard]] std::optional<Located> locate(ode::Stepper& stepper, ModeField& field, EventSearch& search,
-                                            const ode::Tolerances& tolerances, const StepStart& start,
-                                            const ode::DenseStep& dense, Hit hit);
+/// Corrects hits found on the dense output of a step. Owns its work space; allocates only for more functions than
+/// before.
+class Locator {
+ public:
+  Locator(ode::Method method, int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
+          const ode::Tolerances& tolerances);
+
+  /// The event of a hit on the dense output of the step (start, dense.h).
+  /// The step is retaken to the zero of the interpolant, so the order of the method is kept. What is then left is moved
+  /// along the field where it is so little that two stages are as good as the method; otherwise Newton in t with the
+  /// slope of the interpolant, safeguarded by the bracket of signs seen, retakes the step. Of several functions the
+  /// earliest zero is located; those that vanish with it to rounding are one event.
+  /// @return nullptr if the right-hand side is undefined up to the event (shorten the step); valid until the next call.
+  /// Cost: usually one step and one evaluation of f.
+  [[nodiscard]] const Located* locate(const StepStart& start, const ode::DenseStep& dense, Hit hit);
+
+ private:
+  /// One event under correction: the state at the end of the retaken step, and the values of all functions there.
+  struct Trial {
+    double h = 0.0;
+    std::vector<double> x;
+    std::vector<double> values;
+  };
+  bool take(double h);
+  bool correct(const Hit& hit);
+  bool finish(double slope);
+  bool move(double dt);
+  void find_vanishing_with(std::size_t located);
+  [[nodiscard]] bool vanishes(double value) const;
+  [[nodiscard]] std::optional<std::size_t> earlier_function(std::size_t located) const;
+  [[nodiscard]] int sign(std::size_t function) const {
+    return function == hit_.function ? hit_.sign : search_.functions()[function].sign;
+  }
+  [[nodiscard]] double time_resolution() const;
+
+  bool explicit_;
+  ode::Stepper& stepper_;
+  ModeField& field_;
+  EventSearch& search_;
+  const ode::Tolerances& tolerances_;
+  std::size_t n_;
+  StepStart start_;
+  const ode::DenseStep* dense_ = nullptr;
+  Hit hit_;
+  Trial trial_, moved_;
+  std::vector<double> slope_, slope_ahead_;  ///< f at the end of the trial, and just ahead of it
+  std::vector<double> x_, earlier_;
+  Located located_;
+};
 
 }  // namespace saltus::event_integrator

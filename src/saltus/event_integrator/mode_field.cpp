@@ -6,12 +6,12 @@
 
 #include <Eigen/LU>
 
+#include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/switching/surface_decision.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The only column of a row that is not 0, or -1.
@@ -42,6 +42,8 @@ void ModeField::enter(const ModeState& state) {
   sliding_ = state.sliding;
   start_alpha_ = state.alpha;
   alpha_ = state.alpha;
+  solve_ = SlidingSolve::none;
+  if (sliding_.empty()) return;
   const auto m = static_cast<Eigen::Index>(sliding_.size());
   rows_.resize(m, kernel_.states());
   rates_.resize(m);
@@ -50,16 +52,21 @@ void ModeField::enter(const ModeState& state) {
   exits_.assign(sliding_.size(), {});
   coordinate_.assign(sliding_.size(), -1);
   constant_row_.assign(sliding_.size(), false);
-  solve_ =
-      sliding_.empty() ? SlidingSolve::none : (affine_in_alpha_ ? SlidingSolve::decoupled : SlidingSolve::nonaffine);
+  solve_ = affine_in_alpha_ ? SlidingSolve::decoupled : SlidingSolve::nonaffine;
   for (const int i : sliding_) {
     for (const int j : sliding_) {
       if (i != j && kernel_.depends(i, j)) solve_ = SlidingSolve::coupled;
     }
   }
-  if (sliding_.size() == 1) {
-    corner_[0] = state.corner_alpha[0];
-    corner_[1] = state.corner_alpha[1];
+  if (sliding_.size() != 1) return;
+  between_.clear();
+  for (std::size_t corner = 0; corner < 2; ++corner) corner_[corner] = state.corner_alpha[corner];
+  for (std::size_t i = 0; i < alpha_.size(); ++i) {
+    if (corner_[0][i] == corner_[1][i]) {
+      alpha_[i] = corner_[0][i];
+    } else {
+      between_.push_back(i);
+    }
   }
 }
 
@@ -74,6 +81,7 @@ void ModeField::gradients(double t, const double* x) {
     }
     coordinate_[row] = only_column(rows_, static_cast<Eigen::Index>(row));
     constant_row_[row] = kernel_.is_affine(j) && kernel_.inner(j).empty();
+    if (sliding_.size() == 1) row_square_ = rows_.squaredNorm();
   }
 }
 
@@ -94,20 +102,30 @@ double ModeField::normal_terms(std::size_t row) const {
   return sum;
 }
 
-void ModeField::evaluate_one(double t, const double* x) {
-  const auto j = at(sliding_[0]);
+/// The fields of the two regions that meet at the one sliding surface, and their normal components.
+void ModeField::evaluate_corners(double t, const double* x) {
+  gradients(t, x);
   kernel_.field(t, x, corner_[0].data(), f_[0].data());
   kernel_.field(t, x, corner_[1].data(), f_[1].data());
-  const double below = normal_velocity(0, f_[0]);
-  const double above = normal_velocity(0, f_[1]);
-  const double selection = switching::sliding_alpha(below, above);
-  exits_[0] = {below, above, 0.0};
-  for (std::size_t i = 0; i < alpha_.size(); ++i) {
-    const double low = corner_[0][i];
-    alpha_[i] = low == corner_[1][i] ? low : low + selection * (corner_[1][i] - low);
+  exits_[0] = {normal_velocity(0, f_[0]), normal_velocity(0, f_[1]), 0.0};
+}
+
+/// The usual sliding: everything in closed form.
+void ModeField::slide_on_one(double t, const double* x, double* xdot) {
+  evaluate_corners(t, x);
+  const double selection = switching::sliding_alpha(exits_[0].below, exits_[0].above);
+  for (const std::size_t i : between_) alpha_[i] = corner_[0][i] + selection * (corner_[1][i] - corner_[0][i]);
+  const auto n = f_[0].size();
+  for (std::size_t i = 0; i < n; ++i) xdot[i] = f_[0][i] + selection * (f_[1][i] - f_[0][i]);
+  const double* row = rows_.data();
+  if (const int only = coordinate_[0]; only >= 0) {
+    if (std::isfinite(xdot[only])) xdot[only] = rates_[0] == 0.0 ? 0.0 : -rates_[0] / row[only];
+    return;
   }
-  alpha_[j] = selection;
-  for (std::size_t i = 0; i < f_[0].size(); ++i) f_[0][i] += selection * (f_[1][i] - f_[0][i]);
+  double normal = rates_[0];
+  for (std::size_t i = 0; i < n; ++i) normal += row[i] * xdot[i];
+  const double factor = row_square_ > 0.0 ? normal / row_square_ : not_a_number;
+  for (std::size_t i = 0; i < n; ++i) xdot[i] -= row[i] * factor;
 }
 
 void ModeField::evaluate_decoupled(double t, const double* x) {
@@ -202,6 +220,10 @@ void ModeField::evaluate_nonaffine(double t, const double* x) {
 }
 
 bool ModeField::solve_normal_equations() {
+  if (sliding_.size() == 1) {
+    residual_[0] /= row_square_;
+    return row_square_ > 0.0;
+  }
   normal_matrix_.noalias() = rows_ * rows_.transpose();
   cholesky_.compute(normal_matrix_);
   if (cholesky_.info() != Eigen::Success) return false;
@@ -235,7 +257,7 @@ void ModeField::select(double t, const double* x) {
     case SlidingSolve::none:
       return;
     case SlidingSolve::decoupled:
-      return sliding_.size() == 1 ? evaluate_one(t, x) : evaluate_decoupled(t, x);
+      return evaluate_decoupled(t, x);
     case SlidingSolve::coupled:
       return evaluate_coupled(t, x);
     case SlidingSolve::nonaffine:
@@ -248,13 +270,18 @@ void ModeField::operator()(double t, const double* x, double* xdot) {
     kernel_.field(t, x, alpha_.data(), xdot);
     return;
   }
+  if (is_single()) return slide_on_one(t, x, xdot);
   select(t, x);
   remove_normal_part(xdot);
 }
 
 void ModeField::exits(double t, const double* x, ExitValues* values) {
   if (solve_ == SlidingSolve::none) return;
-  select(t, x);
+  if (is_single()) {
+    evaluate_corners(t, x);
+  } else {
+    select(t, x);
+  }
   std::copy(exits_.begin(), exits_.end(), values);
 }
 

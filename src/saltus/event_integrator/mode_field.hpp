@@ -52,10 +52,12 @@ class ModeField {
   bool project(double t, double* x);
 
  private:
-  void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]
+  [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
+  void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]; not for one affine surface
   void gradients(double t, const double* x);
   [[nodiscard]] double normal_velocity(std::size_t row, const std::vector<double>& f) const;
-  void evaluate_one(double t, const double* x);
+  void evaluate_corners(double t, const double* x);
+  void slide_on_one(double t, const double* x, double* xdot);
   void evaluate_decoupled(double t, const double* x);
   void evaluate_coupled(double t, const double* x);
   void evaluate_nonaffine(double t, const double* x);
@@ -70,6 +72,7 @@ class ModeField {
   std::vector<double> start_alpha_;   ///< of the mode
   std::vector<double> alpha_;         ///< of the last evaluation
   std::vector<double> corner_[2];     ///< selections of the two regions (one sliding surface)
+  std::vector<std::size_t> between_;  ///< where these differ: the sliding surface and functions nested around it
   std::vector<double> trial_;         ///< n_psi
   std::vector<double> f_[2];          ///< n_x each
   std::vector<double> values_;        ///< all event functions
@@ -77,6 +80,7 @@ class ModeField {
   std::vector<bool> constant_row_;    ///< gradient known once and for all in this mode
   std::vector<int> coordinate_;       ///< the only nonzero column of a row, or -1
   Eigen::MatrixXd rows_;              ///< J, m x n_x
+  double row_square_ = 0.0;           ///< |J|^2 of one sliding surface
   Eigen::VectorXd rates_, residual_;  ///< d psi_I/dt, m
   Eigen::MatrixXd normal_matrix_;     ///< J J^T, then G
   Eigen::LLT<Eigen::MatrixXd> cholesky_;

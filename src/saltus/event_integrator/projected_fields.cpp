@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Sign tests: a quantity below this fraction of its scale counts as 0 (switching.md section 8).
-constexpr double sign_tolerance = 1e-10;
+constexpr double epsilon = rounding_unit;
 /// Velocities below this fraction of their scale are rounding.
 constexpr double velocity_rounding = 1e-14;
 /// Derivatives looked at before psi is said to stay 0.
@@ -18,10 +16,6 @@ constexpr int highest_order = 5;
 
 bool contains(const std::vector<int>& sorted_or_short, int value) {
   return std::find(sorted_or_short.begin(), sorted_or_short.end(), value) != sorted_or_short.end();
-}
-
-bool is_finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
 
 }  // namespace

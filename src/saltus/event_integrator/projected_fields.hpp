@@ -15,6 +15,9 @@ struct Motion {
   int order = 0;  ///< of the first derivative that does not vanish; 0 if none was found
 };
 
+/// Sign tests: a normal component below this fraction of its scale counts as 0 (switching.md section 8).
+inline constexpr double sign_tolerance = 1e-10;
+
 /// All values are at one point (occasion.t, occasion.x); not finite where a field is undefined there and also just
 /// beside the surfaces, on the side that belongs to the selections.
 class ProjectedFields {

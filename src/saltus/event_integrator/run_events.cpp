@@ -43,11 +43,12 @@ void Run::accumulates() {
 }
 
 bool Run::change_mode(const Located& located) {
-  Occasion occasion;
+  Occasion& occasion = occasion_;
   occasion.t = t_;
   occasion.x = x_.data();
   occasion.time_scale = h_scale_;
   occasion.at_zero = state_.sliding;
+  for (auto* surfaces : {&occasion.touched, &occasion.exit_below, &occasion.exit_above}) surfaces->clear();
   bool any = false;
   for (std::size_t k = 0; k < located.functions.size(); ++k) {
     const auto& function = search_.functions()[located.functions[k]];
@@ -56,7 +57,7 @@ bool Run::change_mode(const Located& located) {
     if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
     if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
     const bool nested = function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
-    if (nested && !continuous_across(kernel_, state_, function.index, t_, x_)) {
+    if (nested && !continuous_across(kernel_, state_, function.index, t_, x_, h_scale_)) {
       fail(Termination::outside_class,
            fmt::format(
                "'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
@@ -71,20 +72,21 @@ bool Run::change_mode(const Located& located) {
   if (!any) return true;
   std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
   occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
-  const ModeState before = state_;
-  auto transition = decide_mode(surroundings_, before, occasion);
+  Transition& transition = transition_;
+  if (!single_surface_.decide(before_, occasion, transition)) {
+    transition = decide_mode(surroundings_, before_, occasion);
+  }
   if (transition.termination != Termination::completed) {
     fail(transition.termination, std::move(transition.message));
     return false;
   }
-  if (series_.repeats(t_, before.mode, transition.state.mode)) {
+  if (series_.repeats(t_, before_.mode, transition.state.mode)) {
     accumulates();
     return false;
   }
-  other_continuations(surroundings_, before, occasion, transition);
+  other_continuations(surroundings_, before_, occasion, transition);
   if (!enter(transition)) return false;
-  transition.state = state_;
-  recorder_.switched(t_, x_, before, transition);
+  recorder_.switched(t_, x_, before_, transition);
   control_.reset();
   return true;
 }
@@ -104,22 +106,21 @@ void Run::flip_user_functions(const Located& located) {
 }
 
 /// The state is at a located event: rows before and behind, user events, the next mode.
-Run::Step Run::handle(Located located) {
+Run::Step Run::handle(const Located& located) {
   const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
   t_ = located.t;
-  x_ = std::move(located.x);
+  x_ = located.x;
   const long events_before = recorder_.events();
-  const ModeState before = state_;
   field_(t_, x_.data(), slope_.data());
   if (!state_.sliding.empty()) state_.alpha = field_.alpha();
-  const std::vector<double> x_before = x_;
-  const auto alpha_before = state_.sliding.empty() ? state_.alpha : field_.alpha();
+  before_ = state_;
+  x_before_ = x_;
   flip_user_functions(located);
   static_cast<void>(change_mode(located));
-  if (running_) fire_user_events(before);
+  if (running_) fire_user_events(before_);
   if (recorder_.events() > events_before || !running_) {
     // A step that ended exactly here has written the row before the event.
-    if (!ended_here) recorder_.row(t_, x_before, before.mode, alpha_before);
+    if (!ended_here) recorder_.row(t_, x_before_, before_.mode, before_.alpha);
     if (recorder_.events() > events_before) row(t_, x_);
   } else if (options_.output.rows == OutputTimes::Rows::at_steps) {
     row(t_, x_);

@@ -14,6 +14,7 @@
 #include "saltus/event_integrator/locate.hpp"
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/recorder.hpp"
+#include "saltus/event_integrator/single_surface.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/event_integrator/switch_series.hpp"
 #include "saltus/event_integrator/transition.hpp"
@@ -37,7 +38,7 @@ class Run {
   Step attempt();
   Step undefined_step();
   Step accept(double t_new);
-  Step handle(Located located);
+  Step handle(const Located& located);
   bool change_mode(const Located& located);
   bool enter(const Transition& transition);
   bool fire_user_events(const ModeState& before);
@@ -71,6 +72,8 @@ class Run {
   ode::Tolerances tolerances_;  ///< of a step
   ode::DenseStep dense_;
   EventSearch search_;
+  Locator locator_;
+  SingleSurface single_surface_;
   UserEvents user_events_;
   Recorder recorder_;
 
@@ -78,6 +81,10 @@ class Run {
   std::vector<double> x_, slope_;
   std::vector<double> row_x_, row_slope_;
   ModeState state_;
+  ModeState before_;  ///< of the event being handled, as are the next three
+  std::vector<double> x_before_;
+  Occasion occasion_;
+  Transition transition_;
   std::optional<double> stiff_at_;  ///< where the explicit method first looked out of place
   double h_ = 0.0;                  ///< proposed step
   double h_try_ = 0.0;              ///< step under trial

@@ -61,7 +61,7 @@ Run::Step Run::undefined_step() {
     if (reached) {
       Located located{t_, x_, {i}, {function.sign}};
       if (surface) move_onto(kernel_, state_, function.index, t_, located.x);
-      return handle(std::move(located));
+      return handle(located);
     }
   }
   if (stopped_by_two_fold()) return Step::failed;
@@ -126,11 +126,11 @@ Run::Step Run::attempt() {
       case SearchOutcome::hit: {
         const StepStart start{t_, x_.data(), slope_.data()};
         h_scale_ = h;
-        auto located = locate(stepper_, field_, search_, tolerances_, start, dense_, hit);
+        const Located* located = locator_.locate(start, dense_, hit);
         if (!located) return shorten(0.5) ? Step::shortened : undefined_step();
         ++result_.statistics.steps;
         rows_until(located->t);
-        return handle(std::move(*located));
+        return handle(*located);
       }
     }
   }

@@ -6,11 +6,16 @@ namespace saltus::event_integrator {
 
 bool SwitchSeries::repeats(double t, const std::vector<int>& before, const std::vector<int>& after) {
   if (before == after) return false;
-  if (t != last_) changes_.clear();
+  if (t != last_) noted_ = 0;
   last_ = t;
-  Change change{before, after};
-  if (std::find(changes_.begin(), changes_.end(), change) != changes_.end()) return true;
-  changes_.push_back(std::move(change));
+  const auto end = changes_.begin() + static_cast<std::ptrdiff_t>(noted_);
+  const auto same = [&](const Change& change) { return change.first == before && change.second == after; };
+  if (std::any_of(changes_.begin(), end, same)) return true;
+  // The storage of changes at earlier times is used again.
+  if (noted_ == changes_.size()) changes_.emplace_back();
+  changes_[noted_].first = before;
+  changes_[noted_].second = after;
+  ++noted_;
   return false;
 }
 

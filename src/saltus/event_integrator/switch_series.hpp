@@ -1,6 +1,7 @@
 // The budget of switches: ends accumulations and chattering that no rule resolves.
 #pragma once
 
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -23,8 +24,9 @@ class SwitchSeries {
   using Change = std::pair<std::vector<int>, std::vector<int>>;
   double span_;
   double last_ = 0.0;
-  std::vector<Change> changes_;  ///< at last_
-  long in_a_row_ = 0;            ///< without the time having advanced noticeably
+  std::vector<Change> changes_;  ///< the first `noted_` of them are those at last_
+  std::size_t noted_ = 0;
+  long in_a_row_ = 0;  ///< without the time having advanced noticeably
   double start_ = 0.0;
 };
 

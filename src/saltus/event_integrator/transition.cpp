@@ -2,25 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/switching/selection_root.hpp"
 
 namespace saltus::event_integrator {
+
+void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
+                   const ModeState& before, const Occasion& occasion, std::string& reason) {
+  const auto& function = system.switching[at(surface)];
+  if (function.role != model::SwitchingRole::listed) return;
+  if (decision.mode == before.mode[at(surface)] && !occasion.start) return;
+  if (!reason.empty()) reason += "; ";
+  reason += function.name;
+  reason += ": ";
+  reason += decision.reason;
+}
+
 namespace {
 
 using switching::Drift;
 using switching::SurfaceDecision;
 using switching::Verdict;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// Largest group whose 2^m corners are looked at.
 constexpr std::size_t largest_group = 12;
 
@@ -299,10 +311,7 @@ Transition Decider::run() {
   }
   for (const auto& [surface, decision] : decisions_) {
     if (contains(standing_, surface)) continue;
-    if (decision.mode != before_.mode[at(surface)] || occasion_.start) {
-      transition_.reason +=
-          (transition_.reason.empty() ? "" : "; ") + s_.system.switching[at(surface)].name + ": " + decision.reason;
-    }
+    append_reason(s_.system, surface, decision, before_, occasion_, transition_.reason);
     for (const int other : decision.other_modes) {
       transition_.unique = false;
       transition_.other_choices.emplace_back(surface, other);
@@ -352,13 +361,12 @@ bool jumps_away(const Surroundings& s, const Occasion& occasion, int j, ModeStat
     crosses = true;
   }
   if (!crosses) return false;
-  const auto n_phi = at(s.kernel.event_functions());
-  std::vector<double> values(n_phi), magnitude(n_phi), slope(n_phi);
+  std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(occasion.t, occasion.x, behind.alpha.data(), values.data());
-  s.kernel.scales(occasion.t, occasion.x, behind.alpha.data(), magnitude.data(), slope.data());
   const double psi = values[at(j)];
+  const double size = size_of(s.kernel, j, occasion.t, occasion.x, behind.alpha.data(), occasion.time_scale);
   // Four digits above rounding, as for jumps on sliding surfaces: a kink leaves rounding, a jump something of size.
-  if (!(std::abs(psi) > 1e5 * std::numeric_limits<double>::epsilon() * magnitude[at(j)])) return false;
+  if (!(std::abs(psi) > 1e5 * rounding_unit * size)) return false;
   set_surface(behind, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
   state = std::move(behind);
   return true;

@@ -54,6 +54,10 @@ struct Surroundings {
   bool affine_in_alpha = true;
 };
 
+/// Adds what decided about a surface, unless its mode stays, or it is not one that the result lists (a kink, a time).
+void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
+                   const ModeState& before, const Occasion& occasion, std::string& reason);
+
 /// The mode behind an event, or a start, at one point.
 /// Surfaces that do not influence each other are decided one by one, the others in groups; switching functions nested
 /// around a surface that changes are read anew. The new mode is checked along its own field: it must move to where it

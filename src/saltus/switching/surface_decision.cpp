@@ -5,12 +5,12 @@
 namespace saltus::switching {
 namespace {
 
-SurfaceDecision leaves(int mode, std::string reason) {
-  return {Verdict::decided, mode, mode > 0 ? 1.0 : 0.0, {}, std::move(reason)};
+SurfaceDecision leaves(int mode, std::string_view reason) {
+  return {Verdict::decided, mode, mode > 0 ? 1.0 : 0.0, {}, reason};
 }
 
-SurfaceDecision not_unique(int mode, std::vector<int> others, std::string reason) {
-  return {Verdict::decided, mode, mode > 0 ? 1.0 : 0.0, std::move(others), std::move(reason)};
+SurfaceDecision not_unique(int mode, std::vector<int> others, std::string_view reason) {
+  return {Verdict::decided, mode, mode > 0 ? 1.0 : 0.0, std::move(others), reason};
 }
 
 SurfaceDecision slides(const SurfaceSituation& s) {

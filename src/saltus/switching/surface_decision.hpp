@@ -2,7 +2,7 @@
 #pragma once
 
 #include <optional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace saltus::switching {
@@ -43,7 +43,7 @@ struct SurfaceDecision {
   int mode = 0;                  ///< -1, 0 (sliding), +1
   double alpha = 0.0;            ///< selection behind the event: 0, 1, or the sliding value
   std::vector<int> other_modes;  ///< further continuations in the sense of Filippov; empty = unique
-  std::string reason;            ///< which rule decided, in words
+  std::string_view reason;       ///< which rule decided, in words; of static duration
 };
 
 /// Sliding selection alpha = g- / (g- - g+) from g- = below.velocity >= 0 >= g+ = above.velocity, not both 0

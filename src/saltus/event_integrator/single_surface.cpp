@@ -1,0 +1,110 @@
+#include "saltus/event_integrator/single_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using switching::Drift;
+
+SingleSurface::SingleSurface(const Surroundings& surroundings)
+    : surroundings_(surroundings),
+      is_inner_(at(surroundings.kernel.switching_functions()), false),
+      f_(at(surroundings.kernel.states())),
+      row_(f_.size()) {
+  for (int j = 0; j < surroundings.kernel.switching_functions(); ++j) {
+    for (const int inner : surroundings.kernel.inner(j)) is_inner_[at(inner)] = true;
+  }
+}
+
+bool SingleSurface::applies(const ModeState& before, const Occasion& occasion) const {
+  if (!surroundings_.affine_in_alpha || occasion.start) return false;
+  if (occasion.at_zero.size() != 1 || occasion.touched != occasion.at_zero) return false;
+  const int j = occasion.at_zero.front();
+  if (is_inner_[at(j)] || surroundings_.system.switching[at(j)].role == model::SwitchingRole::discrete) return false;
+  const auto exits = occasion.exit_below.size() + occasion.exit_above.size();
+  if (before.mode[at(j)] != 0) return exits == 0;
+  // Away from its bound the selection has been lost in a two-fold point.
+  constexpr double lost = 1e-6;
+  return exits == 1 && before.alpha[at(j)] >= -lost && before.alpha[at(j)] <= 1.0 + lost;
+}
+
+/// Normal component of the field of one side; not finite if the field is not.
+double SingleSurface::velocity(const Occasion& occasion, int surface, double selection) {
+  const auto& kernel = surroundings_.kernel;
+  alpha_[at(surface)] = selection;
+  kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
+  if (!is_finite(f_)) return std::numeric_limits<double>::quiet_NaN();
+  double velocity = 0.0;
+  kernel.gradient(surface, occasion.t, occasion.x, alpha_.data(), row_.data(), &velocity);
+  for (std::size_t i = 0; i < f_.size(); ++i) velocity += row_[i] == 0.0 ? 0.0 : row_[i] * f_[i];
+  return velocity;
+}
+
+bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Transition& transition) {
+  if (!applies(before, occasion)) return false;
+  const int j = occasion.at_zero.front();
+  alpha_ = before.alpha;
+  for (std::size_t i = 0; i < alpha_.size(); ++i) {
+    if (before.mode[i] != 0) alpha_[i] = before.mode[i] > 0 ? 1.0 : 0.0;
+  }
+  switching::SurfaceSituation situation;
+  auto& [below, above, arrival] = situation;
+  below.velocity = velocity(occasion, j, 0.0);
+  above.velocity = velocity(occasion, j, 1.0);
+  if (!std::isfinite(below.velocity) || !std::isfinite(above.velocity)) return false;
+  const double scale = std::max(std::abs(below.velocity), std::abs(above.velocity));
+  for (auto* side : {&below, &above}) {
+    if (std::abs(side->velocity) > sign_tolerance * scale) side->drift = side->velocity > 0.0 ? Drift::up : Drift::down;
+  }
+  arrival = before.mode[at(j)] < 0 ? switching::Arrival::from_below : switching::Arrival::from_above;
+  int exit = 0;  // to the side whose field ends the sliding
+  if (before.mode[at(j)] == 0) {
+    arrival = switching::Arrival::along;
+    exit = occasion.exit_above.empty() ? -1 : 1;
+    // Located to rounding on this field's tangency: a later derivative says where it goes.
+    alpha_[at(j)] = exit > 0 ? 1.0 : 0.0;
+    auto& tangent = exit > 0 ? above : below;
+    const auto& other = exit > 0 ? below : above;
+    tangent = ProjectedFields(surroundings_.kernel, occasion).motion(alpha_, j, 0.0, std::abs(other.velocity)).side;
+  }
+  if (below.drift == Drift::stays || above.drift == Drift::stays) return false;
+  const auto decision = switching::decide_surface(situation);
+  const bool plain = decision.verdict == switching::Verdict::decided && decision.other_modes.empty();
+  if (!plain || decision.mode == before.mode[at(j)] || (exit != 0 && decision.mode != exit)) return false;
+  fill(before, occasion, decision, transition);
+  return true;
+}
+
+void SingleSurface::fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
+                         Transition& transition) const {
+  const int j = occasion.at_zero.front();
+  auto& state = transition.state;
+  state.mode = before.mode;
+  state.alpha = alpha_;
+  state.sliding = before.sliding;
+  set_surface(state, j, decision.mode, decision.alpha);
+  if (decision.mode == 0) {
+    for (std::size_t corner = 0; corner < 2; ++corner) {
+      state.corner_alpha[corner] = alpha_;
+      state.corner_alpha[corner][at(j)] = corner == 0 ? 0.0 : 1.0;
+    }
+  }
+  transition.termination = result::Termination::completed;
+  transition.message.clear();
+  // Both fields are finite here; where they are not behind the projection onto the surface, this point is as good.
+  transition.beside.assign(occasion.x, occasion.x + f_.size());
+  transition.zero_order.assign(state.mode.size(), 0);
+  if (decision.mode != 0) transition.zero_order[at(j)] = before.mode[at(j)] == 0 ? 2 : 1;
+  transition.unique = true;
+  transition.other_choices.clear();
+  transition.alternatives.clear();
+  transition.reason.clear();
+  append_reason(surroundings_.system, j, decision, before, occasion, transition.reason);
+}
+
+}  // namespace saltus::event_integrator

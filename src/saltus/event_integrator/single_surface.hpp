@@ -1,0 +1,38 @@
+// The usual event, decided without detours: one surface is met or left, and nothing else happens there.
+#pragma once
+
+#include <vector>
+
+#include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/event_integrator/transition.hpp"
+
+namespace saltus::event_integrator {
+
+/// Decides what decide_mode() decides, with the same bits, where
+///   - one surface is met from beside it and crossed or slid on, or left where one of its fields is tangent,
+///   - no other surface is at zero, and no function is nested around this one,
+///   - f is affine in the selection, and both normal components are clear of zero (at an exit the other one, and a
+///   later
+///     derivative of the tangent one).
+/// Cost: two evaluations of f; at an exit a second derivative, too. Owns its work space.
+class SingleSurface {
+ public:
+  explicit SingleSurface(const Surroundings& surroundings);
+
+  /// Fills `transition`, whose storage is used again.
+  /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
+  [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition);
+
+ private:
+  [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
+  double velocity(const Occasion& occasion, int surface, double selection);
+  void fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
+            Transition& transition) const;
+
+  const Surroundings& surroundings_;
+  std::vector<bool> is_inner_;  ///< n_psi: a switching function is nested around it
+  std::vector<double> alpha_;   ///< n_psi
+  std::vector<double> f_, row_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,175 @@
+// The short way of the usual event against the general decision, and what an event costs.
+#include "saltus/event_integrator/single_surface.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "saltus/event_integrator/integrate.hpp"
+#include "systems.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+
+/// Two affine fields that meet at an affine surface in three dimensions, all coefficients random.
+model::System random_fields(std::mt19937& random, bool with_tangent_field) {
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  auto s = testing::blank(3, 1);
+  SX psi = number(random) * s.t;
+  for (int i = 0; i < 3; ++i) psi += number(random) * s.x(i);
+  testing::add_surface(s, "s", psi);
+  std::vector<SX> f;
+  for (int i = 0; i < 3; ++i) {
+    SX sides[2];
+    for (auto& side : sides) {
+      side = number(random);
+      for (int k = 0; k < 3; ++k) side += number(random) * s.x(k);
+    }
+    f.push_back((1 - s.alpha(0)) * sides[0] + s.alpha(0) * sides[1]);
+  }
+  if (with_tangent_field) {
+    // The upper field loses its normal component at the point (0, 0, 0), t = 0, where its derivative stays.
+    const SX gradient = SX::jacobian(psi, s.x);
+    const SX normal = SX::mtimes(gradient, SX::vertcat(f)) + SX::jacobian(psi, s.t);
+    const SX upper = SX::substitute(SX::substitute(normal, s.alpha, SX(1)), SX::vertcat({s.t, s.x}), SX::zeros(4, 1));
+    for (int i = 0; i < 3; ++i)
+      f[static_cast<std::size_t>(i)] -= s.alpha(0) * gradient(i) * upper / dot(gradient, gradient);
+  }
+  testing::set_field(s, f, {0.0, 0.0, 0.0});
+  return s;
+}
+
+void expect_same(const Transition& one, const Transition& other) {
+  EXPECT_EQ(one.termination, other.termination);
+  EXPECT_EQ(one.state.mode, other.state.mode);
+  EXPECT_EQ(one.state.alpha, other.state.alpha);
+  EXPECT_EQ(one.state.sliding, other.state.sliding);
+  if (!one.state.sliding.empty()) EXPECT_EQ(one.state.corner_alpha, other.state.corner_alpha);
+  EXPECT_EQ(one.zero_order, other.zero_order);
+  EXPECT_EQ(one.unique, other.unique);
+  EXPECT_EQ(one.other_choices, other.other_choices);
+  EXPECT_EQ(one.reason, other.reason);
+}
+
+Occasion at_origin(const std::vector<double>& origin) {
+  Occasion occasion;
+  occasion.x = origin.data();
+  occasion.at_zero = {0};
+  occasion.touched = {0};
+  occasion.time_scale = 0.1;
+  return occasion;
+}
+
+TEST(SingleSurface, DecidesCrossingsAndEntriesLikeTheGeneralDecision) {
+  std::mt19937 random(20240611);
+  const std::vector<double> origin(3, 0.0);
+  int crossings = 0;
+  int entries = 0;
+  int left = 0;
+  for (int k = 0; k < 60; ++k) {
+    const auto system = random_fields(random, false);
+    const auto kernel = evaluation::ModelKernel::compile(system);
+    ASSERT_TRUE(kernel.has_value());
+    const Surroundings surroundings{*kernel, system, true};
+    SingleSurface single(surroundings);
+    Transition transition;
+    for (const int side : {-1, 1}) {
+      const ModeState before{{side}, {side > 0 ? 1.0 : 0.0}, {}, {}};
+      const auto occasion = at_origin(origin);
+      if (!single.decide(before, occasion, transition)) {
+        ++left;
+        continue;
+      }
+      ++(transition.state.mode[0] == 0 ? entries : crossings);
+      expect_same(transition, decide_mode(surroundings, before, occasion));
+    }
+  }
+  // A quarter of all pairs of fields each way: crossing up and down, sliding, repelling.
+  EXPECT_GT(crossings, 10);
+  EXPECT_GT(entries, 10);
+  EXPECT_GT(left, 10);
+}
+
+TEST(SingleSurface, DecidesExitsLikeTheGeneralDecision) {
+  std::mt19937 random(20240612);
+  const std::vector<double> origin(3, 0.0);
+  int exits = 0;
+  for (int k = 0; k < 60; ++k) {
+    const auto system = random_fields(random, true);
+    const auto kernel = evaluation::ModelKernel::compile(system);
+    ASSERT_TRUE(kernel.has_value());
+    const Surroundings surroundings{*kernel, system, true};
+    SingleSurface single(surroundings);
+    Transition transition;
+    ModeState before{{0}, {1.0}, {0}, {}};
+    before.corner_alpha = {std::vector<double>{0.0}, std::vector<double>{1.0}};
+    auto occasion = at_origin(origin);
+    occasion.exit_above = {0};
+    if (!single.decide(before, occasion, transition)) continue;
+    ++exits;
+    EXPECT_EQ(transition.state.mode[0], 1);
+    EXPECT_EQ(transition.zero_order[0], 2);
+    expect_same(transition, decide_mode(surroundings, before, occasion));
+  }
+  EXPECT_GT(exits, 8);  // an eighth of 60: the lower field points up, the upper one gets there
+}
+
+TEST(SingleSurface, LeavesWhatIsNotSimpleToTheGeneralDecision) {
+  const std::vector<double> origin(3, 0.0);
+  auto s = testing::blank(3, 2);
+  testing::add_surface(s, "inner", s.x(0));
+  testing::add_surface(s, "outer", s.x(1) + s.alpha(0));
+  testing::set_field(s, {SX(1), SX(1), s.alpha(1)}, {0, 0, 0});
+  const auto kernel = evaluation::ModelKernel::compile(s);
+  ASSERT_TRUE(kernel.has_value());
+  const Surroundings surroundings{*kernel, s, true};
+  SingleSurface single(surroundings);
+  Transition transition;
+  const ModeState before{{-1, -1}, {0.0, 0.0}, {}, {}};
+  auto occasion = at_origin(origin);
+  EXPECT_FALSE(single.decide(before, occasion, transition)) << "a function is nested around it";
+  occasion.at_zero = {1};
+  occasion.touched = {1};
+  EXPECT_TRUE(single.decide(before, occasion, transition));
+  occasion.start = true;
+  EXPECT_FALSE(single.decide(before, occasion, transition)) << "a start";
+  occasion.start = false;
+  occasion.at_zero = {0, 1};
+  EXPECT_FALSE(single.decide(before, occasion, transition)) << "two surfaces";
+}
+
+/// x'' = -x, which crosses x = 0 and turns on something that does not matter.
+long evaluations_of_oscillator(ode::Method method, double threshold, std::size_t events, long& steps) {
+  auto s = testing::blank(3, 1);
+  testing::add_surface(s, "s", s.x(0) - threshold);
+  testing::set_field(s, {s.x(1), -s.x(0), 0.001 * s.alpha(0)}, {0.5, 1.0, 0.0});
+  auto kernel = evaluation::ModelKernel::compile(s);
+  IntegrationOptions options;
+  options.method = method;
+  options.tolerances = {1e-8, 1e-10};
+  options.until = 100.0;
+  const auto result = integrate(*kernel, s, options);
+  EXPECT_EQ(result.status.termination, result::Termination::completed);
+  EXPECT_EQ(result.events.size(), events);
+  steps = static_cast<long>(result.statistics.steps);
+  return static_cast<long>(result.statistics.rhs_evaluations);
+}
+
+TEST(CostOfAnEvent, IsLessThanThreeSteps) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+    long steps = 0;
+    long steps_without = 0;
+    const double pi = std::acos(-1.0);
+    const auto events = static_cast<std::size_t>((100.0 + std::atan(0.5)) / pi);
+    const long with = evaluations_of_oscillator(method, 0.0, events, steps);
+    const long without = evaluations_of_oscillator(method, 2.0, 0, steps_without);
+    const double a_step = static_cast<double>(without) / static_cast<double>(steps_without);
+    EXPECT_LT(static_cast<double>(with - without), 3.0 * a_step * static_cast<double>(events));
+  }
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
