@@ -133,6 +133,27 @@ bool ProjectedFields::nearly_two_fold(const std::vector<double>& alpha, int surf
   return true;
 }
 
+bool ProjectedFields::gradient_vanishes(const std::vector<double>& alpha, int surface) const {
+  const auto n = at(kernel_.states());
+  std::vector<double> row(n);
+  std::vector<double> x(occasion_.x, occasion_.x + n);
+  double rate = 0.0;
+  const auto size = [&] {
+    kernel_.gradient(surface, occasion_.t, x.data(), alpha.data(), row.data(), &rate);
+    double sum = 0.0;
+    for (const double d : row) sum += std::abs(d);
+    return sum;
+  };
+  const double here = size();
+  if (rate != 0.0 || here == 0.0) return rate == 0.0;
+  // Close by: a thousandth of the state and of what a step changes. A square is located to a relative 1e-8, where its
+  // gradient is 1e-5 of that.
+  std::vector<double> f(n);
+  kernel_.field(occasion_.t, occasion_.x, alpha.data(), f.data());
+  for (std::size_t i = 0; i < n; ++i) x[i] += 1e-3 * (std::abs(x[i]) + occasion_.time_scale * std::abs(f[i]));
+  return here <= 1e-4 * size();
+}
+
 switching::CornerTable ProjectedFields::table(const ModeState& before, const std::vector<int>& group) const {
   switching::CornerTable table;
   table.surfaces = static_cast<int>(group.size());

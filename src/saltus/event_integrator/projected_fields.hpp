@@ -39,6 +39,10 @@ class ProjectedFields {
   /// to choose between reasons to stop, not to decide a motion.
   [[nodiscard]] bool nearly_two_fold(const std::vector<double>& alpha, int surface) const;
 
+  /// Whether the gradient of a surface vanishes here, but not close by (a power of another function), so that normal
+  /// components say nothing. To choose between reasons to stop.
+  [[nodiscard]] bool gradient_vanishes(const std::vector<double>& alpha, int surface) const;
+
   /// The table of all 2^m corners of a group.
   [[nodiscard]] switching::CornerTable table(const ModeState& before, const std::vector<int>& group) const;
   /// Whether the fields of all corners of the group are one and the same (relative 1e-12).

@@ -46,6 +46,7 @@ class Run {
   bool too_many_events();
   void accumulates();
   bool stopped_by_two_fold();
+  bool stopped_by_singularity();
   bool shorten(double factor);
   void rows_until(double t_end);
   void row(double t, const std::vector<double>& x);

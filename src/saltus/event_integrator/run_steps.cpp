@@ -46,6 +46,13 @@ bool Run::stopped_by_two_fold() {
   return message.has_value();
 }
 
+/// Whether the steps got short because switches accumulate here, or because of a two-fold point.
+bool Run::stopped_by_singularity() {
+  if (!series_.shrinks(t_)) return stopped_by_two_fold();
+  accumulates();
+  return true;
+}
+
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
   std::vector<double> values(search_.functions().size());
@@ -64,7 +71,7 @@ Run::Step Run::undefined_step() {
       return handle(located);
     }
   }
-  if (stopped_by_two_fold()) return Step::failed;
+  if (stopped_by_singularity()) return Step::failed;
   fail(Termination::evaluation_failed,
        fmt::format("the right-hand side is not finite beyond {}, however short the step; guard the expression with "
                    "if(…), or end the simulation before",
@@ -105,7 +112,7 @@ Run::Step Run::attempt() {
   }
   if (const double error = stepper_.error_norm(); !(error <= 1.0)) {
     if (shorten(control_.rejected(error))) return Step::shortened;
-    if (stopped_by_two_fold()) return Step::failed;
+    if (stopped_by_singularity()) return Step::failed;
     fail(Termination::step_size_too_small,
          fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
                      "there, or rtol is below what doubles carry",

@@ -6,6 +6,7 @@ namespace saltus::event_integrator {
 
 bool SwitchSeries::repeats(double t, const std::vector<int>& before, const std::vector<int>& after) {
   if (before == after) return false;
+  times_[switches_++ % remembered] = t;
   if (t != last_) noted_ = 0;
   last_ = t;
   const auto end = changes_.begin() + static_cast<std::ptrdiff_t>(noted_);
@@ -16,6 +17,17 @@ bool SwitchSeries::repeats(double t, const std::vector<int>& before, const std::
   changes_[noted_].first = before;
   changes_[noted_].second = after;
   ++noted_;
+  return false;
+}
+
+bool SwitchSeries::shrinks(double t) const {
+  const auto back = [&](std::size_t switches) { return times_[(switches_ - 1 - switches) % remembered]; };
+  // The last terms of a geometric series drown in the rounding of t: a fast one is over after a few, and with more in a
+  // lap a slow one shrinks by half from lap to lap.
+  for (const std::size_t lap : {std::size_t{2}, std::size_t{4}}) {
+    if (switches_ <= 2 * lap || t - back(lap) > 1e-9 * span_) continue;
+    if (back(0) - back(lap) <= 0.5 * (back(lap) - back(2 * lap))) return true;
+  }
   return false;
 }
 

@@ -1,6 +1,7 @@
 // The budget of switches: ends accumulations and chattering that no rule resolves.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -19,6 +20,9 @@ class SwitchSeries {
   [[nodiscard]] bool repeats(double t, const std::vector<int>& before, const std::vector<int>& after);
   /// Counts an event at t; whether there were too many in too short a time.
   [[nodiscard]] bool too_dense(double t);
+  /// Whether the switches before t have followed each other ever faster, down to a scale on which no model lives: a run
+  /// that cannot go on there has come to their limit.
+  [[nodiscard]] bool shrinks(double t) const;
 
  private:
   using Change = std::pair<std::vector<int>, std::vector<int>>;
@@ -26,6 +30,10 @@ class SwitchSeries {
   double last_ = 0.0;
   std::vector<Change> changes_;  ///< the first `noted_` of them are those at last_
   std::size_t noted_ = 0;
+  /// Two laps of up to four switches, and one to start from.
+  static constexpr std::size_t remembered = 9;
+  std::array<double, remembered> times_{};  ///< of the last switches, in turn
+  std::size_t switches_ = 0;
   long in_a_row_ = 0;  ///< without the time having advanced noticeably
   double start_ = 0.0;
 };

@@ -52,6 +52,18 @@ std::string two_fold_at(const std::string& surface, double t) {
       t);
 }
 
+/// Why the motion on a surface is not determined.
+std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
+                            const std::vector<double>& alpha, int surface, double t) {
+  const auto& name = system.switching[at(surface)].name;
+  if (!fields.gradient_vanishes(alpha, surface)) return two_fold_at(name, t);
+  return fmt::format(
+      "the gradient of '{}' vanishes where '{}' is 0, at t = {} (a square or another power?): the motion on that "
+      "surface "
+      "is not determined; use a function with the same sign and a gradient there, such as the root",
+      name, name, t);
+}
+
 /// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
 /// around j.
 bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j) {
@@ -172,7 +184,9 @@ bool Decider::decide(const std::vector<int>& group) {
       }
       break;
     case Verdict::two_fold:
-      return fail(result::Termination::outside_class, two_fold_at(culprit(), occasion_.t));
+      return fail(
+          result::Termination::outside_class,
+          undetermined_at(fields_, s_.system, base_.alpha, group[at(std::max(decision.culprit, 0))], occasion_.t));
     case Verdict::coupled:
       return fail(result::Termination::outside_class,
                   fmt::format("the surfaces {} meet at t = {} and influence each other: the continuation needs the "
@@ -245,6 +259,10 @@ bool Decider::check() {
   if (!std::all_of(xdot.begin(), xdot.end(), is_number)) field(occasion_.t, transition_.beside.data(), xdot.data());
   if (!std::all_of(xdot.begin(), xdot.end(), is_number)) {
     // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
+    for (const int j : state.sliding) {
+      if (!fields_.gradient_vanishes(state.alpha, j)) continue;
+      return fail(result::Termination::outside_class, undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
+    }
     if (!state.sliding.empty()) {
       return fail(result::Termination::evaluation_failed, fmt::format("the sliding field on {} is not finite at t = {}",
                                                                       names(s_.system, state.sliding), occasion_.t));
@@ -258,7 +276,8 @@ bool Decider::check() {
       // Behind an exit located on one field the selection is at its bound, unless the other field vanishes with it.
       const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
       if (at_exit || fields_.nearly_two_fold(state.alpha, j)) {
-        return fail(result::Termination::outside_class, two_fold_at(name, occasion_.t));
+        return fail(result::Termination::outside_class,
+                    undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
       }
       return fail(result::Termination::no_admissible_mode,
                   fmt::format("sliding on '{}' at t = {} would need the selection {}", name, occasion_.t, selection));

@@ -287,6 +287,61 @@ TEST(Behaviour, CoupledSurfacesStopOutsideTheClassWithEverythingSoFar) {
   EXPECT_FALSE(result.trajectory.t.empty());
 }
 
+TEST(Behaviour, AReasonIsAboutListedSurfacesOnly) {
+  // At t = 1 a state surface, a time event and a kink are at zero together.
+  Builder b("together");
+  const SX x = b.state("x", {-1});
+  b.state("y", {0});
+  b.dynamics("x", 1);
+  b.dynamics("y", b.sign(x) + b.step(b.time() - 1) + b.abs(b.time() + x - 1));
+  const auto result = run(b, 2);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].reason, "x: both fields point to psi > 0");
+}
+
+TEST(Behaviour, AUserEventOnASlidingSurfaceHasTheSelectionsOfItsTime) {
+  // Sliding on x = 0 with alpha = (1 + t/2)/2.
+  Builder b("slides");
+  const SX x = b.state("x", {0});
+  b.dynamics("x", -b.sign(x) + 0.5 * b.time());
+  b.event(b.time() - 1.0);
+  const auto result = run(b, 1.5);
+  ASSERT_EQ(result.events.size(), 2U);
+  ASSERT_EQ(result.events[1].kind, EventKind::user);
+  EXPECT_NEAR((*result.events[1].alpha_before)[0], 0.75, 1e-14);
+  EXPECT_NEAR((*result.events[1].alpha_after)[0], 0.75, 1e-14);
+}
+
+TEST(Behaviour, SuperTwistingEndsOutsideTheClassAtItsLimit) {
+  for (const double gain : {1.5, 2.5}) {
+    Builder b("super-twisting");
+    const SX x1 = b.state("x1", {1});
+    const SX x2 = b.state("x2", {0});
+    const SX sign = b.sign(x1);
+    b.dynamics("x1", -gain * sqrt(b.abs(x1)) * sign + x2);
+    b.dynamics("x2", -1.1 * sign);
+    const auto result = run(b, 20);
+    EXPECT_EQ(result.status.termination, Termination::outside_class) << gain << ": " << result.status.message;
+    EXPECT_NE(result.status.message.find("accumulate"), std::string::npos) << result.status.message;
+    EXPECT_GT(result.events.size(), 5U);
+    EXPECT_NEAR(result.final.x[0], 0.0, 1e-9);
+    EXPECT_NEAR(result.final.x[1], 0.0, 1e-6);
+  }
+}
+
+TEST(Behaviour, APowerAsSwitchingFunctionIsSaidToBeOne) {
+  for (const int power : {2, 3}) {
+    Builder b("power");
+    const SX x = b.state("x", {1});
+    // The field below moves on, the one above stays, or comes back.
+    b.dynamics("x", b.if_(greater(pow(x - 1, power), 0), power == 2 ? 0 : -1, 1));
+    const auto result = run(b, 3);
+    EXPECT_EQ(result.status.termination, Termination::outside_class) << result.status.message;
+    EXPECT_NE(result.status.message.find("gradient"), std::string::npos) << result.status.message;
+  }
+}
+
 TEST(Behaviour, EveryEventHasTwoRowsAndTheEndIsARow) {
   Builder b("friction");
   const SX q = b.state("q", {3});

@@ -47,7 +47,9 @@ void expect_same(const Transition& one, const Transition& other) {
   EXPECT_EQ(one.state.mode, other.state.mode);
   EXPECT_EQ(one.state.alpha, other.state.alpha);
   EXPECT_EQ(one.state.sliding, other.state.sliding);
-  if (!one.state.sliding.empty()) EXPECT_EQ(one.state.corner_alpha, other.state.corner_alpha);
+  if (!one.state.sliding.empty()) {
+    EXPECT_EQ(one.state.corner_alpha, other.state.corner_alpha);
+  }
   EXPECT_EQ(one.zero_order, other.zero_order);
   EXPECT_EQ(one.unique, other.unique);
   EXPECT_EQ(one.other_choices, other.other_choices);
