@@ -12,9 +12,20 @@ namespace {
 using nlohmann::json;
 using Rows = std::vector<std::vector<double>>;
 
+/// The first `most` elements.
+template <class T>
+std::vector<T> head(const std::vector<T>& list, std::size_t most) {
+  return {list.begin(), list.begin() + static_cast<std::ptrdiff_t>(std::min(most, list.size()))};
+}
+
 template <class T>
 json or_null(const std::optional<T>& value) {
   return value ? json(*value) : json(nullptr);
+}
+
+template <class T>
+json head_or_null(const std::optional<std::vector<T>>& value, std::size_t most) {
+  return value ? json(head(*value, most)) : json(nullptr);
 }
 
 /// One array per column; a row that is too short counts as not a number there.
@@ -53,19 +64,21 @@ json mode_intervals(const result::Trajectory& trajectory, std::size_t surface) {
   return {{"edges", edges}, {"values", values}};
 }
 
-json event_data(const result::Event& event) {
+json event_data(const result::Event& event, std::size_t most) {
   json alternatives = json::array();
-  for (const auto& other : event.alternatives) alternatives.push_back({{"mode", other.mode}, {"alpha", other.alpha}});
+  for (const auto& other : event.alternatives) {
+    alternatives.push_back({{"mode", head(other.mode, most)}, {"alpha", head(other.alpha, most)}});
+  }
   return {{"t", event.t},
           {"kind", result::name(event.kind)},
           {"name", or_null(event.name)},
           {"surfaces", event.surfaces},
-          {"mode_before", or_null(event.mode_before)},
-          {"mode_after", or_null(event.mode_after)},
-          {"alpha_before", or_null(event.alpha_before)},
-          {"alpha_after", or_null(event.alpha_after)},
-          {"x", event.x},
-          {"x_after", event.x_after},
+          {"mode_before", head_or_null(event.mode_before, most)},
+          {"mode_after", head_or_null(event.mode_after, most)},
+          {"alpha_before", head_or_null(event.alpha_before, most)},
+          {"alpha_after", head_or_null(event.alpha_after, most)},
+          {"x", head(event.x, most)},
+          {"x_after", head(event.x_after, most)},
           {"unique", or_null(event.unique)},
           {"alternatives", std::move(alternatives)},
           {"reason", event.reason}};
@@ -108,18 +121,19 @@ json pairs(const Pairs& list) {
 
 json trajectory_data(const result::Result& result, std::size_t limit) {
   const auto& trajectory = result.trajectory;
-  const std::size_t columns_drawn = 1 + number_of_columns(trajectory);
-  const auto chosen = rows_to_draw(trajectory, std::max<std::size_t>(1, limit / columns_drawn));
+  const std::size_t columns_drawn = 1 + number_of_columns(trajectory, columns_in_page);
+  const auto chosen = rows_to_draw(trajectory, std::max<std::size_t>(1, limit / columns_drawn), columns_in_page);
+  const auto width = [](const std::vector<std::string>& names) { return std::min(columns_in_page, names.size()); };
   json::array_t t, modes;
   t.reserve(chosen.size());
   for (const std::size_t i : chosen) t.emplace_back(trajectory.t[i]);
-  for (std::size_t j = 0; j < result.switching_functions.size(); ++j) modes.push_back(mode_intervals(trajectory, j));
+  for (std::size_t j = 0; j < width(result.switching_functions); ++j) modes.push_back(mode_intervals(trajectory, j));
   return {{"rows", trajectory.t.size()},
           {"t", std::move(t)},
-          {"x", columns(trajectory.x, chosen, result.states.size())},
-          {"u", columns(trajectory.u, chosen, result.controls.size())},
-          {"alpha", columns(trajectory.alpha, chosen, result.switching_functions.size())},
-          {"outputs", columns(trajectory.outputs, chosen, result.outputs.size())},
+          {"x", columns(trajectory.x, chosen, width(result.states))},
+          {"u", columns(trajectory.u, chosen, width(result.controls))},
+          {"alpha", columns(trajectory.alpha, chosen, width(result.switching_functions))},
+          {"outputs", columns(trajectory.outputs, chosen, width(result.outputs))},
           {"modes", std::move(modes)}};
 }
 
@@ -127,9 +141,19 @@ json trajectory_data(const result::Result& result, std::size_t limit) {
 
 json page_data(const result::Result& result, std::size_t limit) {
   json events = json::array();
-  for (const auto& event : result.events) events.push_back(event_data(event));
+  // x, mode and alpha on both sides: six lists for every event.
+  const std::size_t share = limit / (6 * std::max<std::size_t>(1, result.events.size()));
+  const std::size_t values_of_event = std::clamp(share, least_values_of_event, columns_in_page);
+  for (const auto& event : result.events) events.push_back(event_data(event, values_of_event));
+  const auto shown = [](const auto& list) { return head(list, columns_in_page); };
   json surfaces = json::array();
-  for (const auto& surface : result.surfaces) surfaces.push_back(surface_data(surface, result.states));
+  const auto states = shown(result.states);
+  for (const auto& surface : result.surfaces) {
+    const bool drawn = std::all_of(surface.states.begin(), surface.states.end(), [&](const std::string& name) {
+      return std::find(states.begin(), states.end(), name) != states.end();
+    });
+    if (drawn) surfaces.push_back(surface_data(surface, states));
+  }
   return {{"saltus", version},
           {"model",
            {{"name", result.model.name},
@@ -143,16 +167,21 @@ json page_data(const result::Result& result, std::size_t limit) {
             {"done", result::is_done(result.status.termination)},
             {"message", result.status.message},
             {"time_reached", result.status.time_reached}}},
-          {"states", result.states},
-          {"controls", result.controls},
-          {"switching_functions", result.switching_functions},
-          {"output_names", result.outputs},
+          {"states", states},
+          {"controls", shown(result.controls)},
+          {"switching_functions", shown(result.switching_functions)},
+          {"output_names", shown(result.outputs)},
+          {"sizes",
+           {{"states", result.states.size()},
+            {"controls", result.controls.size()},
+            {"switching functions", result.switching_functions.size()},
+            {"outputs", result.outputs.size()}}},
           {"final",
            {{"t", result.final.t},
-            {"x", result.final.x},
-            {"mode", result.final.mode},
-            {"alpha", result.final.alpha},
-            {"outputs", result.final.outputs}}},
+            {"x", shown(result.final.x)},
+            {"mode", shown(result.final.mode)},
+            {"alpha", shown(result.final.alpha)},
+            {"outputs", shown(result.final.outputs)}}},
           {"events", std::move(events)},
           {"trajectory", trajectory_data(result, limit)},
           {"surfaces", std::move(surfaces)},

@@ -14,12 +14,20 @@ std::array<const Rows*, 4> tables(const result::Trajectory& trajectory) {
   return {&trajectory.x, &trajectory.u, &trajectory.alpha, &trajectory.outputs};
 }
 
-void keep_always(const result::Trajectory& trajectory, std::vector<char>& keep) {
-  const auto& t = trajectory.t;
+bool is_pair(const result::Trajectory& trajectory, std::size_t i) {
+  const bool mode_changes = i < trajectory.mode.size() && trajectory.mode[i - 1] != trajectory.mode[i];
+  return trajectory.t[i - 1] == trajectory.t[i] || mode_changes;
+}
+
+void keep_pairs(const result::Trajectory& trajectory, std::size_t limit, std::vector<char>& keep) {
   keep.front() = keep.back() = 1;
-  for (std::size_t i = 1; i < t.size(); ++i) {
-    const bool mode_changes = i < trajectory.mode.size() && trajectory.mode[i - 1] != trajectory.mode[i];
-    if (t[i - 1] == t[i] || mode_changes) keep[i - 1] = keep[i] = 1;
+  std::size_t pairs = 0;
+  for (std::size_t i = 1; i < trajectory.t.size(); ++i) pairs += is_pair(trajectory, i) ? 1U : 0U;
+  const std::size_t most = std::max<std::size_t>(1, limit / 4);
+  const std::size_t stride = (pairs + most - 1) / most;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < trajectory.t.size(); ++i) {
+    if (is_pair(trajectory, i) && count++ % stride == 0) keep[i - 1] = keep[i] = 1;
   }
 }
 
@@ -46,26 +54,29 @@ void keep_extremes(const Rows& rows, std::size_t column, Run run, std::vector<ch
 
 }  // namespace
 
-std::size_t number_of_columns(const result::Trajectory& trajectory) {
+std::size_t number_of_columns(const result::Trajectory& trajectory, std::size_t most_columns) {
   std::size_t count = 0;
-  for (const Rows* rows : tables(trajectory)) count += rows->empty() ? 0 : rows->front().size();
+  for (const Rows* rows : tables(trajectory)) {
+    count += rows->empty() ? 0 : std::min(most_columns, rows->front().size());
+  }
   return count;
 }
 
-std::vector<std::size_t> rows_to_draw(const result::Trajectory& trajectory, std::size_t limit) {
+std::vector<std::size_t> rows_to_draw(const result::Trajectory& trajectory, std::size_t limit,
+                                      std::size_t most_columns) {
   const std::size_t size = trajectory.t.size();
   std::vector<std::size_t> chosen(size);
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
   if (size <= limit) return chosen;
 
   std::vector<char> keep(size, 0);
-  keep_always(trajectory, keep);
+  keep_pairs(trajectory, limit, keep);
   // Least and greatest of every column: two rows per column and run.
-  const std::size_t runs = std::max<std::size_t>(1, limit / (2 * number_of_columns(trajectory) + 1));
+  const std::size_t runs = std::max<std::size_t>(1, limit / (2 * number_of_columns(trajectory, most_columns) + 1));
   const std::size_t length = (size + runs - 1) / runs;
   for (const Rows* rows : tables(trajectory)) {
     if (rows->size() != size) continue;
-    for (std::size_t column = 0; column < rows->front().size(); ++column) {
+    for (std::size_t column = 0; column < std::min(most_columns, rows->front().size()); ++column) {
       for (std::size_t begin = 0; begin < size; begin += length) {
         keep_extremes(*rows, column, {begin, std::min(size, begin + length)}, keep);
       }

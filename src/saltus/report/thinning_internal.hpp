@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "saltus/result/result.hpp"
@@ -10,15 +11,19 @@ namespace saltus::report {
 
 /// Rows that a drawing of the trajectory needs.
 ///
-/// Always kept: the first and the last row, every row that shares its time with a neighbour (both sides of an event),
-/// both rows around a change of mode. The others are cut into runs of equal length, of each run those rows stay that
-/// hold the least, the greatest or the first non-finite value of a column.
+/// Kept: the first and the last row, and pairs of rows that share their time (both sides of an event) or have a change
+/// of mode between them: all pairs, or every second, third, … if they were more than half of `limit`. The other rows
+/// are cut into runs of equal length, of each run those rows stay that hold the least, the greatest or the first
+/// non-finite value of a column.
 ///
-/// @param limit  number of rows to aim at, > 0; only the rows that are always kept may exceed it.
-/// @return       ascending row numbers; all of them if there are no more than `limit`. Cost: O(rows * columns).
-[[nodiscard]] std::vector<std::size_t> rows_to_draw(const result::Trajectory& trajectory, std::size_t limit);
+/// @param limit         number of rows to aim at, > 0; exceeded by at most its half and twice the number of columns.
+/// @param most_columns  columns of each table that are drawn
+/// @return              ascending row numbers; all of them if there are no more than `limit`. Cost: O(rows * columns).
+[[nodiscard]] std::vector<std::size_t> rows_to_draw(const result::Trajectory& trajectory, std::size_t limit,
+                                                    std::size_t most_columns = std::numeric_limits<std::size_t>::max());
 
-/// Number of columns with real values: states, controls, alpha, outputs (of the first row).
-[[nodiscard]] std::size_t number_of_columns(const result::Trajectory& trajectory);
+/// Number of columns with real values: states, controls, alpha, outputs (of the first row), at most so many of each.
+[[nodiscard]] std::size_t number_of_columns(const result::Trajectory& trajectory,
+                                            std::size_t most_columns = std::numeric_limits<std::size_t>::max());
 
 }  // namespace saltus::report

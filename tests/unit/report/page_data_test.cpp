@@ -123,6 +123,32 @@ TEST(PageData, SurfacesNameTheirStatesByColumn) {
   EXPECT_EQ(surfaces[1]["curves"], (json::array({json::array({{1.0, 2.0}, {3.0, 4.0}})})));
 }
 
+TEST(PageData, OfVeryManyStatesTheFirstAreShownAndTheSizesTold) {
+  result::Result result;
+  const std::size_t size = 4 * columns_in_page;
+  std::vector<double> x;
+  for (std::size_t i = 0; i < size; ++i) {
+    result.states.push_back("x" + std::to_string(i));
+    x.push_back(static_cast<double>(i));
+  }
+  for (int i = 0; i < 50; ++i) report_samples::add_row(result, {1.0 * i, x, {}, {}});
+  report_samples::finish(result);
+  result::Event event;
+  event.x = event.x_after = x;
+  result.events.assign(1000, event);
+  result.surfaces = {{"first", {}, {"x0"}, false, std::nullopt, {}},
+                     {"last", {}, {result.states.back()}, false, {}, {}}};
+  const json data = page_data(result, 100000);
+  EXPECT_EQ(data["states"].size(), columns_in_page);
+  EXPECT_EQ(data["sizes"]["states"], size);
+  EXPECT_EQ(data["trajectory"]["x"].size(), columns_in_page);
+  EXPECT_EQ(data["final"]["x"].size(), columns_in_page);
+  // 100000 numbers for 1000 events with six lists each.
+  EXPECT_EQ(data["events"][999]["x"].size(), 16U);
+  ASSERT_EQ(data["surfaces"].size(), 1U);
+  EXPECT_EQ(data["surfaces"][0]["name"], "first");
+}
+
 TEST(PageData, AnEmptyResultIsNoError) {
   const json data = json::parse(to_script_text(page_data(result::Result{})));
   EXPECT_EQ(data["trajectory"]["t"].size(), 0U);

@@ -40,6 +40,29 @@ TEST(Thinning, BothRowsOfEveryEventAndTheEndsStay) {
   EXPECT_EQ(pairs, 40U);
 }
 
+TEST(Thinning, OfVeryManyEventsSomeKeepTheirRows) {
+  const auto trajectory = report_samples::stick_slip(2000, 3).trajectory;
+  const std::size_t limit = 800;
+  const auto rows = rows_to_draw(trajectory, limit);
+  EXPECT_LE(rows.size(), limit + limit / 2 + 2 * number_of_columns(trajectory));
+  std::size_t pairs = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) pairs += trajectory.t[rows[i - 1]] == trajectory.t[rows[i]] ? 1U : 0U;
+  EXPECT_GE(pairs, limit / 8);
+  EXPECT_TRUE(contains(rows, trajectory.t.size() - 1));
+}
+
+TEST(Thinning, OnlyTheColumnsThatAreDrawnCount) {
+  result::Trajectory trajectory;
+  for (int i = 0; i < 5000; ++i) {
+    trajectory.t.push_back(i);
+    trajectory.x.push_back({i == 1234 ? -7.0 : 0.0, 0.0, i == 777 ? 1.0 : 0.0});
+  }
+  const auto rows = rows_to_draw(trajectory, 100, 2);
+  EXPECT_TRUE(contains(rows, 1234));
+  EXPECT_FALSE(contains(rows, 777));
+  EXPECT_EQ(number_of_columns(trajectory, 2), 2U);
+}
+
 TEST(Thinning, ExtremesOfEveryColumnSurvive) {
   result::Trajectory trajectory;
   for (int i = 0; i < 5000; ++i) {

@@ -136,16 +136,25 @@ saltus.notes = (result) => {
   const kept = t.length === rows ? `This page holds all ${number(rows)} rows of the trajectory. ` : [
     `This page holds ${number(t.length)} of the ${
         number(rows)} rows of the trajectory: the least and greatest value of`,
-    "every curve in each stretch, and both rows of every event. The result file has all of them. "
+    "every curve in each stretch, and both rows of events. The result file has all of them. "
   ].join(" ");
   const drawn = [
     "Curves are drawn with the least and greatest value per pixel and, up to 2,000 events in view, both rows",
     "of every event; zoom in for every row. With more than 400 events in view one line per stretch is drawn, and",
     "intervals of modes below a pixel are merged, sliding first. Jumps are dotted lines."
   ].join(" ");
+  const names = {
+    states: result.states,
+    controls: result.controls,
+    "switching functions": result.switching_functions,
+    outputs: result.output_names,
+  };
+  const cut = Object.entries(result.sizes).filter(([sort, size]) => size > names[sort].length);
+  const left = cut.map(([sort, size]) => `the first ${names[sort].length} of ${number(size)} ${sort}`).join(", ");
+  const columns = left === "" ? "" : `It shows ${left}. `;
   const {sha256} = result.model;
   const model = sha256 === "" ? "No model file is recorded." : `SHA-256 of the model file: ${sha256}`;
   return saltus.element(
-      "footer", {}, saltus.element("p", {}, kept, drawn),
+      "footer", {}, saltus.element("p", {}, kept, columns, drawn),
       saltus.element("p", {class: "digits"}, `Saltus ${result.saltus}, command ${result.command}. ${model}`));
 };

@@ -10,7 +10,8 @@ saltus.modeChange = (event, which) => {
   const narrow = which === "changed" && size > 1 && before !== null && after !== null;
   const changed = narrow ? before.map((_, i) => i).filter((i) => before[i] !== after[i]).slice(0, 3) : null;
   const part = (mode) => saltus.modeBoxes(changed === null || mode === null ? mode : changed.map((i) => mode[i]));
-  if (changed !== null && changed.length === 0) return saltus.element("span", {class: "quiet"}, "same");
+  if (changed !== null && changed.length === 0)
+    return saltus.element("span", {class: "quiet"}, event.surfaces.length > 0 && event.kind !== "jump" ? "…" : "same");
   return saltus.element("span", {}, part(before), " → ", part(after));
 };
 

@@ -43,8 +43,11 @@ saltus.roomyRange = (values, room = 0.06) => {
 
 /** Where slices of surfaces are taken: the flagged event, or the end of the window. */
 saltus.slicePlace = (result, selected, rows) => {
-  if (selected !== null) return {t: result.events[selected].t, x: result.events[selected].x_after};
-  const last = rows[rows.length - 1];
+  const event = selected === null ? null : result.events[selected];
+  if (event !== null && event.x_after.length === result.states.length) return {t: event.t, x: event.x_after};
+  // Events of very many keep a few of their states only: the row of the trajectory next to it.
+  const {t} = result.trajectory;
+  const last = event === null ? rows[rows.length - 1] : saltus.rowsAtOneTime(t, saltus.nearestRow(t, event.t))[1];
   return {t: result.trajectory.t[last], x: result.trajectory.x.map((column) => column[last])};
 };
 
