@@ -25,12 +25,21 @@ std::string bounds(double lower, double upper) {
 
 std::string heading(std::string_view title, std::size_t count) { return fmt::format("\n{} ({})\n", title, count); }
 
+std::string still_text(const model::System& system, std::size_t state) {
+  if (!system.discrete_states[state]) return "";
+  for (const auto& jump : system.jumps) {
+    for (const int target : jump.targets) {
+      if (target == static_cast<int>(state)) return "  discrete: changed by jumps only";
+    }
+  }
+  return "  constant: its right-hand side is 0 and no jump sets it";
+}
+
 std::string states_text(const model::System& system) {
   std::string text = heading("states", system.state_names.size());
   for (std::size_t i = 0; i < system.state_names.size(); ++i) {
     text += fmt::format("  {} = {}{}{}\n", system.state_names[i], system.initial_state[i],
-                        bounds(system.state_lower[i], system.state_upper[i]),
-                        system.discrete_states[i] ? "  discrete: changed by jumps only" : "");
+                        bounds(system.state_lower[i], system.state_upper[i]), still_text(system, i));
   }
   return text;
 }

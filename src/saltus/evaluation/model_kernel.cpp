@@ -10,6 +10,7 @@
 #include <casadi/core/code_generator.hpp>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
 #include "saltus/evaluation/model_function_internal.hpp"
 #include "saltus/evaluation/native_code.hpp"
@@ -44,21 +45,34 @@ struct Gradient {
 
 }  // namespace
 
+/// xdot = f, free or with guards held, and what follows from it.
+struct Motion {
+  SX f;
+  ModelFunction field;
+  ModelFunction pressure;  ///< of the holds; null without
+  std::vector<std::vector<bool>> depends;
+  std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
+  std::map<std::pair<int, int>, SX> lie_expressions;
+};
+
 struct ModelKernel::Implementation {
   SX t, x, p, alpha;
-  SX f, phi, outputs, input;
+  SX phi, outputs, input;
   std::vector<double> parameters;
+  std::vector<bool> discrete;  ///< n_x
   int n_psi = 0;
 
-  ModelFunction field, functions, scales, output_function, input_function;
+  ModelFunction functions, scales, output_function, input_function;
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
   JumpFunctions jumps;
   std::vector<bool> affine, time_only;
   std::vector<std::vector<int>> inner;
-  std::vector<std::vector<bool>> depends;
   std::vector<Gradient> gradients;  ///< one per event function, compiled when first asked for
-  std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
-  std::map<std::pair<int, int>, SX> lie_expressions;
+  Motion free;
+  std::vector<HeldGuard> jump_guards;  ///< by event function, from first_jump_guard on
+  int first_jump_guard = 0;
+  std::map<std::vector<int>, Motion> held;  ///< by event functions; compiled when first held
+  Motion* motion = &free;
   long field_evaluations = 0;
 
   NativeCode native = NativeCode::off;
@@ -71,6 +85,8 @@ struct ModelKernel::Implementation {
   SX phi_row(int j) const { return phi(j); }
   SX lie_expression(int j, int order);
   void find_structure();
+  [[nodiscard]] std::vector<std::vector<bool>> normal_dependencies(const SX& f) const;
+  [[nodiscard]] Expected<Motion> compile_held(const std::vector<int>& functions) const;
   void compile_conditions(const model::System& system);
   void count(const ModelFunction& function);
   void look_for_native();
@@ -86,14 +102,14 @@ constexpr double compile_after = 1e8;
 void ModelKernel::Implementation::write_source() {
   if (!source.empty()) return;
   casadi::CodeGenerator generator("saltus_model.c", {{"with_header", false}});
-  for (const auto* function : {&field, &functions, &scales, &output_function, &input_function}) {
+  for (const auto* function : {&free.field, &functions, &scales, &output_function, &input_function}) {
     generator.add(function->function());
   }
   source = generator.dump();
 }
 
 void ModelKernel::Implementation::use(NativeLibrary loaded) {
-  for (auto* function : {&field, &functions, &scales, &output_function, &input_function}) {
+  for (auto* function : {&free.field, &functions, &scales, &output_function, &input_function}) {
     function->use_native(reinterpret_cast<ModelFunction::Native>(loaded.symbol(function->function().name())));
   }
   library = std::move(loaded);
@@ -130,7 +146,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   const auto with_inputs = [&](const SX& expression) {
     return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, input);
   };
-  f = with_inputs(system.f);
+  free.f = with_inputs(system.f);
   outputs = with_inputs(system.outputs);
   std::vector<SX> rows;
   for (const auto& entry : system.switching) rows.push_back(entry.psi);
@@ -140,13 +156,21 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   for (const auto& event : system.events) {
     if (event.guards.numel() > 0) rows.push_back(SX::vec(event.guards));
   }
-  const auto jump_guards = static_cast<int>(SX::vertcat(rows).numel());
-  for (const auto& jump : system.jumps) rows.push_back(SX::vec(jump.guards));
+  first_jump_guard = static_cast<int>(SX::vertcat(rows).numel());
+  discrete = system.discrete_states;
+  discrete.resize(index(static_cast<int>(x.numel())), false);
+  for (const auto& jump : system.jumps) {
+    rows.push_back(SX::vec(jump.guards));
+    for (casadi_int i = 0; i < jump.guards.numel(); ++i) {
+      const SX guard = with_inputs(jump.guards(i));
+      jump_guards.push_back({jump.name, guard, jump.targets, with_inputs(jump.values), discrete});
+    }
+  }
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
   gradients.resize(index(static_cast<int>(phi.numel())));
 
   const std::vector<SX> arguments{t, x, p, alpha};
-  field = ModelFunction("saltus_field", arguments, {f});
+  free.field = ModelFunction("saltus_field", arguments, {free.f});
   functions = ModelFunction("saltus_functions", arguments, {phi});
   output_function = ModelFunction("saltus_outputs", arguments, {outputs});
   input_function = ModelFunction("saltus_inputs", arguments, {input});
@@ -156,7 +180,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
   find_structure();
   compile_conditions(system);
-  jumps = JumpFunctions(system, arguments, input, jump_guards);
+  jumps = JumpFunctions(system, arguments, input, first_jump_guard);
 }
 
 void ModelKernel::Implementation::find_structure() {
@@ -165,22 +189,47 @@ void ModelKernel::Implementation::find_structure() {
   time_only.assign(index(n_phi), true);
   inner = dependencies(phi, alpha);
   const auto on_states = dependencies(phi, x);
+  const auto is_discrete = [&](int state) { return static_cast<bool>(discrete[index(state)]); };
   if (n_phi > 0) {
     const SX arguments = SX::vertcat({x, t});
     const auto nonlinear = SX::which_depends(phi, arguments, 2, true);
     for (int j = 0; j < n_phi; ++j) {
       affine[index(j)] = !nonlinear[index(j)];
-      time_only[index(j)] = on_states[index(j)].empty();
+      const auto& states = on_states[index(j)];
+      time_only[index(j)] = std::all_of(states.begin(), states.end(), is_discrete);
     }
   }
+  free.depends = normal_dependencies(free.f);
+}
+
+std::vector<std::vector<bool>> ModelKernel::Implementation::normal_dependencies(const SX& f) const {
+  const auto on_states = dependencies(phi, x);
   const auto field_on_alpha = dependencies(f, alpha);
-  depends.assign(index(n_psi), std::vector<bool>(index(n_psi), false));
+  std::vector<std::vector<bool>> depends(index(n_psi), std::vector<bool>(index(n_psi), false));
   for (int i = 0; i < n_psi; ++i) {
     for (const int component : on_states[index(i)]) {
       for (const int j : field_on_alpha[index(component)]) depends[index(i)][index(j)] = true;
     }
     for (const int j : inner[index(i)]) depends[index(i)][index(j)] = true;
   }
+  return depends;
+}
+
+Expected<Motion> ModelKernel::Implementation::compile_held(const std::vector<int>& functions_held) const {
+  std::vector<HeldGuard> guards;
+  for (const int function : functions_held) {
+    SALTUS_ASSERT(first_jump_guard <= function && function < static_cast<int>(phi.numel()));
+    guards.push_back(jump_guards[index(function - first_jump_guard)]);
+  }
+  auto expressions = held_motion(t, x, free.f, guards);
+  if (!expressions) return tl::unexpected(expressions.error());
+  const std::vector<SX> arguments{t, x, p, alpha};
+  Motion result;
+  result.f = expressions->f;
+  result.field = ModelFunction("held_field", arguments, {expressions->f});
+  result.pressure = ModelFunction("hold_pressure", arguments, {expressions->pressure});
+  result.depends = normal_dependencies(result.f);
+  return result;
 }
 
 void ModelKernel::Implementation::compile_conditions(const model::System& system) {
@@ -197,10 +246,11 @@ void ModelKernel::Implementation::compile_conditions(const model::System& system
 SX ModelKernel::Implementation::lie_expression(int j, int order) {
   if (order == 0) return phi_row(j);
   const auto key = std::make_pair(j, order);
-  if (const auto found = lie_expressions.find(key); found != lie_expressions.end()) return found->second;
+  auto& known = motion->lie_expressions;
+  if (const auto found = known.find(key); found != known.end()) return found->second;
   const SX previous = lie_expression(j, order - 1);
-  const SX next = SX::mtimes(SX::jacobian(previous, x), f) + SX::jacobian(previous, t);
-  lie_expressions[key] = next;
+  const SX next = SX::mtimes(SX::jacobian(previous, x), motion->f) + SX::jacobian(previous, t);
+  known[key] = next;
   return next;
 }
 
@@ -245,8 +295,9 @@ long ModelKernel::field_evaluations() const { return implementation_->field_eval
 void ModelKernel::field(double t, const double* x, const double* alpha, double* xdot) const {
   auto& self = *implementation_;
   ++self.field_evaluations;
-  self.count(self.field);
-  self.field(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{xdot});
+  auto& field = self.motion->field;
+  self.count(field);
+  field(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{xdot});
 }
 
 void ModelKernel::functions(double t, const double* x, const double* alpha, double* values) const {
@@ -288,7 +339,7 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
 double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {
   SALTUS_ASSERT(0 <= function && function < event_functions() && order >= 1);
   auto& self = *implementation_;
-  auto& compiled = self.lie_derivatives[{function, order}];
+  auto& compiled = self.motion->lie_derivatives[{function, order}];
   if (compiled.is_null()) {
     compiled =
         ModelFunction("lie_derivative", {self.t, self.x, self.p, self.alpha}, {self.lie_expression(function, order)});
@@ -342,11 +393,36 @@ double ModelKernel::jump_delay(int jump, double t, const double* x, const double
   return self.jumps.delay(jump, {&t, x, self.parameters.data(), alpha});
 }
 
+Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
+  auto& self = *implementation_;
+  if (holds.empty()) {
+    self.motion = &self.free;
+    return {};
+  }
+  std::vector<int> functions;
+  for (const auto& hold : holds) functions.push_back(hold.function);
+  auto known = self.held.find(functions);
+  if (known == self.held.end()) {
+    auto motion = self.compile_held(functions);
+    if (!motion) return tl::unexpected(motion.error());
+    known = self.held.emplace(functions, std::move(*motion)).first;
+  }
+  self.motion = &known->second;
+  return {};
+}
+
+void ModelKernel::hold_pressure(double t, const double* x, const double* alpha, double* pressure) const {
+  auto& self = *implementation_;
+  SALTUS_ASSERT(!self.motion->pressure.is_null());
+  self.motion->pressure(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+                        std::array<double*, 1>{pressure});
+}
+
 bool ModelKernel::is_affine(int function) const { return implementation_->affine[index(function)]; }
 bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[index(function)]; }
 const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[index(function)]; }
 bool ModelKernel::depends(int surface, int alpha) const {
-  return implementation_->depends[index(surface)][index(alpha)];
+  return implementation_->motion->depends[index(surface)][index(alpha)];
 }
 
 }  // namespace saltus::evaluation

@@ -74,15 +74,19 @@ class ModelKernel {
 
   /// From now on field(), lie_derivative() and depends() are those of the held system
   ///   xdot = f + D mu,  d_k = (d set_k/dx - I) w_k,  w_k = d/dx (d g_k/dt) restricted to the continuous states that
-  ///   jump k sets,  mu from d^2 g/dt^2 = 0 for all held guards.
-  /// An empty list releases all. Fails (outside_class's message) where d g/dt does not hold the states the jump sets.
+  ///   jump k sets (and those of rate 0 that are in d g_k/dt and get values that depend on continuous states),
+  ///   mu from d^2 g/dt^2 = 0 for all held guards.
+  /// An empty list releases all. Fails (outside_class's message) where d g/dt does not hold the states the jump sets;
+  /// the motion then is what it was. Cost: expressions and functions are made once per list.
   [[nodiscard]] Expected<void> hold(const std::vector<Hold>& holds);
-  /// mu of the holds, each with the sign of its d^2 g_k/dt^2 without it if it were alone: release where it passes 0.
+  /// -M_kk mu_k with M_ik = d/dx (d g_i/dt) d_k, in the order of hold(): d^2 g_k/dt^2 without the hold if it is the
+  /// only one, and in general of its sign while the guard is pressed on; release where it passes 0. Only while holding.
   void hold_pressure(double t, const double* x, const double* alpha, double* pressure) const;
 
   /// Whether phi_j is affine in (t, x) for fixed alpha.
   [[nodiscard]] bool is_affine(int function) const;
-  /// Whether phi_j depends on t only (for fixed alpha).
+  /// Whether phi_j depends on t and discrete states only (for fixed alpha): between jumps it is a function of time,
+  /// which no selection changes, so that nothing slides on it.
   [[nodiscard]] bool is_time_only(int function) const;
   /// Switching functions whose alpha occurs in phi_j (after inputs are put in), ascending.
   [[nodiscard]] const std::vector<int>& inner(int function) const;

@@ -7,6 +7,7 @@
 #include "saltus/model/jumps_internal.hpp"
 #include "saltus/model/reduction_internal.hpp"
 #include "saltus/model/statement_internal.hpp"
+#include "saltus/model/surface_points_internal.hpp"
 #include "saltus/model/surfaces_internal.hpp"
 
 namespace saltus::model {
@@ -98,7 +99,7 @@ class Assembly {
       input.push_back(control.input ? *control.input : SXElem(control.initial));
       std::vector<int> node;
       if (auto error = take_root(input.back(), node)) return located_error(*error, control.input_location);
-      constexpr KindSet forbidden = kind_bit(VariableKind::state) | kind_bit(VariableKind::control);
+      constexpr KindSet forbidden = changing_kinds & ~kind_bit(VariableKind::time);
       if ((graph_.tape()[node.front()].reached & forbidden) != 0) {
         return Error{ErrorCode::invalid_model,
                      fmt::format("the input of '{}' depends on a state or a control", control.name),
@@ -167,7 +168,7 @@ class Assembly {
   std::optional<Error> take_jumps() {
     for (const auto& stated : statement_.jumps) {
       auto jump = jump_of(recognition_, stated, static_cast<int>(system_.jumps.size()) + 1, event_warnings_);
-      if (!jump) return located_error(jump.error(), stated.location);
+      if (!jump) return with_context(located_error(jump.error(), stated.location), "in [[jumps]]");
       for (const auto* expressions : {&jump->guards, &jump->values, &jump->priority, &jump->delay}) {
         for (const SXElem& e : expressions->nonzeros()) others_.push_back(graph_.node(e));
       }
@@ -217,14 +218,33 @@ class Assembly {
       surfaces_.push_back({met(index).psi_node, met(index).alpha_node});
       targets.push_back(met(index).psi_node);
     }
-    roles_ = classify(graph_.tape(), surfaces_, targets);
+    classes_ = classify(graph_.tape(), surfaces_, targets);
+    mark_equalities();
+  }
+
+  /// n == 2 is n >= 2 and n <= 2: on the surface of each the other one decides, so that neither is seen to jump alone.
+  void mark_equalities() {
+    std::vector<std::size_t> discrete;
+    std::vector<int> psi;
+    for (std::size_t i = 0; i < classes_.size(); ++i) {
+      if (classes_[i].role != SwitchingRole::discrete) continue;
+      discrete.push_back(i);
+      psi.push_back(surfaces_[i].psi);
+    }
+    const auto first = first_multiples(graph_.tape(), psi);
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      if (first[k] == k) continue;
+      for (const std::size_t i : {discrete[k], discrete[first[k]]}) {
+        classes_[i].jumps = used_[static_cast<std::size_t>(kept_[i])];
+      }
+    }
   }
 
   std::optional<Error> take_right_hand_side() {
     // Only the alphas of listed surfaces can stay between 0 and 1 where their value matters.
     std::set<int> sliding;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-      if (roles_[i] == SwitchingRole::listed) sliding.insert(surfaces_[i].alpha);
+      if (classes_[i].role == SwitchingRole::listed) sliding.insert(surfaces_[i].alpha);
     }
     std::vector<SXElem> as_written, reduced;
     for (std::size_t i = 0; i < f_.size(); ++i) {
@@ -259,7 +279,8 @@ class Assembly {
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       const MetFunction& function = met(kept_[i]);
       alphas.push_back(function.alpha);
-      SwitchingFunction switching{function.name, function.psi, roles_[i], function.named, {}};
+      SwitchingFunction switching{function.name, function.psi, classes_[i].role, function.named, {}};
+      switching.alpha_at_zero = function.alpha_at_zero.value_or(0.5);
       for (const int node : graph_.tape().cone(std::span(&function.psi_node, 1), Links::written)) {
         if (graph_.tape()[node].psi >= 0) switching.inner.push_back(new_index_[alpha_index(node)]);
       }
@@ -276,7 +297,7 @@ class Assembly {
     }
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       const auto& function = system_.switching[i];
-      if (function.named || function.role != SwitchingRole::listed) continue;
+      if (function.named || !classes_[i].jumps) continue;
       system_.columns.push_back({function.name, static_cast<int>(i), +1});
     }
   }
@@ -294,7 +315,26 @@ class Assembly {
             located(stated.location, fmt::format("switching function '{}' is never used", declared.name)));
       }
     }
+    warn_of_late_discrete_states();
     system_.warnings.insert(system_.warnings.end(), event_warnings_.begin(), event_warnings_.end());
+  }
+
+  /// Comparisons are made before dynamics are known: in C++ a discrete state is declared as one.
+  void warn_of_late_discrete_states() {
+    for (const int index : kept_) {
+      const int psi = met(index).psi_node;
+      if ((graph_.tape()[psi].reached & moving_kinds) != kind_bit(VariableKind::state)) continue;
+      const auto variables = moving_variables(graph_.tape(), std::span(&psi, 1));
+      const bool still = std::all_of(variables.begin(), variables.end(), [&](int variable) {
+        const auto& entry = graph_.tape().variables()[static_cast<std::size_t>(variable)];
+        return system_.discrete_states[static_cast<std::size_t>(entry.index)];
+      });
+      if (!still) continue;
+      system_.warnings.push_back(fmt::format(
+          "switching function '{}' was made of states that never move as of moving ones: give them dynamics 0 without "
+          "names (in C++ discrete_state()), so that it is decided as written where it is 0",
+          met(index).name));
+    }
   }
 
   Recognition& recognition_;
@@ -305,7 +345,7 @@ class Assembly {
   std::vector<bool> used_;                ///< by met function: something but a named psi needs it
   std::vector<int> kept_, new_index_;     ///< met functions that stay, and the new number of every one
   std::vector<Surface> surfaces_;
-  std::vector<SwitchingRole> roles_;
+  std::vector<SurfaceClass> classes_;
   std::vector<std::string> event_warnings_;
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/discrete_states_internal.hpp"
 #include "saltus/model/jumps_internal.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
@@ -114,9 +115,12 @@ class Build {
   }
 
   MaybeError states() {
+    const auto discrete = discrete_states(description_);
     int index = 0;
     for (const auto& entry : description_.states) {
-      const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = VariableKind::state, .index = index++});
+      const VariableKind kind =
+          discrete[static_cast<std::size_t>(index)] ? VariableKind::discrete : VariableKind::state;
+      const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++});
       statement_.states.push_back({.name = entry.name, .symbol = symbol, .location = entry.location});
     }
     statement_.switching.resize(description_.switching.size());

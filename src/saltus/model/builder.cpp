@@ -58,6 +58,38 @@ struct Builder::Parts {
 
   SX symbol(const std::string& name, const Variable& variable) { return SX(recognition.graph.symbol(name, variable)); }
 
+  void add_state(const std::string& name, const Values& values, VariableKind kind) {
+    auto& states = statement.states;
+    const Bounds bounds{values.lower, values.upper};
+    if (auto mistake = check_values(fmt::format("state '{}'", name), values.initial, bounds, {}, statement.warnings)) {
+      fail(*mistake);
+    }
+    const SX made = symbol(name, {.kind = kind, .index = static_cast<int>(states.size()), .value = values.initial});
+    states.push_back({.name = name, .symbol = made.scalar(), .initial = values.initial, .bounds = bounds});
+    if (kind == VariableKind::discrete) states.back().dynamics = SXElem(0.0);
+  }
+
+  /// A jump without its trigger; null after a mistake.
+  JumpStatement* add_jump(const std::map<std::string, SX>& set, const JumpOptions& options) {
+    auto& jumps = statement.jumps;
+    const std::string name = options.name.value_or(fmt::format("jump{}", jumps.size() + 1));
+    if (!declare(name, NameKind::jump, jumps.size())) return nullptr;
+    JumpStatement jump{.name = options.name};
+    for (const auto& [state, value] : set) {
+      const auto* target = find(statement.states, state, NameKind::state);
+      if (target == nullptr) return nullptr;
+      const auto index = static_cast<int>(target - statement.states.data());
+      jump.set.push_back({.state = index, .value = entry(value, fmt::format("jump {}, {}", name, state))});
+    }
+    jump.priority = entry(options.priority, "priority of " + name);
+    jump.delay = entry(options.delay, "delay of " + name);
+    jump.at_start = options.at_start;
+    jump.persistent = options.persistent;
+    jump.evaluated = options.values;
+    jumps.push_back(std::move(jump));
+    return &jumps.back();
+  }
+
   void add_mode(std::optional<Condition> when, const std::map<std::string, SX>& rates, const std::string& group) {
     ModeStatement mode{.when = std::move(when)};
     for (const auto& [name, rate] : rates) {
@@ -118,15 +150,15 @@ SX Builder::parameter(const std::string& name, double value) {
 SX Builder::state(const std::string& name, const Values& values) {
   auto& states = parts_->statement.states;
   if (!parts_->declare(name, NameKind::state, states.size())) return SX(0.0);
-  const Bounds bounds{values.lower, values.upper};
-  if (auto error =
-          check_values(fmt::format("state '{}'", name), values.initial, bounds, {}, parts_->statement.warnings)) {
-    parts_->fail(*error);
-  }
-  const SX symbol = parts_->symbol(
-      name, {.kind = VariableKind::state, .index = static_cast<int>(states.size()), .value = values.initial});
-  states.push_back({.name = name, .symbol = symbol.scalar(), .initial = values.initial, .bounds = bounds});
-  return symbol;
+  parts_->add_state(name, values, VariableKind::state);
+  return SX(states.back().symbol);
+}
+
+SX Builder::discrete_state(const std::string& name, double initial) {
+  auto& states = parts_->statement.states;
+  if (!parts_->declare(name, NameKind::state, states.size())) return SX(0.0);
+  parts_->add_state(name, {.initial = initial}, VariableKind::discrete);
+  return SX(states.back().symbol);
 }
 
 SX Builder::control(const std::string& name, const Values& values) {
@@ -224,6 +256,43 @@ void Builder::event(const Condition& condition, const EventOptions& options) {
   if (!parts_->declare(name, NameKind::event, events.size())) return;
   events.push_back(
       {.name = options.name, .condition = condition, .direction = options.direction, .action = options.action});
+}
+
+void Builder::jump(const Condition& when, const std::map<std::string, SX>& set, const JumpOptions& options) {
+  if (auto* jump = parts_->add_jump(set, options)) jump->condition = when;
+}
+
+void Builder::jump(const SX& guard, Direction direction, const std::map<std::string, SX>& set,
+                   const JumpOptions& options) {
+  auto* jump = parts_->add_jump(set, options);
+  if (jump == nullptr) return;
+  jump->guard = parts_->entry(guard, "guard of a jump");
+  switch (direction) {
+    case Direction::down:
+      jump->trigger = JumpTrigger::guard_down;
+      break;
+    case Direction::up:
+      jump->trigger = JumpTrigger::guard_up;
+      break;
+    case Direction::both:
+      jump->trigger = JumpTrigger::guard_both;
+      break;
+  }
+}
+
+void Builder::jump_at(const std::vector<double>& times, const std::map<std::string, SX>& set,
+                      const JumpOptions& options) {
+  auto* jump = parts_->add_jump(set, options);
+  if (jump == nullptr) return;
+  jump->trigger = JumpTrigger::times;
+  for (const double time : times) jump->times.push_back({.value = time});
+}
+
+void Builder::jump_every(double period, const std::map<std::string, SX>& set, const JumpOptions& options) {
+  auto* jump = parts_->add_jump(set, options);
+  if (jump == nullptr) return;
+  jump->trigger = JumpTrigger::times;
+  jump->every = period;
 }
 
 void Builder::input(const std::string& control, const SX& expression) {

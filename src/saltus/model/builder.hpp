@@ -6,11 +6,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <casadi/core/sx.hpp>
 #include <casadi/core/sx_elem.hpp>
 
 #include "saltus/model/condition.hpp"
+#include "saltus/model/description.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::model {
@@ -27,6 +29,16 @@ struct EventOptions {
   std::optional<std::string> name{};  ///< event1, event2, … by position if absent
   Direction direction = Direction::both;
   AtEvent action = AtEvent::record;
+};
+
+/// How a jump is executed once it is triggered (interface.md, [[jumps]]).
+struct JumpOptions {
+  std::optional<std::string> name{};  ///< jump1, jump2, … by position if absent
+  bool at_start = false;              ///< also where the condition holds at the start
+  casadi::SX priority = 0.0;          ///< larger first
+  casadi::SX delay = 0.0;             ///< >= 0, evaluated when triggered
+  bool persistent = true;             ///< false: dropped if the condition becomes false before
+  JumpValues values = JumpValues::at_trigger;
 };
 
 /// Builds a System step by step; the names, the rules and the errors are those of the model file.
@@ -56,6 +68,9 @@ class Builder {
   /// @param value  finite; shared switching functions, folding and kinks are decided for it
   casadi::SX parameter(const std::string& name, double value);
   casadi::SX state(const std::string& name, const Values& values);
+  /// A state that changes by jumps only: its rate is 0, and a comparison of such states is decided as written where
+  /// both sides are equal.
+  casadi::SX discrete_state(const std::string& name, double initial);
   casadi::SX control(const std::string& name, const Values& values);
   /// Declares the switching function psi under a name and returns psi itself.
   casadi::SX switching(const std::string& name, const casadi::SX& psi);
@@ -82,6 +97,16 @@ class Builder {
   /// Zeros of an expression, or edges of a condition.
   void event(const casadi::SX& expression, const EventOptions& options = {});
   void event(const Condition& condition, const EventOptions& options = {});
+  /// When the condition becomes true, the states of `set` get their new values, all at once.
+  void jump(const Condition& when, const std::map<std::string, casadi::SX>& set, const JumpOptions& options = {});
+  /// When the guard has passed 0 in the given direction.
+  void jump(const casadi::SX& guard, Direction direction, const std::map<std::string, casadi::SX>& set,
+            const JumpOptions& options = {});
+  /// At times in ascending order.
+  void jump_at(const std::vector<double>& times, const std::map<std::string, casadi::SX>& set,
+               const JumpOptions& options = {});
+  /// At start + period, start + 2 period, …
+  void jump_every(double period, const std::map<std::string, casadi::SX>& set, const JumpOptions& options = {});
   /// The control during a simulation, an expression of time and parameters; its initial value otherwise.
   void input(const std::string& control, const casadi::SX& expression);
 

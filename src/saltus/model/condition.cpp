@@ -68,11 +68,11 @@ casadi::SX difference(const casadi::SX& a, const casadi::SX& b) { return a.is_sc
 }  // namespace
 
 Condition greater(const casadi::SX& a, const casadi::SX& b, const std::string& name) {
-  return Condition(Comparison{difference(a, b), AtEquality::is_false, name});
+  return Condition(Comparison{difference(a, b), AtEquality::is_false, name, Sides::any});
 }
 
 Condition greater_equal(const casadi::SX& a, const casadi::SX& b, const std::string& name) {
-  return Condition(Comparison{difference(a, b), AtEquality::is_true, name});
+  return Condition(Comparison{difference(a, b), AtEquality::is_true, name, Sides::any});
 }
 
 Condition less(const casadi::SX& a, const casadi::SX& b, const std::string& name) { return greater(b, a, name); }
@@ -80,5 +80,12 @@ Condition less(const casadi::SX& a, const casadi::SX& b, const std::string& name
 Condition less_equal(const casadi::SX& a, const casadi::SX& b, const std::string& name) {
   return greater_equal(b, a, name);
 }
+
+Condition equal(const casadi::SX& a, const casadi::SX& b, const std::string& name, const std::string& reverse_name) {
+  return Condition(Comparison{difference(a, b), AtEquality::is_true, name, Sides::still}) &&
+         Condition(Comparison{difference(b, a), AtEquality::is_true, reverse_name, Sides::still});
+}
+
+Condition not_equal(const casadi::SX& a, const casadi::SX& b) { return !equal(a, b); }
 
 }  // namespace saltus::model

@@ -10,15 +10,22 @@
 namespace saltus::model {
 
 /// Value of a comparison where both sides are equal: > and < are false there, >= and <= are true. It matters for
-/// constants and for the guards of events; on the surface of a switching function the selection is set-valued all the
-/// same.
+/// constants, for discrete states and for the guards of events and jumps; on the surface of a switching function that
+/// moves the selection is set-valued all the same.
 enum class AtEquality { is_false, is_true };
+
+/// Which quantities may stand in a comparison.
+enum class Sides {
+  any,
+  still,  ///< only what is constant between jumps: a moving quantity is equal to something for an instant at most
+};
 
 /// difference > 0; `name` is what the switching function is called if it has no name yet.
 struct Comparison {
   casadi::SX difference;
   AtEquality at_equality = AtEquality::is_false;
   std::string name;
+  Sides sides = Sides::any;
 };
 
 /// A condition as it was written; which switching functions it consists of is decided where it is used.
@@ -54,5 +61,10 @@ class Condition {
 [[nodiscard]] Condition greater_equal(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
 [[nodiscard]] Condition less(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
 [[nodiscard]] Condition less_equal(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
+
+/// a == b, for constants, parameters and discrete states: a >= b and b >= a, named by their texts.
+[[nodiscard]] Condition equal(const casadi::SX& a, const casadi::SX& b, const std::string& name = "",
+                              const std::string& reverse_name = "");
+[[nodiscard]] Condition not_equal(const casadi::SX& a, const casadi::SX& b);
 
 }  // namespace saltus::model

@@ -49,11 +49,8 @@ int Guards::guard(int node, AtEquality at_equality) {
 }
 
 Expected<Truth> Guards::comparison_truth(const Comparison& comparison) {
-  const auto difference = scalar(comparison.difference);
-  if (!difference) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_model, "a comparison of vectors", "compare their entries one by one", {}, {}});
-  }
+  const auto difference = recognition_.difference_of(comparison);
+  if (!difference) return tl::unexpected(difference.error());
   const auto node = recognition_.graph.add(*difference);
   if (!node) return tl::unexpected(node.error());
   const auto constant = constant_value(recognition_.graph.tape(), *node);

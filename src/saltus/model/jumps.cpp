@@ -74,25 +74,13 @@ class JumpTranslation {
     if (jump_.every) {
       const auto period = scope_.value(*jump_.every, Reach::everything, "the period `every`");
       if (!period) return period.error();
-      if (!(*period > 0.0) || !std::isfinite(*period)) {
-        return jump_error(jump_.every->location, fmt::format("the period `every` is {}", *period),
-                          "a period is a positive number");
-      }
       stated_.every = *period;
+      stated_.when_location = jump_.every->location;
     }
     for (const auto& node : jump_.at) {
       const auto time = scope_.value(*node, Reach::everything, "a time in `at`");
       if (!time) return time.error();
-      if (!std::isfinite(*time)) {
-        return jump_error(node->location, fmt::format("a time in `at` is {}, not a finite number", *time),
-                          "check the expression and the parameters in it");
-      }
-      if (!stated_.times.empty() && *time <= stated_.times.back()) {
-        return jump_error(node->location,
-                          fmt::format("the times in `at` do not ascend: {} after {}", *time, stated_.times.back()),
-                          "list every time once, in ascending order");
-      }
-      stated_.times.push_back(*time);
+      stated_.times.push_back({*time, node->location});
     }
     return std::nullopt;
   }
@@ -134,12 +122,37 @@ class JumpTranslation {
   JumpStatement stated_;
 };
 
+std::optional<Error> fill_times(const JumpStatement& stated, Jump& jump) {
+  if (stated.times.empty() && !(stated.every > 0.0 && std::isfinite(stated.every))) {
+    if (stated.every == 0.0 && stated.when_location.line == 0) {
+      return jump_error({}, fmt::format("the jump '{}' has no times", jump.name), "give it at least one");
+    }
+    return jump_error(stated.when_location,
+                      fmt::format("the period `every` of the jump '{}' is {}", jump.name, stated.every),
+                      "a period is a positive number");
+  }
+  jump.every = stated.every;
+  for (const auto& [time, location] : stated.times) {
+    if (!std::isfinite(time)) {
+      return jump_error(location, fmt::format("a time of the jump '{}' is {}, not a finite number", jump.name, time),
+                        "check the expression and the parameters in it");
+    }
+    if (!jump.times.empty() && time <= jump.times.back()) {
+      return jump_error(
+          location,
+          fmt::format("the times of the jump '{}' do not ascend: {} after {}", jump.name, time, jump.times.back()),
+          "list every time once, in ascending order");
+    }
+    jump.times.push_back(time);
+  }
+  return std::nullopt;
+}
+
 std::optional<Error> fill_trigger(Recognition& recognition, const JumpStatement& stated, Jump& jump,
                                   std::vector<std::string>& warnings) {
   jump.guards = column({});
   jump.guard_alpha = column({});
-  jump.times = stated.times;
-  jump.every = stated.every;
+  if (stated.trigger == JumpTrigger::times) return fill_times(stated, jump);
   bool constant = false;
   if (stated.guard) {
     const auto node = recognition.graph.add(*stated.guard);

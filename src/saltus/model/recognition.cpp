@@ -1,22 +1,18 @@
+#include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "saltus/model/recognition_internal.hpp"
 
 namespace saltus::model {
 namespace {
 
-constexpr KindSet moving =
-    kind_bit(VariableKind::time) | kind_bit(VariableKind::state) | kind_bit(VariableKind::control);
-
 bool holds(double difference, AtEquality at_equality) {
   return difference > 0.0 || (difference == 0.0 && at_equality == AtEquality::is_true);
 }
 
 std::string shown(const SXElem& e, const std::string& name) { return name.empty() ? casadi::SX(e).get_str() : name; }
-
-Error not_scalar() {
-  return {ErrorCode::invalid_model, "a comparison of vectors or matrices", "compare their entries one by one", {}, {}};
-}
 
 }  // namespace
 
@@ -40,9 +36,31 @@ std::vector<int> Recognition::alphas_in(int node) const {
   return indices;  // ascending, as the nodes of alphas are
 }
 
-int Recognition::append(const std::string& name, const SXElem& psi, int psi_node) {
+/// A function that is the same, on its surface, too: discrete functions with another value at 0 are others.
+std::optional<SharedFunction> Recognition::find(int psi_node, std::optional<double> at_zero) {
+  const auto value_of = [&](const SharedFunction& found) { return found.orientation > 0 ? *at_zero : 1.0 - *at_zero; };
+  const auto found = index_.find(graph.tape(), psi_node, [&](const SharedFunction& candidate) {
+    const auto& met = functions_[static_cast<std::size_t>(candidate.function)];
+    return !met.discrete || !at_zero || !met.alpha_at_zero || *met.alpha_at_zero == value_of(candidate);
+  });
+  if (found && at_zero) {
+    auto& met = functions_[static_cast<std::size_t>(found->function)];
+    if (met.discrete) met.alpha_at_zero = value_of(*found);
+  }
+  return found;
+}
+
+int Recognition::append(const std::string& name, const SXElem& psi, int psi_node, std::optional<double> at_zero) {
   const auto index = static_cast<int>(functions_.size());
   MetFunction met{shown(psi, name), psi, psi_node, SXElem(0.0), 0, false};
+  const KindSet reached = graph.tape()[psi_node].reached;
+  met.discrete = (reached & moving_kinds) == 0 && (reached & kind_bit(VariableKind::discrete)) != 0;
+  if (met.discrete) {
+    met.alpha_at_zero = at_zero;
+    const bool taken =
+        std::any_of(functions_.begin(), functions_.end(), [&](const auto& other) { return other.name == met.name; });
+    if (taken) met.name = at_zero == 0.5 ? "step(" + met.name + ")" : met.name + (at_zero == 1.0 ? ">=0" : ">0");
+  }
   met.alpha = graph.alpha_symbol("alpha(" + met.name + ")", index, psi_node);
   met.alpha_node = graph.node(met.alpha);
   functions_.push_back(std::move(met));
@@ -68,19 +86,20 @@ Expected<Recognition::Selection> Recognition::corner_selection(int node, const s
   return result;
 }
 
-Expected<Recognition::Selection> Recognition::selection(const SXElem& e, const std::string& name) {
+Expected<Recognition::Selection> Recognition::selection(const SXElem& e, const std::string& name,
+                                                        std::optional<double> at_zero) {
   const auto node = graph.add(e);
   if (!node) return tl::unexpected(node.error());
   const Tape& tape = graph.tape();
   if (const auto constant = constant_value(tape, *node)) return Selection{.constant = *constant};
-  const auto known = index_.find(tape, *node);
+  const auto known = find(*node, at_zero);
   if (known) return Selection{.kind = Selection::Kind::alpha, .function = *known};
   const auto literals = alphas_in(*node);
   if (!literals.empty() && count_branches(tape, *node, branch_limit) > branch_limit) {
     return tl::unexpected(chain_too_long(shown(e, name)));
   }
-  if ((tape[*node].written & moving) == 0 && literals.size() <= 6) return corner_selection(*node, literals);
-  return Selection{.kind = Selection::Kind::alpha, .function = {append(name, e, *node), +1}};
+  if ((tape[*node].written & changing_kinds) == 0 && literals.size() <= 6) return corner_selection(*node, literals);
+  return Selection{.kind = Selection::Kind::alpha, .function = {append(name, e, *node, at_zero), +1}};
 }
 
 SXElem Recognition::value(const Selection& selection) {
@@ -102,7 +121,7 @@ SXElem Recognition::value(const Selection& selection) {
 }
 
 Expected<SXElem> Recognition::step(const SXElem& e, const std::string& name) {
-  return selection(e, name).map([this](const Selection& s) { return value(s); });
+  return selection(e, name, 0.5).map([this](const Selection& s) { return value(s); });
 }
 
 Expected<SXElem> Recognition::sign(const SXElem& e, const std::string& name) {
@@ -117,7 +136,7 @@ Expected<SXElem> Recognition::choose(const SXElem& difference, const std::string
     if (const auto added = graph.add(*branch); !added) return tl::unexpected(added.error());
   }
   if (graph.node(a) == graph.node(b)) return a;
-  const auto chosen = selection(difference, name);
+  const auto chosen = selection(difference, name, std::nullopt);
   if (!chosen) return tl::unexpected(chosen.error());
   if (chosen->kind == Selection::Kind::constant) return chosen->constant < 0.0 ? b : a;
   if (chosen->kind == Selection::Kind::alpha && chosen->function.orientation < 0) {
@@ -137,9 +156,10 @@ Expected<SXElem> Recognition::min(const SXElem& a, const SXElem& b, const std::s
 }
 
 Expected<Truth> Recognition::comparison_truth(TruthDiagram& diagram, const Comparison& comparison) {
-  const auto difference = scalar(comparison.difference);
-  if (!difference) return tl::unexpected(not_scalar());
-  const auto chosen = selection(*difference, comparison.name);
+  const auto difference = difference_of(comparison);
+  if (!difference) return tl::unexpected(difference.error());
+  const auto chosen =
+      selection(*difference, comparison.name, comparison.at_equality == AtEquality::is_true ? 1.0 : 0.0);
   if (!chosen) return tl::unexpected(chosen.error());
   switch (chosen->kind) {
     case Selection::Kind::constant:
@@ -209,9 +229,9 @@ Expected<DeclaredFunction> Recognition::declare(const std::string& name, const S
       count_branches(tape, *node, branch_limit) > branch_limit) {
     return tl::unexpected(chain_too_long(name));
   }
-  const auto known = index_.find(tape, *node);
+  const auto known = find(*node, std::nullopt);
   if (!known) {
-    const int index = append(name, psi, *node);
+    const int index = append(name, psi, *node, std::nullopt);
     functions_.back().named = true;
     return DeclaredFunction{name, {index, +1}, ""};
   }
@@ -227,6 +247,28 @@ Expected<DeclaredFunction> Recognition::declare(const std::string& name, const S
   met.name = name;
   met.named = true;
   return DeclaredFunction{name, *known, ""};
+}
+
+Expected<SXElem> Recognition::difference_of(const Comparison& comparison) {
+  const auto difference = scalar(comparison.difference);
+  if (!difference) {
+    return tl::unexpected(Error{
+        ErrorCode::invalid_model, "a comparison of vectors or matrices", "compare their entries one by one", {}, {}});
+  }
+  const auto still = changes_by_jumps_only(*difference);
+  if (!still) return tl::unexpected(still.error());
+  if (*still || comparison.sides == Sides::any) return *difference;
+  return tl::unexpected(Error{ErrorCode::invalid_model,
+                              fmt::format("equal and not_equal compare constants, parameters and discrete states only; "
+                                          "'{}' moves",
+                                          shown(*difference, comparison.name)),
+                              "use less, less_equal, greater or greater_equal; or declare discrete_state()",
+                              {},
+                              {}});
+}
+
+Expected<bool> Recognition::changes_by_jumps_only(const SXElem& expression) {
+  return graph.add(expression).map([this](int node) { return (graph.tape()[node].reached & moving_kinds) == 0; });
 }
 
 std::optional<double> Recognition::parameter_value(const SXElem& expression) {

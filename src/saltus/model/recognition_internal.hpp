@@ -1,6 +1,7 @@
 // Nonsmooth terms -> switching functions and selections alpha.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct MetFunction {
   SXElem alpha;
   int alpha_node = 0;
   bool named = false;
+  /// Changes by jumps only: nothing moves it off 0, so alpha has a value there, the one written.
+  bool discrete = false;
+  std::optional<double> alpha_at_zero{};  ///< of a discrete one; nothing: it does not matter (abs) or nobody asked
 };
 
 /// A name of [switching]: a function, seen with this orientation.
@@ -51,6 +55,10 @@ class Recognition {
   [[nodiscard]] Expected<DeclaredFunction> declare(const std::string& name, const SXElem& psi);
 
   [[nodiscard]] const std::vector<MetFunction>& functions() const { return functions_; }
+  /// Whether an expression is constant between jumps: made of constants, parameters and discrete states.
+  [[nodiscard]] Expected<bool> changes_by_jumps_only(const SXElem& expression);
+  /// The scalar difference of a comparison; refused where its sides move and must not.
+  [[nodiscard]] Expected<SXElem> difference_of(const Comparison& comparison);
   /// The value of an expression of constants and parameters; nothing if it is none.
   [[nodiscard]] std::optional<double> parameter_value(const SXElem& expression);
 
@@ -63,13 +71,15 @@ class Recognition {
     std::vector<int> literals{};    ///< of kind polynomial: e depends on nothing but these functions' alphas …
     std::vector<double> corners{};  ///< … and has these values at their corners
   };
-  [[nodiscard]] Expected<Selection> selection(const SXElem& e, const std::string& name);
+  /// @param at_zero  the selection where e is 0, if that matters; regarded for discrete functions only
+  [[nodiscard]] Expected<Selection> selection(const SXElem& e, const std::string& name, std::optional<double> at_zero);
   [[nodiscard]] Expected<Selection> corner_selection(int node, const std::vector<int>& literals);
   [[nodiscard]] Expected<SXElem> choose(const SXElem& difference, const std::string& name, const SXElem& a,
                                         const SXElem& b);
   [[nodiscard]] SXElem value(const Selection& selection);
   [[nodiscard]] Expected<Truth> comparison_truth(TruthDiagram& diagram, const Comparison& comparison);
-  int append(const std::string& name, const SXElem& psi, int psi_node);
+  [[nodiscard]] std::optional<SharedFunction> find(int psi_node, std::optional<double> at_zero);
+  int append(const std::string& name, const SXElem& psi, int psi_node, std::optional<double> at_zero);
   [[nodiscard]] std::vector<int> alphas_in(int node) const;
 
   std::vector<MetFunction> functions_;

@@ -172,7 +172,8 @@ void SharingIndex::insert(const Tape& tape, int psi, int function) {
   known_.push_back(samples);
 }
 
-std::optional<SharedFunction> SharingIndex::find(const Tape& tape, int psi) const {
+std::optional<SharedFunction> SharingIndex::find(const Tape& tape, int psi,
+                                                 const std::function<bool(const SharedFunction&)>& accepts) const {
   const Samples asked = sample(tape, psi);
   std::vector<int> candidates = irregular_;
   if (const auto ratio = key(asked)) {
@@ -185,10 +186,21 @@ std::optional<SharedFunction> SharingIndex::find(const Tape& tape, int psi) cons
   std::sort(candidates.begin(), candidates.end());  // the first-met one wins
   for (const int candidate : candidates) {
     const Samples& known = known_[static_cast<std::size_t>(candidate)];
-    if (const int orientation = same(known, asked); orientation != 0)
-      return SharedFunction{known.function, orientation};
+    const SharedFunction found{known.function, same(known, asked)};
+    if (found.orientation != 0 && accepts(found)) return found;
   }
   return std::nullopt;
+}
+
+std::vector<std::size_t> first_multiples(const Tape& tape, const std::vector<int>& psi) {
+  SharingIndex index;
+  std::vector<std::size_t> first;
+  for (std::size_t i = 0; i < psi.size(); ++i) {
+    const auto known = index.find(tape, psi[i], [](const SharedFunction&) { return true; });
+    first.push_back(known ? static_cast<std::size_t>(known->function) : i);
+    if (!known) index.insert(tape, psi[i], static_cast<int>(i));
+  }
+  return first;
 }
 
 }  // namespace saltus::model

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -38,7 +39,9 @@ struct SharedFunction {
 class SharingIndex {
  public:
   void insert(const Tape& tape, int psi, int function);
-  [[nodiscard]] std::optional<SharedFunction> find(const Tape& tape, int psi) const;
+  /// The first-met function that is a multiple of psi and that `accepts` takes.
+  [[nodiscard]] std::optional<SharedFunction> find(const Tape& tape, int psi,
+                                                   const std::function<bool(const SharedFunction&)>& accepts) const;
 
  private:
   struct Samples {
@@ -54,6 +57,9 @@ class SharingIndex {
   std::multimap<double, int> by_ratio_;  ///< value at the second point over value at the first
   std::vector<int> irregular_;           ///< those without such a ratio
 };
+
+/// For every psi the position of the first one that it is a multiple of (its own, if of none before).
+[[nodiscard]] std::vector<std::size_t> first_multiples(const Tape& tape, const std::vector<int>& psi);
 
 /// A switching function at the first points of the pool where it is finite or not (NaN).
 struct ThresholdSamples {

@@ -66,13 +66,18 @@ struct AssignmentStatement {
   SourceLocation location{};
 };
 
+struct TimeStatement {
+  double value = 0.0;
+  SourceLocation location{};
+};
+
 /// By its trigger: a condition, a guard, or times.
 struct JumpStatement {
   std::optional<std::string> name{};
   JumpTrigger trigger = JumpTrigger::condition;
   std::optional<Condition> condition{};
   std::optional<SXElem> guard{};
-  std::vector<double> times{};
+  std::vector<TimeStatement> times{};
   double every = 0.0;
   std::vector<AssignmentStatement> set{};
   SXElem priority = 0.0;
@@ -81,7 +86,7 @@ struct JumpStatement {
   bool persistent = true;
   JumpValues evaluated = JumpValues::at_trigger;
   SourceLocation location{};
-  SourceLocation when_location{};
+  SourceLocation when_location{};  ///< of the condition, guard or period
   SourceLocation delay_location{};
 };
 

@@ -249,23 +249,29 @@ std::vector<int> containing(const std::vector<int>& targets, int alpha,
 
 }  // namespace
 
-std::vector<SwitchingRole> classify(const Tape& tape, const std::vector<Surface>& surfaces,
-                                    const std::vector<int>& targets) {
+std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>& surfaces,
+                                   const std::vector<int>& targets) {
   std::vector<std::vector<int>> alphas_of_target;
   for (const int target : targets) {
     alphas_of_target.push_back(alpha_nodes(tape, std::span(&target, 1), Links::written));
   }
-  std::vector<SwitchingRole> roles;
+  std::vector<SurfaceClass> classes;
   for (const Surface& surface : surfaces) {
-    if ((tape[surface.psi].reached & kind_bit(VariableKind::state)) == 0) {
-      roles.push_back(SwitchingRole::time_event);
+    const KindSet reached = tape[surface.psi].reached;
+    constexpr KindSet states = kind_bit(VariableKind::state) | kind_bit(VariableKind::discrete);
+    if ((reached & states) == 0) {
+      classes.push_back({SwitchingRole::time_event, false});
       continue;
     }
     const auto affected = containing(targets, surface.alpha, alphas_of_target);
-    const bool listed = !affected.empty() && SurfaceSearch(tape, surface, affected, jump_of).found();
-    roles.push_back(listed ? SwitchingRole::listed : SwitchingRole::kink);
+    const bool jumps = !affected.empty() && SurfaceSearch(tape, surface, affected, jump_of).found();
+    if ((reached & moving_kinds) == 0) {
+      classes.push_back({SwitchingRole::discrete, jumps});
+    } else {
+      classes.push_back({jumps ? SwitchingRole::listed : SwitchingRole::kink, jumps});
+    }
   }
-  return roles;
+  return classes;
 }
 
 bool bends_on_surface(const Tape& tape, const Surface& surface, int target) {

@@ -15,16 +15,22 @@ struct Surface {
   int alpha = 0;
 };
 
+struct SurfaceClass {
+  SwitchingRole role = SwitchingRole::listed;
+  bool jumps = true;  ///< something jumps on it
+};
+
 /// Which surfaces are kinks, which depend on time only, and which make something jump.
 ///
 /// Everything that can jump is in `targets`, the other psi among them. At up to 64 points on psi_j = 0, around the
 /// initial state and far from it, the targets that contain alpha_j are evaluated for alpha_j = 0 and 1, the other
 /// alphas being the signs there; a difference beyond rounding and 1e-9 of the difference a step away from the surface
-/// is a jump. A surface without jump is a kink; one on which no point is found counts as listed.
+/// is a jump. A surface without jump is a kink; one on which no point is found counts as listed. Discrete states are
+/// points like others; a psi of nothing else is discrete whether something jumps or not.
 /// @param surfaces  in the order of their alphas
-/// @return one role per surface
-[[nodiscard]] std::vector<SwitchingRole> classify(const Tape& tape, const std::vector<Surface>& surfaces,
-                                                  const std::vector<int>& targets);
+/// @return one class per surface
+[[nodiscard]] std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>& surfaces,
+                                                 const std::vector<int>& targets);
 
 /// Whether the value of `target` on psi_j = 0 at alpha_j = 1/2 is other than the mean of those at 0 and 1.
 [[nodiscard]] bool bends_on_surface(const Tape& tape, const Surface& surface, int target);

@@ -152,11 +152,10 @@ std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
 }
 
 bool is_polynomial(const Tape& tape, std::span<const int> cone) {
-  constexpr KindSet moving = kind_bit(VariableKind::time) | kind_bit(VariableKind::state) | kind_bit(VariableKind::control);
   return std::all_of(cone.begin(), cone.end(), [&](int i) {
     const TapeNode& node = tape[i];
-    if ((node.written & moving) == 0 || is_polynomial_operation(node.operation)) return true;
-    return node.operation == casadi::OP_DIV && (tape[node.right].written & moving) == 0;
+    if ((node.written & changing_kinds) == 0 || is_polynomial_operation(node.operation)) return true;
+    return node.operation == casadi::OP_DIV && (tape[node.right].written & changing_kinds) == 0;
   });
 }
 
@@ -173,6 +172,7 @@ Point blank_point(const Tape& tape) {
         break;
       case VariableKind::time:
       case VariableKind::state:
+      case VariableKind::discrete:
       case VariableKind::control:
         point.push_back(0.0);
         break;

@@ -10,15 +10,28 @@
 
 namespace saltus::model {
 
-enum class VariableKind { time, state, control, parameter, alpha };
+enum class VariableKind {
+  time,
+  state,     ///< moves
+  discrete,  ///< a state that changes by jumps only
+  control,
+  parameter,
+  alpha,
+};
 
 /// Set of variable kinds, one bit each.
 using KindSet = unsigned;
 [[nodiscard]] constexpr KindSet kind_bit(VariableKind kind) { return 1U << static_cast<unsigned>(kind); }
 
+/// What changes during a simulation.
+inline constexpr KindSet changing_kinds = kind_bit(VariableKind::time) | kind_bit(VariableKind::state) |
+                                          kind_bit(VariableKind::discrete) | kind_bit(VariableKind::control);
+/// What changes between jumps.
+inline constexpr KindSet moving_kinds = changing_kinds & ~kind_bit(VariableKind::discrete);
+
 struct Variable {
   VariableKind kind = VariableKind::time;
-  int index = 0;       ///< among those of its kind
+  int index = 0;       ///< among those of its kind; of a discrete state among all states
   double value = 0.0;  ///< of a parameter; the initial one of a state or control
 };
 
@@ -60,8 +73,8 @@ class Tape {
   std::unordered_map<std::uint64_t, std::vector<int>> by_key_;
 };
 
-/// Whether the nodes of a cone are polynomials in t, x, u (for fixed selections): two that agree at seeded points are then
-/// the same, which a narrow bell exp(-(x - 30)^2) is not to a constant.
+/// Whether the nodes of a cone are polynomials in t, x, u (for fixed selections): two that agree at seeded points are
+/// then the same, which a narrow bell exp(-(x - 30)^2) is not to a constant.
 [[nodiscard]] bool is_polynomial(const Tape& tape, std::span<const int> cone);
 
 /// One value per variable of a tape. NaN for an alpha means: the step of its switching function at this point.

@@ -218,7 +218,7 @@ Expected<Condition> Translation::comparison(const expression::Binary& binary, co
   const bool inclusive = binary.op == BinaryOperator::less_equal || binary.op == BinaryOperator::greater_equal;
   return Condition(Comparison{
       casadi::SX(is_less ? *right - *left : *left - *right), inclusive ? AtEquality::is_true : AtEquality::is_false,
-      is_less ? difference_text(binary.right, binary.left) : difference_text(binary.left, binary.right)});
+      is_less ? difference_text(binary.right, binary.left) : difference_text(binary.left, binary.right), Sides::any});
 }
 
 Expected<Condition> Translation::equality(const expression::Binary& binary, const SourceLocation& location) {
@@ -226,17 +226,26 @@ Expected<Condition> Translation::equality(const expression::Binary& binary, cons
   if (!left) return tl::unexpected(left.error());
   const auto right = number(*binary.right);
   if (!right) return tl::unexpected(right.error());
-  const auto a = recognition_.parameter_value(*left), b = recognition_.parameter_value(*right);
-  if (!a || !b) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_model,
-              "== and != compare constants and parameters only: a moving quantity is equal to another "
-              "for an instant at most",
-              "use <, <=, > or >=, or an interval such as abs(x - a) < 1e-3",
-              location,
-              {}});
+  for (const auto& [side, node] : {std::pair{*left, binary.left}, std::pair{*right, binary.right}}) {
+    const auto still = recognition_.changes_by_jumps_only(side);
+    if (!still) return tl::unexpected(located(still.error(), location));
+    if (*still) continue;
+    return tl::unexpected(Error{
+        ErrorCode::invalid_model,
+        fmt::format("== and != compare constants, parameters and discrete states only, and '{}' moves: it is equal "
+                    "to something for an instant at most",
+                    expression::to_text(*node)),
+        "use <, <=, > or >=, or an interval such as abs(x - a) < 1e-3; a discrete state has dynamics 0",
+        location,
+        {}});
   }
-  return (*a == *b) == (binary.op == BinaryOperator::equal) ? Condition::always() : Condition::never();
+  const auto a = recognition_.parameter_value(*left), b = recognition_.parameter_value(*right);
+  const bool asked_equal = binary.op == BinaryOperator::equal;
+  if (a && b) return (*a == *b) == asked_equal ? Condition::always() : Condition::never();
+  const Condition same =
+      saltus::model::equal(casadi::SX(*left), casadi::SX(*right), difference_text(binary.left, binary.right),
+                           difference_text(binary.right, binary.left));
+  return asked_equal ? same : !same;
 }
 
 }  // namespace saltus::model

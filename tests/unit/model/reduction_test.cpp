@@ -19,7 +19,7 @@ TEST(Conditions, RepeatedAlphasCountOnce) {
 TEST(Conditions, AgreeWithTheirTruthTableAndAreMultiAffine) {
   const System system =
       built({.states = {{"x", "0"}, {"y", "0"}},
-             .dynamics = {{"x", "if(not (x > 0) and y > 0 or x > 0 and not (y >= 0), 7, 2)"}, {"y", "0"}}});
+             .dynamics = {{"x", "if(not (x > 0) and y > 0 or x > 0 and not (y >= 0), 7, 2)"}, {"y", "1"}}});
   ASSERT_EQ(columns(system), (Names{"x-0", "y-0"}));
   const auto at = [&](double a, double b) { return value(system, system.f, {0, 0}, {a, b}); };
   EXPECT_EQ(at(0, 0), 2.0);
@@ -144,7 +144,7 @@ TEST(Inclusion, TooManyCornersAreRefused) {
   for (int i = 0; i < 7; ++i) {
     const std::string name = "x" + std::to_string(i);
     states.push_back({name, "0"});
-    dynamics.push_back({name, "0"});
+    dynamics.push_back({name, "1"});
     sum += " + sign(" + name + ")";
   }
   dynamics[2].second = "sin(" + sum + ")";
