@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/model/excluded_signs_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
 
 namespace saltus::model {
@@ -131,45 +132,12 @@ class Cover {
   }
 
   std::optional<Error> exclude_impossible() {
-    std::vector<ThresholdSamples> samples;
-    for (const int literal : literals_) {
-      const auto& function = recognition_.functions()[static_cast<std::size_t>(literal)];
-      samples.push_back(threshold_samples(recognition_.graph.tape(), function.psi_node));
+    for (const auto& pair : excluded_signs(recognition_.graph.tape(), recognition_.functions(), literals_)) {
+      const Truth both =
+          diagram().conjunction(signed_literal(pair.a, pair.a_holds), signed_literal(pair.b, pair.b_holds));
+      possible_ = diagram().conjunction(possible_, diagram().negation(both));
     }
-    for (std::size_t i = 0; i < literals_.size(); ++i) {
-      for (std::size_t k = i + 1; k < literals_.size(); ++k) {
-        const auto signs = impossible_signs(samples[i], samples[k]);
-        if (signs) exclude(literals_[i], signs->first, literals_[k], signs->second);
-      }
-    }
-    exclude_between_equalities();
     return std::nullopt;
-  }
-
-  /// Discrete functions that are the same but for their value at 0 (n >= 2 and n <= 2, which cannot both be false): of
-  /// the four patterns three occur, on the two sides and at 0; the fourth is that at 0 the other way round.
-  void exclude_between_equalities() {
-    std::vector<const MetFunction*> decided;
-    std::vector<int> literals, psi;
-    for (const int literal : literals_) {
-      const auto& function = recognition_.functions()[static_cast<std::size_t>(literal)];
-      if (!function.alpha_at_zero || *function.alpha_at_zero == 0.5) continue;
-      decided.push_back(&function);
-      literals.push_back(literal);
-      psi.push_back(function.psi_node);
-    }
-    const auto first = first_multiples(recognition_.graph.tape(), psi);
-    for (std::size_t k = 0; k < first.size(); ++k) {
-      if (first[k] != k) exclude(literals[first[k]], !at_zero(*decided[first[k]]), literals[k], !at_zero(*decided[k]));
-    }
-  }
-
-  static bool at_zero(const MetFunction& function) { return *function.alpha_at_zero == 1.0; }
-
-  /// The two literals do not have these values together.
-  void exclude(int a, bool a_holds, int b, bool b_holds) {
-    const Truth both = diagram().conjunction(signed_literal(a, a_holds), signed_literal(b, b_holds));
-    possible_ = diagram().conjunction(possible_, diagram().negation(both));
   }
 
   Truth signed_literal(int literal, bool positive) {

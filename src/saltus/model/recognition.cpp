@@ -98,7 +98,11 @@ Expected<Recognition::Selection> Recognition::selection(const SXElem& e, const s
   if (!literals.empty() && count_branches(tape, *node, branch_limit) > branch_limit) {
     return tl::unexpected(chain_too_long(shown(e, name)));
   }
-  if ((tape[*node].written & changing_kinds) == 0 && literals.size() <= 6) return corner_selection(*node, literals);
+  // A discrete function takes its value at 0, too, which corners do not know: sign(sign(n)) >= 0.
+  const bool still = (tape[*node].reached & moving_kinds) == 0;
+  if (!still && (tape[*node].written & changing_kinds) == 0 && literals.size() <= 6) {
+    return corner_selection(*node, literals);
+  }
   return Selection{.kind = Selection::Kind::alpha, .function = {append(name, e, *node, at_zero), +1}};
 }
 

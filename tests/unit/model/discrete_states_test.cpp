@@ -64,6 +64,8 @@ TEST(DiscreteStates, AComparisonOfThemIsDecidedAsWritten) {
       {"if(n == 2 and last == 0, 1, 0)", 0, 1, 0, 4},
       {"if(n == 2, 1, if(n == 3, 2, 4))", 4, 1, 2, 4},
       {"if(max(n, 1) >= 2, 1, 0)", 0, 1, 1, 2},
+      {"if(sign(n - 2) >= 0, 1, 0)", 0, 1, 1, 2},
+      {"if(sign(n - 2) > 0, 1, 0)", 0, 0, 1, 2},
   };
   for (const auto& [text, below, at, above, functions] : cases) {
     const System system = built(machine(text));
