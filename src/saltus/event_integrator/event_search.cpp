@@ -97,7 +97,16 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
       functions_.push_back({FunctionKind::loss, state.sliding[row], r, sign_of(exits_[row].loss)});
     }
   }
-  for (int u = n_psi; u < kernel_.event_functions(); ++u) functions_.push_back({FunctionKind::user, u, 0, 0});
+  const auto is_held = [&](int u) {
+    return std::any_of(held_.begin(), held_.end(), [u](const HeldGuard& guard) { return guard.hold.function == u; });
+  };
+  for (int u = n_psi; u < kernel_.event_functions(); ++u) {
+    if (!is_held(u)) functions_.push_back({FunctionKind::user, u, 0, 0});
+  }
+  pressure_.resize(held_.size());
+  for (std::size_t row = 0; row < held_.size(); ++row) {
+    functions_.push_back({FunctionKind::release, held_[row].hold.function, static_cast<int>(row), held_[row].inward});
+  }
   // Functions that are not affine in the state may oscillate within a step: five nodes do not speak for them.
   prefilter_.clear();
   for (const auto& function : functions_) {
@@ -112,7 +121,8 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   evaluate(t, x, point_);
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     auto& function = functions_[i];
-    const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
+    const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
+                         function.kind == FunctionKind::release;
     // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
     if (is_exit && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
     // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
@@ -135,9 +145,15 @@ void EventSearch::read_user_signs(double t, const double* x) {
   }
 }
 
+void EventSearch::find_pressure(double t, const double* x) {
+  if (held_.empty()) return;
+  kernel_.hold_pressure(t, x, field_.alpha().data(), pressure_.data());
+}
+
 void EventSearch::rescale(double t, const double* x) {
   kernel_.scales(t, x, state_.alpha.data(), magnitude_.data(), slope_.data());
   if (!exits_.empty()) field_.exits(t, x, exits_.data());
+  find_pressure(t, x);
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const auto& function = functions_[i];
     if (uses_phi(function)) {
@@ -145,6 +161,10 @@ void EventSearch::rescale(double t, const double* x) {
       // A handful of roundings of terms as large as the magnitude.
       noise_[i] = 8.0 * epsilon * magnitude_[j];
       accuracy_[i] = 0.1 * (tolerances_.atol * slope_[j] + tolerances_.rtol * magnitude_[j]);
+    } else if (function.kind == FunctionKind::release) {
+      const double size = std::abs(pressure_[at(function.row)]);
+      noise_[i] = 32.0 * epsilon * size;
+      accuracy_[i] = 0.1 * tolerances_.rtol * size;
     } else {
       const auto& exit = exits_[at(function.row)];
       const double size =
@@ -171,6 +191,7 @@ void EventSearch::evaluate(double t, const double* x, std::vector<double>& value
     kernel_.functions(t, x, state_.corner_alpha[1].data(), phi_above_.data());
   }
   if (!exits_.empty()) field_.exits(t, x, exits_.data());
+  find_pressure(t, x);
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const auto& function = functions_[i];
     switch (function.kind) {
@@ -192,6 +213,9 @@ void EventSearch::evaluate(double t, const double* x, std::vector<double>& value
         break;
       case FunctionKind::loss:
         values[i] = exits_[at(function.row)].loss;
+        break;
+      case FunctionKind::release:
+        values[i] = pressure_[at(function.row)];
         break;
     }
     values[i] -= function.offset;
@@ -321,6 +345,11 @@ bool EventSearch::settle(double t, const double* x) {
   rescale(t, x);
   read_user_signs(t, x);
   return true;
+}
+
+void EventSearch::set_user_signs(std::vector<int> signs, std::vector<bool> vanish) {
+  user_sign_ = std::move(signs);
+  user_vanishes_ = std::move(vanish);
 }
 
 void EventSearch::set_user_sign(std::size_t function, int sign, double t, const double* x) {

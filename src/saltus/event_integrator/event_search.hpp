@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/holding.hpp"
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/ode/bernstein.hpp"
@@ -19,13 +21,14 @@ enum class FunctionKind {
   exit_below,    ///< the lower field of a sliding surface stops arriving: alpha = 0
   exit_above,    ///< … the upper one: alpha = 1
   loss,          ///< the sliding selection ceases to exist
-  user,          ///< expression or guard of [[events]]
+  user,          ///< expression or guard of [[events]], guard of [[jumps]]
+  release,       ///< what presses a held guard of [[jumps]]
 };
 
 struct EventFunction {
   FunctionKind kind = FunctionKind::surface;
   int index = 0;        ///< event function of the kernel; the surface for exits
-  int row = 0;          ///< exits: position in the sliding set
+  int row = 0;          ///< exits: position in the sliding set; releases: in the list of held guards
   int sign = 1;         ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
   int zero_order = 0;   ///< of the zero at the start of the next step (left behind by an event), 0 = none
   double offset = 0.0;  ///< value left at that zero by rounding; subtracted until the function has moved away
@@ -65,9 +68,16 @@ class EventSearch {
   [[nodiscard]] double noise(std::size_t function) const { return noise_[function]; }
   /// Signs of the user functions in force, 0 where not known yet.
   [[nodiscard]] const std::vector<int>& user_signs() const { return user_sign_; }
+  /// Which of them vanish at the start of the next step.
+  [[nodiscard]] const std::vector<bool>& user_zeros() const { return user_vanishes_; }
   /// Behind an accepted step that ends at (t, x): zeros at its start are history, unknown signs are read. Returns
   /// whether there were such signs.
   bool settle(double t, const double* x);
+  /// Behind a jump: the signs of all user functions, 0 = not known, and whether they vanish here. Takes effect with the
+  /// next enter().
+  void set_user_signs(std::vector<int> signs, std::vector<bool> vanish);
+  /// Held guards of jumps are not searched, their releases are. Takes effect with the next enter().
+  void set_held(std::vector<HeldGuard> held) { held_ = std::move(held); }
   /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.
   void set_user_sign(std::size_t function, int sign, double t, const double* x);
 
@@ -84,6 +94,7 @@ class EventSearch {
   void sample_node(const ode::DenseStep& step, double theta, std::size_t node);
   [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;
   void read_user_signs(double t, const double* x);
+  void find_pressure(double t, const double* x);
 
   const evaluation::ModelKernel& kernel_;
   ModeField& field_;
@@ -95,6 +106,8 @@ class EventSearch {
   std::vector<bool> user_vanishes_;  ///< at the start of the next step
   std::vector<double> phi_, phi_below_, phi_above_, magnitude_, slope_;
   std::vector<ExitValues> exits_;
+  std::vector<HeldGuard> held_;
+  std::vector<double> pressure_;
   std::vector<double> x_, point_;
   std::vector<double> samples_;  ///< node by node
   std::vector<double> noise_, accuracy_;

@@ -43,6 +43,10 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       locator_(options.method, kernel.states(), stepper_, field_, search_, tolerances_),
       single_surface_(surroundings_),
       user_events_(kernel, system),
+      jumps_(kernel, system, options.from),
+      holding_(kernel, system),
+      last_guard_(system.jumps.size(), {{-1, -1}, -1}),
+      last_rate_(system.jumps.size(), 0.0),
       recorder_(kernel, system),
       t_(options.from),
       x_(system.initial_state),
@@ -53,9 +57,8 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
 
 std::string Run::where() const {
   std::string text;
-  for (std::size_t j = 0; j < state_.mode.size(); ++j) {
-    if (state_.mode[j] != 0) continue;
-    text += (text.empty() ? "" : ", ") + surroundings_.system.switching[j].name;
+  for (const int j : state_.sliding) {
+    text += (text.empty() ? "" : ", ") + surroundings_.system.switching[at(j)].name;
   }
   return fmt::format("t = {:.17g}{}", t_, text.empty() ? "" : " while sliding on " + text);
 }
@@ -95,6 +98,11 @@ bool Run::begin() {
     fail(Termination::evaluation_failed, "the initial state is not finite");
     return false;
   }
+  Landing landing = landing_here();
+  if (!begin_jumps(landing)) {
+    recorder_.row(t_, x_, state_.mode, state_.alpha);
+    return false;
+  }
   const auto start = decide_start(surroundings_, t_, x_.data(), h_scale_, options_.initial_mode);
   state_ = start.transition.state;
   if (state_.mode.empty() && kernel_.switching_functions() > 0)
@@ -105,7 +113,8 @@ bool Run::begin() {
     fail(start.transition.termination, start.transition.message);
     return false;
   }
-  if (!enter(start.transition)) {
+  landing.transition = start.transition;
+  if (!enter(start.transition) || !settle_at_start(landing)) {
     recorder_.row(t_, x_, state_.mode, state_.alpha);
     return false;
   }
@@ -116,11 +125,16 @@ bool Run::begin() {
   }
   auto transition = start.transition;
   transition.state = state_;
-  if (!listed.empty() && recorder_.started(t_, x_, transition, listed)) row(t_, x_);
+  if (!landing.executed.empty()) {
+    recorder_.jumped(t_, landing.executed, std::nullopt, landing.transition);
+    if (!landing.resting.empty()) {
+      recorder_.accumulated(t_, landing.resting, {x_, x_, state_, state_}, resting_reason);
+    }
+    last_event_time_ = t_;
+  } else if (!listed.empty() && recorder_.started(t_, x_, transition, listed))
+    row(t_, x_);
   static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
-  h_ = ode::initial_step(options_.method, right_hand_side(), t_, x_.data(), slope_.data(), kernel_.states(), span(),
-                         tolerances_);
-  field_(t_, x_.data(), row_slope_.data());  // selections back to the start point's
+  start_step();
   h_scale_ = h_;
   while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) ++next_output_;
   return true;

@@ -11,10 +11,16 @@ namespace saltus::event_integrator {
 Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& system)
     : kernel_(kernel), system_(system) {}
 
-result::Mode Recorder::mode_columns(const std::vector<int>& mode) const {
+result::Mode Recorder::mode_columns(const std::vector<int>& mode, const std::vector<double>& alpha) const {
   result::Mode columns;
   columns.reserve(system_.columns.size());
-  for (const auto& column : system_.columns) columns.push_back(column.orientation * mode[at(column.function)]);
+  for (const auto& column : system_.columns) {
+    const auto j = at(column.function);
+    // Functions of discrete states are in no mode: their sign is that of their selection.
+    const bool discrete = system_.switching[j].role == model::SwitchingRole::discrete;
+    const int sign = discrete ? (alpha[j] > 0.5 ? 1 : alpha[j] < 0.5 ? -1 : 0) : mode[j];
+    columns.push_back(column.orientation * sign);
+  }
   return columns;
 }
 
@@ -36,19 +42,19 @@ void Recorder::row(double t, const std::vector<double>& x, const std::vector<int
   kernel_.inputs(t, alpha.data(), u.data());
   trajectory_.u.push_back(std::move(u));
   trajectory_.alpha.push_back(alpha_columns(alpha));
-  trajectory_.mode.push_back(mode_columns(mode));
+  trajectory_.mode.push_back(mode_columns(mode, alpha));
   std::vector<double> outputs(at(kernel_.outputs()));
   kernel_.outputs(t, x.data(), alpha.data(), outputs.data());
   trajectory_.outputs.push_back(std::move(outputs));
 }
 
 void Recorder::add_transition(result::Event event, const Transition& transition) {
-  event.mode_after = mode_columns(transition.state.mode);
+  event.mode_after = mode_columns(transition.state.mode, transition.state.alpha);
   event.alpha_after = alpha_columns(transition.state.alpha);
   event.unique = transition.unique;
   event.reason = transition.reason;
   for (const auto& other : transition.alternatives) {
-    event.alternatives.push_back({mode_columns(other.mode), alpha_columns(other.alpha)});
+    event.alternatives.push_back({mode_columns(other.mode, other.alpha), alpha_columns(other.alpha)});
   }
   events_.push_back(std::move(event));
 }
@@ -70,7 +76,7 @@ bool Recorder::switched(double t, const std::vector<double>& x, const ModeState&
   event.kind = result::kind_of_switch(changed_before, changed_after);
   event.x = x;
   event.x_after = x;
-  event.mode_before = mode_columns(before.mode);
+  event.mode_before = mode_columns(before.mode, before.alpha);
   event.alpha_before = alpha_columns(before.alpha);
   add_transition(std::move(event), transition);
   return true;
@@ -94,20 +100,58 @@ bool Recorder::started(double t, const std::vector<double>& x, const Transition&
   return true;
 }
 
-void Recorder::user(double t, const std::vector<double>& x, const ModeState& before, const ModeState& after,
-                    int event) {
+void Recorder::user(double t, const Passage& passage, int event) {
   result::Event entry;
   entry.t = t;
   entry.kind = result::EventKind::user;
   entry.name = system_.events[at(event)].name;
-  entry.x = x;
-  entry.x_after = x;
-  entry.mode_before = mode_columns(before.mode);
-  entry.mode_after = mode_columns(after.mode);
-  entry.alpha_before = alpha_columns(before.alpha);
-  entry.alpha_after = alpha_columns(after.alpha);
+  entry.x = passage.x;
+  entry.x_after = passage.x_after;
+  entry.mode_before = mode_columns(passage.before.mode, passage.before.alpha);
+  entry.mode_after = mode_columns(passage.after.mode, passage.after.alpha);
+  entry.alpha_before = alpha_columns(passage.before.alpha);
+  entry.alpha_after = alpha_columns(passage.after.alpha);
   entry.reason = "zero of an expression of [[events]]";
   if (system_.events[at(event)].guards.numel() > 0) entry.reason = "edge of a condition of [[events]]";
+  if (passage.x != passage.x_after) entry.reason += ", by a jump";
+  events_.push_back(std::move(entry));
+}
+
+void Recorder::jumped(double t, const std::vector<ExecutedJump>& jumps, const std::optional<ModeState>& before,
+                      const Transition& transition) {
+  for (std::size_t k = 0; k < jumps.size(); ++k) {
+    const auto& name = system_.jumps[at(jumps[k].jump)].name;
+    result::Event entry;
+    entry.t = t;
+    entry.kind = result::EventKind::jump;
+    entry.name = name;
+    entry.surfaces = {name};
+    entry.x = jumps[k].x;
+    entry.x_after = jumps[k].x_after;
+    if (k == 0 && before) {
+      entry.mode_before = mode_columns(before->mode, before->alpha);
+      entry.alpha_before = alpha_columns(before->alpha);
+    }
+    if (k + 1 == jumps.size()) {
+      add_transition(std::move(entry), transition);
+    } else {
+      events_.push_back(std::move(entry));
+    }
+  }
+}
+
+void Recorder::accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string reason) {
+  result::Event entry;
+  entry.t = t;
+  entry.kind = result::EventKind::accumulation;
+  for (const int jump : jumps) entry.surfaces.push_back(system_.jumps[at(jump)].name);
+  entry.x = passage.x;
+  entry.x_after = passage.x_after;
+  entry.mode_before = mode_columns(passage.before.mode, passage.before.alpha);
+  entry.mode_after = mode_columns(passage.after.mode, passage.after.alpha);
+  entry.alpha_before = alpha_columns(passage.before.alpha);
+  entry.alpha_after = alpha_columns(passage.after.alpha);
+  entry.reason = std::move(reason);
   events_.push_back(std::move(entry));
 }
 

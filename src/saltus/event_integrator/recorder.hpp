@@ -1,6 +1,7 @@
 // Rows and events of a run, in the columns of the result.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,20 @@
 #include "saltus/result/result.hpp"
 
 namespace saltus::event_integrator {
+
+/// States and modes on both sides of an event.
+struct Passage {
+  const std::vector<double>& x;
+  const std::vector<double>& x_after;
+  const ModeState& before;
+  const ModeState& after;
+};
+
+/// One execution of a jump.
+struct ExecutedJump {
+  int jump = 0;
+  std::vector<double> x, x_after;
+};
 
 class Recorder {
  public:
@@ -23,7 +38,12 @@ class Recorder {
   /// A start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
   bool started(double t, const std::vector<double>& x, const Transition& transition, const std::vector<int>& surfaces);
   /// An event of [[events]].
-  void user(double t, const std::vector<double>& x, const ModeState& before, const ModeState& after, int event);
+  void user(double t, const Passage& passage, int event);
+  /// Jumps executed at t one after the other; `transition` is the mode behind the last one, `before` absent at a start.
+  void jumped(double t, const std::vector<ExecutedJump>& jumps, const std::optional<ModeState>& before,
+              const Transition& transition);
+  /// The limit of a sequence of jumps, from the last computed state.
+  void accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string reason);
 
   [[nodiscard]] std::vector<result::Event> take_events() { return std::move(events_); }
   [[nodiscard]] result::Trajectory take_trajectory() { return std::move(trajectory_); }
@@ -31,7 +51,7 @@ class Recorder {
   [[nodiscard]] long events() const { return static_cast<long>(events_.size()); }
 
  private:
-  [[nodiscard]] result::Mode mode_columns(const std::vector<int>& mode) const;
+  [[nodiscard]] result::Mode mode_columns(const std::vector<int>& mode, const std::vector<double>& alpha) const;
   [[nodiscard]] std::vector<double> alpha_columns(const std::vector<double>& alpha) const;
   void add_transition(result::Event event, const Transition& transition);
 

@@ -11,10 +11,10 @@ namespace saltus::event_integrator {
 
 using result::Termination;
 
-bool Run::fire_user_events(const ModeState& before) {
+bool Run::fire_user_events(const std::vector<double>& x_before, const ModeState& before) {
   const auto fired = user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs());
   for (const int event : fired) {
-    recorder_.user(t_, x_, before, state_, event);
+    recorder_.user(t_, {x_before, x_, before, state_}, event);
     if (user_events_.stops(event) && running_) {
       fail(Termination::stopped_by_event,
            fmt::format("stopped by the event '{}'", surroundings_.system.events[at(event)].name));
@@ -52,7 +52,7 @@ bool Run::change_mode(const Located& located) {
   bool any = false;
   for (std::size_t k = 0; k < located.functions.size(); ++k) {
     const auto& function = search_.functions()[located.functions[k]];
-    if (function.kind == FunctionKind::user) continue;
+    if (function.kind == FunctionKind::user || function.kind == FunctionKind::release) continue;
     any = true;
     if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
     if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
@@ -105,35 +105,65 @@ void Run::flip_user_functions(const Located& located) {
   each([&](std::size_t function, int sign) { search_.set_user_sign(function, -sign, t_, x_.data()); });
 }
 
-/// The state is at a located event: rows before and behind, user events, the next mode.
-Run::Step Run::handle(const Located& located) {
-  const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
-  t_ = located.t;
-  x_ = located.x;
-  const long events_before = recorder_.events();
+/// Notes what is here before an event, the selections of a sliding mode among it.
+Run::Arrival Run::arrive(RowBefore row) {
   field_(t_, x_.data(), slope_.data());
   if (!state_.sliding.empty()) state_.alpha = field_.alpha();
   before_ = state_;
   x_before_ = x_;
+  return {recorder_.events(), row};
+}
+
+/// The state is at a located event: rows before and behind, user events, jumps or the next mode.
+Run::Step Run::handle(const Located& located) {
+  const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
+  t_ = located.t;
+  x_ = located.x;
+  static_cast<void>(holding_.project(t_, state_.alpha, x_));
+  // A step that ended exactly here has written the row before the event.
+  const Arrival arrival = arrive(ended_here ? RowBefore::written : RowBefore::missing);
   flip_user_functions(located);
-  static_cast<void>(change_mode(located));
-  if (running_) fire_user_events(before_);
-  if (recorder_.events() > events_before || !running_) {
-    // A step that ended exactly here has written the row before the event.
-    if (!ended_here) recorder_.row(t_, x_before_, before_.mode, before_.alpha);
-    if (recorder_.events() > events_before) row(t_, x_);
+  jumps_.update(jump_point());
+  if (jumps_have_problem()) return depart(arrival);
+  Landing landing = landing_at(located);
+  if (jumps_.due(t_)) {
+    static_cast<void>(jump(before_, x_before_, std::move(landing)));
+    return depart(arrival);
+  }
+  const bool released = release(located);
+  if (change_mode(located) && released) {
+    Transition same;
+    same.state = state_;
+    same.zero_order.assign(state_.mode.size(), 0);
+    static_cast<void>(enter(same));
+  }
+  if (running_) fire_user_events(x_, before_);
+  if (running_ && !jumps_.none()) {
+    // Conditions may depend on selections, too.
+    jumps_.update(jump_point());
+    if (!jumps_have_problem() && jumps_.due(t_))
+      static_cast<void>(jump(ModeState(state_), std::vector<double>(x_), std::move(landing)));
+  }
+  return depart(arrival);
+}
+
+Run::Step Run::depart(const Arrival& arrival) {
+  const bool event = recorder_.events() > arrival.events;
+  if (event || !running_) {
+    if (arrival.row == RowBefore::missing) recorder_.row(t_, x_before_, before_.mode, before_.alpha);
+    if (event) row(t_, x_);
   } else if (options_.output.rows == OutputTimes::Rows::at_steps) {
     row(t_, x_);
   }
   while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) {
     // A requested time at a restart that is no event still gets its row.
-    const bool wanted = options_.output.times[next_output_] == t_ && recorder_.events() == events_before &&
+    const bool wanted = options_.output.times[next_output_] == t_ && !event &&
                         options_.output.rows == OutputTimes::Rows::at_times && running_;
     if (wanted) row(t_, x_);
     ++next_output_;
   }
-  if (recorder_.events() > events_before) last_event_time_ = t_;
-  if (running_) static_cast<void>(too_many_events());
+  if (event) last_event_time_ = t_;
+  if (running_ && !too_many_events()) accumulate_jumps();
   return running_ ? Step::taken : Step::failed;
 }
 

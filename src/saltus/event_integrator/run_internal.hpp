@@ -1,5 +1,5 @@
 // A run in progress: the state of the engine between its sources. integrate.cpp begins and ends it, run_steps.cpp takes
-// the steps, run_events.cpp handles what they meet.
+// the steps, run_events.cpp handles what they meet, run_jumps.cpp and run_limits.cpp jumps and their accumulation.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "saltus/event_integrator/accumulation.hpp"
 #include "saltus/event_integrator/event_search.hpp"
+#include "saltus/event_integrator/holding.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/event_integrator/jumps.hpp"
 #include "saltus/event_integrator/locate.hpp"
 #include "saltus/event_integrator/mode_field.hpp"
+#include "saltus/event_integrator/projected_fields.hpp"
 #include "saltus/event_integrator/recorder.hpp"
 #include "saltus/event_integrator/single_surface.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
@@ -22,6 +26,10 @@
 #include "saltus/ode/step_control.hpp"
 
 namespace saltus::event_integrator {
+
+/// Of an accumulation that is one at once.
+inline constexpr const char* resting_reason =
+    "the jump leaves its guard at 0 without a velocity: the limit of its sequence at once";
 
 /// The run in progress: where it is, and the work spaces of its parts. One object per call of integrate().
 class Run {
@@ -33,16 +41,61 @@ class Run {
 
  private:
   enum class Step { taken, shortened, failed };
+  enum class RowBefore { written, missing };
+
+  /// Of an event in hand, beside before_ and x_before_.
+  struct Arrival {
+    long events = 0;  ///< recorded before it
+    RowBefore row = RowBefore::missing;
+  };
+  /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
+  struct Landing {
+    std::vector<ExecutedJump> executed;
+    std::vector<int> zeros;           ///< event functions that are at zero here whatever is left of their value
+    std::vector<double> zero_values;  ///< what is left
+    std::vector<double> rates;        ///< by event function: largest |dg/dt| of guards of jumps at this time
+    std::vector<HeldGuard> held_before;
+    std::vector<int> resting;  ///< jumps whose guards stay at zero from here on
+    Transition transition;
+  };
 
   bool begin();
   Step attempt();
   Step undefined_step();
   Step accept(double t_new);
   Step handle(const Located& located);
+  Arrival arrive(RowBefore row);
+  Step depart(const Arrival& arrival);
   bool change_mode(const Located& located);
   bool enter(const Transition& transition);
-  bool fire_user_events(const ModeState& before);
+  bool fire_user_events(const std::vector<double>& x_before, const ModeState& before);
   void flip_user_functions(const Located& located);
+
+  bool begin_jumps(Landing& landing);
+  bool settle_at_start(Landing& landing);
+  Step jump_in_time();
+  bool jump(const ModeState& before, const std::vector<double>& x_before, Landing landing);
+  bool settle_jumps(Landing& landing);
+  bool execute_jump(Landing& landing);
+  bool decide_behind_jumps(Landing& landing);
+  bool hold_resting(Landing& landing);
+  bool hold(std::vector<HeldGuard> guards, Landing& landing);
+  void give_directions(Landing& landing);
+  [[nodiscard]] Landing landing_here() const;
+  [[nodiscard]] Landing landing_at(const Located& located) const;
+  void note_guards(Landing& landing);
+  void note_series(const Landing& landing);
+  void drop_zeros(Landing& landing);
+  void read_user_signs(const Landing& landing);
+  [[nodiscard]] Motion motion_of(int function, const Landing& landing);
+  [[nodiscard]] double rate_along_field(int function, double t, const double* x, const double* slope) const;
+  bool release(const Located& located);
+  void accumulate_jumps();
+  void follow_limit(const JumpLimit& limit);
+  [[nodiscard]] std::string jump_names(const std::vector<int>& jumps) const;
+  [[nodiscard]] JumpPoint jump_point() const { return {t_, x_, state_.alpha, search_.user_signs()}; }
+  bool jumps_have_problem();
+  void start_step();
   bool too_many_events();
   void accumulates();
   bool stopped_by_two_fold();
@@ -76,6 +129,11 @@ class Run {
   Locator locator_;
   SingleSurface single_surface_;
   UserEvents user_events_;
+  Jumps jumps_;
+  Holding holding_;
+  JumpSeries jump_series_;
+  std::vector<HeldGuard> last_guard_;  ///< by jump: the guard that was at zero when it was executed last
+  std::vector<double> last_rate_;      ///< by jump: |dg/dt| then
   Recorder recorder_;
 
   double t_;

@@ -27,6 +27,7 @@ void Run::rows_until(double t_end) {
     }
     dense_.evaluate((t - dense_.t) / dense_.h, row_x_.data());
     field_.project(t, row_x_.data());
+    static_cast<void>(holding_.project(t, state_.alpha, row_x_));
     row(t, row_x_);
   }
 }
@@ -86,26 +87,32 @@ Run::Step Run::accept(double t_new) {
   std::copy(stepper_.x_new(), stepper_.x_new() + x_.size(), x_.begin());
   t_ = t_new;
   h_scale_ = h;
-  if (field_.project(t_, x_.data())) {
+  const bool projected = field_.project(t_, x_.data());
+  if (holding_.project(t_, state_.alpha, x_) || projected) {
     field_(t_, x_.data(), slope_.data());
   } else {
     std::copy(stepper_.slope_new(), stepper_.slope_new() + slope_.size(), slope_.begin());
   }
   h_ = h * control_.accepted(stepper_.error_norm());
+  // A step that was cut short at a time of a jump says nothing against the one that was proposed.
+  if (t_ < options_.until && t_ == jumps_.next_time()) h_ = std::max(h_, h_try_);
   if (!stiff_at_ && stiffness_.looks_stiff(stepper_)) stiff_at_ = t_;
   if (search_.settle(t_, x_.data())) {
     // What a user function turns to from a zero at the start is its first sign, not a change of it.
     static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
+    jumps_.update(jump_point());
   }
   const bool requested = next_output_ < options_.output.times.size() && options_.output.times[next_output_] == t_;
   if (requested) ++next_output_;
   if (options_.output.rows == OutputTimes::Rows::at_steps || requested || t_ >= options_.until) row(t_, x_);
-  return Step::taken;
+  return jumps_.next_time() <= t_ ? jump_in_time() : Step::taken;
 }
 
 Run::Step Run::attempt() {
-  const bool to_the_end = t_ + h_try_ * (1.0 + 4.0 * rounding_unit) >= options_.until;
-  const double t_new = to_the_end ? options_.until : t_ + h_try_;
+  // Times of jumps are hit exactly, like the end.
+  const double limit = std::min(options_.until, jumps_.next_time());
+  const bool to_the_limit = t_ + h_try_ * (1.0 + 4.0 * rounding_unit) >= limit;
+  const double t_new = to_the_limit ? limit : t_ + h_try_;
   const double h = t_new - t_;
   if (stepper_.attempt(right_hand_side(), t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
     return shorten(0.25) ? Step::shortened : undefined_step();

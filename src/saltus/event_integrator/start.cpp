@@ -30,15 +30,29 @@ double value_in_a_region(const Surroundings& s, double t, const double* x, const
   return values[at(j)];
 }
 
+/// A switching function of discrete states: its selection pointwise, as written where it is 0. It is in no mode, so
+/// that nothing looks for a zero of it or slides on it.
+void read_discrete(const Surroundings& s, double t, const double* x, int j, ModeState& state) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  const double psi = values[at(j)];
+  state.mode[at(j)] = 0;
+  state.alpha[at(j)] = psi > 0.0 ? 1.0 : psi < 0.0 ? 0.0 : s.system.switching[at(j)].alpha_at_zero;
+}
+
 /// Signs of all switching functions, inner ones first; those at zero get 0.
-void read_signs(const Surroundings& s, double t, const double* x, const ProjectedFields& fields, ModeState& state,
-                std::vector<int>& at_zero) {
+void read_signs(const Surroundings& s, double t, const double* x, const ProjectedFields& fields,
+                const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    if (s.system.switching[at(j)].role == model::SwitchingRole::discrete) {
+      read_discrete(s, t, x, j, state);
+      continue;
+    }
     const double psi =
         s.kernel.inner(j).empty() ? values[at(j)] : value_in_a_region(s, t, x, state, j, fields.noise(j));
-    if (std::abs(psi) <= fields.noise(j)) {
+    if (std::abs(psi) <= fields.noise(j) || std::find(held.begin(), held.end(), j) != held.end()) {
       at_zero.push_back(j);
       set_surface(state, j, 0, 0.5);
     } else {
@@ -78,7 +92,7 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   const auto n_psi = at(s.kernel.switching_functions());
   state.mode.assign(n_psi, 1);
   state.alpha.assign(n_psi, 1.0);
-  read_signs(s, t, x, fields, state, start.at_zero);
+  read_signs(s, t, x, fields, {}, state, start.at_zero);
   if (!finite_at_start(s, t, x, state, start.transition)) return start;
   occasion.at_zero = start.at_zero;
   start.transition = decide_mode(s, state, occasion);
@@ -113,6 +127,42 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
     if (other.mode != start.transition.state.mode) start.transition.alternatives.push_back(other);
   }
   return start;
+}
+
+Transition decide_behind_jump(const Surroundings& s, const ModeState& before, double t, const double* x,
+                              double time_scale, const std::vector<int>& held) {
+  Occasion occasion;
+  occasion.t = t;
+  occasion.x = x;
+  occasion.start = true;
+  occasion.time_scale = time_scale;
+  const ProjectedFields fields(s.kernel, occasion);
+  ModeState state;
+  state.mode.assign(before.mode.size(), 1);
+  state.alpha.assign(before.mode.size(), 1.0);
+  read_signs(s, t, x, fields, held, state, occasion.at_zero);
+  // Selections of the sliding motion before are where a search for the new ones starts.
+  for (const int j : held) state.alpha[at(j)] = before.alpha[at(j)];
+  Transition transition;
+  if (!finite_at_start(s, t, x, state, transition)) return transition;
+  transition = decide_mode(s, state, occasion);
+  other_continuations(s, state, occasion, transition);
+  return transition;
+}
+
+std::vector<double> selections_at(const Surroundings& s, double t, const double* x, std::vector<double> alpha) {
+  const auto n = at(s.kernel.event_functions());
+  std::vector<double> values(n), noise(n), slope(n);
+  s.kernel.scales(t, x, alpha.data(), noise.data(), slope.data());
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    s.kernel.functions(t, x, alpha.data(), values.data());
+    const auto& function = s.system.switching[at(j)];
+    const double psi = values[at(j)];
+    const bool discrete = function.role == model::SwitchingRole::discrete;
+    if (discrete && psi == 0.0) alpha[at(j)] = function.alpha_at_zero;
+    if (std::abs(psi) > (discrete ? 0.0 : 8.0 * rounding_unit * noise[at(j)])) alpha[at(j)] = psi > 0.0 ? 1.0 : 0.0;
+  }
+  return alpha;
 }
 
 }  // namespace saltus::event_integrator

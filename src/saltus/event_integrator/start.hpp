@@ -19,4 +19,14 @@ struct Start {
 [[nodiscard]] Start decide_start(const Surroundings& surroundings, double t, const double* x, double time_scale,
                                  const std::vector<std::pair<int, int>>& forced);
 
+/// The mode behind a jump of the model or of the state at (t, x): as at a start, but surfaces of `held` (located here,
+/// or sliding, and still at zero) are at zero whatever is left of their psi.
+[[nodiscard]] Transition decide_behind_jump(const Surroundings& surroundings, const ModeState& before, double t,
+                                            const double* x, double time_scale, const std::vector<int>& held);
+
+/// Selections read pointwise at (t, x), inner functions first; those at zero keep what they have in `alpha`, functions
+/// of discrete states have what is written.
+[[nodiscard]] std::vector<double> selections_at(const Surroundings& surroundings, double t, const double* x,
+                                                std::vector<double> alpha);
+
 }  // namespace saltus::event_integrator

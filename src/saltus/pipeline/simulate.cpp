@@ -138,13 +138,6 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
                                 {},
                                 {}});
   }
-  if (!system.jumps.empty()) {
-    return tl::unexpected(Error{ErrorCode::not_available,
-                                "the model has [[jumps]]: this version reads and checks them, but does not run them",
-                                "leave them out to run the rest of the model",
-                                {},
-                                {}});
-  }
   const auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   const auto begin = std::chrono::steady_clock::now();

@@ -1,0 +1,122 @@
+#include "saltus/event_integrator/accumulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saltus/event_integrator/small_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// Laps that must shrink before a sequence is believed to have a limit.
+constexpr std::size_t fewest_laps = 4;
+/// Laps whose durations give the ratio, at most: more average out the rounding of t where the ratio is near 1.
+constexpr std::size_t most_laps = 48;
+
+/// Ratio of successive durations, over as many laps as it takes to shrink to a third: the rounding of t is divided by
+/// their number.
+double ratio_of(const std::vector<double>& durations) {
+  const double first = durations[0] / durations[1];
+  if (!(first < 1.0)) return first;
+  const double wanted = std::ceil(1.0 / (1.0 - first));
+  const double laps = std::min(wanted, static_cast<double>(durations.size() - 1));
+  return std::pow(durations[0] / durations[static_cast<std::size_t>(laps)], 1.0 / laps);
+}
+
+}  // namespace
+
+void JumpSeries::clear() {
+  entries_.clear();
+  std::fill(std::begin(laps_), std::end(laps_), std::size_t{0});
+}
+
+void JumpSeries::add(double t, std::vector<int> jumps, const std::vector<double>& x) {
+  entries_.push_back({t, std::move(jumps), x});
+  if (entries_.size() > longest_period * (most_laps + 2)) entries_.pop_front();
+  for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
+    const bool repeats = back(0).jumps == back(period).jumps;
+    const bool shrinks =
+        repeats && entries_.size() > 2 * period && t - back(period).t < back(period).t - back(2 * period).t;
+    if (laps_[period] == 0 || !shrinks) {
+      start_[period] = back(period).t;
+      laps_[period] = repeats ? 1 : 0;
+    } else {
+      ++laps_[period];
+    }
+  }
+}
+
+std::vector<double> JumpSeries::durations(std::size_t period, std::size_t skipped) const {
+  std::vector<double> result;
+  for (std::size_t lap = skipped; lap < skipped + most_laps && (lap + 1) * period < entries_.size(); ++lap) {
+    if (back(lap * period).jumps != back((lap + 1) * period).jumps) break;
+    result.push_back(back(lap * period).t - back((lap + 1) * period).t);
+    // Before the sequence began to shrink its durations say nothing.
+    if (result.size() > 1 && !(result.back() > result[result.size() - 2])) {
+      result.pop_back();
+      break;
+    }
+  }
+  return result;
+}
+
+std::vector<double> JumpSeries::extrapolated(std::size_t period, double ratio) const {
+  std::vector<double> x = back(0).x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double last = x[i] - back(period).x[i];
+    const double before = back(period).x[i] - back(2 * period).x[i];
+    // Differences that do not shrink like the laps are rounding.
+    if (!(std::abs(last) <= 0.5 * (1.0 + ratio) * std::abs(before)) || last == 0.0) continue;
+    x[i] += last * last / (before - last);
+  }
+  return x;
+}
+
+std::vector<int> JumpSeries::jumps_of_lap(std::size_t period) const {
+  std::vector<int> result;
+  for (std::size_t k = 0; k < period; ++k) {
+    result.insert(result.end(), back(k).jumps.begin(), back(k).jumps.end());
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period) const {
+  // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
+  if (laps_[period] < 2 * period || entries_.size() <= 2 * period) return std::nullopt;
+  const auto now = durations(period, 0);
+  const double t = back(0).t;
+  const double resolution = rounding_unit * std::abs(t);
+  if (now.size() >= 2 && now[0] <= 16.0 * resolution) return JumpLimit{t, back(0).x, jumps_of_lap(period)};
+  if (laps_[period] < fewest_laps * period || now.size() < fewest_laps) return std::nullopt;
+  const auto before = durations(period, 1);
+  const double ratio = ratio_of(now);
+  const double ratio_before = ratio_of(before);
+  if (!(ratio < 1.0 && ratio_before < 1.0)) return std::nullopt;
+  const double remaining = now[0] * ratio / (1.0 - ratio);
+  const double remaining_before = before[0] * ratio_before / (1.0 - ratio_before);
+  const double taken = t - start_[period];
+  if (remaining > std::max(1e-8 * taken, 100.0 * resolution)) return std::nullopt;
+  // A fiftieth of what remains is 2e-10 of the time taken.
+  const double difference = (t + remaining) - (back(period).t + remaining_before);
+  if (std::abs(difference) > 0.02 * remaining + 4.0 * resolution) return std::nullopt;
+  return JumpLimit{t + remaining, extrapolated(period, ratio), jumps_of_lap(period)};
+}
+
+std::optional<JumpLimit> JumpSeries::limit() const {
+  for (std::size_t period = 1; period <= longest_period; ++period) {
+    if (auto found = limit_of(period)) return found;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> JumpSeries::last_lap() const {
+  for (std::size_t period = 1; period <= longest_period; ++period) {
+    if (laps_[period] >= 2 * period && entries_.size() > period) return back(0).t - back(period).t;
+  }
+  return std::nullopt;
+}
+
+}  // namespace saltus::event_integrator

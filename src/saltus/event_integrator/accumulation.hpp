@@ -1,0 +1,53 @@
+// Jump sequences with a limit: infinitely many jumps in finite time (Zeno).
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace saltus::event_integrator {
+
+/// The limit of a sequence of jumps.
+struct JumpLimit {
+  double t = 0.0;
+  std::vector<double> x;
+  std::vector<int> jumps;  ///< of one lap, ascending, each once
+};
+
+/// Watches the times and states of jumps for laps whose durations shrink geometrically. A lap is a cycle of jumps that
+/// repeats, of up to eight times.
+///
+/// With the duration T of the last lap and the ratio r < 1 of successive durations, T r / (1 - r) is what remains. The
+/// limit is announced once that is below 1e-8 of the time that the sequence has taken, or can no longer be told apart
+/// in t, and the extrapolations of the last laps agree. The state is extrapolated component by component (Aitken's
+/// delta-squared process), which is exact for geometric sequences of any ratio.
+class JumpSeries {
+ public:
+  /// Jumps executed at t in this order, and the state behind them.
+  void add(double t, std::vector<int> jumps, const std::vector<double>& x);
+  [[nodiscard]] std::optional<JumpLimit> limit() const;
+  /// How long the last lap of a shrinking sequence was; nullopt outside of one.
+  [[nodiscard]] std::optional<double> last_lap() const;
+  void clear();
+
+ private:
+  struct Entry {
+    double t = 0.0;
+    std::vector<int> jumps;
+    std::vector<double> x;
+  };
+  static constexpr std::size_t longest_period = 8;
+  [[nodiscard]] const Entry& back(std::size_t steps) const { return entries_[entries_.size() - 1 - steps]; }
+  [[nodiscard]] std::optional<JumpLimit> limit_of(std::size_t period) const;
+  [[nodiscard]] std::vector<double> extrapolated(std::size_t period, double ratio) const;
+  [[nodiscard]] std::vector<int> jumps_of_lap(std::size_t period) const;
+  /// Durations of the laps behind the entry `skipped` laps ago, the last one first, as far as jumps repeat.
+  [[nodiscard]] std::vector<double> durations(std::size_t period, std::size_t skipped) const;
+
+  std::deque<Entry> entries_;
+  double start_[longest_period + 1] = {};      ///< of the shrinking sequence of each period
+  std::size_t laps_[longest_period + 1] = {};  ///< in it
+};
+
+}  // namespace saltus::event_integrator

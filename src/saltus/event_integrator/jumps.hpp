@@ -1,0 +1,76 @@
+// [[jumps]]: which conditions hold, which executions wait, at which times something is due.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::event_integrator {
+
+/// Where conditions and right-hand sides of jumps are evaluated.
+struct JumpPoint {
+  double t = 0.0;
+  const std::vector<double>& x;      ///< n_x
+  const std::vector<double>& alpha;  ///< n_psi
+  const std::vector<int>& signs;     ///< of the user functions (those behind psi), just behind this time; 0 = at zero
+};
+
+/// Follows the truth of all conditions and the queue of executions (rules 1 to 5 of the model file's [[jumps]]). Knows
+/// no modes and takes no steps; it is asked at events only.
+class Jumps {
+ public:
+  Jumps(const evaluation::ModelKernel& kernel, const model::System& system, double from);
+
+  [[nodiscard]] bool none() const { return system_.jumps.empty(); }
+  /// The start: every condition counts as true before it, with at_start as false.
+  void begin(const JumpPoint& point);
+  /// Reads all conditions and times anew: what became true, and times that have come, are triggered; waiting executions
+  /// of jumps with persistent = false whose condition is false are dropped.
+  void update(const JumpPoint& point);
+
+  /// When the next given or delayed time comes; infinity without. Exact: the very double of `at`, from + k every, or
+  /// t + delay.
+  [[nodiscard]] double next_time() const { return next_time_; }
+  [[nodiscard]] bool due(double t) const;
+  /// Applies the `set` of the due execution with the largest priority (ties: order in the file, then of triggering) to
+  /// x, all at once. Returns the jump; only where something is due and nothing has failed.
+  int execute(const JumpPoint& point, std::vector<double>& x);
+  /// What is wrong with a delay, priority or value that was evaluated; empty if nothing is.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+  /// Whether a guard depends on discrete states and constants only: compared exactly, changed by jumps only.
+  [[nodiscard]] bool is_discrete_guard(int function) const;
+  /// The sign of a guard (event function) that triggers its jump, with all others as they are: -1 or 1; 0 if it has no
+  /// say. `inward`: the sign that counts for a guard of direction both.
+  [[nodiscard]] int trigger_sign(int jump, int guard, const JumpPoint& point, int inward) const;
+
+ private:
+  struct Execution {
+    int jump = 0;
+    double t = 0.0;
+    std::vector<double> values;  ///< empty: evaluated at execution
+  };
+  /// Bits: 1 the condition holds (guards: g on the wanted side, both: g < 0), 2 (both only) g > 0.
+  [[nodiscard]] unsigned truth(int jump, const JumpPoint& point) const;
+  [[nodiscard]] std::vector<double> steps(int jump, const JumpPoint& point) const;
+  [[nodiscard]] int guard_sign(int function, const JumpPoint& point) const;
+  void trigger(int jump, const JumpPoint& point);
+  [[nodiscard]] double time_of(int jump) const;
+  void find_next_time();
+
+  const evaluation::ModelKernel& kernel_;
+  const model::System& system_;
+  double from_;
+  std::vector<unsigned> truth_;
+  std::vector<long> times_passed_;    ///< of every jump with given times
+  std::vector<bool> discrete_guard_;  ///< over the event functions
+  mutable std::vector<double> values_;
+  std::vector<Execution> queue_;  ///< in the order of triggering
+  double next_time_;
+  std::string problem_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,330 @@
+// Jumps at one time: the cascade of executions, the mode behind it, guards that stay at zero.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/run_internal.hpp"
+#include "saltus/event_integrator/start.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using result::Termination;
+
+/// Executions at one time before the run stops (rule 5).
+constexpr std::size_t most_rounds = 10000;
+
+bool contains(const std::vector<int>& values, int value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+}  // namespace
+
+std::string Run::jump_names(const std::vector<int>& jumps) const {
+  std::string text;
+  for (const int jump : jumps) text += (text.empty() ? "'" : ", '") + surroundings_.system.jumps[at(jump)].name + "'";
+  return text;
+}
+
+bool Run::jumps_have_problem() {
+  if (!jumps_.problem().empty() && running_) fail(Termination::evaluation_failed, jumps_.problem());
+  return !jumps_.problem().empty();
+}
+
+/// At a point where only the surfaces of the sliding mode are at zero.
+Run::Landing Run::landing_here() const {
+  Landing landing;
+  if (jumps_.none()) return landing;
+  landing.zeros = state_.sliding;
+  landing.zero_values.resize(at(kernel_.event_functions()));
+  kernel_.functions(t_, x_.data(), state_.alpha.data(), landing.zero_values.data());
+  landing.rates.assign(landing.zero_values.size(), 0.0);
+  landing.held_before = holding_.guards();
+  return landing;
+}
+
+/// At an event: what was located is at zero, too.
+Run::Landing Run::landing_at(const Located& located) const {
+  Landing landing = landing_here();
+  if (jumps_.none()) return landing;
+  for (const auto function : located.functions) {
+    const auto& entry = search_.functions()[function];
+    if (entry.kind == FunctionKind::surface || entry.kind == FunctionKind::user) landing.zeros.push_back(entry.index);
+  }
+  return landing;
+}
+
+double Run::rate_along_field(int function, double t, const double* x, const double* slope) const {
+  std::vector<double> row(x_.size());
+  double rate = 0.0;
+  kernel_.gradient(function, t, x, state_.alpha.data(), row.data(), &rate);
+  for (std::size_t i = 0; i < row.size(); ++i) rate += row[i] == 0.0 ? 0.0 : row[i] * slope[i];
+  return rate;
+}
+
+/// How fast the guards of jumps move here, and which of them are at zero.
+void Run::note_guards(Landing& landing) {
+  std::vector<double> slope(x_.size());
+  kernel_.field(t_, x_.data(), state_.alpha.data(), slope.data());
+  for (std::size_t k = 0; k < surroundings_.system.jumps.size(); ++k) {
+    const int guards = static_cast<int>(surroundings_.system.jumps[k].guards.numel());
+    for (int g = 0; g < guards; ++g) {
+      const int function = kernel_.jump_guard(static_cast<int>(k), g);
+      const double rate = std::abs(rate_along_field(function, t_, x_.data(), slope.data()));
+      if (std::isfinite(rate)) landing.rates[at(function)] = std::max(landing.rates[at(function)], rate);
+    }
+  }
+}
+
+/// Zeros that a jump has moved away are none any more.
+void Run::drop_zeros(Landing& landing) {
+  const auto n = landing.zero_values.size();
+  std::vector<double> values(n), magnitude(n), slope(n);
+  kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
+  std::erase_if(landing.zeros, [&](int function) {
+    const auto f = at(function);
+    return !(std::abs(values[f] - landing.zero_values[f]) <= 8.0 * rounding_unit * magnitude[f]);
+  });
+}
+
+/// Signs of all user functions at the point as it is. One that was located here and is still at zero keeps the sign
+/// just behind this time; one that a jump has put there has none yet (0).
+void Run::read_user_signs(const Landing& landing) {
+  const auto n = at(kernel_.event_functions());
+  std::vector<double> values(n), magnitude(n), slope(n);
+  kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
+  std::vector<int> signs = search_.user_signs();
+  std::vector<bool> vanish(signs.size(), false);
+  for (std::size_t user = 0; user < signs.size(); ++user) {
+    const int function = kernel_.switching_functions() + static_cast<int>(user);
+    const double value = values[at(function)];
+    const bool located = contains(landing.zeros, function);
+    vanish[user] =
+        located || holding_.holds(function) || std::abs(value) <= 8.0 * rounding_unit * magnitude[at(function)];
+    if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
+    if (!vanish[user]) signs[user] = value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+  }
+  search_.set_user_signs(std::move(signs), std::move(vanish));
+}
+
+/// One execution: the state behind it, and what that triggers.
+bool Run::execute_jump(Landing& landing) {
+  if (landing.executed.size() >= most_rounds) {
+    std::vector<int> jumps;
+    for (std::size_t k = landing.executed.size() - 100; k < landing.executed.size(); ++k) {
+      if (!contains(jumps, landing.executed[k].jump)) jumps.push_back(landing.executed[k].jump);
+    }
+    fail(Termination::iteration_limit,
+         fmt::format("{} jumps at t = {:.17g} without an end: {} trigger each other; make their conditions false by "
+                     "what they set, or give one of them a delay",
+                     most_rounds, t_, jump_names(jumps)));
+    return false;
+  }
+  note_guards(landing);
+  ExecutedJump executed{0, x_, {}};
+  executed.jump = jumps_.execute(jump_point(), x_);
+  executed.x_after = x_;
+  landing.executed.push_back(std::move(executed));
+  drop_zeros(landing);
+  state_.alpha = selections_at(surroundings_, t_, x_.data(), state_.alpha);
+  read_user_signs(landing);
+  jumps_.update(jump_point());
+  return !jumps_have_problem();
+}
+
+/// The mode afresh, as at a start (rule 6).
+bool Run::decide_behind_jumps(Landing& landing) {
+  std::vector<int> surfaces;
+  for (const int function : landing.zeros) {
+    if (function < kernel_.switching_functions()) surfaces.push_back(function);
+  }
+  landing.transition = decide_behind_jump(surroundings_, state_, t_, x_.data(), h_scale_, surfaces);
+  if (landing.transition.termination != Termination::completed) {
+    fail(landing.transition.termination, landing.transition.message);
+    return false;
+  }
+  return enter(landing.transition);
+}
+
+/// Where a function at zero goes along the motion of the mode.
+Motion Run::motion_of(int function, const Landing& landing) {
+  Occasion occasion;
+  occasion.t = t_;
+  occasion.x = x_.data();
+  occasion.time_scale = h_scale_;
+  const double velocity = rate_along_field(function, t_, x_.data(), slope_.data());
+  const double scale = std::max(landing.rates[at(function)], std::abs(velocity));
+  const ProjectedFields fields(kernel_, occasion);
+  return fields.motion(state_.alpha, function, velocity, scale);
+}
+
+/// Holds the guards of executed jumps, and those held before, that were left at zero without a velocity and are pressed
+/// on. Returns whether the field has changed.
+bool Run::hold_resting(Landing& landing) {
+  std::vector<HeldGuard> guards;
+  std::vector<int> jumps;
+  for (const auto& executed : landing.executed) {
+    if (!contains(jumps, executed.jump)) jumps.push_back(executed.jump);
+  }
+  for (const auto& guard : landing.held_before) {
+    if (!contains(jumps, guard.hold.jump)) jumps.push_back(guard.hold.jump);
+  }
+  const auto& vanish = search_.user_zeros();
+  for (const int jump : jumps) {
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      const bool at_zero = vanish[at(function - kernel_.switching_functions())];
+      if (!at_zero || jumps_.is_discrete_guard(function)) continue;
+      const Motion motion = motion_of(function, landing);
+      const int drift = static_cast<int>(motion.side.drift);
+      const int inward = jumps_.trigger_sign(jump, g, jump_point(), drift);
+      if (motion.order < 2 || inward == 0 || drift != inward) continue;
+      if (!holding_.can_rest({jump, function}, t_, state_.alpha, x_)) continue;
+      guards.push_back({{jump, function}, inward});
+    }
+  }
+  if (guards.empty()) return false;
+  for (const auto& guard : guards) {
+    const bool known = std::any_of(landing.held_before.begin(), landing.held_before.end(),
+                                   [&](const HeldGuard& other) { return other.hold.function == guard.hold.function; });
+    if (!known && !contains(landing.resting, guard.hold.jump)) landing.resting.push_back(guard.hold.jump);
+  }
+  return hold(std::move(guards), landing);
+}
+
+/// Puts the state on the guards and keeps it there; false if that fails, with the status set.
+bool Run::hold(std::vector<HeldGuard> guards, Landing& landing) {
+  std::vector<int> jumps;
+  for (const auto& guard : guards) jumps.push_back(guard.hold.jump);
+  const auto problem = holding_.set(std::move(guards));
+  if (problem) {
+    fail(Termination::outside_class,
+         fmt::format("the jumps {} accumulate at t = {:.17g}: {}", jump_names(jumps), t_, *problem));
+    return false;
+  }
+  search_.set_held(holding_.guards());
+  static_cast<void>(holding_.project(t_, state_.alpha, x_));
+  for (const auto& guard : holding_.guards()) {
+    if (!contains(landing.zeros, guard.hold.function)) landing.zeros.push_back(guard.hold.function);
+  }
+  read_user_signs(landing);
+  return true;
+}
+
+/// Signs of functions that are at zero behind jumps: those they get along the motion.
+void Run::give_directions(Landing& landing) {
+  std::vector<double> values(at(kernel_.event_functions()));
+  kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
+  std::vector<int> signs = search_.user_signs();
+  std::vector<bool> vanish = search_.user_zeros();
+  for (std::size_t user = 0; user < signs.size(); ++user) {
+    const int function = kernel_.switching_functions() + static_cast<int>(user);
+    if (!vanish[user] || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
+    signs[user] = static_cast<int>(motion_of(function, landing).side.drift);
+    // A jump that leaves it here leaves it this sign.
+    if (!contains(landing.zeros, function)) landing.zeros.push_back(function);
+    landing.zero_values[at(function)] = values[at(function)];
+  }
+  search_.set_user_signs(std::move(signs), std::move(vanish));
+  search_.enter(state_, landing.transition.zero_order, t_, x_.data());
+}
+
+/// Executes everything that is due at t_, with all that follows at once; the mode behind is in force then.
+bool Run::settle_jumps(Landing& landing) {
+  do {
+    while (running_ && jumps_.due(t_)) {
+      if (!execute_jump(landing)) return false;
+    }
+    if (!decide_behind_jumps(landing)) return false;
+    if (hold_resting(landing) && !decide_behind_jumps(landing)) return false;
+    if (!running_) return false;
+    give_directions(landing);
+    jumps_.update(jump_point());
+    if (jumps_have_problem()) return false;
+  } while (jumps_.due(t_));
+  if (!landing.executed.empty()) landing.executed.back().x_after = x_;
+  return true;
+}
+
+/// Rules 4 to 6 at an event: user events of the motion before, the jumps, user events by them.
+bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Landing landing) {
+  fire_user_events(x_, before);
+  const Termination stopped = result_.status.termination;
+  const std::string message = result_.status.message;
+  running_ = true;  // an event that stops the run lets the jumps of its time happen
+  note_guards(landing);
+  if (!landing.held_before.empty()) {
+    static_cast<void>(holding_.set({}));
+    search_.set_held({});
+  }
+  const bool settled = settle_jumps(landing);
+  if (!landing.executed.empty()) {
+    landing.transition.state = state_;
+    recorder_.jumped(t_, landing.executed, before, landing.transition);
+  }
+  if (!settled) return false;
+  if (!landing.resting.empty()) {
+    recorder_.accumulated(t_, landing.resting, {x_, x_, state_, state_}, resting_reason);
+  }
+  if (stopped != Termination::completed) fail(stopped, message);
+  fire_user_events(x_before, before);
+  note_series(landing);
+  start_step();
+  return running_;
+}
+
+/// A time at which jumps are due, reached by a step that ended exactly there.
+Run::Step Run::jump_in_time() {
+  const Arrival arrival = arrive(recorder_.ends_at(t_) ? RowBefore::written : RowBefore::missing);
+  Landing landing = landing_here();
+  jumps_.update(jump_point());
+  if (jumps_have_problem()) return depart(arrival);
+  if (!jumps_.due(t_)) return Step::taken;
+  static_cast<void>(jump(before_, x_before_, std::move(landing)));
+  return depart(arrival);
+}
+
+/// Rule 3, before the first mode is decided.
+bool Run::begin_jumps(Landing& landing) {
+  if (jumps_.none()) return true;
+  state_.mode.assign(at(kernel_.switching_functions()), 0);
+  state_.alpha.assign(state_.mode.size(), 0.5);
+  state_.alpha = selections_at(surroundings_, t_, x_.data(), state_.alpha);
+  read_user_signs(landing);
+  jumps_.begin(jump_point());
+  if (jumps_have_problem()) return false;
+  while (jumps_.due(t_)) {
+    if (!execute_jump(landing)) return false;
+  }
+  return true;
+}
+
+/// Guards at zero at the start, and what they trigger by moving on.
+bool Run::settle_at_start(Landing& landing) {
+  if (jumps_.none()) return true;
+  if (hold_resting(landing) && !decide_behind_jumps(landing)) return false;
+  if (!running_) return false;
+  give_directions(landing);
+  jumps_.update(jump_point());
+  if (jumps_have_problem()) return false;
+  if (jumps_.due(t_) && !settle_jumps(landing)) return false;
+  landing.transition.state = state_;
+  if (!landing.executed.empty()) landing.executed.back().x_after = x_;
+  note_series(landing);
+  return true;
+}
+
+/// A step as at a start: from the field alone, not beyond the last lap of a shrinking sequence of jumps.
+void Run::start_step() {
+  h_ = ode::initial_step(options_.method, right_hand_side(), t_, x_.data(), slope_.data(), kernel_.states(), span(),
+                         tolerances_);
+  if (const auto lap = jump_series_.last_lap()) h_ = std::min(h_, *lap);
+  field_(t_, x_.data(), row_slope_.data());  // selections back to those of this point
+  control_.reset();
+}
+
+}  // namespace saltus::event_integrator

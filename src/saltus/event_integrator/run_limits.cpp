@@ -1,0 +1,122 @@
+// Accumulation of jumps: its limit, and what holds behind it.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/run_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using result::Termination;
+
+/// Notes the jumps of an event: when, where to, and which guards were at zero.
+void Run::note_series(const Landing& landing) {
+  if (landing.executed.empty()) return;
+  std::vector<int> jumps;
+  for (const auto& executed : landing.executed) jumps.push_back(executed.jump);
+  for (const int jump : jumps) {
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      const bool at_zero = std::find(landing.zeros.begin(), landing.zeros.end(), function) != landing.zeros.end();
+      if (!at_zero || jumps_.is_discrete_guard(function)) continue;
+      const int inward = jumps_.trigger_sign(jump, g, jump_point(),
+                                             -search_.user_signs()[at(function - kernel_.switching_functions())]);
+      last_guard_[at(jump)] = {{jump, function}, inward};
+      last_rate_[at(jump)] = landing.rates[at(function)];
+    }
+  }
+  if (!landing.resting.empty()) {
+    jump_series_.clear();
+  } else {
+    jump_series_.add(t_, std::move(jumps), x_);
+  }
+}
+
+/// Held guards on which nothing presses any more are free; returns whether there were any.
+bool Run::release(const Located& located) {
+  std::vector<HeldGuard> guards = holding_.guards();
+  auto signs = search_.user_signs();
+  std::vector<bool> vanish(signs.size(), false);
+  for (const auto function : located.functions) {
+    const auto& entry = search_.functions()[function];
+    if (entry.kind == FunctionKind::user) vanish[at(entry.index - kernel_.switching_functions())] = true;
+    if (entry.kind != FunctionKind::release) continue;
+    const auto user = at(entry.index - kernel_.switching_functions());
+    std::erase_if(guards, [&](const HeldGuard& guard) { return guard.hold.function == entry.index; });
+    // It moves outward from here, whatever the roundings of its derivatives say.
+    signs[user] = -entry.sign;
+    vanish[user] = true;
+  }
+  if (guards.size() == holding_.guards().size()) return false;
+  const auto problem = holding_.set(std::move(guards));
+  if (problem) fail(Termination::outside_class, *problem);
+  search_.set_held(holding_.guards());
+  search_.set_user_signs(std::move(signs), std::move(vanish));
+  return true;
+}
+
+/// If the jumps up to here have a limit that nothing else precedes, the run goes on from there.
+void Run::accumulate_jumps() {
+  if (jumps_.none()) return;
+  const auto limit = jump_series_.limit();
+  if (limit && limit->t <= std::min(options_.until, jumps_.next_time())) follow_limit(*limit);
+}
+
+void Run::follow_limit(const JumpLimit& limit) {
+  field_(t_, x_.data(), slope_.data());
+  if (!state_.sliding.empty()) state_.alpha = field_.alpha();
+  const ModeState before = state_;
+  const std::vector<double> x_last = x_;
+  std::vector<HeldGuard> guards = holding_.guards();
+  std::vector<int> jumps;
+  double rate = 0.0;
+  for (const int jump : limit.jumps) {
+    if (last_guard_[at(jump)].hold.jump < 0) continue;
+    guards.push_back(last_guard_[at(jump)]);
+    jumps.push_back(jump);
+    rate = std::max(rate, last_rate_[at(jump)]);
+  }
+  const auto& times = options_.output.times;
+  for (; next_output_ < times.size() && times[next_output_] < limit.t; ++next_output_) {
+    if (times[next_output_] > t_) row(times[next_output_], x_);
+  }
+  while (next_output_ < times.size() && times[next_output_] <= limit.t) ++next_output_;
+  const bool time_passes = limit.t > t_;
+  t_ = limit.t;
+  x_ = limit.x;
+  jump_series_.clear();
+  if (time_passes) row(t_, x_last);
+  Landing landing = landing_here();
+  const auto accumulated = [&] {
+    recorder_.accumulated(t_, limit.jumps, {x_last, x_, before, state_},
+                          "the intervals of these jumps shrink geometrically: the state is their limit");
+    row(t_, x_);
+    last_event_time_ = t_;
+  };
+  if (jumps.empty()) {
+    fail(Termination::outside_class,
+         fmt::format("the jumps {} accumulate at t = {:.17g}, but no guard of theirs is left at 0: what follows is not "
+                     "determined",
+                     jump_names(limit.jumps), t_));
+  }
+  if (running_ && hold(std::move(guards), landing) && !(holding_.largest_rate(t_, state_.alpha, x_) <= 1e-3 * rate)) {
+    fail(Termination::outside_class,
+         fmt::format("the jumps {} accumulate at t = {:.17g}, but their guards cannot be at rest at 0 together",
+                     jump_names(jumps), t_));
+  }
+  if (!running_) return accumulated();
+  if (!decide_behind_jumps(landing)) return accumulated();
+  give_directions(landing);
+  accumulated();
+  static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
+  jumps_.update(jump_point());
+  start_step();
+  if (jumps_have_problem() || !jumps_.due(t_)) return;
+  const Arrival arrival = arrive(RowBefore::written);
+  static_cast<void>(jump(before_, x_before_, landing_here()));
+  static_cast<void>(depart(arrival));
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,50 @@
+// Models with jumps, stated in the tests.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "problems/simulator.hpp"
+
+namespace saltus::problems {
+
+using result::Event;
+using result::EventKind;
+using result::Result;
+using result::Termination;
+
+inline constexpr Accuracy tight{pipeline::Integrator::dop853, 1e-12, 1e-14};
+
+inline Result simulated(const std::string& text, const Accuracy& accuracy = tight) {
+  const Simulator model = Simulator::from_text("[model]\nname = \"jumps\"\n" + text);
+  return model.run(with(model.options(), accuracy));
+}
+
+inline std::vector<Event> jumps_of(const Result& result, const std::string& name = "") {
+  std::vector<Event> found;
+  for (const auto& event : result.events) {
+    if (event.kind == EventKind::jump && (name.empty() || event.name == name)) found.push_back(event);
+  }
+  return found;
+}
+
+inline void expect_times(const std::vector<Event>& events, const std::vector<double>& times, double tolerance) {
+  ASSERT_EQ(events.size(), times.size());
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(events[i].t, times[i], tolerance) << "event " << i + 1;
+}
+
+/// A clock and two counters.
+inline constexpr const char* counter = R"toml(
+[states]
+x = 0
+n = 0
+a = 0
+[dynamics]
+x = "1"
+n = "0"
+a = "0"
+)toml";
+
+}  // namespace saltus::problems
