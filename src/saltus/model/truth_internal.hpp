@@ -38,7 +38,7 @@ class TruthDiagram {
   [[nodiscard]] bool overflowed() const { return size() >= node_limit; }
 
  private:
-  static constexpr int node_limit = 20000;
+  static constexpr int node_limit = 200000;
   Truth make(int literal, Truth low, Truth high);
 
   std::vector<Node> nodes_{{}, {}};

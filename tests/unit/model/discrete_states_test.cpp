@@ -140,6 +140,23 @@ TEST(DiscreteStates, ModesOfThemCoverEveryValueOnce) {
   }
 }
 
+TEST(DiscreteStates, AMachineOfAHundredModesIsRead) {
+  std::vector<std::string> conditions;
+  for (int i = 0; i < 100; ++i) conditions.push_back("q == " + std::to_string(i));
+  const auto without = with_modes(conditions);
+  ASSERT_FALSE(without.has_value());
+  EXPECT_NE(without.error().message.find("leave uncovered 101 sign patterns"), std::string::npos)
+      << without.error().message;
+  conditions.emplace_back("otherwise");
+  const auto system = with_modes(conditions);
+  ASSERT_TRUE(system.has_value()) << to_text(system.error());
+  EXPECT_EQ(system->switching.size(), 200U);
+  for (const auto& [q, rate] : {std::pair{41.0, 41.0}, std::pair{41.5, 100.0}, std::pair{-1.0, 100.0}}) {
+    const std::vector<double> x{1.0, q};
+    EXPECT_EQ(values(*system, system->f, x, alphas_as_written(*system, x)).at(0), rate) << q;
+  }
+}
+
 TEST(DiscreteStates, TheirInitialValuesCanBeSet) {
   const System system = built(machine("n"), {set("n", "3")});
   EXPECT_EQ(system.initial_state, (std::vector<double>{1.0, 3.0, 0.0}));
