@@ -78,6 +78,12 @@ class BadInput(tool.ToolTest):
         for later in ("optimize", "compare", "order", "mpcc"):
             self.refused("a later one brings it", later, "crossing")
         self.refused("a later one brings it", "simulate", "crossing", "--method", "fesd")
+        self.refused("a later one brings it", "simulate", "crossing", "--set", "simulate.fesd.stages=3")
+        self.refused("initial_mode has no meaning", "simulate", "spontaneous-switch", "--method", "smoothed", "--set",
+                     "simulate.initial_mode.x=1")
+        self.refused("--set simulate.smoothed.epsilon: error: expected a finite number > 0, found 0", "simulate",
+                     "crossing", "--set", "simulate.smoothed.epsilon=0")
+        self.refused("did you mean 'smoothed'?", "simulate", "crossing", "--method", "smooth")
         self.refused("a later one brings it", "simulate", "crossing", "--branch", "all")
         self.refused("a later one brings it", "simulate", "crossing", "--branch", "3")
 
@@ -113,6 +119,15 @@ class BadInput(tool.ToolTest):
 
 
 class Simulate(tool.ToolTest):
+    def test_smoothed(self):
+        model = self.write("m.toml", MODEL + "[simulate.smoothed]\nepsilon = 1e-4\n")
+        out, err = self.run_tool("simulate", model, "--method", "smoothed", code=0)
+        self.assertEqual(err, "")
+        self.assertRegex(out, r"(?m)^method +smoothed \(epsilon 0.0001, radau5, rtol 1e-08, atol 1e-10\)$")
+        self.assertRegex(out, r"(?m)^ +1 .* enter_sliding .*\n +2 .* leave_sliding ")
+        out, _ = self.run_tool("simulate", "entering-sliding", "--method", "smoothed", code=0)
+        self.assertRegex(out, r"(?m)^in layer of +x \(alpha 0.5\)$")
+
     def test_table(self):
         out, err = self.run_tool("simulate", self.write("m.toml", MODEL), code=0)
         self.assertEqual(err, "")

@@ -9,6 +9,8 @@
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/terminal.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/smoothed/regularise.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -125,6 +127,13 @@ std::string inclusion_text(const model::System& system) {
   return text;
 }
 
+/// Which methods can run the model.
+std::string methods_text(const model::System& system) {
+  const auto regularisation = smoothed::regularise(system, pipeline::SmoothedOptions{}.epsilon);
+  if (regularisation) return "\nmethods: event, smoothed\n";
+  return fmt::format("\nmethods: event\n  {}\n", regularisation.error().message);
+}
+
 std::string events_text(const model::System& system) {
   if (system.events.empty()) return "";
   std::string text = heading("events", system.events.size());
@@ -165,7 +174,7 @@ std::string jumps_text(const model::System& system) {
 std::string description_of(const model::System& system, const std::string& path) {
   std::string text = fmt::format("{}: {}\n{}\n", system.name, system.description, path);
   text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
-  text += modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system);
+  text += modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system) + methods_text(system);
   text += heading("warnings", system.warnings.size());
   for (const auto& warning : system.warnings) text += fmt::format("  {}\n", warning);
   return text;

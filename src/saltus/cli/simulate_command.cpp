@@ -31,7 +31,7 @@ struct Shortcut {
 };
 constexpr std::array shortcuts{
     Shortcut{"--until", "simulate.until", "T", "end time"},
-    Shortcut{"--method", "simulate.method", "METHOD", "event (others come with later versions)"},
+    Shortcut{"--method", "simulate.method", "METHOD", "event or smoothed (others come with later versions)"},
     Shortcut{"--rtol", "simulate.rtol", "R", "relative tolerance"},
     Shortcut{"--atol", "simulate.atol", "A", "absolute tolerance"},
     Shortcut{"--integrator", "simulate.event.integrator", "I", "dopri5, dop853 or radau5"},

@@ -66,6 +66,7 @@ constexpr auto native = [](auto& o) -> auto& { return o.native; };
 constexpr auto max_steps = [](auto& o) -> auto& { return o.max_steps; };
 constexpr auto max_events = [](auto& o) -> auto& { return o.max_events; };
 constexpr auto integrator = [](auto& o) -> auto& { return o.event.integrator; };
+constexpr auto epsilon = [](auto& o) -> auto& { return o.smoothed.epsilon; };
 constexpr auto selection = [](auto& o) -> auto& { return o.event.selection; };
 
 template <auto access, Range range>
@@ -108,9 +109,9 @@ struct Choices {
 };
 
 constexpr Choices<Method, 4> methods{"method",
-                                     {"event", "fesd", "timestepping", "smoothed"},
-                                     {Method::event, Method::fesd, Method::timestepping, Method::smoothed},
-                                     1};
+                                     {"event", "smoothed", "fesd", "timestepping"},
+                                     {Method::event, Method::smoothed, Method::fesd, Method::timestepping},
+                                     2};
 constexpr Choices<Integrator, 3> integrators{
     "integrator", {"dopri5", "dop853", "radau5"}, {Integrator::dopri5, Integrator::dop853, Integrator::radau5}, 3};
 constexpr Choices<Native, 3> natives{
@@ -274,7 +275,7 @@ constexpr std::array fields{
                 set_number<until, Range::finite>, record_until},
     OptionField{"from", "a finite number", "Start of the simulation.", set_number<from, Range::finite>,
                 record_number<from>},
-    OptionField{"method", "event", "How to integrate; fesd, timestepping and smoothed come with later versions.",
+    OptionField{"method", "event, smoothed", "How to integrate; fesd and timestepping come with later versions.",
                 set_choice<method, methods>, record_choice<method, methods>},
     OptionField{"rtol", "a finite number > 0", "Relative error tolerance of a step, per component of the state.",
                 set_number<rtol, Range::positive>, record_number<rtol>},
@@ -308,9 +309,21 @@ constexpr std::array fields{
                 record_scaling},
     OptionField{"event.branches", "report", "List other admissible motions; following them comes with a later version.",
                 set_branches, record_branches},
+    OptionField{"smoothed.epsilon", "a finite number > 0",
+                "Half width of the layer around every surface, in the units of its switching function.",
+                set_number<epsilon, Range::positive>, record_number<epsilon>},
 };
 
+/// Tables of methods that later versions bring.
+bool is_of_later_method(std::string_view key) {
+  const auto table = key.substr(0, key.find('.'));
+  return table == "fesd" || table == "timestepping";
+}
+
 Error unknown_key(std::string_view key) {
+  if (is_of_later_method(key)) {
+    return later(fmt::format("[simulate.{}]", key.substr(0, key.find('.'))), "method = \"event\" or \"smoothed\"");
+  }
   const auto last = std::string(key.substr(key.rfind('.') + 1));
   Error error{ErrorCode::unknown_name, fmt::format("unknown option simulate.{}", key), "", {}, {}};
   std::vector<std::string> nearest = nearest_names(std::string(key), simulate_keys());
@@ -366,6 +379,10 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
   }
   if (!(options.rtol + options.atol > 0.0)) {
     return problem("atol", "rtol and atol are both 0", "one of them must be positive, e.g. rtol = 1e-8");
+  }
+  if (options.method == Method::smoothed && !options.initial_mode.empty()) {
+    return problem("method", "initial_mode has no meaning for method \"smoothed\", which decides no modes",
+                   "leave initial_mode out, or use method = \"event\"");
   }
   if (const auto* grid = std::get_if<AtTimes>(&options.output)) {
     for (const double time : grid->times) {

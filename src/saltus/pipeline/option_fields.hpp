@@ -50,7 +50,7 @@ struct OptionProblem {
 };
 
 /// Checks the options against each other: `until` given and after `from`, rtol + atol > 0, output times within
-/// the span.
+/// the span, no initial_mode where no modes are decided.
 /// @return the first problem, or nullopt if a simulation may start.
 [[nodiscard]] std::optional<OptionProblem> find_problem(const SimulateOptions& options);
 

@@ -18,8 +18,8 @@ constexpr std::string_view page_head =
 
 Generated from the option table of the source (`saltus options-page > docs/options.md`; a test compares).
 
-Write them in the model file under `[simulate]` (`[simulate.event]` for those that begin with `event.`), or on the
-command line as `--set simulate.KEY=VALUE`. `*` stands for the name of a switching function. `output` is one of
+Write them in the model file under `[simulate]` (`[simulate.event]` for those that begin with `event.`, and so on), or on
+the command line as `--set simulate.KEY=VALUE`. `*` stands for the name of a switching function. `output` is one of
 `"steps"`, `{ every = … }`, `{ points = … }`, `{ times = […] }`; `until` is always a row.
 
 | key | value | default | meaning |

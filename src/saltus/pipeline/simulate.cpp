@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/pipeline/option_fields.hpp"
+#include "saltus/smoothed/regularise.hpp"
+#include "saltus/smoothed/restate.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -80,6 +83,8 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
       integration.method = ode::Method::radau5;
       break;
   }
+  // The layers make every model stiff.
+  if (options.method == Method::smoothed) integration.method = ode::Method::radau5;
   integration.from = options.from;
   integration.until = *options.until;
   if (!(integration.until > integration.from)) {
@@ -112,6 +117,36 @@ evaluation::NativeCode native_code(Native native) {
   __builtin_unreachable();
 }
 
+/// What is integrated: the system itself, or its regularisation.
+class Integrand {
+ public:
+  explicit Integrand(const model::System& system) : system_(&system) {}
+  explicit Integrand(smoothed::Regularisation regularisation) : regularisation_(std::move(regularisation)) {}
+
+  [[nodiscard]] const model::System& system() const { return regularisation_ ? regularisation_->system : *system_; }
+  /// What was computed, over the columns of the original system.
+  [[nodiscard]] event_integrator::Integration restated(event_integrator::Integration run) const {
+    if (!regularisation_) return run;
+    smoothed::restate(*regularisation_, run.events, run.trajectory);
+    const auto& rows = run.trajectory;
+    run.final.mode = rows.mode.back();
+    run.final.alpha = rows.alpha.back();
+    run.final.outputs = rows.outputs.back();
+    return run;
+  }
+
+ private:
+  const model::System* system_ = nullptr;
+  std::optional<smoothed::Regularisation> regularisation_;
+};
+
+Expected<Integrand> integrand(const model::System& system, const SimulateOptions& options) {
+  if (options.method != Method::smoothed) return Integrand(system);
+  return smoothed::regularise(system, options.smoothed.epsilon).map([](auto regularisation) {
+    return Integrand(std::move(regularisation));
+  });
+}
+
 result::Result frame(const model::System& system, const SimulateOptions& options) {
   result::Result result;
   result.model.name = system.name;
@@ -119,6 +154,7 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   for (std::size_t i = 0; i < system.parameter_names.size(); ++i) {
     result.model.parameters.emplace_back(system.parameter_names[i], system.parameter_values[i]);
   }
+  result.method = options.method == Method::smoothed ? "smoothed" : "event";
   result.states = system.state_names;
   result.controls = system.control_names;
   result.outputs = system.output_names;
@@ -131,17 +167,19 @@ result::Result frame(const model::System& system, const SimulateOptions& options
 
 Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
                                   const Observers& observers) {
-  if (options.method != Method::event) {
+  if (options.method != Method::event && options.method != Method::smoothed) {
     return tl::unexpected(Error{ErrorCode::not_available,
-                                "only the method 'event' is available in this version",
-                                "use --method event; a later version brings the others",
+                                "only the methods \"event\" and \"smoothed\" are available in this version",
+                                "use one of them; a later version brings the others",
                                 {},
                                 {}});
   }
   const auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   const auto begin = std::chrono::steady_clock::now();
-  auto kernel = evaluation::ModelKernel::compile(system, native_code(options.native));
+  const auto integrand_or = integrand(system, options);
+  if (!integrand_or) return tl::unexpected(integrand_or.error());
+  auto kernel = evaluation::ModelKernel::compile(integrand_or->system(), native_code(options.native));
   if (!kernel) return tl::unexpected(kernel.error());
 
   event_integrator::StepObserver observer;
@@ -152,7 +190,8 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
       return answer == Proceed::on ? event_integrator::Continue::yes : event_integrator::Continue::no;
     };
   }
-  auto run = event_integrator::integrate(*kernel, system, *integration_or, observer);
+  auto run =
+      integrand_or->restated(event_integrator::integrate(*kernel, integrand_or->system(), *integration_or, observer));
 
   result::Result result = frame(system, options);
   result.status = std::move(run.status);

@@ -30,6 +30,11 @@ struct EventOptions {
   std::string branches = "report";
 };
 
+/// [simulate.smoothed]
+struct SmoothedOptions {
+  double epsilon = 1e-6;  ///< half width of the layer around every surface, in the units of its switching function
+};
+
 /// [simulate]; defaults as in interface.md. `until` has none: it must be given in the file or on the command line.
 struct SimulateOptions {
   std::optional<double> until;
@@ -43,6 +48,7 @@ struct SimulateOptions {
   long max_events = 100000;
   std::vector<std::pair<std::string, int>> initial_mode;  ///< switching function -> -1, 0, 1
   EventOptions event;
+  SmoothedOptions smoothed;
 };
 
 }  // namespace saltus::pipeline

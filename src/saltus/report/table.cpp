@@ -151,8 +151,10 @@ std::string method_text(const result::Result& result) {
     }
     return "";
   };
-  std::vector<std::string> details{value_of("simulate.event.integrator", ""), value_of("simulate.rtol", "rtol {:g}"),
-                                   value_of("simulate.atol", "atol {:g}")};
+  const bool smoothed = result.method == "smoothed";
+  std::vector<std::string> details{smoothed ? value_of("simulate.smoothed.epsilon", "epsilon {:g}") : "",
+                                   smoothed ? "radau5" : value_of("simulate.event.integrator", ""),
+                                   value_of("simulate.rtol", "rtol {:g}"), value_of("simulate.atol", "atol {:g}")};
   std::erase(details, "");
   return details.empty() ? result.method : fmt::format("{} ({})", result.method, fmt::join(details, ", "));
 }
@@ -164,12 +166,13 @@ std::string end_state(const result::Result& result) {
   }
   std::string text = wrapped("end state", pieces);
   pieces.clear();
+  const bool smoothed = result.method == "smoothed";
   for (std::size_t j = 0; j < result.switching_functions.size() && j < result.final.mode.size(); ++j) {
     if (result.final.mode[j] != 0) continue;
-    pieces.push_back(fmt::format("{} = 0 (alpha {:.6g})", shortened(result.switching_functions[j], 40),
-                                 j < result.final.alpha.size() ? result.final.alpha[j] : 0.0));
+    pieces.push_back(fmt::format("{}{} (alpha {:.6g})", shortened(result.switching_functions[j], 40),
+                                 smoothed ? "" : " = 0", j < result.final.alpha.size() ? result.final.alpha[j] : 0.0));
   }
-  if (!pieces.empty()) text += wrapped("sliding on", pieces);
+  if (!pieces.empty()) text += wrapped(smoothed ? "in layer of" : "sliding on", pieces);
   pieces.clear();
   for (std::size_t i = 0; i < result.outputs.size() && i < result.final.outputs.size(); ++i) {
     pieces.push_back(fmt::format("{} = {:.12g}", result.outputs[i], result.final.outputs[i]));

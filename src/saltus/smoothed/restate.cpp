@@ -1,0 +1,124 @@
+#include "saltus/smoothed/restate.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace saltus::smoothed {
+namespace {
+
+using result::Event;
+using result::EventKind;
+using result::Mode;
+
+/// -1, 0, 1: outside below, inside, outside above.
+int mode_on(const Side& side, const Mode& edges) {
+  if (edges[side.lower] < 0) return -1;
+  return edges[side.upper] > 0 ? 1 : 0;
+}
+
+/// Whether the solution is, at least partly, on this side of the surfaces inside a function.
+bool is_on(const Side& side, const Layer& layer, const Mode& layers) {
+  for (std::size_t k = 0; k < layer.inner.size(); ++k) {
+    const int inner = layers[layer.inner[k]];
+    if (inner != 0 && (inner > 0) != (side.values[k] > 0)) return false;
+  }
+  return true;
+}
+
+/// Modes of the original columns from those of the edges; inside, where the sides differ.
+Mode modes_of(const Regularisation& regularisation, const Mode& edges) {
+  Mode layers;
+  for (const Layer& layer : regularisation.layers) {
+    std::optional<int> mode;
+    for (const Side& side : layer.sides) {
+      if (!is_on(side, layer, layers)) continue;
+      const int here = mode_on(side, edges);
+      mode = mode && *mode != here ? 0 : here;
+    }
+    layers.push_back(mode.value_or(0));
+  }
+  Mode modes;
+  for (const auto& column : regularisation.columns) {
+    modes.push_back(column.orientation * layers[static_cast<std::size_t>(column.function)]);
+  }
+  return modes;
+}
+
+/// Takes the selections from the end of a row's outputs; exactly 0 and 1 outside of the layers.
+std::vector<double> selections_from(std::vector<double>& outputs, const Regularisation& regularisation,
+                                    const Mode& modes) {
+  const auto first = outputs.end() - static_cast<std::ptrdiff_t>(modes.size());
+  std::vector<double> alpha(first, outputs.end());
+  outputs.erase(first, outputs.end());
+  for (std::size_t j = 0; j < alpha.size(); ++j) {
+    if (regularisation.columns[j].orientation < 0) alpha[j] = 1.0 - alpha[j];
+    alpha[j] = modes[j] == 0 ? std::clamp(alpha[j], 0.0, 1.0) : modes[j] > 0 ? 1.0 : 0.0;
+  }
+  return alpha;
+}
+
+/// Modes and selections of an event are those of the first and the last row at its time.
+void take_from_rows(Event& event, const result::Trajectory& rows) {
+  const auto [first, last] = std::equal_range(rows.t.begin(), rows.t.end(), event.t);
+  if (first == last) return;
+  event.alpha_before = rows.alpha[static_cast<std::size_t>(first - rows.t.begin())];
+  event.alpha_after = rows.alpha[static_cast<std::size_t>(last - rows.t.begin()) - 1];
+}
+
+bool is_edge(EventKind kind) {
+  return kind == EventKind::crossing || kind == EventKind::enter_sliding || kind == EventKind::leave_sliding ||
+         kind == EventKind::change_sliding;
+}
+
+/// Surfaces, kind and reason of a passed edge; false if no column has changed.
+bool describe(Event& event, const Regularisation& regularisation) {
+  if (!event.mode_before || !event.mode_after) return false;
+  Mode before, after;
+  event.surfaces.clear();
+  event.reason.clear();
+  for (std::size_t j = 0; j < event.mode_before->size(); ++j) {
+    const int from = (*event.mode_before)[j], to = (*event.mode_after)[j];
+    if (from == to) continue;
+    const auto& name = regularisation.columns[j].name;
+    before.push_back(from);
+    after.push_back(to);
+    event.surfaces.push_back(name);
+    event.reason += fmt::format("{}{} the layer |{}| <= {}", event.reason.empty() ? "" : "; ",
+                                to == 0 ? "enters" : "leaves", name, regularisation.epsilon);
+  }
+  if (event.surfaces.empty()) return false;
+  event.kind = result::kind_of_switch(before, after);
+  event.unique = true;
+  event.alternatives.clear();
+  return true;
+}
+
+}  // namespace
+
+void restate(const Regularisation& regularisation, std::vector<Event>& events, result::Trajectory& trajectory) {
+  for (std::size_t row = 0; row < trajectory.t.size(); ++row) {
+    trajectory.mode[row] = modes_of(regularisation, trajectory.mode[row]);
+    trajectory.alpha[row] = selections_from(trajectory.outputs[row], regularisation, trajectory.mode[row]);
+  }
+  std::vector<Event> restated;
+  for (Event& event : events) {
+    if (event.kind == EventKind::start) continue;  // on an edge, where nothing is decided
+    for (auto* mode : {&event.mode_before, &event.mode_after}) {
+      if (*mode) *mode = modes_of(regularisation, **mode);
+    }
+    const bool had_before = event.alpha_before.has_value(), had_after = event.alpha_after.has_value();
+    take_from_rows(event, trajectory);
+    if (!had_before) event.alpha_before.reset();
+    if (!had_after) event.alpha_after.reset();
+    if (is_edge(event.kind) && !describe(event, regularisation)) continue;
+    restated.push_back(std::move(event));
+  }
+  events = std::move(restated);
+}
+
+}  // namespace saltus::smoothed

@@ -1,0 +1,20 @@
+// Results of the regularised system in the words of the original one.
+#pragma once
+
+#include <vector>
+
+#include "saltus/result/result.hpp"
+#include "saltus/smoothed/regularise.hpp"
+
+namespace saltus::smoothed {
+
+/// Rewrites what a simulation of regularisation.system computed:
+///   mode_j = -1, 0, 1 for psi_j < -epsilon, inside the layer |psi_j| <= epsilon, psi_j > epsilon;
+///   alpha_j = (1 + pi(psi_j / epsilon)) / 2.
+/// Passing an edge of a layer is an event (enter_sliding, leave_sliding) with the surface's name; a crossing is hence
+/// two of them. Edges that change no mode (of a nested function on a side the solution is not on) leave no event.
+/// @param events      of the regularised system
+/// @param trajectory  its rows, the selections among the outputs
+void restate(const Regularisation& regularisation, std::vector<result::Event>& events, result::Trajectory& trajectory);
+
+}  // namespace saltus::smoothed
