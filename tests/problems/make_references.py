@@ -17,6 +17,7 @@ import pathlib
 import sys
 
 import catalogue_problems
+import classic_problems
 import mpmath
 from mpmath import mp, mpf
 from taylor_events import solve
@@ -106,10 +107,11 @@ def dump(entries):
 
 def main():
     entries = []
-    for problem in catalogue_problems.problems():
+    for problem in [*catalogue_problems.problems(), *classic_problems.classics()]:
         entry, digits = entry_of(problem)
         entries.append(entry)
-        catalogue_problems.compare_with_closed_form(problem, entry)
+        closed = {**catalogue_problems.closed_forms(), **classic_problems.closed_forms()}
+        catalogue_problems.compare_with_closed_form(problem, entry, closed)
         counted = sum(e["kind"] != "start" for e in entry["events"])
         print(f"{problem.model} {problem.case}: {counted} events, both runs agree to {digits:.1f} digits", file=sys.stderr)
     text = dump(entries)

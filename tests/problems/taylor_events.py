@@ -9,48 +9,72 @@ from mpmath import mp, mpf
 
 # ---------------------------------------------------------------------------------------------------------- Taylor series
 class Series:
-    """A truncated power series in the time since the start of the step."""
+    """A power series in the time since the start of the step; coefficients are worked out when first asked for.
 
-    def __init__(self, coefficients):
-        self.c = list(coefficients)
+    rule(k) gives coefficient k from those before it, so that x' = f(x) defines its own solution: coefficient k + 1 of x
+    needs coefficient k of f only.
+    """
+
+    def __init__(self, coefficients, rule=None):
+        self.c, self.rule = list(coefficients), rule
+
+    def __getitem__(self, k):
+        while len(self.c) <= k:
+            self.c.append(self.rule(len(self.c)))
+        return self.c[k]
+
+    def to(self, length):
+        """With at least so many coefficients worked out."""
+        self[length - 1]
+        return self
 
     @staticmethod
-    def lift(value, like):
-        return value if isinstance(value, Series) else Series([mpf(value)] + [mpf(0)] * (len(like.c) - 1))
+    def lift(value):
+        return value if isinstance(value, Series) else Series([mpf(value)], lambda k: mpf(0))
 
     def __add__(self, other):
-        other = Series.lift(other, self)
-        return Series([a + b for a, b in zip(self.c, other.c)])
+        other = Series.lift(other)
+        return Series([], lambda k: self[k] + other[k])
 
     __radd__ = __add__
 
     def __neg__(self):
-        return Series([-a for a in self.c])
+        return Series([], lambda k: -self[k])
 
     def __sub__(self, other):
-        return self + (-Series.lift(other, self))
+        other = Series.lift(other)
+        return Series([], lambda k: self[k] - other[k])
 
     def __rsub__(self, other):
-        return Series.lift(other, self) - self
+        return Series.lift(other) - self
 
     def __mul__(self, other):
         if not isinstance(other, Series):
-            return Series([a * other for a in self.c])
-        n = min(len(self.c), len(other.c))
-        return Series([mpmath.fdot(self.c[: k + 1], other.c[k::-1]) for k in range(n)])
+            return Series([], lambda k: self[k] * other)
+
+        def rule(k):
+            self[k], other[k]
+            return mpmath.fdot(self.c[: k + 1], other.c[k::-1])
+
+        return Series([], rule)
 
     __rmul__ = __mul__
 
     def __truediv__(self, other):
         if not isinstance(other, Series):
-            return Series([a / other for a in self.c])
-        quotient = []
-        for k, a in enumerate(self.c):
-            quotient.append((a - sum((other.c[k - i] * quotient[i] for i in range(k)), mpf(0))) / other.c[0])
-        return Series(quotient)
+            return Series([], lambda k: self[k] / other)
+        quotient = Series([])
+
+        def rule(k):
+            other[k]
+            known = mpmath.fdot(other.c[1 : k + 1], quotient.c[k - 1 :: -1]) if k else mpf(0)
+            return (self[k] - known) / other.c[0]
+
+        quotient.rule = rule
+        return quotient
 
     def __rtruediv__(self, other):
-        return Series.lift(other, self) / self
+        return Series.lift(other) / self
 
     def at(self, h):
         return mpmath.polyval(self.c[::-1], h)
@@ -76,7 +100,9 @@ def sine_cosine(t, scale, length):
 class Problem:
     """x' = f(t, x, alpha) with psi_j(t, x); every alpha enters affinely, and sliding surfaces do not act on each other.
 
-    `f` and `psi` work on numbers and on Series alike; t is (t, sin, cos) of a clock with the given frequency.
+    `f` and `psi` work on numbers and on Series alike; t is (t, sin, cos) of a clock with the given frequency. Functions
+    of psi beyond `names` are kinks and time events: the series start anew there, and nothing is listed. `watched` are the
+    [[events]]: functions of (t, x) and the direction that counts (1, -1, or 0 for both).
     """
 
     model: str
@@ -95,6 +121,19 @@ class Problem:
     max_step: float = 1.0
     unique: bool = True
     alternatives: list = field(default_factory=list)
+    watched: list = field(default_factory=list)
+
+
+@dataclass
+class Explicit:
+    """A problem whose solution is written down: a function that returns what solve() does."""
+
+    model: str
+    solution: Callable
+    source: str = "closed form"
+    case: str = ""
+    overrides: dict = field(default_factory=dict)
+    initial_mode: dict = field(default_factory=dict)
 
 
 class Clock:
@@ -111,10 +150,6 @@ def clock_at(t, frequency):
 def clock_series(t, frequency, length):
     s, c = sine_cosine(t, frequency, length)
     return Clock(Series([t, mpf(1)] + [mpf(0)] * (length - 2)) if length > 1 else Series([t]), s, c)
-
-
-def truncated(clock, length):
-    return Clock(*(Series(s.c[:length]) for s in (clock.t, clock.sin, clock.cos)))
 
 
 def alphas(problem, clock, x, mode):
@@ -136,23 +171,28 @@ class Step:
 
     def __init__(self, problem, t, x, mode, degree):
         self.t, self.mode = t, mode
-        self.clock = clock_series(t, problem.frequency, degree + 1)
+        length = degree + 1
+        clock = clock_series(t, problem.frequency, length)
         self.x = [Series([value]) for value in x]
-        for k in range(degree):
-            clock = truncated(self.clock, k + 1)
-            xdot = problem.f(clock, self.x, alphas(problem, clock, self.x, mode))
-            for series, rate in zip(self.x, xdot):
-                series.c.append(Series.lift(rate, self.x[0]).c[k] / (k + 1))
-        self.alpha = alphas(problem, self.clock, self.x, mode)
-        self.psi = problem.psi(self.clock, self.x)
+        self.alpha = alphas(problem, clock, self.x, mode)
+        for series, rate in zip(self.x, problem.f(clock, self.x, self.alpha)):
+            series.rule = lambda k, rate=Series.lift(rate): rate[k - 1] / k
+        for k in range(length):
+            for series in self.x:
+                series.to(k + 1)
+        self.psi = [psi.to(length) for psi in problem.psi(clock, self.x)]
+        self.watched = [(function(clock, self.x).to(length), direction) for function, direction in problem.watched]
+        for alpha in self.alpha:
+            if isinstance(alpha, Series):
+                alpha.to(length)
         self.h = self.safe_length(degree, mpf(problem.max_step))
 
     def safe_length(self, degree, longest):
         """The last two terms stay below rounding, for the states and what the events are found from."""
         h = longest
         scale = max([mpf(1)] + [abs(s.c[0]) for s in self.x])
-        watched = self.x + list(self.psi) + [a for a in self.alpha if isinstance(a, Series)]
-        for series in watched:
+        seen = self.x + list(self.psi) + [a for a in self.alpha if isinstance(a, Series)]
+        for series in seen + [function for function, _ in self.watched]:
             for k in (degree - 1, degree):
                 if k < len(series.c) and series.c[k] != 0:
                     h = min(h, (mpf(10) ** (-mp.dps + 1) * scale / abs(series.c[k])) ** (mpf(1) / k))
@@ -250,17 +290,18 @@ def start(problem, t, x):
             decided = decide(problem, t, x, [k or 1 for k in mode], j)
             # a repelling surface: the default continues to psi > 0
             mode[j] = problem.initial_mode.get(problem.names[j], 1 if decided is None else decided)
-    if not any(on):
-        return mode, []
     surfaces = [name for name, o in zip(problem.names, on) if o]
-    event = dict(t=t, kind="start", surfaces=surfaces, mode_before=None, mode_after=list(mode), x=list(x))
+    if not surfaces:
+        return mode, []
+    listed = mode[: len(problem.names)]
+    event = dict(t=t, kind="start", surfaces=surfaces, mode_before=None, mode_after=listed, x=list(x))
     if not problem.unique:
         event.update(unique=False, alternatives=problem.alternatives)
     return mode, [event]
 
 
 def next_event(step):
-    """(h, surfaces that leave 0 by their psi, {sliding surfaces whose alpha ends: side}) of the first event, or None."""
+    """(h, surface, side where its alpha ends) of the first event, without a surface if it is watched; or None."""
     found = []
     for j, k in enumerate(step.mode):
         if k != 0:
@@ -268,15 +309,22 @@ def next_event(step):
             found.append((root, j, None))
         elif isinstance(step.alpha[j], Series):
             found.append((first_root(step.alpha[j], step.h), j, -1))
-            found.append((first_root(1 - step.alpha[j], step.h), j, 1))
+            found.append((first_root((1 - step.alpha[j]).to(len(step.alpha[j].c)), step.h), j, 1))
+    for function, direction in step.watched:
+        root = first_root(function, step.h)
+        if root is not None and direction * function.derivative().at(root) >= 0:
+            found.append((root, None, None))
     found = [entry for entry in found if entry[0] is not None]
     return min(found, default=None, key=lambda entry: entry[0])
 
 
 def solve(problem, degree):
+    if isinstance(problem, Explicit):
+        return problem.solution()
     t, x = mpf(0), [mpf(value) for value in problem.x0()]
     until = mpf(problem.until())
     mode, events = start(problem, t, x)
+    listed = len(problem.names)
     while t < until:
         step = Step(problem, t, x, mode, degree)
         h = min(step.h, until - t)
@@ -286,13 +334,17 @@ def solve(problem, degree):
             continue
         h, j, side = event
         t, x = t + h, [series.at(h) for series in step.x]
+        if j is None:
+            events.append(dict(t=t, kind="user", surfaces=[], mode_before=mode[:listed], mode_after=mode[:listed], x=list(x)))
+            continue
         after = list(mode)
         after[j] = side if side is not None else decide(problem, t, x, mode, j)
         assert after[j] is not None, "a solution cannot reach a repelling surface"
-        events.append(
-            dict(t=t, kind=kind_of(mode, after), surfaces=[problem.names[j]], mode_before=list(mode),
-                 mode_after=list(after), x=list(x))
-        )
+        if j < listed:
+            events.append(
+                dict(t=t, kind=kind_of(mode, after), surfaces=[problem.names[j]], mode_before=mode[:listed],
+                     mode_after=after[:listed], x=list(x))
+            )
         mode = after
     final_alpha = alphas(problem, clock_at(t, problem.frequency), x, mode)
-    return dict(events=events, final=dict(t=t, x=x, mode=mode, alpha=final_alpha))
+    return dict(events=events, final=dict(t=t, x=x, mode=mode[:listed], alpha=final_alpha[:listed]))
