@@ -93,8 +93,6 @@ bool describe(Event& event, const Regularisation& regularisation) {
   }
   if (event.surfaces.empty()) return false;
   event.kind = result::kind_of_switch(before, after);
-  event.unique = true;
-  event.alternatives.clear();
   return true;
 }
 
@@ -116,6 +114,9 @@ void restate(const Regularisation& regularisation, std::vector<Event>& events, r
     if (!had_before) event.alpha_before.reset();
     if (!had_after) event.alpha_after.reset();
     if (is_edge(event.kind) && !describe(event, regularisation)) continue;
+    // A system without jumps has one solution, whatever sides a corner was looked at from.
+    event.unique = true;
+    event.alternatives.clear();
     restated.push_back(std::move(event));
   }
   events = std::move(restated);
