@@ -102,8 +102,9 @@ class EventSearch {
   ode::Tolerances tolerances_;
   ModeState state_;
   std::vector<EventFunction> functions_;
-  std::vector<int> user_sign_;       ///< kept over changes of mode
-  std::vector<bool> user_vanishes_;  ///< at the start of the next step
+  std::vector<int> user_sign_;         ///< kept over changes of mode
+  double zeros_at_ = 0.0;              ///< time that the zero_order of functions speaks of
+  std::vector<double> user_vanishes_;  ///< time where a user function was located and set; NaN: nowhere
   std::vector<double> phi_, phi_below_, phi_above_, magnitude_, slope_;
   std::vector<ExitValues> exits_;
   std::vector<HeldGuard> held_;

@@ -141,5 +141,45 @@ TEST(TortureFindings, SlowNormalComponentsOfFastFieldsAreResolved) {
   EXPECT_NEAR(result.events[1].t, 1.0, 1e-9);
 }
 
+/// x' = rate with the event of the user x - 1.
+model::System passing_one(model::System s, const SX& rate) {
+  testing::set_field(s, {rate}, {0.0});
+  model::UserEvent event;
+  event.name = "one";
+  event.value = s.x(0) - 1.0;
+  event.guards = event.guard_alpha = SX(0, 1);
+  s.events.push_back(event);
+  return s;
+}
+
+TEST(TortureFindings, AStepFromAUserEventToASwitchLeavesNoZeroBehind) {
+  // One step leads from x = 1 to the time event: the value of x - 1 there was taken for what rounding had left.
+  auto s = testing::blank(1, 1);
+  testing::add_surface(s, "late", s.t - 2.0);
+  s.switching[0].role = model::SwitchingRole::time_event;
+  const SX rate = 1.0 - 2.0 * s.alpha(0);
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+    const auto result = run(passing_one(s, rate), 3.5, 1e-8, method);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    ASSERT_EQ(result.events.size(), 2U);
+    EXPECT_NEAR(result.events[0].t, 1.0, 1e-12);
+    EXPECT_NEAR(result.events[1].t, 3.0, 1e-12);
+  }
+}
+
+TEST(TortureFindings, StepsFromUserEventToUserEventFindThemAll) {
+  const auto empty = testing::blank(1, 0);
+  auto s = passing_one(empty, 3.0 - 2.0 * empty.t);
+  auto second = s.events[0];
+  second.value = s.x(0) - 2.0;
+  s.events.push_back(second);
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+    const auto result = run(s, 4.0, 1e-8, method);
+    ASSERT_EQ(result.events.size(), 4U);
+    const double exact[] = {(3.0 - std::sqrt(5.0)) / 2.0, 1.0, 2.0, (3.0 + std::sqrt(5.0)) / 2.0};
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(result.events[i].t, exact[i], 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator
