@@ -58,7 +58,8 @@ double slope_of(const std::vector<Measurement>& points) {
 struct SmoothedCase {
   std::string model;
   double order;
-  double coarsest;  ///< epsilon: the leading term of the error dominates
+  double coarsest;  ///< epsilon: the leading term of the error dominates from here to
+  double finest;    ///< where the tolerances still see the layer
   long most_steps;  ///< with the smallest epsilon, accepted and rejected: as measured, and a half more
 };
 void PrintTo(const SmoothedCase& c, std::ostream* out) { *out << c.model; }
@@ -70,8 +71,9 @@ TEST_P(Smoothed, ConvergesToTheEventEngineWithOrderOne) {
   const Simulator model = Simulator::from_reference(problem);
   std::vector<Measurement> points;
   std::string table;
-  for (const double factor : {1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
-    const double epsilon = factor * GetParam().coarsest;
+  constexpr int levels = 7;
+  for (int level = 0; level < levels; ++level) {
+    const double epsilon = GetParam().coarsest * std::pow(GetParam().finest / GetParam().coarsest, level / 6.0);
     const Result result = model.run(smoothed(model.options(), epsilon));
     ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
     EXPECT_EQ(result.method, "smoothed");
@@ -84,7 +86,7 @@ TEST_P(Smoothed, ConvergesToTheEventEngineWithOrderOne) {
              std::to_string(distance(result.final.alpha, problem.final_alpha)) + "\n";
     // The selection of a sliding mode is the one that the event engine computes, to order epsilon.
     EXPECT_LT(distance(result.final.alpha, problem.final_alpha), 300 * epsilon) << epsilon;
-    if (factor == 0.001) {
+    if (level == levels - 1) {
       EXPECT_LE(steps, GetParam().most_steps);
     }
   }
@@ -95,15 +97,18 @@ TEST_P(Smoothed, ConvergesToTheEventEngineWithOrderOne) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, Smoothed,
-    testing::Values(SmoothedCase{"crossing", 1, 1e-3, 40}, SmoothedCase{"asymmetric-sliding", 1, 1e-3, 60},
-                    SmoothedCase{"leaving-sliding", 1, 1e-3, 10}, SmoothedCase{"two-lines", 1, 1e-3, 50},
-                    SmoothedCase{"stick-slip", 1, 1e-3, 2400}, SmoothedCase{"relay-oscillator", 1, 1e-3, 10000},
-                    SmoothedCase{"relay-feedback", 1, 1e-5, 6500}, SmoothedCase{"friction-blocks", 1, 1e-3, 1000},
-                    SmoothedCase{"quadrants", 1, 1e-3, 1700}, SmoothedCase{"irma", 2, 1e-4, 5000},
-                    SmoothedCase{"rotating-oscillator", 2, 1e-2, 1200},
+    testing::Values(SmoothedCase{"crossing", 1, 1e-3, 1e-6, 40}, SmoothedCase{"asymmetric-sliding", 1, 1e-3, 1e-6, 60},
+                    SmoothedCase{"leaving-sliding", 1, 1e-3, 1e-6, 10}, SmoothedCase{"two-lines", 1, 1e-3, 1e-6, 50},
+                    SmoothedCase{"stick-slip", 1, 1e-3, 1e-6, 2400},
+                    SmoothedCase{"relay-oscillator", 1, 1e-3, 1e-6, 10000},
+                    // After a tangential exit x1 dips back by less than tolerances see in a still thinner layer.
+                    SmoothedCase{"relay-feedback", 1, 1e-5, 1e-7, 8000},
+                    SmoothedCase{"friction-blocks", 1, 1e-3, 1e-6, 1000},
+                    SmoothedCase{"quadrants", 1, 1e-3, 1e-6, 1700}, SmoothedCase{"irma", 2, 1e-4, 1e-7, 5000},
+                    SmoothedCase{"rotating-oscillator", 2, 1e-2, 1e-5, 1200},
                     // On a curved surface the stiff direction turns, and the simplified Newton iteration with it: steps
                     // are of the order of sqrt(epsilon).
-                    SmoothedCase{"circle", 1, 1e-3, 3200}, SmoothedCase{"sweeping-disc", 1, 1e-3, 8500}),
+                    SmoothedCase{"circle", 1, 1e-3, 1e-6, 3200}, SmoothedCase{"sweeping-disc", 1, 1e-3, 1e-6, 8500}),
     [](const auto& instance) {
       std::string name = instance.param.model;
       std::replace(name.begin(), name.end(), '-', '_');

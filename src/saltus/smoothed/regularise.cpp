@@ -140,6 +140,7 @@ void Regulariser::add_function(int j) {
   const auto& function = original_.switching[at(j)];
   const std::size_t choices = std::size_t{1} << inner_[at(j)].size();
   functions_of_.emplace_back();
+  std::vector<SX> selections;
   for (std::size_t number = 0; number < choices; ++number) {
     SwitchingFunction copy = function;
     copy.psi = on_sides(function.psi, sides_of(inner_[at(j)], number));
@@ -147,7 +148,7 @@ void Regulariser::add_function(int j) {
     if (!is_listed(j)) {
       const int index = add(copy);
       functions_of_.back().push_back(index);
-      selections_[at(j)].push_back(alpha_[at(index)]);
+      selections.push_back(alpha_[at(index)]);
       continue;
     }
     const SX psi = copy.psi;
@@ -161,8 +162,9 @@ void Regulariser::add_function(int j) {
     functions_of_.back().push_back(lower);
     // Exactly 0 and 1 outside of the layer.
     const SX inside = alpha_[at(lower)] * (1 - alpha_[at(upper)]);
-    selections_[at(j)].push_back(inside * ((psi + epsilon_) / (2.0 * epsilon_)) + alpha_[at(upper)]);
+    selections.push_back(inside * ((psi + epsilon_) / (2.0 * epsilon_)) + alpha_[at(upper)]);
   }
+  selections_[at(j)] = std::move(selections);
 }
 
 /// Columns of the regularised system: the edges, and what is passed on.
