@@ -12,8 +12,6 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int deepest = 10;  // a step is cut into at most 2^10 pieces before it is shortened instead
-/// Time of a zero that there is none of.
-constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 
 int sign_of(double value) { return value > 0.0 ? 1 : value < 0.0 ? -1 : 0; }
 
@@ -67,12 +65,21 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
   for (auto* vector : {&phi_, &phi_below_, &phi_above_, &magnitude_, &slope_}) vector->resize(n_phi);
   x_.resize(at(kernel.states()));
   user_sign_.assign(n_phi - at(kernel.switching_functions()), 0);
-  user_vanishes_.assign(user_sign_.size(), nowhere);
+  user_vanishes_.assign(user_sign_.size(), false);
+}
+
+/// A step that led from one event to the next was not settled: the zeros at its start are history.
+void EventSearch::start_at(double t) {
+  if (zeros_at_ && *zeros_at_ != t) {
+    for (auto& function : functions_) function.zero_order = 0;
+    user_vanishes_.assign(user_vanishes_.size(), false);
+  }
+  zeros_at_ = t;
 }
 
 void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
   state_ = state;
-  zeros_at_ = t;
+  start_at(t);
   functions_.clear();
   const int n_psi = kernel_.switching_functions();
   for (int j = 0; j < n_psi; ++j) {
@@ -141,8 +148,7 @@ void EventSearch::read_user_signs(double t, const double* x) {
     if (function.kind != FunctionKind::user) continue;
     const auto user = at(function.index - kernel_.switching_functions());
     auto& sign = user_sign_[user];
-    // Only here: a step may lead from one event to the next without having been settled.
-    const bool at_zero = user_vanishes_[user] == t || std::abs(point_[i]) <= noise_[i];
+    const bool at_zero = user_vanishes_[user] || std::abs(point_[i]) <= noise_[i];
     if (!at_zero) sign = sign_of(point_[i]);
     function.sign = sign;
     function.zero_order = at_zero ? 1 : 0;
@@ -335,7 +341,8 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
 
 bool EventSearch::settle(double t, const double* x) {
   bool unknown = false;
-  user_vanishes_.assign(user_vanishes_.size(), nowhere);
+  user_vanishes_.assign(user_vanishes_.size(), false);
+  zeros_at_ = t;
   const bool offset = std::any_of(functions_.begin(), functions_.end(), [](const auto& f) { return f.offset != 0.0; });
   if (offset) evaluate(t, x, point_);
   for (std::size_t i = 0; i < functions_.size(); ++i) {
@@ -354,14 +361,11 @@ bool EventSearch::settle(double t, const double* x) {
 void EventSearch::set_user_signs(std::vector<int> signs, std::vector<bool> vanish) {
   user_sign_ = std::move(signs);
   user_vanishes_ = std::move(vanish);
+  zeros_at_.reset();
 }
 
 void EventSearch::set_user_sign(std::size_t function, int sign, double t, const double* x) {
-  if (t != zeros_at_) {
-    // The step that ended here was not settled: zeros at its start are history.
-    for (auto& other : functions_) other.zero_order = 0;
-    zeros_at_ = t;
-  }
+  start_at(t);
   auto& entry = functions_[function];
   const auto user = at(entry.index - kernel_.switching_functions());
   entry.sign = sign;
@@ -369,7 +373,7 @@ void EventSearch::set_user_sign(std::size_t function, int sign, double t, const 
   kernel_.functions(t, x, state_.alpha.data(), phi_.data());
   entry.offset = phi_[at(entry.index)];
   user_sign_[user] = sign;
-  user_vanishes_[user] = t;
+  user_vanishes_[user] = true;
 }
 
 }  // namespace saltus::event_integrator

@@ -86,6 +86,7 @@ class EventSearch {
     bool resolved = true;
     std::optional<Hit> hit;
   };
+  void start_at(double t);
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
@@ -102,9 +103,9 @@ class EventSearch {
   ode::Tolerances tolerances_;
   ModeState state_;
   std::vector<EventFunction> functions_;
-  std::vector<int> user_sign_;         ///< kept over changes of mode
-  double zeros_at_ = 0.0;              ///< time that the zero_order of functions speaks of
-  std::vector<double> user_vanishes_;  ///< time where a user function was located and set; NaN: nowhere
+  std::vector<int> user_sign_;       ///< kept over changes of mode
+  std::vector<bool> user_vanishes_;  ///< at the start of the next step
+  std::optional<double> zeros_at_;   ///< time of that start; nullopt: that of the next enter()
   std::vector<double> phi_, phi_below_, phi_above_, magnitude_, slope_;
   std::vector<ExitValues> exits_;
   std::vector<HeldGuard> held_;
