@@ -147,6 +147,44 @@ until = 3
   EXPECT_EQ(result.final.outputs[0], 1.0);
 }
 
+TEST(SmoothedRun, JumpsAndTheirAccumulationPassThrough) {
+  // A bouncing ball beside dry friction, and a jump whose condition reads the selection.
+  const Simulator model = Simulator::from_text(R"toml([model]
+name = "jumps"
+[states]
+z = 1
+w = 0
+x = -1
+[dynamics]
+z = "w"
+w = "-9.8"
+x = "1 - 2*sign(x)"
+[[jumps]]
+name = "bounce"
+when = "z"
+direction = "down"
+set = { w = "-0.5*w" }
+[[jumps]]
+name = "kick"
+when = "step(x) > 0.2 and t > 1"
+set = { x = "x - 1" }
+[simulate]
+until = 1.9
+)toml");
+  const Result exact = model.run(model.options());
+  ASSERT_EQ(exact.status.termination, Termination::completed) << exact.status.message;
+  const Result result = run_smoothed(model, 1e-7);
+  ASSERT_EQ(result.events.size(), exact.events.size());
+  for (std::size_t i = 0; i < exact.events.size(); ++i) {
+    EXPECT_EQ(result.events[i].kind, exact.events[i].kind) << i;
+    EXPECT_EQ(result.events[i].surfaces, exact.events[i].surfaces) << i;
+    EXPECT_NEAR(result.events[i].t, exact.events[i].t, 1e-6) << i;
+    EXPECT_EQ(result.events[i].mode_before, exact.events[i].mode_before) << i;
+    EXPECT_EQ(result.events[i].mode_after, exact.events[i].mode_after) << i;
+  }
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(result.final.x[i], exact.final.x[i], 1e-6) << i;
+}
+
 TEST(SmoothedRun, OutputTimesChangeNothing) {
   const Simulator model = Simulator::from_catalogue("friction-blocks");
   SimulateOptions options = model.options();
