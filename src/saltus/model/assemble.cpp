@@ -36,10 +36,11 @@ class Assembly {
 
  private:
   std::optional<Error> take_values() {
-    if (statement_.states.empty()) {
+    if (statement_.states.empty() && statement_.outputs.empty() && statement_.events.empty()) {
       return Error{ErrorCode::invalid_model,
                    "the model has no states",
-                   "declare at least one in [states], with its right-hand side in [dynamics]",
+                   "declare at least one in [states], with its right-hand side in [dynamics]; without states there are "
+                   "[outputs] and [[events]] of t only",
                    {},
                    {}};
     }
