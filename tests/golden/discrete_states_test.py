@@ -1,0 +1,98 @@
+"""Models whose modes are discrete states, or that have no states at all: from the file to the result."""
+
+import json
+import math
+
+import tool
+
+MACHINE = """[model]
+name = "machine"
+[states]
+x = 1
+q = 0
+last = 0
+peak = 0
+[dynamics]
+q = 0
+last = 0
+peak = 0
+[[modes]]
+when = "q == 0"
+dynamics = { x = "-x" }
+[[modes]]
+when = "q == 1"
+dynamics = { x = "2 - x" }
+[[modes]]
+when = "otherwise"
+dynamics = { x = "if(t - last > 0.5, 1, -1)" }
+[[jumps]]
+name = "low"
+when = "x < 0.5 and q == 0"
+set = { q = 1, last = "t" }
+[[jumps]]
+name = "high"
+when = "q == 1 and x > 1.5"
+set = { q = 2, last = "t", peak = "x" }
+[[jumps]]
+name = "back"
+when = "q >= 2 and x > 1.5 and t > last + 0.1"
+set = { q = 0, last = "t" }
+[simulate]
+until = 4
+"""
+
+CLOCK = """[model]
+name = "clock"
+[states]
+[outputs]
+side = "sign(sin(t))"
+[[events]]
+when = "sin(3*t)"
+direction = "up"
+[simulate]
+until = 10
+"""
+
+
+class DiscreteStates(tool.ToolTest):
+    def simulated(self, text, *arguments):
+        self.run_tool("simulate", self.write("model.toml", text), "--quiet", "--out", "r.json", *arguments, code=0)
+        return json.loads((self.folder / "r.json").read_text())
+
+    def test_a_machine_goes_through_its_modes(self):
+        result = self.simulated(MACHINE)
+        jumps = [(event["surfaces"], event["t"]) for event in result["events"] if event["kind"] == "jump"]
+        self.assertEqual([surfaces for surfaces, _ in jumps], [["low"], ["high"], ["back"], ["low"]])
+        low = math.log(2)  # e^-t = 1/2
+        high = low + math.log(3)  # 2 - 3/2 e^-s = 3/2
+        back = high + 1.0  # down by 1/2 and up again
+        for (_, found), expected in zip(jumps, [low, high, back, back + math.log(3)]):
+            self.assertAlmostEqual(found, expected, delta=1e-7)
+        self.assertAlmostEqual(result["final"]["x"][3], 1.5, delta=1e-8)
+        # While q stands at 1, the functions of q == 0 and q == 1 have the signs as written: no 0, nothing slides.
+        names = result["switching_functions"]
+        for event in result["events"]:
+            for k in event["mode_after"] or []:
+                self.assertIn(k, [-1, 1])
+        self.assertEqual(set(names), {"q-0", "0-q", "q-1", "1-q", "t-last-0.5"})
+
+    def test_another_mode_can_be_set_at_the_start(self):
+        result = self.simulated(MACHINE, "--set", "q=1")
+        first = next(event for event in result["events"] if event["kind"] == "jump")
+        self.assertEqual(first["surfaces"], ["high"])
+        self.assertAlmostEqual(first["t"], math.log(2), delta=1e-7)  # 2 - e^-t = 3/2
+
+    def test_a_model_without_states_has_outputs_and_events_of_time(self):
+        result = self.simulated(CLOCK)
+        times = [event["t"] for event in result["events"]]
+        self.assertEqual(len(times), 4)
+        for k, found in enumerate(times):
+            self.assertAlmostEqual(found, 2 * math.pi * (k + 1) / 3, delta=1e-12)
+        self.assertEqual(result["final"]["outputs"], [-1])
+        empty = self.write("empty.toml", '[model]\nname = "nothing"\n[simulate]\nuntil = 1\n')
+        _, err = self.run_tool("simulate", empty, code=2)
+        self.assertIn("the model has no states", err)
+
+
+if __name__ == "__main__":
+    tool.main()
