@@ -136,6 +136,7 @@ bool Run::begin() {
   static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
   start_step();
   h_scale_ = h_;
+  h_ = step_memory_.change(state_.mode, t_, h_);
   while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) ++next_output_;
   return true;
 }

@@ -77,6 +77,12 @@ bool Run::change_mode(const Located& located) {
     transition = decide_mode(surroundings_, before_, occasion);
   }
   if (transition.termination != Termination::completed) {
+    // Where switches accumulate the fields may have no limit: that is the reason then.
+    const bool at_limit = transition.termination != Termination::outside_class && series_.shrinks(t_);
+    if (at_limit) {
+      accumulates();
+      return false;
+    }
     fail(transition.termination, std::move(transition.message));
     return false;
   }
@@ -88,6 +94,7 @@ bool Run::change_mode(const Located& located) {
   if (!enter(transition)) return false;
   recorder_.switched(t_, x_, before_, transition);
   control_.reset();
+  h_ = step_memory_.change(state_.mode, t_, h_);
   return true;
 }
 

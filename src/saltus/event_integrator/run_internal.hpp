@@ -20,6 +20,7 @@
 #include "saltus/event_integrator/recorder.hpp"
 #include "saltus/event_integrator/single_surface.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/event_integrator/step_memory.hpp"
 #include "saltus/event_integrator/switch_series.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/event_integrator/user_events.hpp"
@@ -151,6 +152,7 @@ class Run {
   std::size_t next_output_ = 0;
   double last_event_time_ = -std::numeric_limits<double>::infinity();
   SwitchSeries series_;
+  StepMemory step_memory_;
   Integration result_;
   bool running_ = true;
 };

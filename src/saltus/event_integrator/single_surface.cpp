@@ -15,7 +15,8 @@ SingleSurface::SingleSurface(const Surroundings& surroundings)
     : surroundings_(surroundings),
       is_inner_(at(surroundings.kernel.switching_functions()), false),
       f_(at(surroundings.kernel.states())),
-      row_(f_.size()) {
+      row_(f_.size()),
+      field_(surroundings.kernel, surroundings.affine_in_alpha) {
   for (int j = 0; j < surroundings.kernel.switching_functions(); ++j) {
     for (const int inner : surroundings.kernel.inner(j)) is_inner_[at(inner)] = true;
   }
@@ -23,11 +24,17 @@ SingleSurface::SingleSurface(const Surroundings& surroundings)
 
 bool SingleSurface::applies(const ModeState& before, const Occasion& occasion) const {
   if (!surroundings_.affine_in_alpha || occasion.start) return false;
-  if (occasion.at_zero.size() != 1 || occasion.touched != occasion.at_zero) return false;
-  const int j = occasion.at_zero.front();
+  if (occasion.touched.size() != 1) return false;
+  const int j = occasion.touched.front();
+  const bool arrives = before.mode[at(j)] != 0;
+  if (occasion.at_zero.size() != before.sliding.size() + (arrives ? 1 : 0)) return false;
+  for (const int k : before.sliding) {
+    const auto& kernel = surroundings_.kernel;
+    if (k != j && (is_inner_[at(k)] || kernel.depends(j, k) || kernel.depends(k, j))) return false;
+  }
   if (is_inner_[at(j)] || surroundings_.system.switching[at(j)].role == model::SwitchingRole::discrete) return false;
   const auto exits = occasion.exit_below.size() + occasion.exit_above.size();
-  if (before.mode[at(j)] != 0) return exits == 0;
+  if (arrives) return exits == 0;
   // Away from its bound the selection has been lost in a two-fold point.
   constexpr double lost = 1e-6;
   return exits == 1 && before.alpha[at(j)] >= -lost && before.alpha[at(j)] <= 1.0 + lost;
@@ -47,7 +54,7 @@ double SingleSurface::velocity(const Occasion& occasion, int surface, double sel
 
 bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Transition& transition) {
   if (!applies(before, occasion)) return false;
-  const int j = occasion.at_zero.front();
+  const int j = occasion.touched.front();
   alpha_ = before.alpha;
   for (std::size_t i = 0; i < alpha_.size(); ++i) {
     if (before.mode[i] != 0) alpha_[i] = before.mode[i] > 0 ? 1.0 : 0.0;
@@ -77,21 +84,36 @@ bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Tr
   const bool plain = decision.verdict == switching::Verdict::decided && decision.other_modes.empty();
   if (!plain || decision.mode == before.mode[at(j)] || (exit != 0 && decision.mode != exit)) return false;
   fill(before, occasion, decision, transition);
+  const bool alone = before.sliding.size() == (exit != 0 ? 1U : 0U);
+  return alone || select_others(occasion, transition.state);
+}
+
+/// The selections of several surfaces, or of others than this one, from the new mode's own field.
+bool SingleSurface::select_others(const Occasion& occasion, ModeState& state) {
+  field_.enter(state);
+  field_(occasion.t, occasion.x, f_.data());
+  if (!is_finite(f_)) return false;
+  for (const int k : state.sliding) {
+    const double selection = field_.alpha()[at(k)];
+    if (!(selection >= 0.0 && selection <= 1.0)) return false;
+    state.alpha[at(k)] = selection;
+  }
   return true;
 }
 
 void SingleSurface::fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
                          Transition& transition) const {
-  const int j = occasion.at_zero.front();
+  const int j = occasion.touched.front();
   auto& state = transition.state;
   state.mode = before.mode;
   state.alpha = alpha_;
   state.sliding = before.sliding;
   set_surface(state, j, decision.mode, decision.alpha);
-  if (decision.mode == 0) {
+  if (!state.sliding.empty()) {
     for (std::size_t corner = 0; corner < 2; ++corner) {
-      state.corner_alpha[corner] = alpha_;
-      state.corner_alpha[corner][at(j)] = corner == 0 ? 0.0 : 1.0;
+      state.corner_alpha[corner] = state.alpha;
+      for (const int k : state.sliding) state.corner_alpha[corner][at(k)] = 0.0;
+      state.corner_alpha[corner][at(state.sliding.front())] = static_cast<double>(corner);
     }
   }
   transition.termination = result::Termination::completed;

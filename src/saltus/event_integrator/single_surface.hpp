@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/event_integrator/transition.hpp"
 
@@ -10,11 +11,13 @@ namespace saltus::event_integrator {
 
 /// Decides what decide_mode() decides, with the same bits, where
 ///   - one surface is met from beside it and crossed or slid on, or left where one of its fields is tangent,
-///   - no other surface is at zero, and no function is nested around this one,
+///   - no other surface is at zero but such on which the solution slides, and those and this one do not influence each
+///     other; no function is nested around any of them,
 ///   - f is affine in the selection, and both normal components are clear of zero (at an exit the other one, and a
 ///   later
 ///     derivative of the tangent one).
-/// Cost: two evaluations of f; at an exit a second derivative, too. Owns its work space.
+/// Cost: two evaluations of f, one of the sliding field if there are other surfaces; at an exit a second derivative,
+/// too. Owns its work space.
 class SingleSurface {
  public:
   explicit SingleSurface(const Surroundings& surroundings);
@@ -28,11 +31,13 @@ class SingleSurface {
   double velocity(const Occasion& occasion, int surface, double selection);
   void fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
             Transition& transition) const;
+  bool select_others(const Occasion& occasion, ModeState& state);
 
   const Surroundings& surroundings_;
   std::vector<bool> is_inner_;  ///< n_psi: a switching function is nested around it
   std::vector<double> alpha_;   ///< n_psi
   std::vector<double> f_, row_;
+  ModeField field_;
 };
 
 }  // namespace saltus::event_integrator

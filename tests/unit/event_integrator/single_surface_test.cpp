@@ -119,6 +119,40 @@ TEST(SingleSurface, DecidesExitsLikeTheGeneralDecision) {
   EXPECT_GT(exits, 8);  // an eighth of 60: the lower field points up, the upper one gets there
 }
 
+TEST(SingleSurface, DecidesBesideAnotherSurfaceOnWhichTheSolutionSlides) {
+  std::mt19937 random(20240613);
+  const std::vector<double> origin(5, 0.0);
+  int decided = 0;
+  for (int k = 0; k < 40; ++k) {
+    // The same fields, and apart from them x5 = 0, where alpha = 0.65 before the event.
+    const bool leaves = k % 2 != 0;
+    const auto three = random_fields(random, leaves);
+    auto s = testing::blank(5, 2);
+    const auto inside = [&](const SX& e) {
+      const SX arguments = SX::vertcat({three.t, three.x, three.alpha});
+      return SX::substitute(e, arguments, SX::vertcat({s.t, s.x(0), s.x(1), s.x(2), s.alpha(0)}));
+    };
+    testing::add_surface(s, "s", inside(three.switching[0].psi));
+    testing::add_surface(s, "other", s.x(4));
+    const SX f = inside(three.f);
+    testing::set_field(s, {f(0), f(1), f(2), s.x(0) + s.alpha(1), 0.6 - 2 * s.alpha(1) + 0.7 + s.x(3)}, origin);
+    const auto kernel = evaluation::ModelKernel::compile(s);
+    ASSERT_TRUE(kernel.has_value());
+    const Surroundings surroundings{*kernel, s, true};
+    SingleSurface single(surroundings);
+    Transition transition;
+    ModeState before{{leaves ? 0 : -1, 0}, {leaves ? 1.0 : 0.0, 0.65}, {1}, {}};
+    if (leaves) before.sliding = {0, 1};
+    auto occasion = at_origin(origin);
+    occasion.at_zero = {0, 1};
+    if (leaves) occasion.exit_above = {0};
+    if (!single.decide(before, occasion, transition)) continue;
+    ++decided;
+    expect_same(transition, decide_mode(surroundings, before, occasion));
+  }
+  EXPECT_GT(decided, 8);
+}
+
 TEST(SingleSurface, LeavesWhatIsNotSimpleToTheGeneralDecision) {
   const std::vector<double> origin(3, 0.0);
   auto s = testing::blank(3, 2);

@@ -1,0 +1,45 @@
+#include "saltus/event_integrator/step_memory.hpp"
+
+#include <algorithm>
+
+namespace saltus::event_integrator {
+namespace {
+
+std::size_t mark_of(const std::vector<int>& mode) {
+  std::size_t mark = 0;
+  for (std::size_t j = 0; j < mode.size(); ++j)
+    mark += static_cast<std::size_t>(mode[j] + 1) * (0x9e3779b97f4a7c15U * (j + 1));
+  return mark;
+}
+
+}  // namespace
+
+double StepMemory::change(const std::vector<int>& mode, double t, double proposed) {
+  // Longer than the mode lasted is no use: a step that reaches its end sees all of it, and far behind that end the
+  // field of the mode may mean nothing.
+  constexpr double beyond = 1.25;
+  if (lasts_ && first_accepted_) entries_[current_].step = std::min(proposed_, beyond * (t - start_));
+  start_ = t;
+  first_accepted_ = false;
+  lasts_ = true;
+  const std::size_t mark = mark_of(mode);
+  for (current_ = 0; current_ < used_; ++current_) {
+    const auto& entry = entries_[current_];
+    if (entry.mark == mark && entry.mode == mode) return entry.step > 0.0 ? entry.step : proposed;
+  }
+  current_ = next_;
+  next_ = (next_ + 1) % capacity;
+  used_ = std::min(used_ + 1, capacity);
+  entries_[current_].mark = mark;
+  entries_[current_].mode = mode;
+  entries_[current_].step = 0.0;
+  return proposed;
+}
+
+void StepMemory::accepted(double proposed) {
+  if (first_accepted_) return;
+  first_accepted_ = true;
+  proposed_ = proposed;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,39 @@
+// The step to start a piece of the solution with: the one that was right when its mode was last entered.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace saltus::event_integrator {
+
+/// Remembers for the last few modes which step their first accepted one proposed. Solutions come back to their modes
+/// (cycles of sticking and slipping, of gene activity), and the step of the mode before says little about the new one:
+/// without this a switch costs several rejected steps. Cost: O(n_psi) per switch.
+class StepMemory {
+ public:
+  /// The solution goes on in `mode` from t; any mode before ends here.
+  /// @return the step to start with: the remembered one, or `proposed`
+  [[nodiscard]] double change(const std::vector<int>& mode, double t, double proposed);
+  /// Behind each accepted step: what the step control proposes for the next one.
+  void accepted(double proposed);
+
+ private:
+  static constexpr std::size_t capacity = 32;
+  struct Entry {
+    std::size_t mark = 0;  ///< of the mode: different modes rarely have the same
+    std::vector<int> mode;
+    double step = 0.0;
+  };
+
+  std::array<Entry, capacity> entries_;
+  std::size_t used_ = 0;
+  std::size_t next_ = 0;         ///< to be overwritten
+  std::size_t current_ = 0;      ///< of the mode that lasts
+  bool lasts_ = false;           ///< there is one
+  bool first_accepted_ = false;  ///< in it
+  double proposed_ = 0.0;        ///< behind its first accepted step
+  double start_ = 0.0;
+};
+
+}  // namespace saltus::event_integrator
