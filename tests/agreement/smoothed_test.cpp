@@ -199,6 +199,17 @@ TEST(SmoothedRun, OutputTimesChangeNothing) {
   for (std::size_t i = 0; i < steps.events.size(); ++i) EXPECT_EQ(points.events[i].t, steps.events[i].t);
 }
 
+TEST(SmoothedRun, ALayerOfRoundingsIsSaidToBeTooThin) {
+  const Simulator model = Simulator::from_catalogue("relay-feedback");
+  SimulateOptions options = model.options();
+  options.method = pipeline::Method::smoothed;
+  options.smoothed.epsilon = 1e-15;
+  const Result result = model.run(options);
+  EXPECT_EQ(result.status.termination, Termination::outside_class);
+  EXPECT_NE(result.status.message.find("choose a larger simulate.smoothed.epsilon"), std::string::npos)
+      << result.status.message;
+}
+
 TEST(SmoothedRun, AStartOnARepellingSurfaceStaysThere) {
   const Result result = run_smoothed(Simulator::from_catalogue("spontaneous-switch"), 1e-6);
   EXPECT_EQ(result.final.x[0], 0.0);

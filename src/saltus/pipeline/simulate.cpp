@@ -127,7 +127,7 @@ class Integrand {
   /// What was computed, over the columns of the original system.
   [[nodiscard]] event_integrator::Integration restated(event_integrator::Integration run) const {
     if (!regularisation_) return run;
-    smoothed::restate(*regularisation_, run.events, run.trajectory);
+    smoothed::restate(*regularisation_, run.events, run.trajectory, run.status);
     const auto& rows = run.trajectory;
     run.final.mode = rows.mode.back();
     run.final.alpha = rows.alpha.back();

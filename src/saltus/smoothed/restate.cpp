@@ -14,6 +14,7 @@ namespace {
 using result::Event;
 using result::EventKind;
 using result::Mode;
+using result::Termination;
 
 /// -1, 0, 1: outside below, inside, outside above.
 int mode_on(const Side& side, const Mode& edges) {
@@ -98,7 +99,8 @@ bool describe(Event& event, const Regularisation& regularisation) {
 
 }  // namespace
 
-void restate(const Regularisation& regularisation, std::vector<Event>& events, result::Trajectory& trajectory) {
+void restate(const Regularisation& regularisation, std::vector<Event>& events, result::Trajectory& trajectory,
+             result::Status& status) {
   for (std::size_t row = 0; row < trajectory.t.size(); ++row) {
     trajectory.mode[row] = modes_of(regularisation, trajectory.mode[row]);
     trajectory.alpha[row] = selections_from(trajectory.outputs[row], regularisation, trajectory.mode[row]);
@@ -120,6 +122,13 @@ void restate(const Regularisation& regularisation, std::vector<Event>& events, r
     restated.push_back(std::move(event));
   }
   events = std::move(restated);
+  // Corners have one continuation, unless rounding hides it.
+  if (status.termination == Termination::outside_class || status.termination == Termination::no_admissible_mode) {
+    status.message += fmt::format(
+        "; with method \"smoothed\" the layer of width epsilon = {} may be too thin for doubles: choose a larger "
+        "simulate.smoothed.epsilon",
+        regularisation.epsilon);
+  }
 }
 
 }  // namespace saltus::smoothed

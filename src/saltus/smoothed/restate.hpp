@@ -13,8 +13,10 @@ namespace saltus::smoothed {
 ///   alpha_j = (1 + pi(psi_j / epsilon)) / 2.
 /// Passing an edge of a layer is an event (enter_sliding, leave_sliding) with the surface's name; a crossing is hence
 /// two of them. Edges that change no mode (of a nested function on a side the solution is not on) leave no event.
+/// A status that speaks of switching says that a layer of the width of roundings may be the reason.
 /// @param events      of the regularised system
 /// @param trajectory  its rows, the selections among the outputs
-void restate(const Regularisation& regularisation, std::vector<result::Event>& events, result::Trajectory& trajectory);
+void restate(const Regularisation& regularisation, std::vector<result::Event>& events, result::Trajectory& trajectory,
+             result::Status& status);
 
 }  // namespace saltus::smoothed

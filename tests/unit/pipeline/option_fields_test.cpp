@@ -18,6 +18,7 @@ SimulateOptions uncommon_options() {
   options.event.integrator = Integrator::dop853;
   options.event.max_step = 0.25;
   options.event.scaling = {{"a", 2.0}};
+  options.smoothed.epsilon = 1e-3;
   return options;
 }
 
@@ -67,6 +68,11 @@ TEST(OptionFields, ProblemsBetweenOptionsAreFound) {
   EXPECT_FALSE(find_problem(options));
   options.output = AtTimes{{0.0, 1.0 + 1e-15}};
   EXPECT_EQ(find_problem(options)->key, "output.times");
+  options.output = EveryStep{};
+  options.method = Method::smoothed;
+  EXPECT_FALSE(find_problem(options));
+  options.initial_mode = {{"a", 1}};
+  EXPECT_EQ(find_problem(options)->key, "method");
 }
 
 }  // namespace

@@ -135,7 +135,8 @@ TEST(Restate, ModesOfNestedFunctionsFollowTheSideTheSolutionIsOn) {
     result::Trajectory rows{
         .t = {0.0}, .x = {{0, 0}}, .u = {{}}, .alpha = {{}}, .mode = {edges}, .outputs = {{0.5, 0.5}}};
     std::vector<result::Event> none;
-    restate(*regular, none, rows);
+    result::Status status;
+    restate(*regular, none, rows, status);
     EXPECT_TRUE(rows.outputs.front().empty());
     return rows.mode.front();
   };
@@ -168,7 +169,8 @@ TEST(Restate, EdgesBecomeEventsOfTheSurfaceAndSwappedNamesAreSwapped) {
   edge.mode_after = rows.mode[1];
   edge.alpha_before = edge.alpha_after = std::vector<double>{0, 0};
   std::vector<result::Event> events{edge};
-  restate(*regular, events, rows);
+  result::Status status;
+  restate(*regular, events, rows, status);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].kind, result::EventKind::enter_sliding);
   EXPECT_EQ(events[0].surfaces, (std::vector<std::string>{"up", "down"}));
