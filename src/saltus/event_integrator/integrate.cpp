@@ -53,6 +53,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       slope_(x_.size()),
       row_x_(x_.size()),
       row_slope_(x_.size()),
+      evaluations_before_(kernel.field_evaluations()),
       series_(options.until - options.from) {}
 
 std::string Run::where() const {
@@ -164,7 +165,7 @@ Integration Run::to_end() {
                     result_.status.message.empty() ? "" : "; ", *stiff_at_);
   }
   result_.status.time_reached = t_;
-  result_.statistics.rhs_evaluations = kernel_.field_evaluations();
+  result_.statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
   result_.events = recorder_.take_events();
   result_.trajectory = recorder_.take_trajectory();
   const auto& rows = result_.trajectory;

@@ -139,5 +139,18 @@ TEST(Integrate, SpiralStopsWithAStatusAndEverythingComputed) {
   EXPECT_LT(result.status.time_reached, 0.7);
 }
 
+TEST(Integrate, AKernelCanBeUsedAgain) {
+  const auto system = testing::stick_slip();
+  auto kernel = evaluation::ModelKernel::compile(system);
+  ASSERT_TRUE(kernel.has_value());
+  IntegrationOptions options;
+  options.until = 10.0;
+  const auto first = integrate(*kernel, system, options);
+  const auto second = integrate(*kernel, system, options);
+  EXPECT_GT(first.statistics.rhs_evaluations, 0);
+  EXPECT_EQ(first.statistics.rhs_evaluations, second.statistics.rhs_evaluations);
+  EXPECT_EQ(first.final.x, second.final.x);
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator
