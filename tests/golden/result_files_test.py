@@ -50,7 +50,7 @@ class Json(tool.ToolTest):
         circle = json.loads((self.folder / "circle.json").read_text(encoding="utf-8"))["surfaces"][0]
         self.assertIsNone(circle["affine"])
         self.assertEqual(len(circle["curves"]), 1)
-        self.assertGreater(len(circle["curves"][0][0]), 50)
+        self.assertGreater(len(circle["curves"][0]["coordinates"][0]), 50)
 
     def test_every_event_has_two_rows(self):
         times = self.result["trajectory"]["t"]

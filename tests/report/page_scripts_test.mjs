@@ -103,8 +103,14 @@ const affine = (states, gradient, constant, rate = 0) => ({
   affine: {gradient, rate, constant},
   curves: [],
 });
-const curved = (states, curves, depends_on_time = false) =>
-    ({name: "psi", role: "switching", states, depends_on_time, affine: null, curves});
+const curved = (states, curves, depends_on_time = false) => ({
+  name: "psi",
+  role: "switching",
+  states,
+  depends_on_time,
+  affine: null,
+  curves: curves.map((coordinates, i) => ({t: depends_on_time ? i : null, coordinates})),
+});
 const box = {
   x: [-1, 3],
   y: [0, 100]
@@ -124,11 +130,11 @@ test("a line is cut by the box in which it is drawn", () => {
 test("a surface of the pair is exact in the plane, one that depends on more is a cut at given values", () => {
   const at = {t: 2, x: [10, 20, 30]};
   const own = saltus.surfaceInPlane(affine([1], [1], -0.2), [0, 1], at);
-  assert.deepEqual(own, {exact: true, lines: [[0, 1, -0.2]], curves: []});
+  assert.deepEqual(own, {kind: "exact", lines: [[0, 1, -0.2]], curves: []});
   const swapped = saltus.surfaceInPlane(affine([0, 1], [3, 4], 5), [1, 0], at);
-  assert.deepEqual(swapped, {exact: true, lines: [[4, 3, 5]], curves: []});
+  assert.deepEqual(swapped, {kind: "exact", lines: [[4, 3, 5]], curves: []});
   const cut = saltus.surfaceInPlane(affine([0, 2], [3, 4], 5, 7), [0, 1], at);
-  assert.deepEqual(cut, {exact: false, lines: [[3, 0, 5 + 7 * 2 + 4 * 30]], curves: []});
+  assert.deepEqual(cut, {kind: "cut", lines: [[3, 0, 5 + 7 * 2 + 4 * 30]], curves: []});
   assert.equal(saltus.surfaceInPlane(affine([2], [1], 0), [0, 1], at), null);
 });
 
@@ -140,8 +146,16 @@ test("curves are turned with the axes, and absent where they would not be curves
   assert.equal(saltus.surfaceInPlane(surface, [0, 1], at), null);
   assert.deepEqual(saltus.surfaceInPlane(curved([1], [[[5]]]), [0, 1], at).lines, [[0, 1, -5]]);
   assert.equal(saltus.surfaceInPlane(curved([0], [], true), [0, 1], at), null);
-  const surfaces = [surface, affine([0, 2], [1, 1], 0), curved([0], [], true)];
-  assert.deepEqual(saltus.surfacesNotDrawn({surfaces}, [0, 1]), [surfaces[0], surfaces[2]]);
+  const surfaces = [surface, affine([0, 2], [1, 1], 0), curved([0], [[[1]]], true)];
+  assert.deepEqual(saltus.surfacesNotDrawn({surfaces}, [0, 1]), [surfaces[0]]);
+});
+
+test("a surface that moves is drawn at its times within the window", () => {
+  const surface = curved([0, 1], [[[0], [0]], [[1], [1]], [[2], [2]]], true);
+  const parts = saltus.surfaceInPlane(surface, [0, 1], {t: 0, x: [0, 0]}, [0.5, 2]);
+  assert.deepEqual(parts, {kind: "moving", lines: [], curves: [{x: [1], y: [1]}, {x: [2], y: [2]}]});
+  assert.equal(saltus.surfaceInPlane(surface, [0, 1], {t: 0, x: [0, 0]}, [3, 4]), null);
+  assert.match(saltus.surfaceNote({moving: [surface]}, {t: 0}), /drawn at t = 0, 1, 2: psi/);
 });
 
 test("drawings begin with the states of the first surface", () => {

@@ -87,15 +87,16 @@ std::optional<AffineForm> affine_part(const model::System& system, const Compose
   return affine;
 }
 
-std::function<double(const double*)> value_of(const model::System& system, const Composed& composed) {
+std::function<double(double, const double*)> value_of(const model::System& system, const Composed& composed) {
   std::vector<SX> arguments;
   for (const int i : composed.states) arguments.push_back(system.x(i));
   // std::function wants to be copied: the copies share one work space.
-  auto function = std::make_shared<ModelFunction>("surface", std::vector<SX>{SX::vertcat(arguments)},
+  auto function = std::make_shared<ModelFunction>("surface", std::vector<SX>{system.t, SX::vertcat(arguments)},
                                                   std::vector<SX>{composed.psi});
-  return [function](const double* coordinates) {
+  return [function](double t, const double* coordinates) {
     double value = 0.0;
-    (*function)(std::array{coordinates}, std::array{&value});
+    const double* time = &t;
+    (*function)(std::array{time, coordinates}, std::array{&value});
     return value;
   };
 }
@@ -105,7 +106,7 @@ SurfaceFunction surface_function(const model::System& system, const Composed& co
   surface.states.assign(composed.states.begin(), composed.states.end());
   surface.depends_on_time = composed.on_time;
   surface.affine = affine_part(system, composed);
-  if (!surface.affine && !composed.on_time && surface.states.size() <= most_states_of_curves) {
+  if (!surface.affine && surface.states.size() <= most_states_of_curves) {
     surface.value = value_of(system, composed);
   }
   return surface;

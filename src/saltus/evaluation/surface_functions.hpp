@@ -19,7 +19,7 @@ struct AffineForm {
   double constant = 0.0;
 };
 
-/// psi(x[states]) with the parameters and inputs of the system put in and, for nested functions, the alphas of the
+/// psi(t, x[states]) with the parameters and inputs of the system put in and, for nested functions, the alphas of the
 /// inner ones as their signs say.
 struct SurfaceFunction {
   std::string name;
@@ -27,9 +27,9 @@ struct SurfaceFunction {
   std::vector<int> states;  ///< indices of the states it depends on, ascending
   bool depends_on_time = false;
   std::optional<AffineForm> affine;
-  /// psi at the coordinates of `states` (not finite where the model is undefined). Empty for affine functions, those
-  /// that depend on time, and those of more than two states. Not thread safe.
-  std::function<double(const double*)> value;
+  /// psi at a time and the coordinates of `states` (not finite where the model is undefined). Empty for affine
+  /// functions and those of more than two states. Not thread safe.
+  std::function<double(double t, const double* coordinates)> value;
 };
 
 /// One for every column of the result, then one for every guard of [[jumps]]; without those that depend on no state.

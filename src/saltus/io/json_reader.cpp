@@ -103,6 +103,20 @@ void read_affine(JsonReader& reader, const Json& json, const std::string& path, 
   reader.read_member(json, path, "constant", surface.affine->constant);
 }
 
+void read_curves(JsonReader& reader, const Json& json, const std::string& path, result::Surface& surface) {
+  if (!json.is_array()) {
+    reader.mismatch(path, "a list", json);
+    return;
+  }
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    result::SurfaceCurve curve;
+    const auto here = fmt::format("{}/{}", path, i);
+    reader.read_member(json[i], here, "t", curve.t);
+    reader.read_member(json[i], here, "coordinates", curve.coordinates);
+    surface.curves.push_back(std::move(curve));
+  }
+}
+
 result::Surface read_surface(JsonReader& reader, const Json& json, const std::string& path) {
   result::Surface surface;
   std::string word;
@@ -116,9 +130,7 @@ result::Surface read_surface(JsonReader& reader, const Json& json, const std::st
   if (const auto* affine = reader.member(json, path, "affine")) {
     read_affine(reader, *affine, path + "/affine", surface);
   }
-  std::vector<std::vector<std::vector<double>>> curves;
-  reader.read_member(json, path, "curves", curves);
-  for (auto& coordinates : curves) surface.curves.push_back({std::move(coordinates)});
+  if (const auto* curves = reader.member(json, path, "curves")) read_curves(reader, *curves, path + "/curves", surface);
   return surface;
 }
 
@@ -210,7 +222,7 @@ void check_surface(JsonReader& reader, const result::Surface& surface, const std
   if (surface.affine) check_length(reader, path + "/affine/gradient", surface.affine->gradient, surface.states.size());
   for (std::size_t i = 0; i < surface.curves.size(); ++i) {
     const auto& coordinates = surface.curves[i].coordinates;
-    const auto here = fmt::format("{}/curves/{}", path, i);
+    const auto here = fmt::format("{}/curves/{}/coordinates", path, i);
     check_length(reader, here, coordinates, surface.states.size());
     for (const auto& column : coordinates) check_length(reader, here, column, coordinates.front().size());
   }

@@ -74,7 +74,12 @@ Json trajectory_json(const result::Trajectory& trajectory) {
 
 Json surface_json(const result::Surface& surface) {
   Json curves = Json::array();
-  for (const auto& curve : surface.curves) curves.push_back(curve.coordinates);
+  for (const auto& curve : surface.curves) {
+    Json piece = Json::object();
+    piece["t"] = or_null(curve.t);
+    piece["coordinates"] = curve.coordinates;
+    curves.push_back(std::move(piece));
+  }
   Json json = Json::object();
   json["name"] = surface.name;
   json["role"] = name(surface.role);

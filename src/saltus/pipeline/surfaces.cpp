@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "saltus/evaluation/surface_functions.hpp"
@@ -33,21 +34,34 @@ Interval drawn_range(const result::Result& result, int state) {
   return {least - room, greatest + room};
 }
 
-std::vector<result::SurfaceCurve> curves_of(const evaluation::SurfaceFunction& function, const result::Result& result) {
-  std::vector<result::SurfaceCurve> curves;
-  const Interval range = drawn_range(result, function.states[0]);
-  if (!std::isfinite(range.from) || !std::isfinite(range.to)) return curves;
-  if (function.states.size() == 1) {
-    for (const double x : sign_changes([&](double value) { return function.value(&value); }, range)) {
-      curves.push_back({{{x}}});
+/// Adds where the function is zero at one time.
+void add_curves(const evaluation::SurfaceFunction& function, double t, const std::vector<Interval>& ranges,
+                std::vector<result::SurfaceCurve>& curves) {
+  const auto when = function.depends_on_time ? std::optional<double>(t) : std::nullopt;
+  if (ranges.size() == 1) {
+    for (const double x : sign_changes([&](double value) { return function.value(t, &value); }, ranges[0])) {
+      curves.push_back({{{x}}, when});
     }
-    return curves;
+    return;
   }
-  const Interval other = drawn_range(result, function.states[1]);
-  if (!std::isfinite(other.from) || !std::isfinite(other.to)) return curves;
-  const auto value = [&](double x, double y) { return function.value(std::array{x, y}.data()); };
-  for (auto& curve : level_curves(value, range, other)) {
-    curves.push_back({{std::move(curve.x), std::move(curve.y)}});
+  const auto value = [&](double x, double y) { return function.value(t, std::array{x, y}.data()); };
+  for (auto& curve : level_curves(value, ranges[0], ranges[1])) {
+    curves.push_back({{std::move(curve.x), std::move(curve.y)}, when});
+  }
+}
+
+std::vector<result::SurfaceCurve> curves_of(const evaluation::SurfaceFunction& function, const result::Result& result) {
+  std::vector<Interval> ranges;
+  for (const int state : function.states) ranges.push_back(drawn_range(result, state));
+  std::vector<result::SurfaceCurve> curves;
+  for (const auto& [from, to] : ranges) {
+    if (!std::isfinite(from) || !std::isfinite(to)) return curves;
+  }
+  const double end = result.final.t;
+  const double begin = result.trajectory.t.empty() ? end : result.trajectory.t.front();
+  const int times = function.depends_on_time && begin < end ? times_of_moving_surface : 1;
+  for (int i = 0; i < times; ++i) {
+    add_curves(function, times == 1 ? end : begin + (end - begin) * i / (times - 1), ranges, curves);
   }
   return curves;
 }

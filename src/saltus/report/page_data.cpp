@@ -90,7 +90,9 @@ json surface_data(const result::Surface& surface, const std::vector<std::string>
   for (const auto& name : surface.states) {
     places.emplace_back(std::find(states.begin(), states.end(), name) - states.begin());
   }
-  for (const auto& curve : surface.curves) curves.emplace_back(curve.coordinates);
+  for (const auto& curve : surface.curves) {
+    curves.emplace_back(json{{"t", or_null(curve.t)}, {"coordinates", curve.coordinates}});
+  }
   json affine = nullptr;
   if (surface.affine) {
     affine = {

@@ -92,6 +92,7 @@ struct AffineSurface {
 /// One connected piece of a surface: coordinates[i][k] is the coordinate of point k along Surface::states[i].
 struct SurfaceCurve {
   std::vector<std::vector<double>> coordinates;
+  std::optional<double> t{};  ///< when it lies there, for a surface that moves
 };
 
 /// Where a switching function or a guard is zero in the space of states: what a phase plane needs.
@@ -101,8 +102,8 @@ struct Surface {
   std::vector<std::string> states;  ///< those it depends on, in the order of Result::states
   bool depends_on_time = false;
   std::optional<AffineSurface> affine;  ///< exact, of any number of states
-  /// Of other functions of one state (points) or two (polylines) that do not depend on time, within the range of the
-  /// trajectory and a margin; none for functions of more states.
+  /// Of other functions of one state (points) or two (polylines), within the range of the trajectory and a margin; at
+  /// several times if it depends on time; none for functions of more states.
   std::vector<SurfaceCurve> curves;
 };
 

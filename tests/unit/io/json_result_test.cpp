@@ -62,7 +62,7 @@ result::Result sample() {
        {"q", "v"},
        false,
        std::nullopt,
-       {{{{1.0, 1e-300}, {2.0, nan}}}, {{{7.0}, {8.0}}}}}};
+       {{{{1.0, 1e-300}, {2.0, nan}}, {}}, {{{7.0}, {8.0}}, 0.5}}}};
   return r;
 }
 
@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"surface state", "\"states\": [\"v\"]", "\"states\": [\"w\"]", "at /surfaces/0/states: 'w' is no state"},
         Damage{"gradient", "\"gradient\": [", "\"gradient\": [1.0,",
                "at /surfaces/0/affine/gradient: expected 1 entries, found 2"},
-        Damage{"curve", "[7.0],", "[7.0,5.0],", "at /surfaces/1/curves/1: expected 2 entries, found 1"},
+        Damage{"curve", "[7.0],", "[7.0,5.0],", "at /surfaces/1/curves/1/coordinates: expected 2 entries, found 1"},
         Damage{"syntax", "\"saltus\": ", "\"saltus\" ", "r.json:3:"}),
     [](const auto& damage) {
       std::string name = damage.param.what;

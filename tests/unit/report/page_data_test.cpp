@@ -108,7 +108,7 @@ TEST(PageData, SurfacesNameTheirStatesByColumn) {
   auto result = report_samples::stick_slip(2, 3);
   result.surfaces = {
       {"slip", result::SurfaceRole::switching, {"v"}, true, result::AffineSurface{{2.0}, 0.5, -0.2}, {}},
-      {"hit</script>", result::SurfaceRole::jump, {"q", "v"}, false, std::nullopt, {{{{1.0, 2.0}, {3.0, 4.0}}}}}};
+      {"hit</script>", result::SurfaceRole::jump, {"q", "v"}, false, std::nullopt, {{{{1.0, 2.0}, {3.0, 4.0}}, {}}}}};
   const std::string text = to_script_text(page_data(result));
   EXPECT_EQ(text.find('<'), std::string::npos);
   const json surfaces = json::parse(text)["surfaces"];
@@ -120,7 +120,9 @@ TEST(PageData, SurfacesNameTheirStatesByColumn) {
   EXPECT_EQ(surfaces[1]["role"], "jump");
   EXPECT_EQ(surfaces[1]["states"], (json{0, 1}));
   EXPECT_TRUE(surfaces[1]["affine"].is_null());
-  EXPECT_EQ(surfaces[1]["curves"], (json::array({json::array({{1.0, 2.0}, {3.0, 4.0}})})));
+  ASSERT_EQ(surfaces[1]["curves"].size(), 1U);
+  EXPECT_TRUE(surfaces[1]["curves"][0]["t"].is_null());
+  EXPECT_EQ(surfaces[1]["curves"][0]["coordinates"], (json::array({{1.0, 2.0}, {3.0, 4.0}})));
 }
 
 TEST(PageData, OfVeryManyStatesTheFirstAreShownAndTheSizesTold) {

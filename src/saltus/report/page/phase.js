@@ -64,6 +64,7 @@ saltus.phaseView = (result, timeline, choice, sliding, buckets) => {
     rows,
     columns,
     selected,
+    window: window_,
     events: saltus.visibleMarks(result, timeline.shown(), window_),
     parts: saltus.phaseParts(result, columns, rows, sliding),
     box: columns.map((column) => saltus.roomyRange(rows.map((i) => column[i]))),
@@ -74,20 +75,22 @@ saltus.phaseView = (result, timeline, choice, sliding, buckets) => {
 saltus.surfaceStyle = (index, surface, palette) =>
     ({color: palette.surfaces[index % palette.surfaces.length], jump: surface.role === "jump"});
 
-/** What surfaces a drawing says in words: which are cuts, and which it cannot show. */
-saltus.surfaceNote = (cuts, absent, at) => {
+/** What a drawing of surfaces says in words: which are cuts, which move, and which it cannot show. */
+saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
   const names = (list) => {
     const unique = [...new Set(list.map((surface) => surface.name))];
     const shown = unique.slice(0, 4).map((name) => saltus.shorten(name, 24)).join(", ");
     return unique.length > 4 ? `${shown} and ${unique.length - 4} more` : shown;
   };
-  return [
-    cuts.length > 0 ?
-        `Cuts at t = ${saltus.brief(at.t, 6)}, where the other states have their values: ${names(cuts)}.` :
-        null,
-    absent.length > 0 ? `Not drawn, depends on time or on further states: ${names(absent)}.` : null,
-  ].filter((text) => text !== null)
-      .join(" ");
+  const when = saltus.brief(at.t, 6);
+  const notes = [];
+  if (cuts.length > 0) notes.push(`Cuts at t = ${when}, where the other states have their values: ${names(cuts)}.`);
+  if (moving.length > 0) {
+    const times = [...new Set(moving.flatMap((surface) => surface.curves.map(({t}) => saltus.brief(t, 4))))];
+    notes.push(`Moves, drawn at t = ${times.slice(0, 9).join(", ")}: ${names(moving)}.`);
+  }
+  if (absent.length > 0) notes.push(`Not drawn, depends on time or on further states: ${names(absent)}.`);
+  return notes.join(" ");
 };
 
 /** States to begin with: those of the first surface, filled up with the first ones, in their order. */

@@ -9,14 +9,14 @@ saltus.planeSurfaces = (result, choice, view, palette) => {
   const [x, y] = view.box.map(([from, to]) => [from - 2 * (to - from), to + 2 * (to - from)]);
   const drawn = [];
   result.surfaces.forEach((surface, index) => {
-    const parts = saltus.surfaceInPlane(surface, choice, view.at);
+    const parts = saltus.surfaceInPlane(surface, choice, view.at, view.window);
     if (parts === null) return;
     const path = saltus.surfacePath(parts, {x, y});
-    if (path.x.length > 0) drawn.push({surface, index, exact: parts.exact, path});
+    if (path.x.length > 0) drawn.push({surface, index, kind: parts.kind, path});
   });
   const single = drawn.length <= saltus.maximumLegendSurfaces;
   const seen = new Set();
-  const traces = drawn.map(({surface, index, exact, path}, n) => {
+  const traces = drawn.map(({surface, index, kind, path}, n) => {
     const style = saltus.surfaceStyle(index, surface, palette);
     const label = `${saltus.shorten(surface.name, 22)}${surface.role === "jump" ? " (jump)" : " = 0"}`;
     const first = !seen.has(label);
@@ -29,16 +29,16 @@ saltus.planeSurfaces = (result, choice, view, palette) => {
       legendgroup: single ? label : "surfaces",
       showlegend: single ? first : n === 0,
       hoverinfo: "name",
-      line:
-          {simplify: false,
-           color: style.color,
-           width: 1.3,
-           dash: style.jump ? "dashdot" :
-               exact        ? "solid" :
-                              "dash"},
+      line: {
+        simplify: false,
+        color: style.color,
+        width: 1.3,
+        dash: style.jump ? "dashdot" : {exact: "solid", cut: "dash", moving: "dot"}[kind]
+      },
     };
   });
-  return {traces, cuts: drawn.filter((entry) => !entry.exact).map((entry) => entry.surface)};
+  const ofKind = (kind) => drawn.filter((entry) => entry.kind === kind).map((entry) => entry.surface);
+  return {traces, cuts: ofKind("cut"), moving: ofKind("moving")};
 };
 
 saltus.planeTraces = (result, choice, view, palette) => {
@@ -142,7 +142,7 @@ saltus.phasePlane = (result, timeline, select) => {
     const view = saltus.phaseView(result, timeline, choice, sliding, 1500);
     if (view === null) return Plotly.purge(holder);
     const surfaces = saltus.planeSurfaces(result, choice, view, palette);
-    note.textContent = saltus.surfaceNote(surfaces.cuts, saltus.surfacesNotDrawn(result, choice), view.at);
+    note.textContent = saltus.surfaceNote({...surfaces, absent: saltus.surfacesNotDrawn(result, choice)}, view.at);
     return Plotly.react(
         holder, [...surfaces.traces, ...saltus.planeTraces(result, choice, view, palette)],
         saltus.planeLayout(result, choice, view, holder, palette, equal.checked), saltus.plotConfig);

@@ -125,7 +125,7 @@ saltus.phasePortrait = (result, timeline, select) => {
     if (view === null) return Plotly.purge(holder);
     const surfaces = saltus.portraitSurfaces(result, choice, view, palette);
     const absent = result.surfaces.filter((surface) => surface.affine === null && !saltus.isExact(surface, choice));
-    note.textContent = saltus.surfaceNote(surfaces.cuts, absent, view.at);
+    note.textContent = saltus.surfaceNote({cuts: surfaces.cuts, absent}, view.at);
     return Plotly.react(
         holder, [...saltus.portraitTraces(result, choice, view, palette), ...surfaces.traces],
         saltus.portraitLayout(result, choice, view, holder, palette), saltus.plotConfig);

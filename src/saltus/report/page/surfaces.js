@@ -45,24 +45,27 @@ saltus.affineOver = (surface, axes, at) => {
 saltus.isExact = (surface, axes) => !surface.depends_on_time && surface.states.every((state) => axes.includes(state));
 
 /**
- * What of a surface a plane shows: {exact, lines: [[a, b, c]], curves: [{x, y}]}; not exact is a cut at {t, x}. Null if
- * it does not belong into this plane: nothing of it would be a line here.
+ * What of a surface a plane shows: {kind, lines: [[a, b, c]], curves: [{x, y}]}. The kind is exact, cut (at the time
+ * and the other states of `at`), or moving (at the recorded times within the window `between`). Null if it does not
+ * belong into this plane: nothing of it would be a line here.
  */
-saltus.surfaceInPlane = (surface, pair, at) => {
-  const exact = saltus.isExact(surface, pair);
+saltus.surfaceInPlane = (surface, pair, at, between = [-Infinity, Infinity]) => {
   if (!surface.states.some((state) => pair.includes(state))) return null;
   if (surface.affine !== null) {
     const {coefficients, constant} = saltus.affineOver(surface, pair, at);
     if (coefficients[0] === 0 && coefficients[1] === 0) return null;
-    return {exact, lines: [[...coefficients, constant]], curves: []};
+    return {kind: saltus.isExact(surface, pair) ? "exact" : "cut", lines: [[...coefficients, constant]], curves: []};
   }
-  if (!exact || surface.curves.length === 0) return null;
+  const pieces = surface.curves.filter(({t}) => t === null || (t >= between[0] && t <= between[1]));
+  if (!surface.states.every((state) => pair.includes(state)) || pieces.length === 0) return null;
+  const kind = surface.depends_on_time ? "moving" : "exact";
   const [horizontal, vertical] = pair.map((state) => surface.states.indexOf(state));
   if (surface.states.length === 1) {
-    const lines = surface.curves.map(([[value]]) => (horizontal === 0 ? [1, 0, -value] : [0, 1, -value]));
-    return {exact, lines, curves: []};
+    const line = ({coordinates: [[value]]}) => (horizontal === 0 ? [1, 0, -value] : [0, 1, -value]);
+    return {kind, lines: pieces.map(line), curves: []};
   }
-  return {exact, lines: [], curves: surface.curves.map((curve) => ({x: curve[horizontal], y: curve[vertical]}))};
+  const curves = pieces.map(({coordinates}) => ({x: coordinates[horizontal], y: coordinates[vertical]}));
+  return {kind, lines: [], curves};
 };
 
 /** The pieces of a surface in a box, as one path with gaps. */
@@ -80,10 +83,10 @@ saltus.surfacePath = (parts, box) => {
   return path;
 };
 
-/** Surfaces that touch none of the planes of this pair although they depend on one of its states. */
+/** Surfaces that a plane cannot show although they depend on one of its states: those of further states. */
 saltus.surfacesNotDrawn = (result, pair) => result.surfaces.filter(
-    (surface) => surface.affine === null && !saltus.isExact(surface, pair) &&
-        surface.states.some((state) => pair.includes(state)));
+    (surface) => surface.affine === null && surface.states.some((state) => pair.includes(state)) &&
+        !surface.states.every((state) => pair.includes(state)));
 
 /** Intersection of g.x + c = 0 with a box: corners of the polygon in order, at most six; in units of the box. */
 saltus.planeInBox = (g, c) => {
@@ -124,7 +127,7 @@ saltus.surfaceInSpace = (surface, axes, at, box) => {
     if (!saltus.isExact(surface, axes)) return null;
     const places = surface.states.map((state) => axes.indexOf(state));
     const free = [0, 1, 2].filter((axis) => !places.includes(axis));
-    for (const curve of surface.curves) {
+    for (const {coordinates: curve} of surface.curves) {
       const step = Math.max(1, Math.ceil(curve[0].length / 200));
       const count = curve[0].length;
       const chosen = Array.from({length: Math.ceil((count - 1) / step) + 1}, (_, n) => Math.min(n * step, count - 1));
