@@ -7,6 +7,7 @@ saltus.rowHeight = 27;
 saltus.modeChange = (event, which) => {
   const [before, after] = [event.mode_before, event.mode_after];
   const size = (before ?? after ?? []).length;
+  if (size === 0) return "";
   const narrow = which === "changed" && size > 1 && before !== null && after !== null;
   const changed = narrow ? before.map((_, i) => i).filter((i) => before[i] !== after[i]).slice(0, 3) : null;
   const part = (mode) => saltus.modeBoxes(changed === null || mode === null ? mode : changed.map((i) => mode[i]));
