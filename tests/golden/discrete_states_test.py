@@ -54,6 +54,24 @@ until = 10
 """
 
 
+GATED = """[model]
+name = "gated"
+[states]
+x = 0
+y = 0
+on = 0
+[dynamics]
+x = "if(on*(t-3) > 0, 10, 1)"
+y = "if(on*(x-1.5) >= 0, 1, -1)"
+on = 0
+[[jumps]]
+at = [1, 2, 3.5]
+set = { on = "1 - on" }
+[simulate]
+until = 5
+"""
+
+
 class DiscreteStates(tool.ToolTest):
     def simulated(self, text, *arguments):
         self.run_tool("simulate", self.write("model.toml", text), "--quiet", "--out", "r.json", *arguments, code=0)
@@ -81,6 +99,14 @@ class DiscreteStates(tool.ToolTest):
         first = next(event for event in result["events"] if event["kind"] == "jump")
         self.assertEqual(first["surfaces"], ["high"])
         self.assertAlmostEqual(first["t"], math.log(2), delta=1e-7)  # 2 - e^-t = 3/2
+
+    def test_a_function_that_a_discrete_state_makes_vanish_is_decided_as_written(self):
+        result = self.simulated(GATED)
+        # x' = 10 from 3.5 on; y' = -1 only where on is 1 and x < 1.5, from t = 1 to 1.5.
+        for found, expected in zip(result["final"]["x"], [18.5, 4.0, 1.0]):
+            self.assertAlmostEqual(found, expected, delta=1e-9)
+        self.assertEqual([(event["kind"], round(event["t"], 9)) for event in result["events"]],
+                         [("jump", 1.0), ("crossing", 1.5), ("jump", 2.0), ("jump", 3.5)])
 
     def test_a_model_without_states_has_outputs_and_events_of_time(self):
         result = self.simulated(CLOCK)

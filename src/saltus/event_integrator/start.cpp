@@ -40,6 +40,20 @@ void read_discrete(const Surroundings& s, double t, const double* x, int j, Mode
   state.alpha[at(j)] = psi > 0.0 ? 1.0 : psi < 0.0 ? 0.0 : s.system.switching[at(j)].alpha_at_zero;
 }
 
+/// Whether psi_j, exactly 0 here, is 0 whatever moves: n x while the discrete state n is 0. Such a function is decided
+/// as written until a jump changes that.
+bool vanishes_until_a_jump(const Surroundings& s, double t, const double* x, int j, const ModeState& state) {
+  const auto& discrete = s.system.discrete_states;
+  if (s.system.switching[at(j)].alpha_at_zero == 0.5) return false;
+  std::vector<double> row(discrete.size());
+  double rate = 0.0;
+  s.kernel.gradient(j, t, x, state.alpha.data(), row.data(), &rate);
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (!discrete[i] && row[i] != 0.0) return false;
+  }
+  return rate == 0.0 && s.kernel.lie_derivative(j, 2, t, x, state.alpha.data()) == 0.0;
+}
+
 /// Signs of all switching functions, inner ones first; those at zero get 0.
 void read_signs(const Surroundings& s, double t, const double* x, const ProjectedFields& fields,
                 const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
@@ -52,6 +66,11 @@ void read_signs(const Surroundings& s, double t, const double* x, const Projecte
     }
     const double psi =
         s.kernel.inner(j).empty() ? values[at(j)] : value_in_a_region(s, t, x, state, j, fields.noise(j));
+    if (psi == 0.0 && vanishes_until_a_jump(s, t, x, j, state)) {
+      const double alpha = s.system.switching[at(j)].alpha_at_zero;
+      set_surface(state, j, alpha > 0.5 ? 1 : -1, alpha);
+      continue;
+    }
     if (std::abs(psi) <= fields.noise(j) || std::find(held.begin(), held.end(), j) != held.end()) {
       at_zero.push_back(j);
       set_surface(state, j, 0, 0.5);

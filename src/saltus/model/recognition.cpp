@@ -45,7 +45,8 @@ std::optional<SharedFunction> Recognition::find(int psi_node, std::optional<doub
   });
   if (found && at_zero) {
     auto& met = functions_[static_cast<std::size_t>(found->function)];
-    if (met.discrete) met.alpha_at_zero = value_of(*found);
+    const bool on_discrete = (graph.tape()[met.psi_node].reached & kind_bit(VariableKind::discrete)) != 0;
+    if (on_discrete && !met.alpha_at_zero) met.alpha_at_zero = value_of(*found);
   }
   return found;
 }
@@ -55,8 +56,8 @@ int Recognition::append(const std::string& name, const SXElem& psi, int psi_node
   MetFunction met{shown(psi, name), psi, psi_node, SXElem(0.0), 0, false};
   const KindSet reached = graph.tape()[psi_node].reached;
   met.discrete = (reached & moving_kinds) == 0 && (reached & kind_bit(VariableKind::discrete)) != 0;
+  if ((reached & kind_bit(VariableKind::discrete)) != 0) met.alpha_at_zero = at_zero;
   if (met.discrete) {
-    met.alpha_at_zero = at_zero;
     const bool taken =
         std::any_of(functions_.begin(), functions_.end(), [&](const auto& other) { return other.name == met.name; });
     if (taken) met.name = at_zero == 0.5 ? "step(" + met.name + ")" : met.name + (at_zero == 1.0 ? ">=0" : ">0");
