@@ -21,7 +21,9 @@ struct MetFunction {
   bool named = false;
   /// Changes by jumps only: nothing moves it off 0, so alpha has a value there, the one written.
   bool discrete = false;
-  std::optional<double> alpha_at_zero{};  ///< of a discrete one; nothing: it does not matter (abs) or nobody asked
+  /// Of one that depends on discrete states (for others they can make it vanish for a while, as n x does for n = 0);
+  /// nothing: it does not matter (abs) or nobody asked.
+  std::optional<double> alpha_at_zero{};
 };
 
 /// A name of [switching]: a function, seen with this orientation.

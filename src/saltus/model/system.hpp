@@ -27,7 +27,8 @@ struct SwitchingFunction {
   bool named = false;      ///< declared in [switching]
   std::vector<int> inner;  ///< indices of the switching functions whose alpha occurs in psi, ascending
   /// Role discrete: alpha where psi is 0, as written (1 for >=, 0 for >, 1/2 for step). Functions that are the same but
-  /// for this are two.
+  /// for this are two. Other functions that depend on discrete states have the value of the first comparison that uses
+  /// them: it counts where psi is identically 0 until a jump.
   double alpha_at_zero = 0.5;
 };
 
