@@ -22,7 +22,7 @@ install:
 	cmake --preset release
 	cmake --build --preset demo
 	cmake --build build/release --target saltus_libraries
-	cmake --install build/release --prefix $(PREFIX)
+	cmake --install build/release --prefix "$(PREFIX)"
 
 format:
 	@scripts/format.sh

@@ -1,5 +1,6 @@
 """Exit codes, help, tables and messages of the command line."""
 
+import json
 import math
 
 import tool
@@ -215,6 +216,29 @@ until = 1
                          "b: alias of a, with the sides swapped", "differ in: x", "unused"):
             self.assertIn(expected, out)
         self.assertEqual(err, "")
+
+    def test_lists_the_columns_in_their_order_then_the_rest(self):
+        model = self.write("m.toml", """
+[model]
+name = "m"
+[switching]
+second = "x - 2"
+first = "1 - x"
+[states]
+x = 0
+[dynamics]
+x = "sign(max(x, 3) - 4) + step(x - 5) + sign(first) + step(x - 2) + step(t - 1)"
+[simulate]
+until = 1
+""")
+        out, _ = self.run_tool("check", model, code=0)
+        names = [line.split(":")[0].strip() for line in out.split("switching functions")[1].splitlines()[1:]]
+        self.run_tool("simulate", model, "--out", "r.json", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        columns = result["switching_functions"]
+        self.assertEqual(columns, ["second", "first", "max(x,3)-4", "x-5"])
+        self.assertEqual(names[:len(columns)], columns)
+        self.assertEqual(names[len(columns):len(columns) + 2], ["x-3", "t-1"])
 
     def test_takes_every_model_of_the_catalogue(self):
         listed, _ = self.run_tool("models", code=0)

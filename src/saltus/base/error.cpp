@@ -35,28 +35,62 @@ std::string joined(const std::vector<std::string>& names, const std::string& sep
   return text;
 }
 
+/// Longer messages quote something that nobody would read to its end: the middle is left out.
+constexpr std::size_t longest_shown = 2000;
+
+/// Where a character of UTF-8 begins, at or before a place.
+std::size_t character_start(const std::string& text, std::size_t place) {
+  while (place > 0 && place < text.size() && (static_cast<unsigned char>(text[place]) & 0xC0U) == 0x80U) --place;
+  return place;
+}
+
+/// Part of an error fit for a terminal: no control characters (names in quotes may contain them), not endless.
+std::string shown(const std::string& text) {
+  std::string result;
+  const bool whole = text.size() <= longest_shown;
+  const std::size_t head = whole ? text.size() : character_start(text, longest_shown / 2);
+  const std::size_t tail = whole ? text.size() : character_start(text, text.size() - longest_shown / 4);
+  const auto append = [&](std::size_t begin, std::size_t end) {
+    constexpr const char* hexadecimal = "0123456789abcdef";
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto byte = static_cast<unsigned char>(text[i]);
+      if (byte >= 0x20U && byte != 0x7FU) {
+        result += text[i];
+      } else {
+        result += std::string("\\x") + hexadecimal[byte >> 4U] + hexadecimal[byte & 0xFU];
+      }
+    }
+  };
+  append(0, head);
+  if (!whole) result += " … ";
+  append(tail, text.size());
+  return result;
+}
+
 }  // namespace
 
 std::string to_text(const Error& error) {
   std::string text;
   if (!error.location.file.empty()) {
-    text += error.location.file;
+    text += shown(error.location.file);
     if (error.location.line > 0) text += ":" + std::to_string(error.location.line);
     if (error.location.column > 0) text += ":" + std::to_string(error.location.column);
     text += ": ";
   }
-  text += "error: " + error.message;
-  for (const auto& frame : error.context) text += "\n  " + frame;
-  if (!error.remedy.empty()) text += "\n  " + error.remedy;
+  text += "error: " + shown(error.message);
+  for (const auto& frame : error.context) text += "\n  " + shown(frame);
+  if (!error.remedy.empty()) text += "\n  " + shown(error.remedy);
   return text;
 }
 
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& known) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
   for (const auto& candidate : known) {
-    const std::size_t distance = edit_distance(name, candidate);
     // A third of the letters may differ: "mu" ~ "mue" is a slip, "mu" ~ "x0" is not.
-    const std::size_t allowed = std::max<std::size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
+    const std::size_t allowed = std::max<std::size_t>(1, longer / 3);
+    if (longer - shorter > allowed) continue;  // so many letters are missing at least; names may be of any length
+    const std::size_t distance = edit_distance(name, candidate);
     // Without a letter in common it is another name: "x" suggests nothing about "t".
     const bool related = distance < std::max(name.size(), candidate.size());
     if (related && distance <= allowed) ranked.emplace_back(distance, candidate);

@@ -43,7 +43,7 @@ using Expected = tl::expected<T, Error>;
   return error;
 }
 
-/// "file:line:column: error: message", the context trail and the remedy, one per line, without a final newline.
+/// "file:line:column: error: message", trail and remedy, a line each; control characters as \xNN, parts <= 2000 bytes.
 [[nodiscard]] std::string to_text(const Error& error);
 
 /// The known names nearest to `name` by edit distance, best first, at most three; for "did you mean" remedies.

@@ -91,14 +91,22 @@ std::string alias_text(const model::System& system, const model::SwitchingColumn
                      column.orientation < 0 ? ", with the sides swapped" : "");
 }
 
+std::string function_text(const model::System& system, const model::SwitchingFunction& function) {
+  return fmt::format("  {}: {}{}\n", function.name, role_text(function.role), nesting(system, function));
+}
+
+/// The columns of a result first and in their order, then what has no column.
 std::string switching_text(const model::System& system) {
   std::string text = heading("switching functions", system.switching.size());
-  for (const auto& function : system.switching) {
-    text += fmt::format("  {}: {}{}\n", function.name, role_text(function.role), nesting(system, function));
-  }
+  std::vector<bool> shown(system.switching.size(), false);
   for (const auto& column : system.columns) {
-    if (column.name != system.switching[static_cast<std::size_t>(column.function)].name)
-      text += alias_text(system, column);
+    const auto index = static_cast<std::size_t>(column.function);
+    const auto& function = system.switching[index];
+    text += column.name == function.name ? function_text(system, function) : alias_text(system, column);
+    shown[index] = true;
+  }
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (!shown[i]) text += function_text(system, system.switching[i]);
   }
   return text;
 }
@@ -172,7 +180,8 @@ std::string jumps_text(const model::System& system) {
 }
 
 std::string description_of(const model::System& system, const std::string& path) {
-  std::string text = fmt::format("{}: {}\n{}\n", system.name, system.description, path);
+  const std::string_view colon = system.description.empty() ? "" : ": ";
+  std::string text = fmt::format("{}{}{}\n{}\n", system.name, colon, system.description, path);
   text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
   text += modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system) + methods_text(system);
   text += heading("warnings", system.warnings.size());
@@ -184,7 +193,7 @@ ExitCode run(const Arguments& arguments) {
   const auto input = read_input(arguments.model, arguments.settings);
   if (!input) return refuse(input.error());
   const auto system = model::build(input->file.description, input->overrides);
-  if (!system) return refuse(system.error());
+  if (!system) return refuse(io::located(system.error(), input->file));
   print(description_of(*system, input->path));
   return ExitCode::done;
 }

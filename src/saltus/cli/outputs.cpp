@@ -22,10 +22,10 @@ Error refused(const std::string& option, const std::string& file, std::string me
   return {ErrorCode::io_failure, fmt::format("{} {}: {}", option, file, message), std::move(remedy), {}, {}};
 }
 
-/// The same for every spelling of one file.
+/// The same for every spelling of one file and every link to it.
 fs::path identity(const fs::path& path) {
   std::error_code failed;
-  auto canonical = fs::weakly_canonical(fs::absolute(path, failed), failed);
+  auto canonical = fs::weakly_canonical(fs::absolute(io::target_of(path), failed), failed);
   return failed ? path.lexically_normal() : canonical;
 }
 

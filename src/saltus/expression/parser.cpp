@@ -86,7 +86,7 @@ class Parser {
   [[gnu::noinline]] std::optional<Parsed> parse_operand(Precedence loosest, int level) {
     const Token& token = current();
     if (level > max_nesting) return complain_.too_nested(token);
-    if (token.kind == TokenKind::number) return make(Number{token.value}, take(), 0);
+    if (token.kind == TokenKind::number) return make(Number{token.value, std::string(token.text)}, take(), 0);
     if (at_symbol("-")) return parse_unary(UnaryOperator::minus, Precedence::sign, level);
     if (at_symbol("+")) return parse_unary(UnaryOperator::plus, Precedence::sign, level);
     if (at_symbol("(")) return parse_parenthesised(level);

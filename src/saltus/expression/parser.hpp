@@ -28,7 +28,8 @@ namespace saltus::expression {
 [[nodiscard]] NodePtr number(double value, const SourceLocation& location);
 
 /// The text of a tree without spaces (but around the words and, or, not), with the parentheses that were written and
-/// those that are needed, and the shortest numbers that read back the same. Names switching functions.
+/// those that are needed, numbers as they were written (or, if no text states them, the shortest ones that read back
+/// the same). Names switching functions.
 /// Parsing it gives an equal tree, if the tree was parsed.
 [[nodiscard]] std::string to_text(const Node& node);
 

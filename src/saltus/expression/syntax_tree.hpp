@@ -33,6 +33,7 @@ enum class BinaryOperator {
 
 struct Number {
   double value = 0.0;
+  std::string spelling{};  ///< as it was written; empty for a number that no text states
 };
 struct Name {
   std::string name;

@@ -56,7 +56,9 @@ class Writer {
   std::string take() { return std::move(text_); }
 
  private:
-  void write_value(const Number& number) { text_ += number_text(number.value); }
+  void write_value(const Number& number) {
+    text_ += number.spelling.empty() ? number_text(number.value) : number.spelling;
+  }
 
   void write_value(const Name& name) { text_ += name.name; }
 

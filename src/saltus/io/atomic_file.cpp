@@ -37,13 +37,6 @@ class Descriptor {
   int number_;
 };
 
-/// Where the bytes go: the file behind a symbolic link, so that the link stays.
-fs::path target_of(const fs::path& path) {
-  std::error_code ignored;
-  const auto target = fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
-  return ignored ? path : target;
-}
-
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 /// A temporary file beside the target, removed unless it became the target.
@@ -96,6 +89,17 @@ class TemporaryFile {
 
 }  // namespace
 
+fs::path target_of(fs::path path) {
+  constexpr int most_links = 40;  // as in Linux; a circle of links ends, too
+  std::error_code none;
+  for (int links = 0; links < most_links && fs::is_symlink(path, none); ++links) {
+    const auto next = fs::read_symlink(path, none);
+    if (none) break;
+    path = path.parent_path() / next;  // an absolute one replaces all of it
+  }
+  return path;
+}
+
 Expected<void> check_writable(const fs::path& path) {
   std::error_code ignored;
   if (!path.has_filename() || fs::is_directory(path, ignored)) {
@@ -114,6 +118,10 @@ Expected<void> check_writable(const fs::path& path) {
     if (::access(target.c_str(), W_OK) != 0) {
       return failure(path, fmt::format("cannot write: {}", reason(errno)), "write-protected? choose another name");
     }
+  }
+  struct stat old {};
+  if (::stat(target.c_str(), &old) != 0 && errno != ENOENT) {  // too long a name, a circle of links
+    return failure(path, fmt::format("cannot write: {}", reason(errno)), "choose another name");
   }
   const TemporaryFile trial(target);  // the surest test: quotas and read-only mounts show here, too
   if (trial.error_number() != 0) {

@@ -10,6 +10,8 @@
 
 namespace saltus::io {
 
+/// Where the bytes go: the file behind symbolic links, also one that is not there yet; the links stay.
+[[nodiscard]] std::filesystem::path target_of(std::filesystem::path path);
 /// Whether `path` could be written (folder exists and is writable, not a folder itself); found out before computing.
 [[nodiscard]] Expected<void> check_writable(const std::filesystem::path& path);
 /// Writes to a temporary file beside `path`, flushes it to disk, and renames it over `path`.

@@ -95,31 +95,46 @@ std::vector<std::string> names_of(const std::vector<Item>& list) {
   return names;
 }
 
+/// What stands behind the table's name: "q.lower" of "states.q.lower".
+std::string_view path_in(std::string_view key) { return key.substr(std::min(key.find('.'), key.size() - 1) + 1); }
+
 template <auto member>
-Expected<void> set_expression(model::Description& description, std::string_view path, std::string_view value) {
+Expected<void> set_expression(model::Description& description, std::string_view key, std::string_view value) {
   auto& list = description.*member;
+  const auto path = path_in(key);
   auto* place = place_in(list, path);
   if (place == nullptr) {
-    return refused(path, ErrorCode::unknown_name, fmt::format("the model has no '{}' there", path),
-                   suggest(std::string(path), names_of(list)));
+    const auto known = names_of(list);
+    const auto name = std::string(path.substr(0, path.find('.')));
+    if (name.size() < path.size() && std::find(known.begin(), known.end(), name) != known.end()) {
+      return refused(key, ErrorCode::unknown_name,
+                     fmt::format("'{}' is no part of '{}'", path.substr(name.size() + 1), name),
+                     "states and controls have the parts initial, lower and upper; other names have none");
+    }
+    return refused(key, ErrorCode::unknown_name, fmt::format("the model has no '{}' there", path),
+                   known.empty() ? "--set changes what the file states and adds nothing" : suggest(name, known));
   }
-  auto tree = expression::parse(value, place_of(path));
+  auto tree = expression::parse(value, place_of(key));
   if (!tree) return tl::unexpected(tree.error());
   *place = std::move(*tree);
   return {};
 }
 
-Expected<void> set_model_key(model::Description& description, std::string_view key, std::string_view value) {
+Expected<void> set_model_key(model::Description& description, std::string_view full_key, std::string_view value) {
+  const auto key = path_in(full_key);
   if (key == "name") {
     description.name = value;
   } else if (key == "description") {
     description.description = value;
   } else if (key == "inclusion") {
     auto inclusion = inclusion_named(std::string(value));
-    if (!inclusion) return tl::unexpected(inclusion.error());
+    if (!inclusion) {
+      inclusion.error().location = place_of(full_key);
+      return tl::unexpected(inclusion.error());
+    }
     description.inclusion = *inclusion;
   } else {
-    return refused(key, ErrorCode::unknown_name, fmt::format("[model] has no key '{}'", key),
+    return refused(full_key, ErrorCode::unknown_name, fmt::format("[model] has no key '{}'", key),
                    suggest(std::string(key), {"name", "description", "inclusion"}));
   }
   return {};
@@ -127,7 +142,7 @@ Expected<void> set_model_key(model::Description& description, std::string_view k
 
 struct SettableTable {
   std::string_view name;
-  Expected<void> (*set)(model::Description&, std::string_view path, std::string_view value);
+  Expected<void> (*set)(model::Description&, std::string_view key, std::string_view value);
 };
 constexpr std::array settable{
     SettableTable{"model", set_model_key},
@@ -139,6 +154,20 @@ constexpr std::array settable{
     SettableTable{"dynamics", set_expression<&model::Description::dynamics>},
     SettableTable{"outputs", set_expression<&model::Description::outputs>},
 };
+
+/// Tables of a model file whose entries have no name of their own, or that --set does not reach for another reason.
+constexpr std::array fixed{"modes", "events", "jumps", "tables", "mechanics", "contacts", "optimize", "sensitivity"};
+
+tl::unexpected<Error> not_settable(std::string_view key, std::string_view table) {
+  if (std::find(fixed.begin(), fixed.end(), table) != fixed.end()) {
+    return refused(key, ErrorCode::invalid_option, fmt::format("nothing in '{}' can be set on the command line", table),
+                   "write a parameter there, and set that: --set NAME=VALUE");
+  }
+  std::vector<std::string> known{"simulate"};
+  for (const auto& candidate : settable) known.emplace_back(candidate.name);
+  return refused(key, ErrorCode::unknown_name, fmt::format("'{}' is no table of a model file", table),
+                 suggest(std::string(table), known));
+}
 
 Expected<void> set_input(model::Description& description, std::string_view name, std::string_view value) {
   auto tree = expression::parse(value, place_of(fmt::format("simulate.inputs.{}", name)));
@@ -169,7 +198,6 @@ Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::str
   constexpr std::string_view inputs = "simulate.inputs.";
   const auto dot = std::min(key.find('.'), key.size());
   const auto table = key.substr(0, dot);
-  const auto rest = key.substr(std::min(dot + 1, key.size()));
   Expected<void> done;
   if (key.starts_with(inputs)) {
     done = set_input(model.description, key.substr(inputs.size()), value);
@@ -178,14 +206,8 @@ Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::str
   } else {
     const auto same = [&](const auto& candidate) { return candidate.name == table; };
     const auto* found = std::find_if(settable.begin(), settable.end(), same);
-    if (found == settable.end()) {
-      std::vector<std::string> known{"simulate"};
-      for (const auto& candidate : settable) known.emplace_back(candidate.name);
-      return refused(key, ErrorCode::unknown_name, fmt::format("cannot set anything in '{}'", table),
-                     suggest(std::string(table), known));
-    }
-    done = found->set(model.description, rest, value);
-    if (!done) done.error().location.file = place_of(key).file;
+    if (found == settable.end()) return not_settable(key, table);
+    done = found->set(model.description, key, value);
   }
   if (!done) return tl::unexpected(done.error());
   return model;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "saltus/io/text_encoding_internal.hpp"
 #include "saltus/io/toml_document_internal.hpp"
 
 namespace saltus::io {
@@ -47,22 +48,21 @@ class SourceText {
   std::vector<std::size_t> line_starts_;
 };
 
-/// The first character of a string's content. Exact for strings without escapes; behind an escape columns are too
-/// small.
-SourceLocation content_start(const SourceText& source, const toml::source_position& begin) {
-  auto location = source.location(begin);
-  const auto raw = source.from(begin);
+/// A string with the places of its characters.
+TomlString placed_string(const SourceText& source, const toml::source_position& begin, const std::string& text) {
+  TomlString result{text, source.location(begin), {}};
+  auto raw = source.from(begin);
+  const bool is_basic = raw.starts_with('"');
   const bool multi_line = raw.starts_with("\"\"\"") || raw.starts_with("'''");
-  if (!multi_line) {
-    location.column += raw.starts_with('"') || raw.starts_with('\'') ? 1 : 0;
-    return location;
+  const std::size_t quotes = multi_line ? 3 : (is_basic || raw.starts_with('\'') ? 1 : 0);
+  raw.remove_prefix(quotes);
+  result.start.column += static_cast<int>(quotes);
+  if (multi_line && (raw.starts_with('\n') || raw.starts_with("\r\n"))) {  // TOML drops the first line break
+    raw.remove_prefix(raw.find('\n') + 1);
+    result.start = {result.start.file, result.start.line + 1, 1};
   }
-  const auto content = raw.substr(3);
-  if (content.starts_with('\n') || content.starts_with("\r\n")) {  // TOML drops the first line break
-    return {location.file, location.line + 1, 1};
-  }
-  location.column += 3;
-  return location;
+  if (is_basic) result.anchors = anchors_of(raw, result.start, multi_line);
+  return result;
 }
 
 /// Deeper than any table of a model file; what lies below is left out, since nothing reads there.
@@ -79,7 +79,7 @@ TomlValue converted(const SourceText& source, const toml::node& node, int level)
   } else if (const auto* real = node.as_floating_point()) {
     result.value = real->get();
   } else if (const auto* text = node.as_string()) {
-    result.value = TomlString{text->get(), content_start(source, node.source().begin)};
+    result.value = placed_string(source, node.source().begin, text->get());
   } else if (const auto* array = node.as_array()) {
     TomlArray elements;
     if (level < most_levels) {
@@ -103,31 +103,6 @@ TomlTable converted(const SourceText& source, const toml::table& table, int leve
     return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
   });
   return entries;
-}
-
-Error not_readable(const std::string& file, std::string message, std::string remedy) {
-  return {ErrorCode::parse_failure, std::move(message), std::move(remedy), {file, 0, 0}, {}};
-}
-
-/// Files that are no text, or not the text they look like.
-Expected<void> check_encoding(std::string_view text, const std::string& file) {
-  const bool blank = std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; });
-  if (blank) {
-    return tl::unexpected(
-        not_readable(file, "the file is empty", "a model needs at least [model] with a name, [states] and [dynamics]"));
-  }
-  if (text.starts_with("\xEF\xBB\xBF")) {
-    return tl::unexpected(not_readable(file, "the file begins with a byte order mark (EF BB BF)",
-                                       "save it as UTF-8 without byte order mark"));
-  }
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    return tl::unexpected(not_readable(file, "the file is UTF-16", "save it as UTF-8"));
-  }
-  if (const auto place = text.find('\0'); place != std::string_view::npos) {
-    return tl::unexpected(not_readable(file, fmt::format("this is no text file: byte {} is 0", place),
-                                       "a model file is TOML: text in UTF-8"));
-  }
-  return {};
 }
 
 /// More parts than any key of a model file has. toml++ bounds the depth of brackets (256), not that of dotted keys, and
@@ -179,6 +154,8 @@ Error syntax_error(const SourceText& source, const toml::parse_error& failure) {
   const bool is_number = description.find("could not be interpreted as a value") != std::string_view::npos;
   if (!is_number && looks_like_bare_expression(source.line(position.line))) {
     remedy = "expressions stand in quotes: x = \"-x + sin(t)\"";
+  } else if (description.find("cannot redefine") != std::string_view::npos) {
+    remedy = "every name stands once in its table: remove or rename one of them";
   }
   return {ErrorCode::parse_failure,
           fmt::format("not valid TOML: {}", shortened(description)),
@@ -190,10 +167,15 @@ Error syntax_error(const SourceText& source, const toml::parse_error& failure) {
 }  // namespace
 
 Expected<TomlTable> parse_toml(std::string_view text, const std::string& file) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8: some editors begin every file with it
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   if (auto readable = check_encoding(text, file); !readable) return tl::unexpected(readable.error());
   if (has_endless_key(text)) {
-    return tl::unexpected(not_readable(file, fmt::format("a key has more than {} parts", most_parts),
-                                       "keys of a model file have one to four, like simulate.event.integrator"));
+    return tl::unexpected(Error{ErrorCode::parse_failure,
+                                fmt::format("a key has more than {} parts", most_parts),
+                                "keys of a model file have one to four, like simulate.event.integrator",
+                                {file, 0, 0},
+                                {}});
   }
   const SourceText source(text, file);
   try {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/io/string_places_internal.hpp"
 
 namespace saltus::io {
 
@@ -20,6 +21,7 @@ using TomlArray = std::vector<TomlValue>;
 struct TomlString {
   std::string text;
   SourceLocation start;
+  std::vector<StringAnchor> anchors;  ///< empty: the text stands as it is from `start` on
 };
 struct TomlDate {};
 
@@ -35,8 +37,9 @@ struct TomlEntry {
 };
 
 /// Parses a document. Tables are in the order of their keys in the file.
-/// @return the root, or a parse_failure with position. A text that is empty, no text at all (NUL bytes, UTF-16) or
-///         begins with a byte order mark is refused with a message of its own.
+/// A byte order mark of UTF-8 in front of it counts as nothing.
+/// @return the root, or a parse_failure with position. A text that is empty or no text at all (NUL bytes, UTF-16) is
+///         refused with a message of its own.
 [[nodiscard]] Expected<TomlTable> parse_toml(std::string_view text, const std::string& file);
 
 /// "the number 3", "a string", "a table": for "expected …, found …".

@@ -91,6 +91,7 @@ Expected<ModelFile> parse_model(std::string_view text, const std::string& file) 
   model.sha256 = sha256(text);
   TomlReader reader(file);
   for (const auto& entry : *document) {
+    model.table_locations.emplace_back(entry.key, entry.location);
     read_section(reader, entry, model);
     if (reader.failed()) return tl::unexpected(*reader.error());
   }
@@ -121,6 +122,13 @@ Expected<ModelFile> read_model(const std::filesystem::path& file) {
 
 Error located(Error error, const ModelFile& model) {
   if (!error.location.file.empty()) return error;
+  for (const auto& frame : error.context) {
+    if (!frame.starts_with("in [") || !frame.ends_with(']')) continue;
+    error.location = {model.description.file, 1, 1};
+    for (const auto& [table, location] : model.table_locations) {
+      if (frame == fmt::format("in [{}]", table)) error.location = location;
+    }
+  }
   for (const auto& [key, location] : model.option_locations) {
     const auto frame = fmt::format("in simulate.{}", key);
     if (std::find(error.context.begin(), error.context.end(), frame) != error.context.end()) error.location = location;

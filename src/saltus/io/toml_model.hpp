@@ -20,6 +20,8 @@ struct ModelFile {
   std::string sha256;  ///< of the file's bytes
   /// Where each option was written ("rtol", "output.times"), for errors that show only later.
   std::vector<std::pair<std::string, SourceLocation>> option_locations;
+  /// Where each table begins, by its name.
+  std::vector<std::pair<std::string, SourceLocation>> table_locations;
 };
 
 /// Reads a model file. Every error has file, line, column, what was expected and found, and a remedy; unknown tables
@@ -42,8 +44,9 @@ inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
 /// Checks the options of [simulate] against each other (pipeline::find_problem), and tells where the file states them.
 [[nodiscard]] Expected<void> check_options(const ModelFile& model);
 
-/// The error with the place of the option it is about, if it has no place of its own and a frame of its context names
-/// the option ("in simulate.initial_mode.slip").
+/// The error with the place of the option or the table it is about, if it has no place of its own and a frame of its
+/// context names it ("in simulate.initial_mode.slip", "in [states]"); a table the file does not have is missed at its
+/// beginning.
 [[nodiscard]] Error located(Error error, const ModelFile& model);
 
 /// `--set a.b=value` for the options of a simulation: KEY is a dotted path below the file's root

@@ -66,8 +66,11 @@ expression::NodePtr TomlReader::expression(const TomlValue& value) {
     wrong_type(number_or_expression, value);
     return nullptr;
   }
-  auto tree = expression::parse(text->text, text->start);
-  if (tree) return *tree;
+  const bool as_it_stands = text->anchors.empty();
+  const StringPlaces places(text->text, text->anchors);
+  auto tree = expression::parse(text->text, as_it_stands ? text->start : SourceLocation{text->start.file, 1, 1});
+  if (tree) return as_it_stands ? *tree : places.in_file(*tree);
+  if (!as_it_stands) tree.error().location = places.in_file(tree.error().location);
   fail(tree.error());
   return nullptr;
 }

@@ -81,7 +81,8 @@ void read_option(TomlReader& reader, const std::string& key, const TomlEntry& en
   auto error = options.error();
   const bool about_key = error.code == ErrorCode::unknown_name;
   error.location = about_key ? entry.location : entry.value.location;
-  if (!about_key) error.message = fmt::format("{}: {}", entry.key, error.message);
+  if (!about_key && error.code != ErrorCode::not_available)
+    error.message = fmt::format("{}: {}", entry.key, error.message);
   reader.fail(std::move(error));
 }
 

@@ -42,7 +42,7 @@ class Assembly {
                    "declare at least one in [states], with its right-hand side in [dynamics]; without states there are "
                    "[outputs] and [[events]] of t only",
                    {},
-                   {}};
+                   {"in [states]"}};
     }
     system_.name = statement_.name;
     system_.description = statement_.description;

@@ -243,15 +243,23 @@ class Build {
     for (const auto& entry : description_.inputs) {
       const Meaning* meaning = scope_.names().find(entry.name);
       if (meaning == nullptr || meaning->kind != NameKind::control) {
+        const auto known = scope_.names().of({NameKind::control});
         return Error{ErrorCode::unknown_name,
                      fmt::format("expected the name of a control, found '{}'", entry.name),
-                     suggest(entry.name, scope_.names().of({NameKind::control})),
+                     known.empty() ? "the model has no controls: declare it in [controls]" : suggest(entry.name, known),
                      entry.location,
                      {"in inputs"}};
       }
       auto input = scope_.expression(*entry.expression);
       if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
       if (set_values_.contains(entry.name)) continue;  // a constant from --set replaces it
+      if (const auto constant = recognition_.parameter_value(*input); constant && !std::isfinite(*constant)) {
+        return Error{ErrorCode::invalid_model,
+                     fmt::format("the input of '{}' is {}, not a finite number", entry.name, *constant),
+                     "check the expression and the parameters in it",
+                     entry.expression->location,
+                     {}};
+      }
       auto& control = statement_.controls[static_cast<std::size_t>(meaning->index)];
       control.input = *input;
       control.input_location = entry.expression->location;

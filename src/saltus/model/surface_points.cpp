@@ -33,7 +33,12 @@ std::vector<int> alpha_nodes(const Tape& tape, std::span<const int> roots, Links
 
 Point start_point(const Tape& tape, std::span<const int> variables, int k) {
   constexpr std::array<double, 7> magnitudes{1.0, 0.1, 10.0, 1e-2, 100.0, 1e-3, 1e3};
-  const double magnitude = magnitudes[static_cast<std::size_t>(k / 2) % magnitudes.size()];
+  // A model in small units has its jumps where no size above would show them; a quarter of the points looks there.
+  constexpr std::array<double, 4> tiny{1e-8, 1e-14, 1e-20, 1e-30};
+  constexpr int first_tiny = 48, end_of_tiny = 64;
+  const auto pair = static_cast<std::size_t>(k / 2);
+  const bool is_tiny = first_tiny <= k && k < end_of_tiny;
+  const double magnitude = is_tiny ? tiny[pair % tiny.size()] : magnitudes[pair % magnitudes.size()];
   Point point = blank_point(tape);
   for (const int index : variables) {
     const auto i = static_cast<std::size_t>(index);

@@ -16,7 +16,7 @@ namespace saltus::model {
 [[nodiscard]] std::vector<int> alpha_nodes(const Tape& tape, std::span<const int> roots, Links links);
 
 /// Start number k with the given variables set: every second one around the initial state, the others around 0; sizes
-/// from 1e-3 to 1e3.
+/// from 1e-3 to 1e3, some down to 1e-30.
 [[nodiscard]] Point start_point(const Tape& tape, std::span<const int> variables, int k);
 
 /// Moves points onto psi = level by Newton's method along the gradient; coordinates move in proportion to their size.

@@ -188,6 +188,14 @@ Expected<SXElem> Translation::branch(const expression::Call& call) {
 }
 
 Expected<Condition> Translation::condition(const Node& node) {
+  const auto* word = std::get_if<expression::Name>(&node.value);
+  if (word != nullptr && word->name == "otherwise") {
+    return tl::unexpected(Error{ErrorCode::invalid_model,
+                                "'otherwise' is no condition: it stands alone as the `when` of a mode",
+                                "write when = \"otherwise\", or the condition itself",
+                                node.location,
+                                {}});
+  }
   if (!is_condition(node)) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
                                 fmt::format("expected a condition, found the number '{}'", expression::to_text(node)),

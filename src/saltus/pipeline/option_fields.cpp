@@ -320,6 +320,9 @@ bool is_of_later_method(std::string_view key) {
   return table == "fesd" || table == "timestepping";
 }
 
+/// More rows than this do not fit into a result that anybody reads.
+constexpr double most_rows = 2e7;
+
 Error unknown_key(std::string_view key) {
   if (is_of_later_method(key)) {
     return later(fmt::format("[simulate.{}]", key.substr(0, key.find('.'))), "method = \"event\" or \"smoothed\"");
@@ -366,6 +369,15 @@ OptionRecord option_record(const SimulateOptions& options) {
   return record;
 }
 
+double number_of_rows(const OutputGrid& grid, double from, double until) {
+  if (const auto* points = std::get_if<NumberOfPoints>(&grid)) return static_cast<double>(points->points);
+  if (const auto* every = std::get_if<EveryInterval>(&grid)) {
+    return 1.0 + std::floor((until - from) / every->interval * (1.0 + 1e-12));
+  }
+  const auto* at = std::get_if<AtTimes>(&grid);
+  return at == nullptr ? 0.0 : static_cast<double>(at->times.size());
+}
+
 std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
   const auto problem = [](std::string key, std::string message, std::string remedy) {
     return OptionProblem{std::move(key), {ErrorCode::invalid_option, std::move(message), std::move(remedy), {}, {}}};
@@ -383,6 +395,17 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
   if (options.method == Method::smoothed && !options.initial_mode.empty()) {
     return problem("method", "initial_mode has no meaning for method \"smoothed\", which decides no modes",
                    "leave initial_mode out, or use method = \"event\"");
+  }
+  if (!std::isfinite(*options.until - options.from)) {
+    return problem("until", fmt::format("from {} to {} is longer than any number", options.from, *options.until),
+                   "choose other units of time");
+  }
+  const double rows = number_of_rows(options.output, options.from, *options.until);
+  if (!(rows <= most_rows)) {
+    const bool points = std::holds_alternative<NumberOfPoints>(options.output);
+    return problem(points ? "output.points" : "output.every", fmt::format("output of {:.3g} rows", rows),
+                   fmt::format("at most {:.0e} are possible: choose {}", most_rows,
+                               points ? "fewer points" : "a larger interval"));
   }
   if (const auto* grid = std::get_if<AtTimes>(&options.output)) {
     for (const double time : grid->times) {

@@ -49,8 +49,11 @@ struct OptionProblem {
   Error error;
 };
 
+/// Rows an output grid asks for between two times, both ends among them; 0 for every step.
+[[nodiscard]] double number_of_rows(const OutputGrid& grid, double from, double until);
+
 /// Checks the options against each other: `until` given and after `from`, rtol + atol > 0, output times within
-/// the span, no initial_mode where no modes are decided.
+/// the span and not too many, no initial_mode where no modes are decided.
 /// @return the first problem, or nullopt if a simulation may start.
 [[nodiscard]] std::optional<OptionProblem> find_problem(const SimulateOptions& options);
 

@@ -22,6 +22,23 @@ TEST(ErrorText, leaves_out_what_is_unknown) {
             "error: rtol = -1\n  need rtol > 0");
 }
 
+TEST(ErrorText, is_fit_for_a_terminal) {
+  const Error colours{ErrorCode::unknown_name, "unknown key 'a\x1b[31m\n'", "", {"m.toml", 1, 1}, {}};
+  EXPECT_EQ(to_text(colours), "m.toml:1:1: error: unknown key 'a\\x1b[31m\\x0a'");
+  std::string long_name;
+  for (int i = 0; i < 100000; ++i) long_name += "ü";
+  const Error endless{ErrorCode::unknown_name, "x" + long_name + "z", "", {}, {}};
+  const auto text = to_text(endless);
+  EXPECT_LT(text.size(), 2000U);
+  EXPECT_TRUE(text.starts_with("error: xüü")) << text.substr(0, 20);
+  EXPECT_TRUE(text.ends_with("üz"));
+  EXPECT_NE(text.find("ü … ü"), std::string::npos);  // no half of a character
+}
+
+TEST(NearestNames, names_of_any_length_are_compared_at_once) {
+  EXPECT_TRUE(nearest_names(std::string(std::size_t{1} << 24U, 'x'), {"x", "xxxx", "parameters"}).empty());
+}
+
 TEST(NearestNames, slips_are_near) {
   EXPECT_EQ(nearest_names("mu", {"x0", "mue", "g"}), Names{"mue"});
   EXPECT_EQ(nearest_names("tolernace", {"tolerance", "until"}), Names{"tolerance"});

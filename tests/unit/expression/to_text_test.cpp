@@ -27,17 +27,18 @@ void expect_texts(std::initializer_list<TextCase> cases) {
 }
 
 TEST(ToText, leaves_out_spaces) {
-  expect_texts({{"  v - 0.20 ", "v-0.2"},
+  expect_texts({{"  v - 0.20 ", "v-0.20"},
                 {"a -\n\t( b + c )", "a-(b+c)"},
                 {"((a)) * (b*c)", "(a)*(b*c)"},
                 {"max( a , b+1 )", "max(a,b+1)"},
                 {"a>0  and  not(b<1)", "a>0 and not (b<1)"},
                 {"x - 1e-9", "x-1e-9"},
-                {"1E5 + 100000", "100000+100000"},
-                {"6.02e+23", "6.02e23"},
+                {"x - 1e6 - 0.50", "x-1e6-0.50"},
+                {"1E5 + 100000", "1E5+100000"},
+                {"6.02e+23", "6.02e+23"},
                 {"- x ^ - 2", "-x^-2"},
                 {"road ( x )", "road(x)"},
-                {"1.5e-300 + 1e300 + .5 + 5.", "1.5e-300+1e300+0.5+5"}});
+                {"1.5e-300 + 1e300 + .5 + 5.", "1.5e-300+1e300+.5+5."}});
 }
 
 TEST(ToText, encloses_what_needs_it) {

@@ -37,6 +37,28 @@ TEST_F(AtomicFile, WritesWhatReadingGivesBackAndLeavesNothingElse) {
   EXPECT_EQ(number_of_files(), 1U);
 }
 
+TEST_F(AtomicFile, ALinkToAFileThatIsNotThereYetStaysALink) {
+  fs::create_symlink("new.json", at("link.json"));
+  fs::create_symlink(at("link.json"), at("second.json"));
+  EXPECT_EQ(target_of(at("second.json")), at("new.json"));
+  ASSERT_TRUE(write_file(at("second.json"), "content"));
+  EXPECT_TRUE(fs::is_symlink(at("second.json")));
+  EXPECT_FALSE(fs::is_symlink(at("new.json")));
+  EXPECT_EQ(*read_file(at("new.json")), "content");
+}
+
+TEST_F(AtomicFile, CirclesOfLinksAreRefused) {
+  fs::create_symlink("b.json", at("a.json"));
+  fs::create_symlink("a.json", at("b.json"));
+  EXPECT_FALSE(check_writable(at("a.json")));
+}
+
+TEST_F(AtomicFile, NamesThatNoFileCanHaveAreRefusedBeforeComputing) {
+  const auto writable = check_writable(at(std::string(300, 'r') + ".json"));
+  ASSERT_FALSE(writable);
+  EXPECT_NE(writable.error().message.find("File name too long"), std::string::npos) << writable.error().message;
+}
+
 TEST_F(AtomicFile, KeepsThePermissionsOfTheFileItReplacesAndTheLinkItIsNamedBy) {
   ASSERT_TRUE(write_file(at("real.csv"), "old"));
   ASSERT_EQ(::chmod(at("real.csv").c_str(), 0640), 0);

@@ -166,6 +166,29 @@ INSTANTIATE_TEST_SUITE_P(Quotes, ExpressionPosition,
                                          Placed{"\"\"\"a + b\"\"\"", 4, 12}, Placed{"'''a +\n  b'''", 5, 3},
                                          Placed{"\"\"\"\na +\n  b\"\"\"", 6, 3}, Placed{"'''\na + b'''", 5, 5},
                                          Placed{"'''\r\na + b'''", 5, 5}));
+// Behind escapes, too: the value is shorter than what stands in the file.
+INSTANTIATE_TEST_SUITE_P(Escapes, ExpressionPosition,
+                         testing::Values(Placed{R"("\u0061 + b")", 4, 15}, Placed{R"("a\t\u002b \U00000062")", 4, 16},
+                                         Placed{"\"\"\"a \\\n   + b\"\"\"", 5, 6},
+                                         Placed{"\"\"\"\r\na\\t +\r\n b\"\"\"", 6, 2}));
+
+TEST(TomlModel, ErrorsBehindAnEscapeNameTheirColumn) {
+  const auto model = parse_model("[model]\nname = 'm'\n[dynamics]\nx = \"\\u0061 + )\"\n", "m.toml");
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().location.line, 4);
+  EXPECT_EQ(model.error().location.column, 15);
+}
+
+TEST(TomlModel, AByteOrderMarkIsNoPartOfTheText) {
+  const std::string plain = "[model]\nname = 'm'\n";
+  const auto marked = parsed("\xEF\xBB\xBF" + plain);
+  EXPECT_EQ(marked.description.name, "m");
+  EXPECT_NE(marked.sha256, parsed(plain).sha256);  // the fingerprint is that of the bytes
+  const auto refused = parse_model("\xEF\xBB\xBFnam = 1\n", "m.toml");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().location.column, 1);
+  EXPECT_FALSE(parse_model("\xEF\xBB\xBF", "m.toml"));
+}
 
 TEST(TomlModel, NamesAndTablesCarryTheirPositions) {
   const auto model = parsed(whole);
@@ -173,6 +196,13 @@ TEST(TomlModel, NamesAndTablesCarryTheirPositions) {
   EXPECT_EQ(model.description.states[1].location.column, 1);
   EXPECT_EQ(model.description.states[1].initial->location.line, 13);
   EXPECT_EQ(model.description.events[1].location.line, 38);
+}
+
+TEST(TomlModel, TooManyRowsAreToldAtTheirOption) {
+  const auto checked = check_options(parsed("[model]\nname='m'\n[simulate]\nuntil = 1\noutput = { every = 1e-9 }\n"));
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().location.line, 5);
+  EXPECT_NE(checked.error().message.find("1e+09 rows"), std::string::npos) << checked.error().message;
 }
 
 TEST(TomlModel, ProblemsBetweenOptionsNameTheirPlace) {
@@ -289,6 +319,13 @@ INSTANTIATE_TEST_SUITE_P(Cases, RefusedSetting,
                                          Refused{"simulate.event.branches", "3", "a later one brings it"},
                                          Refused{"simulate.inputs.u", "sin(", "simulate.inputs.u"},
                                          Refused{"states.y", "1", "the model has no 'y'"},
+                                         Refused{"states.z.lowr", "1", "'lowr' is no part of 'z'"},
+                                         Refused{"dynamics.z.lower", "1", "other names have none"},
+                                         Refused{"modes.0.when", "x > 0", "nothing in 'modes' can be set"},
+                                         Refused{"events.returns.when", "z", "write a parameter there"},
+                                         Refused{"jumps.dose.delay", "1", "nothing in 'jumps' can be set"},
+                                         Refused{"spam.z", "1", "'spam' is no table of a model file"},
+                                         Refused{"simulate.fesd.stages", "3", "[simulate.fesd] is not available"},
                                          Refused{"statess.z", "1", "did you mean 'states'"},
                                          Refused{"dynamics.a", "1 +", "--set dynamics.a:1:"},
                                          Refused{"model.inclusion", "filipov", "did you mean 'filippov'"}));

@@ -15,6 +15,12 @@ TEST(Recognition, StepIsTheSelectionOfItsArgument) {
   for (const double alpha : {0.0, 0.3, 1.0}) EXPECT_EQ(value(system, system.f, {5.0}, {alpha}), alpha);
 }
 
+TEST(Recognition, UnnamedFunctionsAreNamedByTheirTextAsWritten) {
+  const System system =
+      built({.states = {{"x", "1"}}, .dynamics = {{"x", "if(x > 1e6 + 0.50, 1, 2) + sign( x - 2.0 )"}}});
+  EXPECT_EQ(columns(system), (Names{"x-(1e6+0.50)", "x-2.0"}));
+}
+
 TEST(Recognition, SignIsTwoStepsMinusOne) {
   const System system = built({.states = {{"x", "1"}}, .dynamics = {{"x", "2 - sign(x)"}}});
   EXPECT_EQ(columns(system), Names{"x"});

@@ -83,6 +83,19 @@ TEST(Surfaces, SmallJumpsBesideLargeTermsAreFound) {
   EXPECT_EQ(system.switching[0].role, SwitchingRole::listed);
 }
 
+// Charges in Coulomb, molecules in mol: what is small is for the model to say.
+TEST(Surfaces, JumpsOfModelsInSmallUnitsAreFound) {
+  for (const std::string jump : {"1e-15", "1e-19", "1e-25", "1e-30"}) {
+    const ModelText text{.states = {{"x", "1e-20"}, {"y", "0"}},
+                         .dynamics = {{"x", "-abs(x) - " + jump + "*sign(x)"}, {"y", "-x - " + jump + "*sign(y)"}}};
+    const System system = built(text);
+    EXPECT_EQ(columns(system), (Names{"x", "y"})) << jump;
+  }
+  const System kinks = built({.states = {{"x", "1e-20"}, {"y", "0"}},
+                              .dynamics = {{"x", "abs(x - 0.3) + max(x, y)"}, {"y", "1e-20*abs(abs(y) - 1) + 0.1"}}});
+  EXPECT_EQ(columns(kinks), Names{});
+}
+
 TEST(Surfaces, ASurfaceThatNeverIsReachedIsListed) {
   EXPECT_EQ(columns(built({.states = {{"x", "1"}}, .dynamics = {{"x", "sign(x^2 + 1)"}}})), Names{"x^2+1"});
   EXPECT_EQ(columns(built({.states = {{"x", "1"}}, .dynamics = {{"x", "sign(x^2)"}}})), Names{"x^2"});

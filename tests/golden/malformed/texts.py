@@ -1,0 +1,65 @@
+"""Files that are no text, no TOML, or more than a model file ever holds."""
+
+import random
+
+from malformed.base import GOOD, after, with_line
+
+FILES = {
+    # no text, or not the text it seems
+    "empty": ("", None, "the file is empty", "[states] and [dynamics]"),
+    "blank": ("\n \t\n", None, "the file is empty"),
+    "byte order mark and nothing else": (b"\xef\xbb\xbf\n", None, "the file is empty"),
+    "binary": (b"\x7fELF\x00\x01\x02", None, "this is no text file", "byte 4 is 0"),
+    "random bytes": (random.Random(4).randbytes(4096), None, "this is no text file"),
+    "random bytes without zero": (bytes(1 + byte % 255 for byte in random.Random(5).randbytes(4096)), "1:4",
+                                  "not valid UTF-8: byte 3 is 0xA0"),
+    "zero byte at the end": (GOOD.encode() + b"\x00", None, "this is no text file", f"byte {len(GOOD)} is 0"),
+    "utf-16": (GOOD.encode("utf-16"), None, "UTF-16", "save it as UTF-8"),
+    "utf-16 the other way round": (b"\xfe\xff" + GOOD.encode("utf-16-be"), None, "UTF-16"),
+    "latin-1": (GOOD.encode() + b"# \xe9t\xe9\n", 13, "not valid UTF-8", "save it as UTF-8"),
+    "latin-1 in a name": (GOOD.encode() + b"[outputs]\n\xe4 = 'x'\n", "14:1", "not valid UTF-8"),
+    "half a character": (GOOD.encode() + b"# \xe2\x82\n", 13, "not valid UTF-8"),
+    "control character": (with_line(9, 'x = "v\x01"'), "9:7", "not valid TOML", "control"),
+    "other language": ("def f(x):\n    return -x\n", "1:5", "not valid TOML"),
+    "json": ('{"model": {"name": "m"}}\n', "1:1", "not valid TOML"),
+    # not TOML
+    "unclosed string": (with_line(9, 'x = "v'), 9, "not valid TOML"),
+    "unclosed string of many lines": (with_line(9, 'x = """v'), 12, "not valid TOML"),
+    "unclosed table": (with_line(5, "[states"), 5, "not valid TOML"),
+    "unclosed inline table": (with_line(6, "x = { initial = 1"), 6, "not valid TOML"),
+    "unclosed list": (after("output.times = [0, 1\n"), 13, "not valid TOML"),
+    "list with two commas": (after("output.times = [0,, 1]\n"), "13:19", "not valid TOML"),
+    "no value": (with_line(6, "x ="), 6, "not valid TOML"),
+    "no equals sign": (with_line(6, "x 1"), 6, "not valid TOML"),
+    "two values in a line": (with_line(6, "x = 1 v = 0"), 6, "not valid TOML"),
+    "bad escape": (with_line(9, r'x = "v \ 2"'), 9, "not valid TOML"),
+    "bad character code": (with_line(9, r'x = "\uD800"'), 9, "not valid TOML"),
+    "curly quotes": (with_line(9, "x = “v”"), 9, "not valid TOML"),
+    "bare expression": (with_line(9, "x = -v"), 9, "expressions stand in quotes"),
+    "bare function": (with_line(9, "x = sin(t)"), 9, "expressions stand in quotes"),
+    "bare fraction": (with_line(4, "mu = 4/5"), 4, "expressions stand in quotes"),
+    "decimal comma": (with_line(4, "mu = 0,8"), 4, "not valid TOML"),
+    "number without zero": (with_line(4, "mu = .8"), 4, "not valid TOML"),
+    "number beyond doubles": (with_line(6, "x = 1e999"), 6, "not valid TOML"),
+    "integer beyond 64 bits": (with_line(6, "x = 123456789012345678901234567890"), 6, "not valid TOML"),
+    "leading zeros": (with_line(6, "x = 007"), 6, "not valid TOML"),
+    "true in capitals": (after("[[events]]\nwhen = 'x'\nstop = True\n"), 15, "not valid TOML"),
+    "key twice": (with_line(7, "x = 0"), "7:5", "cannot redefine existing integer 'x'", "stands once in its table"),
+    "key twice in one table": (with_line(6, "x = { initial = 1, initial = 2 }"), 6, "not valid TOML"),
+    "table twice": (after("[states]\ny = 1\n"), "13:1", "cannot redefine existing table 'states'"),
+    "table and list of tables": (after("[[states]]\ny = 1\n"), 13, "not valid TOML"),
+    "key and table": ("simulate = 3\n[simulate]\nuntil = 1\n", 2, "not valid TOML"),
+    # CRLF and a byte order mark move no line and no column
+    "line ends of Windows": (GOOD.replace("\n", "\r\n").replace("mu*sign", "nu*sign"), "10:11", "unknown name 'nu'"),
+    "byte order mark": (b"\xef\xbb\xbf" + GOOD.replace("[model]", "[modl]").encode(), "1:2", "unknown table [modl]"),
+    # huge
+    "key without end": (after(".".join(["a"] * 20000) + " = 1\n"), None, "a key has more than 32 parts"),
+    "quoted key without end": (after(".".join(['"a"'] * 20000) + " = 1\n"), None, "a key has more than 32 parts"),
+    "brackets without end": (after("x = " + "[" * 10000), 13, "not valid TOML"),
+    "tables without end": (after("x = " + "{ a = " * 1000), 13, "not valid TOML"),
+    "ten megabytes of comments": ("# comment\n" * 1_000_000, 1, "no table [model]"),
+    "ten megabytes in a line": ("#" * 10_000_000, 1, "no table [model]"),
+    "ten megabytes of expression": (with_line(9, 'x = "' + "v + " * 2_500_000 + 'v"'), "9:6", "at most 65536 are read"),
+    "key of ten megabytes": (after("a" * 10_000_000 + " = 1\n"), "13:1", "unknown option simulate.aaa"),
+    "seventeen megabytes": ("#" * (17 << 20), None, "too large for a model", "at most 16777216 bytes"),
+}
