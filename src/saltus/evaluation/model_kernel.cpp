@@ -10,10 +10,13 @@
 #include <casadi/core/code_generator.hpp>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/evaluation/affine_functions_internal.hpp"
+#include "saltus/evaluation/field_split_internal.hpp"
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
 #include "saltus/evaluation/model_function_internal.hpp"
 #include "saltus/evaluation/native_code.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
 namespace {
@@ -48,11 +51,13 @@ struct Gradient {
 /// xdot = f, free or with guards held, and what follows from it.
 struct Motion {
   SX f;
-  ModelFunction field;
-  ModelFunction pressure;  ///< of the holds; null without
+  ModelFunction field;      ///< of t, x and the constants
+  ModelFunction constants;  ///< of p and alpha
+  ModelFunction pressure;   ///< of the holds; null without
   std::vector<std::vector<bool>> depends;
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
   std::map<std::pair<int, int>, SX> lie_expressions;
+  std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
 };
 
 struct ModelKernel::Implementation {
@@ -66,6 +71,8 @@ struct ModelKernel::Implementation {
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
   JumpFunctions jumps;
   std::vector<bool> affine, time_only;
+  AffineRowFunctions affine_rows;
+  FieldConstants constants;  ///< work space of field()
   std::vector<std::vector<int>> inner;
   std::vector<Gradient> gradients;  ///< one per event function, compiled when first asked for
   Motion free;
@@ -83,7 +90,9 @@ struct ModelKernel::Implementation {
 
   explicit Implementation(const model::System& system);
   SX phi_row(int j) const { return phi(j); }
+  ModelSymbols symbols() const { return {t, x, p, alpha}; }
   SX lie_expression(int j, int order);
+  void compile_field(Motion& target, const std::string& name) const;
   void find_structure();
   [[nodiscard]] std::vector<std::vector<bool>> normal_dependencies(const SX& f) const;
   [[nodiscard]] Expected<Motion> compile_held(const std::vector<int>& functions) const;
@@ -102,14 +111,14 @@ constexpr double compile_after = 1e8;
 void ModelKernel::Implementation::write_source() {
   if (!source.empty()) return;
   casadi::CodeGenerator generator("saltus_model.c", {{"with_header", false}});
-  for (const auto* function : {&free.field, &functions, &scales, &output_function, &input_function}) {
+  for (const auto* function : {&free.field, &free.constants, &functions, &scales, &output_function, &input_function}) {
     generator.add(function->function());
   }
   source = generator.dump();
 }
 
 void ModelKernel::Implementation::use(NativeLibrary loaded) {
-  for (auto* function : {&free.field, &functions, &scales, &output_function, &input_function}) {
+  for (auto* function : {&free.field, &free.constants, &functions, &scales, &output_function, &input_function}) {
     function->use_native(reinterpret_cast<ModelFunction::Native>(loaded.symbol(function->function().name())));
   }
   library = std::move(loaded);
@@ -170,7 +179,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   gradients.resize(index(static_cast<int>(phi.numel())));
 
   const std::vector<SX> arguments{t, x, p, alpha};
-  free.field = ModelFunction("saltus_field", arguments, {free.f});
+  compile_field(free, "saltus_field");
   functions = ModelFunction("saltus_functions", arguments, {phi});
   output_function = ModelFunction("saltus_outputs", arguments, {outputs});
   input_function = ModelFunction("saltus_inputs", arguments, {input});
@@ -185,19 +194,15 @@ ModelKernel::Implementation::Implementation(const model::System& system)
 
 void ModelKernel::Implementation::find_structure() {
   const int n_phi = static_cast<int>(phi.numel());
-  affine.assign(index(n_phi), true);
+  affine = affine_entries(phi, symbols());
+  affine_rows = AffineRowFunctions(phi, symbols(), affine);
   time_only.assign(index(n_phi), true);
   inner = dependencies(phi, alpha);
   const auto on_states = dependencies(phi, x);
   const auto is_discrete = [&](int state) { return static_cast<bool>(discrete[index(state)]); };
-  if (n_phi > 0) {
-    const SX arguments = SX::vertcat({x, t});
-    const auto nonlinear = SX::which_depends(phi, arguments, 2, true);
-    for (int j = 0; j < n_phi; ++j) {
-      affine[index(j)] = !nonlinear[index(j)];
-      const auto& states = on_states[index(j)];
-      time_only[index(j)] = std::all_of(states.begin(), states.end(), is_discrete);
-    }
+  for (int j = 0; j < n_phi; ++j) {
+    const auto& states = on_states[index(j)];
+    time_only[index(j)] = std::all_of(states.begin(), states.end(), is_discrete);
   }
   free.depends = normal_dependencies(free.f);
 }
@@ -223,13 +228,18 @@ Expected<Motion> ModelKernel::Implementation::compile_held(const std::vector<int
   }
   auto expressions = held_motion(t, x, free.f, guards);
   if (!expressions) return tl::unexpected(expressions.error());
-  const std::vector<SX> arguments{t, x, p, alpha};
   Motion result;
   result.f = expressions->f;
-  result.field = ModelFunction("held_field", arguments, {expressions->f});
-  result.pressure = ModelFunction("hold_pressure", arguments, {expressions->pressure});
+  compile_field(result, "held_field");
+  result.pressure = ModelFunction("hold_pressure", {t, x, p, alpha}, {expressions->pressure});
   result.depends = normal_dependencies(result.f);
   return result;
+}
+
+void ModelKernel::Implementation::compile_field(Motion& target, const std::string& name) const {
+  const FieldSplit split = split_field(target.f, symbols());
+  target.field = ModelFunction(name, {t, x, split.symbols}, {split.varying});
+  target.constants = ModelFunction(name + "_constants", {p, alpha}, {split.constants});
 }
 
 void ModelKernel::Implementation::compile_conditions(const model::System& system) {
@@ -294,10 +304,27 @@ long ModelKernel::field_evaluations() const { return implementation_->field_eval
 
 void ModelKernel::field(double t, const double* x, const double* alpha, double* xdot) const {
   auto& self = *implementation_;
+  prepare_field(alpha, self.constants);
+  prepared_field(t, x, self.constants, xdot);
+}
+
+void ModelKernel::prepare_field(const double* alpha, FieldConstants& constants) const {
+  auto& self = *implementation_;
+  auto& function = self.motion->constants;
+  constants.values.resize(index(static_cast<int>(function.function().numel_out(0))));
+  constants.alpha.assign(alpha, alpha + self.n_psi);
+  constants.motion = self.motion;
+  self.count(function);
+  function(std::array<const double*, 2>{self.parameters.data(), alpha},
+           std::array<double*, 1>{constants.values.data()});
+}
+
+void ModelKernel::prepared_field(double t, const double* x, const FieldConstants& constants, double* xdot) const {
+  auto& self = *implementation_;
+  if (constants.motion != self.motion) return field(t, x, constants.alpha.data(), xdot);
   ++self.field_evaluations;
-  auto& field = self.motion->field;
-  self.count(field);
-  field(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{xdot});
+  self.count(self.motion->field);
+  self.motion->field(std::array<const double*, 3>{&t, x, constants.values.data()}, std::array<double*, 1>{xdot});
 }
 
 void ModelKernel::functions(double t, const double* x, const double* alpha, double* values) const {
@@ -419,6 +446,21 @@ void ModelKernel::hold_pressure(double t, const double* x, const double* alpha, 
 }
 
 bool ModelKernel::is_affine(int function) const { return implementation_->affine[index(function)]; }
+void ModelKernel::affine_rows(const double* alpha, AffineRows& rows) const {
+  implementation_->affine_rows.fill(implementation_->parameters.data(), alpha, rows);
+}
+
+bool ModelKernel::lie_row(int function, FixedState fixed, const double* alpha, AffineRow& row) const {
+  auto& self = *implementation_;
+  const auto [entry, is_new] = self.motion->lie_rows.try_emplace({function, fixed.component});
+  if (is_new) {
+    entry->second = AffineRowFunction(self.lie_expression(function, 1), self.symbols(), fixed.component);
+  }
+  if (!entry->second.is_affine()) return false;
+  entry->second.fill(fixed, self.parameters.data(), alpha, row);
+  return true;
+}
+
 bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[index(function)]; }
 const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[index(function)]; }
 bool ModelKernel::depends(int surface, int alpha) const {

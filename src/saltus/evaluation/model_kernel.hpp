@@ -1,11 +1,15 @@
 // The model as plain functions of doubles: fields, switching functions, their derivatives. No CasADi in sight.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/system.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::evaluation {
 
@@ -19,6 +23,35 @@ enum class NativeCode { automatic, on, off };
 struct Hold {
   int jump = 0;
   int function = 0;  ///< event function of the guard g
+};
+
+/// Rows of the event functions that are affine in (t, x): phi_j = offset_j + rate_j t + sum_k coefficient_k
+/// x_(column_k), k = start_j ... start_(j+1) - 1. The others have an empty row and NaN as their offset.
+struct AffineRows {
+  std::vector<std::size_t> start;
+  std::vector<std::size_t> column;
+  std::vector<double> coefficient;
+  std::vector<double> rate, offset;
+};
+
+/// A row that has been computed for one function: n_x coefficients, those of a component held fixed in the offset.
+struct AffineRow {
+  std::vector<double> coefficient;
+  double rate = 0.0;
+  double offset = 0.0;
+};
+
+/// A state that a mode keeps constant; component -1 = none.
+struct FixedState {
+  int component = -1;
+  double value = 0.0;
+};
+
+/// What a right-hand side needs of its parameters and selections; filled by ModelKernel::prepare_field.
+struct FieldConstants {
+  std::vector<double> values;
+  std::vector<double> alpha;     ///< what they were made of
+  const void* motion = nullptr;  ///< free or held
 };
 
 /// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons
@@ -46,6 +79,11 @@ class ModelKernel {
 
   /// xdot = f(t, x, u(t), p, alpha).
   void field(double t, const double* x, const double* alpha, double* xdot) const;
+  /// The same in two parts, bit for bit: what f makes of p and alpha alone, kept by the caller for as long as the
+  /// selections stay, and the rest. However many selections f sums up, an evaluation pays for none of them (for all
+  /// where hold() has changed the motion since).
+  void prepare_field(const double* alpha, FieldConstants& constants) const;
+  void prepared_field(double t, const double* x, const FieldConstants& constants, double* xdot) const;
   /// Values of all event functions.
   void functions(double t, const double* x, const double* alpha, double* values) const;
   /// Magnitudes from which rounding and tolerances of event functions follow, each over all event functions:
@@ -83,8 +121,12 @@ class ModelKernel {
   /// only one, and in general of its sign while the guard is pressed on; release where it passes 0. Only while holding.
   void hold_pressure(double t, const double* x, const double* alpha, double* pressure) const;
 
-  /// Whether phi_j is affine in (t, x) for fixed alpha.
+  /// Whether phi_j is affine in (t, x) for fixed alpha: by its operations, so floor or a comparison never is.
   [[nodiscard]] bool is_affine(int function) const;
+  /// Rows of all affine event functions for these selections. Allocates the first time `rows` is filled.
+  void affine_rows(const double* alpha, AffineRows& rows) const;
+  /// L phi_j along f(., alpha) as a row, if it is affine in t and the states that are not fixed; false if it is not.
+  [[nodiscard]] bool lie_row(int function, FixedState fixed, const double* alpha, AffineRow& row) const;
   /// Whether phi_j depends on t and discrete states only (for fixed alpha): between jumps it is a function of time,
   /// which no selection changes, so that nothing slides on it.
   [[nodiscard]] bool is_time_only(int function) const;

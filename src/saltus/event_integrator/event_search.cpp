@@ -15,6 +15,21 @@ constexpr int deepest = 10;  // a step is cut into at most 2^10 pieces before it
 
 int sign_of(double value) { return value > 0.0 ? 1 : value < 0.0 ? -1 : 0; }
 
+/// cos(pi degree (n - k) / n) of the last two degrees.
+const std::array<std::array<double, ode::event_nodes>, 2>& tail_cosines() {
+  static const auto table = [] {
+    constexpr int n = ode::event_degree;
+    std::array<std::array<double, ode::event_nodes>, 2> cosines{};
+    for (int k = 0; k <= n; ++k) {
+      for (int last = 0; last < 2; ++last) {
+        cosines[at(last)][at(k)] = std::cos(std::numbers::pi * (n - 1 + last) * (n - k) / n);
+      }
+    }
+    return cosines;
+  }();
+  return table;
+}
+
 /// Size of the last two Chebyshev coefficients of an interpolant: what the next ones may be expected to be.
 double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
   constexpr int n = ode::event_degree;
@@ -23,7 +38,7 @@ double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
     double sum = 0.0;
     for (int k = 0; k <= n; ++k) {
       const double weight = (k == 0 || k == n) ? 0.5 : 1.0;
-      sum += weight * values[at(k)] * std::cos(std::numbers::pi * degree * (n - k) / n);
+      sum += weight * values[at(k)] * tail_cosines()[at(degree - n + 1)][at(k)];
     }
     tail += std::abs(sum) * (degree == n ? 1.0 : 2.0) / n;
   }
@@ -60,10 +75,15 @@ double slope_at(const ode::BernsteinCoefficients& coefficients, double theta) {
 
 EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
                          const ode::Tolerances& tolerances)
-    : kernel_(kernel), field_(field), five_nodes_suffice_(ode::dense_degree(method) <= 4), tolerances_(tolerances) {
+    : kernel_(kernel),
+      field_(field),
+      five_nodes_suffice_(ode::dense_degree(method) <= 4),
+      tolerances_(tolerances),
+      forms_(at(kernel.states())) {
+  for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
   const auto n_phi = at(kernel.event_functions());
   for (auto* vector : {&phi_, &phi_below_, &phi_above_, &magnitude_, &slope_}) vector->resize(n_phi);
-  x_.resize(at(kernel.states()));
+  for (auto* vector : {&x_, &low_, &high_}) vector->resize(at(kernel.states()));
   user_sign_.assign(n_phi - at(kernel.switching_functions()), 0);
   user_vanishes_.assign(user_sign_.size(), false);
 }
@@ -81,14 +101,17 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   state_ = state;
   start_at(t);
   functions_.clear();
+  nested_ = false;
   const int n_psi = kernel_.switching_functions();
   for (int j = 0; j < n_psi; ++j) {
     if (state.mode[at(j)] == 0) continue;
-    const auto& inner = kernel_.inner(j);
-    const bool around_sliding = std::any_of(inner.begin(), inner.end(), [&](int i) { return state.mode[at(i)] == 0; });
-    if (around_sliding && state.sliding.size() == 1) {
+    const bool around_sliding =
+        nesting_[at(j)] && state.sliding.size() == 1 &&
+        std::any_of(kernel_.inner(j).begin(), kernel_.inner(j).end(), [&](int i) { return state.mode[at(i)] == 0; });
+    if (around_sliding) {
       const int below = state.corner_alpha[0][at(j)] > 0.5 ? 1 : -1;
       const int above = state.corner_alpha[1][at(j)] > 0.5 ? 1 : -1;
+      nested_ = true;
       functions_.push_back({FunctionKind::nested_below, j, 0, below, zero_order[at(j)]});
       functions_.push_back({FunctionKind::nested_above, j, 0, above, zero_order[at(j)]});
     } else {
@@ -117,18 +140,15 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   for (std::size_t row = 0; row < held_.size(); ++row) {
     functions_.push_back({FunctionKind::release, held_[row].hold.function, static_cast<int>(row), held_[row].inward});
   }
-  // Functions that are not affine in the state may oscillate within a step: five nodes do not speak for them.
-  prefilter_.clear();
-  for (const auto& function : functions_) {
-    prefilter_.push_back(five_nodes_suffice_ && (!uses_phi(function) || kernel_.is_affine(function.index)));
-  }
+  set_forms(x);
   noise_.assign(functions_.size(), 0.0);
   accuracy_.assign(functions_.size(), 0.0);
   point_.resize(functions_.size());
   samples_.resize(functions_.size() * ode::event_nodes);
+  for (auto* list : {&suspects_, &special_, &curved_}) list->reserve(functions_.size());
   rescale(t, x);
-  read_user_signs(t, x);
   evaluate(t, x, point_);
+  read_user_signs();
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     auto& function = functions_[i];
     const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
@@ -139,10 +159,72 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
     // zero of this start.
     if (function.zero_order > 0) function.offset = point_[i];
   }
+  sort_functions();
 }
 
-void EventSearch::read_user_signs(double t, const double* x) {
-  evaluate(t, x, point_);
+/// The affine functions of the mode as forms. Selections of a mode are constants, so a function that holds some is
+/// affine if it is for each value of theirs.
+void EventSearch::set_forms(const double* x) {
+  const bool selections = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
+  if (rows_[0].start.empty() || selections) {
+    kernel_.affine_rows(state_.alpha.data(), rows_[0]);
+    forms_.load(rows_[0]);
+  }
+  if (nested_) {
+    kernel_.affine_rows(state_.corner_alpha[0].data(), rows_[1]);
+    kernel_.affine_rows(state_.corner_alpha[1].data(), rows_[2]);
+  }
+  forms_.reset(functions_.size());
+  curved_.clear();
+  curved_phi_ = curved_exits_ = false;
+  prefilter_.assign(functions_.size(), false);
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    const auto& function = functions_[i];
+    switch (function.kind) {
+      case FunctionKind::surface:
+      case FunctionKind::user:
+        forms_.use_row(i, at(function.index));
+        break;
+      case FunctionKind::nested_below:
+        forms_.set(i, rows_[1], at(function.index));
+        break;
+      case FunctionKind::nested_above:
+        forms_.set(i, rows_[2], at(function.index));
+        break;
+      case FunctionKind::exit_below:
+      case FunctionKind::exit_above: {
+        const auto side = function.kind == FunctionKind::exit_below ? Region::below : Region::above;
+        if (field_.exit_row(at(function.row), side, x, row_)) forms_.set(i, row_);
+        break;
+      }
+      case FunctionKind::loss:
+      case FunctionKind::release:
+        break;
+    }
+    if (forms_.has(i)) continue;
+    curved_.push_back(i);
+    (uses_phi(function) ? curved_phi_ : curved_exits_) = true;
+    // Functions that are not affine in the state may oscillate within a step: five nodes do not speak for them.
+    prefilter_[i] = five_nodes_suffice_ && !uses_phi(function);
+  }
+}
+
+/// What is watched by its form, and what is looked at in every step because its start is special.
+void EventSearch::sort_functions() {
+  forms_.watch_none();
+  special_.clear();
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    const auto& function = functions_[i];
+    if (function.sign == 0 || function.zero_order != 0 || function.offset != 0.0) {
+      special_.push_back(i);
+    } else if (forms_.has(i)) {
+      forms_.watch(i, function.sign);
+    }
+  }
+}
+
+/// From the values in point_.
+void EventSearch::read_user_signs() {
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     auto& function = functions_[i];
     if (function.kind != FunctionKind::user) continue;
@@ -164,103 +246,148 @@ void EventSearch::rescale(double t, const double* x) {
   kernel_.scales(t, x, state_.alpha.data(), magnitude_.data(), slope_.data());
   if (!exits_.empty()) field_.exits(t, x, exits_.data());
   find_pressure(t, x);
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    const auto& function = functions_[i];
-    if (uses_phi(function)) {
-      const auto j = at(function.index);
-      // A handful of roundings of terms as large as the magnitude.
-      noise_[i] = 8.0 * epsilon * magnitude_[j];
-      accuracy_[i] = 0.1 * (tolerances_.atol * slope_[j] + tolerances_.rtol * magnitude_[j]);
-    } else if (function.kind == FunctionKind::release) {
-      const double size = std::abs(pressure_[at(function.row)]);
-      noise_[i] = 32.0 * epsilon * size;
-      accuracy_[i] = 0.1 * tolerances_.rtol * size;
-    } else {
-      const auto& exit = exits_[at(function.row)];
-      const double size =
-          function.kind == FunctionKind::loss ? std::abs(exit.loss) : std::abs(exit.below) + std::abs(exit.above);
-      noise_[i] = 32.0 * epsilon * size;
-      // Near a two-fold point both fields vanish, but not the terms they are the sum of.
-      if (field_.solve() == SlidingSolve::decoupled) {
-        noise_[i] = std::max(noise_[i], 8.0 * epsilon * field_.normal_terms(at(function.row)));
-      }
-      accuracy_[i] = 0.1 * tolerances_.rtol * size;
-    }
-    if (!std::isfinite(noise_[i])) noise_[i] = 0.0;
-    accuracy_[i] = std::isfinite(accuracy_[i]) ? std::max(accuracy_[i], noise_[i]) : 0.0;
-  }
+  for (std::size_t i = 0; i < functions_.size(); ++i) set_noise(i);
 }
 
-void EventSearch::evaluate(double t, const double* x, std::vector<double>& values) {
-  kernel_.functions(t, x, state_.alpha.data(), phi_.data());
-  const bool nested = std::any_of(functions_.begin(), functions_.end(), [](const EventFunction& function) {
-    return function.kind == FunctionKind::nested_below;
-  });
-  if (nested) {
+void EventSearch::set_noise(std::size_t i) {
+  const auto& function = functions_[i];
+  if (uses_phi(function)) {
+    const auto j = at(function.index);
+    // A handful of roundings of terms as large as the magnitude.
+    noise_[i] = 8.0 * epsilon * magnitude_[j];
+    accuracy_[i] = 0.1 * (tolerances_.atol * slope_[j] + tolerances_.rtol * magnitude_[j]);
+  } else if (function.kind == FunctionKind::release) {
+    const double size = std::abs(pressure_[at(function.row)]);
+    noise_[i] = 32.0 * epsilon * size;
+    accuracy_[i] = 0.1 * tolerances_.rtol * size;
+  } else {
+    const auto& exit = exits_[at(function.row)];
+    const double size =
+        function.kind == FunctionKind::loss ? std::abs(exit.loss) : std::abs(exit.below) + std::abs(exit.above);
+    noise_[i] = 32.0 * epsilon * size;
+    // Near a two-fold point both fields vanish, but not the terms they are the sum of.
+    if (field_.solve() == SlidingSolve::decoupled) {
+      noise_[i] = std::max(noise_[i], 8.0 * epsilon * field_.normal_terms(at(function.row)));
+    }
+    accuracy_[i] = 0.1 * tolerances_.rtol * size;
+  }
+  if (!std::isfinite(noise_[i])) noise_[i] = 0.0;
+  accuracy_[i] = std::isfinite(accuracy_[i]) ? std::max(accuracy_[i], noise_[i]) : 0.0;
+}
+
+void EventSearch::evaluate_parts(double t, const double* x, Needed needed) {
+  const bool phi = needed == Needed::all || curved_phi_;
+  if (phi) kernel_.functions(t, x, state_.alpha.data(), phi_.data());
+  if (phi && nested_) {
     kernel_.functions(t, x, state_.corner_alpha[0].data(), phi_below_.data());
     kernel_.functions(t, x, state_.corner_alpha[1].data(), phi_above_.data());
   }
-  if (!exits_.empty()) field_.exits(t, x, exits_.data());
-  find_pressure(t, x);
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    const auto& function = functions_[i];
-    switch (function.kind) {
-      case FunctionKind::surface:
-      case FunctionKind::user:
-        values[i] = phi_[at(function.index)];
-        break;
-      case FunctionKind::nested_below:
-        values[i] = phi_below_[at(function.index)];
-        break;
-      case FunctionKind::nested_above:
-        values[i] = phi_above_[at(function.index)];
-        break;
-      case FunctionKind::exit_below:
-        values[i] = exits_[at(function.row)].below;
-        break;
-      case FunctionKind::exit_above:
-        values[i] = exits_[at(function.row)].above;
-        break;
-      case FunctionKind::loss:
-        values[i] = exits_[at(function.row)].loss;
-        break;
-      case FunctionKind::release:
-        values[i] = pressure_[at(function.row)];
-        break;
-    }
-    values[i] -= function.offset;
+  if (needed == Needed::all || curved_exits_) {
+    if (!exits_.empty()) field_.exits(t, x, exits_.data());
+    find_pressure(t, x);
   }
 }
 
-void EventSearch::sample_node(const ode::DenseStep& step, double theta, std::size_t node) {
+/// Value of function i at the point that evaluate_parts was last called with.
+double EventSearch::part(std::size_t i) const {
+  const auto& function = functions_[i];
+  switch (function.kind) {
+    case FunctionKind::surface:
+    case FunctionKind::user:
+      return phi_[at(function.index)] - function.offset;
+    case FunctionKind::nested_below:
+      return phi_below_[at(function.index)] - function.offset;
+    case FunctionKind::nested_above:
+      return phi_above_[at(function.index)] - function.offset;
+    case FunctionKind::exit_below:
+      return exits_[at(function.row)].below - function.offset;
+    case FunctionKind::exit_above:
+      return exits_[at(function.row)].above - function.offset;
+    case FunctionKind::loss:
+      return exits_[at(function.row)].loss - function.offset;
+    case FunctionKind::release:
+      return pressure_[at(function.row)] - function.offset;
+  }
+  __builtin_unreachable();
+}
+
+void EventSearch::evaluate(double t, const double* x, std::vector<double>& values) {
+  evaluate_parts(t, x, Needed::all);
+  for (std::size_t i = 0; i < functions_.size(); ++i) values[i] = part(i);
+}
+
+void EventSearch::sample_node(const ode::DenseStep& step, double theta, std::size_t node,
+                              const std::vector<std::size_t>& which) {
+  const double t = step.t + theta * step.h;
   step.evaluate(theta, x_.data());
-  evaluate(step.t + theta * step.h, x_.data(), point_);
-  std::copy(point_.begin(), point_.end(), samples_.begin() + static_cast<std::ptrdiff_t>(node * functions_.size()));
+  if (!curved_.empty()) evaluate_parts(t, x_.data(), Needed::curved);
+  double* samples = samples_.data() + node * functions_.size();
+  for (const std::size_t i : which) {
+    samples[i] = forms_.has(i) ? forms_.value(i, t, x_.data()) - functions_[i].offset : part(i);
+  }
 }
 
 double EventSearch::node_theta(double from, double to, std::size_t node) const {
   return node == ode::event_degree ? to : from + (to - from) * ode::interpolation_nodes()[node];
 }
 
-/// Every second node: enough to see that all functions stay far from zero, which is the case in most steps.
-bool EventSearch::all_far(const ode::DenseStep& step) {
+/// Whether the samples at every second node show that a curved function stays far from zero.
+bool EventSearch::is_far(std::size_t i) const {
   // NOTE: a dense output of degree 7 dips between five nodes (the relay loses events at loose tolerances).
-  for (std::size_t node = 0; node < ode::event_nodes; node += 2) sample_node(step, node_theta(0.0, 1.0, node), node);
-  if (!five_nodes_suffice_) return false;
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    if (functions_[i].sign == 0 || functions_[i].zero_order != 0 || !prefilter_[i]) return false;
-    const auto value = [&](std::size_t node) { return samples_[node * functions_.size() + i]; };
-    if (!stays_far({value(0), value(2), value(4), value(6), value(8)}, functions_[i].sign)) return false;
+  if (!prefilter_[i] || functions_[i].sign == 0 || functions_[i].zero_order != 0) return false;
+  const auto value = [&](std::size_t node) { return samples_[node * functions_.size() + i]; };
+  return stays_far({value(0), value(2), value(4), value(6), value(8)}, functions_[i].sign);
+}
+
+bool EventSearch::may_vanish(const ode::Stepper& stepper) {
+  if (functions_.empty()) return false;
+  if (!curved_.empty() || !special_.empty()) return true;
+  if (!stepper.bounds(low_.data(), high_.data())) return true;
+  bounds_ = {stepper.start_time(), stepper.start_time() + stepper.length(), low_.data(), high_.data()};
+  return forms_.may_vanish(bounds_);
+}
+
+/// The functions that the exact search has to look at.
+void EventSearch::find_suspects(const ode::DenseStep& step) {
+  suspects_.clear();
+  bounds_ = {step.t, step.t + step.h, low_.data(), high_.data()};
+  step.bounds(low_.data(), high_.data());
+  forms_.append_suspects(bounds_, suspects_);
+  for (const std::size_t i : special_) {
+    if (forms_.has(i)) suspects_.push_back(i);
   }
-  return true;
+  if (!curved_.empty()) {
+    if (five_nodes_suffice_) {
+      for (std::size_t node = 0; node < ode::event_nodes; node += 2) {
+        sample_node(step, node_theta(0.0, 1.0, node), node, curved_);
+      }
+    }
+    for (const std::size_t i : curved_) {
+      if (!is_far(i)) suspects_.push_back(i);
+    }
+  }
+  std::sort(suspects_.begin(), suspects_.end());
 }
 
 SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
-  if (functions_.empty() || all_far(step)) return SearchOutcome::none;
+  if (functions_.empty()) return SearchOutcome::none;
+  find_suspects(step);
+  if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
-  rescale(step.t, x_.data());
-  for (std::size_t node = 1; node < ode::event_nodes; node += 2) sample_node(step, node_theta(0.0, 1.0, node), node);
-  return search_interval(step, 0.0, 1.0, 0, hit);
+  kernel_.scales(step.t, x_.data(), state_.alpha.data(), magnitude_.data(), slope_.data());
+  const bool exits = std::any_of(suspects_.begin(), suspects_.end(), [&](auto i) { return !uses_phi(functions_[i]); });
+  if (exits && !exits_.empty()) field_.exits(step.t, x_.data(), exits_.data());
+  if (exits) find_pressure(step.t, x_.data());
+  for (const std::size_t i : suspects_) set_noise(i);
+  for (std::size_t node = 0; node < ode::event_nodes; ++node) {
+    sample_node(step, node_theta(0.0, 1.0, node), node, suspects_);
+  }
+  const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
+  if (outcome == SearchOutcome::hit) {  // its location asks for the noise of every function
+    step.evaluate(0.0, x_.data());
+    rescale(step.t, x_.data());
+  }
+  return outcome;
 }
 
 /// Whether the interpolant of function i misses the function's values between the nodes.
@@ -271,8 +398,8 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
     const double local = ode::check_nodes()[place];
     const double theta = from + (to - from) * local;
     step.evaluate(theta, x_.data());
-    evaluate(step.t + theta * step.h, x_.data(), point_);
-    if (!(std::abs(point_[i] - ode::evaluate(coefficients, local)) <= accuracy)) return true;
+    evaluate_parts(step.t + theta * step.h, x_.data(), Needed::curved);
+    if (!(std::abs(part(i) - ode::evaluate(coefficients, local)) <= accuracy)) return true;
   }
   return false;
 }
@@ -292,8 +419,8 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
     sign = sign_of(*first);
   }
   const int zero_order = from == 0.0 ? function.zero_order : 0;
-  const bool is_exit = !uses_phi(function);
-  if (is_exit || !kernel_.is_affine(function.index)) {
+  if (!forms_.has(i)) {
+    const bool is_exit = !uses_phi(function);
     // Where the interpolant stays away from zero it need not be better than that distance; functions of time only, or
     // with a vanishing gradient, have no other measure than their own size.
     double margin = std::numeric_limits<double>::max();
@@ -308,6 +435,8 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
     }
   }
   double noise = noise_[i];
+  // The form has other roundings than the function, whose own terms may be smaller.
+  if (forms_.has(i)) noise = std::max(noise, 8.0 * epsilon * forms_.terms(i, bounds_));
   for (const double b : coefficients) noise = std::max(noise, 8.0 * epsilon * std::abs(b));
   if (ode::certainly_no_sign_change(coefficients, sign, zero_order, noise)) return {};
   const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise);
@@ -320,8 +449,8 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
 SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit) {
   SearchOutcome outcome = SearchOutcome::none;
   bool resolved = true;
-  for (std::size_t i = 0; i < functions_.size() && resolved; ++i) {
-    const auto finding = find(step, from, to, i);
+  for (std::size_t k = 0; k < suspects_.size() && resolved; ++k) {
+    const auto finding = find(step, from, to, suspects_[k]);
     resolved = finding.resolved;
     if (finding.hit && (outcome == SearchOutcome::none || finding.hit->theta < hit.theta)) {
       hit = *finding.hit;
@@ -332,7 +461,9 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
   if (depth >= deepest) return SearchOutcome::unresolved;
   const double middle = 0.5 * (from + to);
   for (const auto& [begin, end] : {std::pair{from, middle}, std::pair{middle, to}}) {
-    for (std::size_t node = 0; node < ode::event_nodes; ++node) sample_node(step, node_theta(begin, end, node), node);
+    for (std::size_t node = 0; node < ode::event_nodes; ++node) {
+      sample_node(step, node_theta(begin, end, node), node, suspects_);
+    }
     const SearchOutcome half = search_interval(step, begin, end, depth + 1, hit);
     if (half != SearchOutcome::none) return half;
   }
@@ -340,21 +471,32 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
 }
 
 bool EventSearch::settle(double t, const double* x) {
-  bool unknown = false;
   user_vanishes_.assign(user_vanishes_.size(), false);
   zeros_at_ = t;
-  const bool offset = std::any_of(functions_.begin(), functions_.end(), [](const auto& f) { return f.offset != 0.0; });
+  if (special_.empty()) return false;
+  bool unknown = false;
+  const bool offset =
+      std::any_of(special_.begin(), special_.end(), [&](auto i) { return functions_[i].offset != 0.0; });
   if (offset) evaluate(t, x, point_);
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
+  std::size_t kept = 0;
+  for (const std::size_t i : special_) {
     auto& function = functions_[i];
     function.zero_order = 0;
     unknown = unknown || function.sign == 0;
     // Far enough behind the start that what was left there cannot be mistaken for a new zero.
     if (function.offset != 0.0 && function.sign * point_[i] > 2.0 * std::abs(function.offset)) function.offset = 0.0;
+    if (function.offset != 0.0 || function.sign == 0) {
+      special_[kept++] = i;
+    } else if (forms_.has(i)) {
+      forms_.watch(i, function.sign);
+    }
   }
+  special_.resize(kept);
   if (!unknown) return false;
   rescale(t, x);
-  read_user_signs(t, x);
+  evaluate(t, x, point_);
+  read_user_signs();
+  sort_functions();
   return true;
 }
 
@@ -374,6 +516,7 @@ void EventSearch::set_user_sign(std::size_t function, int sign, double t, const 
   entry.offset = phi_[at(entry.index)];
   user_sign_[user] = sign;
   user_vanishes_[user] = true;
+  sort_functions();
 }
 
 }  // namespace saltus::event_integrator

@@ -1,11 +1,13 @@
 // The event functions of a mode, and their first zero along a step: none is missed, none is found twice.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/affine_forms.hpp"
 #include "saltus/event_integrator/holding.hpp"
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
@@ -48,7 +50,10 @@ enum class SearchOutcome {
   unresolved,  ///< an event function is too wild for its interpolants, or undefined: shorten the step
 };
 
-/// Searches one step after the other. Owns the work space; allocates in enter() only.
+/// Searches one step after the other, in two stages. First bounds of the states over the step show that almost no
+/// function can vanish: those that are affine in (t, x), which includes the exits of sliding modes with affine fields.
+/// The exact search is left with the others, and with functions that are not affine.
+/// Owns the work space; allocates in enter() only.
 class EventSearch {
  public:
   EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
@@ -59,6 +64,8 @@ class EventSearch {
   /// Rounding and tolerance levels for the step that starts at (t, x).
   void rescale(double t, const double* x);
 
+  /// Whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
+  [[nodiscard]] bool may_vanish(const ode::Stepper& stepper);
   /// The first sign change in (0, 1] of any function.
   SearchOutcome search(const ode::DenseStep& step, Hit& hit);
   /// Values of all functions at one point, less their offsets.
@@ -86,15 +93,23 @@ class EventSearch {
     bool resolved = true;
     std::optional<Hit> hit;
   };
+  enum class Needed { all, curved };  ///< values of all functions, or of the suspects without an affine form
+
   void start_at(double t);
+  void set_forms(const double* x);
+  void sort_functions();
+  void set_noise(std::size_t i);
+  void evaluate_parts(double t, const double* x, Needed needed);
+  [[nodiscard]] double part(std::size_t i) const;
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
               const ode::BernsteinCoefficients& coefficients, double accuracy);
-  bool all_far(const ode::DenseStep& step);
-  void sample_node(const ode::DenseStep& step, double theta, std::size_t node);
+  [[nodiscard]] bool is_far(std::size_t i) const;
+  void find_suspects(const ode::DenseStep& step);
+  void sample_node(const ode::DenseStep& step, double theta, std::size_t node, const std::vector<std::size_t>& which);
   [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;
-  void read_user_signs(double t, const double* x);
+  void read_user_signs();
   void find_pressure(double t, const double* x);
 
   const evaluation::ModelKernel& kernel_;
@@ -113,7 +128,19 @@ class EventSearch {
   std::vector<double> x_, point_;
   std::vector<double> samples_;  ///< node by node
   std::vector<double> noise_, accuracy_;
-  std::vector<bool> prefilter_;  ///< five samples may show that the function stays away from zero
+  std::vector<double> low_, high_;  ///< of the states over the step
+  StepBounds bounds_;
+  AffineForms forms_;
+  std::vector<bool> nesting_;                   ///< functions of the kernel that hold selections
+  std::array<evaluation::AffineRows, 3> rows_;  ///< at the selections of the mode, of the lower and the upper region
+  evaluation::AffineRow row_;
+  std::vector<std::size_t> special_;   ///< functions with an unknown sign, or a zero at the start of the next step
+  std::vector<std::size_t> curved_;    ///< functions without an affine form
+  std::vector<std::size_t> suspects_;  ///< of this step, ascending
+  bool nested_ = false;                ///< there are functions nested around the sliding surface
+  bool curved_phi_ = false;            ///< there are curved functions of the kernel
+  bool curved_exits_ = false;          ///< there are curved exits
+  std::vector<bool> prefilter_;        ///< five samples may show that the function stays away from zero
 };
 
 }  // namespace saltus::event_integrator

@@ -43,7 +43,10 @@ void ModeField::enter(const ModeState& state) {
   start_alpha_ = state.alpha;
   alpha_ = state.alpha;
   solve_ = SlidingSolve::none;
-  if (sliding_.empty()) return;
+  if (sliding_.empty()) {
+    kernel_.prepare_field(alpha_.data(), constants_[0]);
+    return;
+  }
   const auto m = static_cast<Eigen::Index>(sliding_.size());
   rows_.resize(m, kernel_.states());
   rates_.resize(m);
@@ -60,7 +63,10 @@ void ModeField::enter(const ModeState& state) {
   }
   if (sliding_.size() != 1) return;
   between_.clear();
-  for (std::size_t corner = 0; corner < 2; ++corner) corner_[corner] = state.corner_alpha[corner];
+  for (std::size_t corner = 0; corner < 2; ++corner) {
+    corner_[corner] = state.corner_alpha[corner];
+    kernel_.prepare_field(corner_[corner].data(), constants_[corner]);
+  }
   for (std::size_t i = 0; i < alpha_.size(); ++i) {
     if (corner_[0][i] == corner_[1][i]) {
       alpha_[i] = corner_[0][i];
@@ -93,6 +99,20 @@ double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f)
   return sum;
 }
 
+bool ModeField::exit_row(std::size_t row, Region region, const double* x, evaluation::AffineRow& form) {
+  if (solve_ != SlidingSolve::decoupled || !constant_row_[row]) return false;
+  const double selection = region == Region::below ? 0.0 : 1.0;
+  trial_ = start_alpha_;
+  for (const int j : sliding_) trial_[at(j)] = 0.0;
+  trial_[at(sliding_[row])] = selection;
+  const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : trial_;
+  evaluation::FixedState fixed;
+  if (const int only = coordinate_[row]; only >= 0 && rates_[static_cast<Eigen::Index>(row)] == 0.0) {
+    fixed = {only, x[only]};
+  }
+  return kernel_.lie_row(sliding_[row], fixed, alpha.data(), form);
+}
+
 double ModeField::normal_terms(std::size_t row) const {
   const auto r = static_cast<Eigen::Index>(row);
   double sum = std::abs(rates_[r]);
@@ -105,8 +125,8 @@ double ModeField::normal_terms(std::size_t row) const {
 /// The fields of the two regions that meet at the one sliding surface, and their normal components.
 void ModeField::evaluate_corners(double t, const double* x) {
   gradients(t, x);
-  kernel_.field(t, x, corner_[0].data(), f_[0].data());
-  kernel_.field(t, x, corner_[1].data(), f_[1].data());
+  kernel_.prepared_field(t, x, constants_[0], f_[0].data());
+  kernel_.prepared_field(t, x, constants_[1], f_[1].data());
   exits_[0] = {normal_velocity(0, f_[0]), normal_velocity(0, f_[1]), 0.0};
 }
 
@@ -267,7 +287,7 @@ void ModeField::select(double t, const double* x) {
 
 void ModeField::operator()(double t, const double* x, double* xdot) {
   if (solve_ == SlidingSolve::none) {
-    kernel_.field(t, x, alpha_.data(), xdot);
+    kernel_.prepared_field(t, x, constants_[0], xdot);
     return;
   }
   if (is_single()) return slide_on_one(t, x, xdot);

@@ -26,6 +26,8 @@ struct ExitValues {
   double loss = 0.0;   ///< nonaffine only: d g / d alpha, keeps its sign while the root exists
 };
 
+enum class Region { below, above };
+
 /// Right-hand side of the index-2 DAE of a mode turned into an ODE ([guglielmi2022], section 6):
 ///   xdot = f(t, x, alpha) - J^+ (J f + d psi_I/dt),  J = grad psi_I,
 /// with alpha_I from the m equations J f + d psi_I/dt = 0. The correction is of rounding size; for a surface that is a
@@ -45,6 +47,9 @@ class ModeField {
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   /// Exit functions at a point, one per sliding surface.
   void exits(double t, const double* x, ExitValues* values);
+  /// Behind exits(): one of the exit functions of a surface as a row, if it is affine in t and in all states but the
+  /// one that sliding keeps constant; x is any point of the mode.
+  [[nodiscard]] bool exit_row(std::size_t row, Region region, const double* x, evaluation::AffineRow& form);
   /// Behind exits(): size of the terms whose sum is the normal component on a sliding surface, which bounds its
   /// rounding.
   [[nodiscard]] double normal_terms(std::size_t row) const;
@@ -69,20 +74,21 @@ class ModeField {
   bool affine_in_alpha_;
   SlidingSolve solve_ = SlidingSolve::none;
   std::vector<int> sliding_;
-  std::vector<double> start_alpha_;   ///< of the mode
-  std::vector<double> alpha_;         ///< of the last evaluation
-  std::vector<double> corner_[2];     ///< selections of the two regions (one sliding surface)
-  std::vector<std::size_t> between_;  ///< where these differ: the sliding surface and functions nested around it
-  std::vector<double> trial_;         ///< n_psi
-  std::vector<double> f_[2];          ///< n_x each
-  std::vector<double> values_;        ///< all event functions
-  std::vector<ExitValues> exits_;     ///< of the last evaluation
-  std::vector<bool> constant_row_;    ///< gradient known once and for all in this mode
-  std::vector<int> coordinate_;       ///< the only nonzero column of a row, or -1
-  Eigen::MatrixXd rows_;              ///< J, m x n_x
-  double row_square_ = 0.0;           ///< |J|^2 of one sliding surface
-  Eigen::VectorXd rates_, residual_;  ///< d psi_I/dt, m
-  Eigen::MatrixXd normal_matrix_;     ///< J J^T, then G
+  std::vector<double> start_alpha_;          ///< of the mode
+  std::vector<double> alpha_;                ///< of the last evaluation
+  std::vector<double> corner_[2];            ///< selections of the two regions (one sliding surface)
+  std::vector<std::size_t> between_;         ///< where these differ: the sliding surface and functions nested around it
+  evaluation::FieldConstants constants_[2];  ///< of the mode's field; of the two regions (one sliding surface)
+  std::vector<double> trial_;                ///< n_psi
+  std::vector<double> f_[2];                 ///< n_x each
+  std::vector<double> values_;               ///< all event functions
+  std::vector<ExitValues> exits_;            ///< of the last evaluation
+  std::vector<bool> constant_row_;           ///< gradient known once and for all in this mode
+  std::vector<int> coordinate_;              ///< the only nonzero column of a row, or -1
+  Eigen::MatrixXd rows_;                     ///< J, m x n_x
+  double row_square_ = 0.0;                  ///< |J|^2 of one sliding surface
+  Eigen::VectorXd rates_, residual_;         ///< d psi_I/dt, m
+  Eigen::MatrixXd normal_matrix_;            ///< J J^T, then G
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 

@@ -128,12 +128,14 @@ Run::Step Run::attempt() {
     return Step::failed;
   }
   const bool rows_inside = next_output_ < options_.output.times.size() && options_.output.times[next_output_] < t_new;
-  if (!search_.functions().empty() || rows_inside) {
+  // Events must not depend on the rows: where nothing can vanish there is no search, with and without a dense output.
+  const bool may_vanish = search_.may_vanish(stepper_);
+  if (may_vanish || rows_inside) {
     if (stepper_.dense(right_hand_side(), dense_) == ode::Attempt::undefined) {
       return shorten(0.5) ? Step::shortened : undefined_step();
     }
     Hit hit;
-    switch (search_.search(dense_, hit)) {
+    switch (may_vanish ? search_.search(dense_, hit) : SearchOutcome::none) {
       case SearchOutcome::none:
         break;
       case SearchOutcome::unresolved:

@@ -1,6 +1,8 @@
 // The dense output in its nested form, with s = theta and r = 1 - theta:
 //   x(t + theta h) = c0 + s (c1 + r (c2 + s (c3 + r (c4 + ...)))).
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "saltus/ode/stepper.hpp"
@@ -73,7 +75,35 @@ void evaluate_nearer(const double* coefficients, const double* end, std::size_t 
   }
 }
 
+/// Largest values on [0, 1] of the factors s r, s^2 r, s^2 r^2, ... of the coefficients 2, 3, 4, ...
+constexpr std::array<double, 6> largest_factors{1.0 / 4.0,      4.0 / 27.0, 1.0 / 16.0,
+                                                108.0 / 3125.0, 1.0 / 64.0, 6912.0 / 823543.0};
+
+template <std::size_t degree>
+void polynomial_bounds(const double* coefficients, const double* end, std::size_t n, double* __restrict low,
+                       double* __restrict high) {
+  for (std::size_t i = 0; i < n; ++i) {
+    double width = 0.0;
+    for (std::size_t k = 2; k <= degree; ++k) width += largest_factors[k - 2] * std::abs(coefficients[k * n + i]);
+    const double begin = coefficients[i];
+    low[i] = std::min(begin, end[i]) - width;
+    high[i] = std::max(begin, end[i]) + width;
+  }
+}
+
 }  // namespace
+
+void DenseStep::bounds(double* low, double* high) const {
+  const auto n = static_cast<std::size_t>(n_);
+  switch (method_) {
+    case Method::dopri5:
+      return polynomial_bounds<4>(coefficients_.data(), end_.data(), n, low, high);
+    case Method::dop853:
+      return polynomial_bounds<7>(coefficients_.data(), end_.data(), n, low, high);
+    case Method::radau5:
+      return polynomial_bounds<3>(coefficients_.data(), end_.data(), n, low, high);
+  }
+}
 
 void DenseStep::evaluate(double theta, double* x) const {
   const auto n = static_cast<std::size_t>(n_);

@@ -3,7 +3,7 @@
 // With the expected sign turned to +, a value is high above +noise, low below -noise, else near. The first low point is
 // isolated by bisecting [0, 1], the leftmost part first: a part without low coefficients has no low point (convex
 // hull), one whose coefficients turn low once and stay low gets there exactly once (variation diminishing). Between the
-// last high point before it and the low point everything is near, and the zero is bisected.
+// last high point before it and the low point everything is near: the zero from high to low is narrowed down.
 #include <algorithm>
 #include <cmath>
 
@@ -89,12 +89,33 @@ std::optional<Part> first_descent(const BernsteinCoefficients& coefficients, dou
   return std::nullopt;
 }
 
-/// Narrows a bracket between a point where `before` holds and one where it does not.
-template <class Predicate>
-SignChange bisect(SignChange bracket, Predicate&& before) {
-  while (bracket.upper - bracket.lower > bracket_width) {
-    const double middle = 0.5 * (bracket.lower + bracket.upper);
-    (before(middle) ? bracket.lower : bracket.upper) = middle;
+/// Narrows a bracket of the one place where a function turns from >= 0 to below: false position (Illinois), whose
+/// points are kept half a width away from the ends so that both close in, and every third time the middle.
+template <class Function>
+SignChange narrow(SignChange bracket, Function&& value) {
+  double at_lower = value(bracket.lower);
+  double at_upper = value(bracket.upper);
+  int kept = 0;  // how often in a row the same end has stayed: > 0 the lower one, < 0 the upper one
+  for (int count = 1; bracket.upper - bracket.lower > bracket_width; ++count) {
+    const double width = bracket.upper - bracket.lower;
+    const double share = at_lower / (at_lower - at_upper);
+    const bool usable = count % 3 != 0 && share >= 0.0 && share <= 1.0;
+    const double inset = std::min(0.5 * bracket_width, 0.25 * width);
+    const double place =
+        std::clamp(bracket.lower + (usable ? share : 0.5) * width, bracket.lower + inset, bracket.upper - inset);
+    if (!(place > bracket.lower && place < bracket.upper)) break;
+    const double at_place = value(place);
+    if (at_place >= 0.0) {
+      bracket.lower = place;
+      at_lower = at_place;
+      kept = std::min(kept, 0) - 1;
+      if (kept < -1) at_upper *= 0.5;
+    } else {
+      bracket.upper = place;
+      at_upper = at_place;
+      kept = std::max(kept, 0) + 1;
+      if (kept > 1) at_lower *= 0.5;
+    }
   }
   return bracket;
 }
@@ -125,18 +146,15 @@ class Quotient {
   int degree_;
 };
 
-/// The last high point before a low one, up to the width of a bracket; 0 if there is none.
-double last_high(const BernsteinCoefficients& p, double low, double noise) {
-  // Seen backwards from the low point and upside down, it is a first descent.
+/// A high point from which the polynomial descends to a low one without rising to high again; 0 if there is none.
+double high_before(const BernsteinCoefficients& p, double low, double noise) {
+  // Seen backwards from the low point and upside down, the part in which it gets high is a first descent. There it ends
+  // high, and what is high on the way stays so.
   BernsteinCoefficients backwards = cut(p, low).left;
   std::reverse(backwards.begin(), backwards.end());
   for (double& value : backwards) value = -value;
   const auto ascent = first_descent(backwards, noise);
-  if (!ascent) return 0.0;
-  const double end = std::min(1.0, ascent->start + ascent->width);
-  const SignChange bracket =
-      bisect({ascent->start, end}, [&](double theta) { return evaluate(backwards, theta) >= -noise; });
-  return low * (1.0 - bracket.upper);
+  return ascent ? low * (1.0 - std::min(1.0, ascent->start + ascent->width)) : 0.0;
 }
 
 }  // namespace
@@ -153,12 +171,12 @@ std::optional<SignChange> first_sign_change(const BernsteinCoefficients& coeffic
   const auto descent = first_descent(p, noise);
   if (!descent) return std::nullopt;
   const Quotient quotient(p, zero_order);
-  const auto not_below_zero = [&](double theta) { return quotient(theta) >= 0.0; };
-  const SignChange around{descent->start, descent->start + descent->width};
-  const SignChange low = bisect(around, [&](double theta) { return evaluate(p, theta) >= -noise; });
-  const SignChange zero{last_high(p, low.upper, noise), low.upper};
-  if (!not_below_zero(zero.lower)) return zero;
-  return bisect(zero, not_below_zero);
+  const double low = descent->start + descent->width;  // the part ends low
+  const double high = high_before(p, low, noise);
+  if (quotient(high) >= 0.0) return narrow({high, low}, quotient);
+  // On the other side from the start, within the noise: as long as it stays near.
+  const auto above_noise = [&](double theta) { return evaluate(p, theta) + noise; };
+  return SignChange{high, narrow({descent->start, low}, above_noise).upper};
 }
 
 }  // namespace saltus::ode

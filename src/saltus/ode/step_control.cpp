@@ -82,6 +82,21 @@ bool slope_behind_euler_step(RightHandSide f, double t, const double* x, const d
   return false;
 }
 
+/// previous^beta / error^exponent; infinite for an error of 0.
+double factor_of(Method method, double previous, double error) {
+  switch (method) {
+    case Method::dopri5: {
+      const Gains gain = gains(method);
+      return std::exp(gain.beta * std::log(previous) - gain.exponent * std::log(error));
+    }
+    case Method::dop853:
+      return 1.0 / std::sqrt(std::sqrt(std::sqrt(error)));
+    case Method::radau5:
+      return 1.0 / std::sqrt(std::sqrt(error));
+  }
+  __builtin_unreachable();
+}
+
 }  // namespace
 
 StepControl::StepControl(Method method) : method_(method), previous_error_(least_error) {}
@@ -90,7 +105,7 @@ void StepControl::reset() { *this = StepControl(method_); }
 
 double StepControl::accepted(double error_norm) {
   const Gains gain = gains(method_);
-  const double raw = safety * std::pow(previous_error_, gain.beta) / std::pow(error_norm, gain.exponent);
+  const double raw = safety * factor_of(method_, previous_error_, error_norm);
   const double largest = last_rejected_ ? 1.0 : gain.largest;
   previous_error_ = std::max(error_norm, least_error);
   last_rejected_ = false;

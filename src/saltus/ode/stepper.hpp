@@ -36,6 +36,9 @@ class DenseStep {
   double h = 0.0;
   void evaluate(double theta, double* x) const;       ///< n doubles
   void derivative(double theta, double* xdot) const;  ///< dx/dt of the polynomial, n doubles
+  /// Bounds low_i <= x_i(t + theta h) <= high_i for all theta in [0, 1], n doubles each, up to rounding: the chord
+  /// widened by the largest values of the other terms of the polynomial. Cost: a few operations per component.
+  void bounds(double* low, double* high) const;
   [[nodiscard]] int size() const { return n_; }
 
  private:
@@ -77,6 +80,13 @@ class Stepper {
   [[nodiscard]] const double* x_new() const { return x_new_.data(); }
   /// f(t + h, x_new), n doubles: dopri5's last stage, computed by dop853 too.
   [[nodiscard]] const double* slope_new() const;
+
+  /// Bounds of every component of the dense output of the last attempt, which was finite, without computing it; n
+  /// doubles each. False where a method has none (radau5). With dop853 they rest on the slopes of the stages: right for
+  /// right-hand sides that these resolve, which is what the error estimate assumes too.
+  [[nodiscard]] bool bounds(double* low, double* high) const;
+  [[nodiscard]] double start_time() const { return t_; }  ///< of the last attempt
+  [[nodiscard]] double length() const { return h_; }      ///< of the last attempt
 
   /// Dense output of the last attempt, which was finite (dop853: three more evaluations of f; `undefined` if one is not
   /// finite, and `output` is then not to be used).

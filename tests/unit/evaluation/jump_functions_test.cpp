@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/model/build.hpp"
 
 namespace saltus::evaluation {
 namespace {

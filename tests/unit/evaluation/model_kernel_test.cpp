@@ -3,7 +3,10 @@
 #include <cmath>
 #include <random>
 
+#include <casadi/core/function.hpp>
 #include <gtest/gtest.h>
+
+#include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
 namespace {
@@ -133,6 +136,72 @@ TEST(ModelKernel, DerivativesAgreeWithFiniteDifferences) {
     kernel->gradient(0, t, x, alpha, row, &rate);
     EXPECT_NEAR(magnitude[0], std::abs(row[0] * x[0]) + std::abs(row[1] * x[1]) + std::abs(rate * t), 1e-14);
     EXPECT_NEAR(slope[0], std::abs(row[0]) + std::abs(row[1]), 1e-14);
+  }
+}
+
+TEST(ModelKernel, RowsOfAffineFunctionsAreTheFunctions) {
+  auto system = example();
+  system.events[1].value = floor(system.x(0)) + system.x(1);  // flat where it is smooth, and not affine
+  const auto kernel = ModelKernel::compile(system);
+  ASSERT_TRUE(kernel.has_value());
+  const bool affine[] = {false, true, false, false, true, true};
+  const double t = 0.5;
+  const double x[] = {0.3, -0.4};
+  const double alpha[] = {0.25, 1.0, 0.0};
+  double values[6];
+  kernel->functions(t, x, alpha, values);
+  AffineRows rows;
+  kernel->affine_rows(alpha, rows);
+  for (std::size_t j = 0; j < 6; ++j) {
+    EXPECT_EQ(kernel->is_affine(static_cast<int>(j)), affine[j]) << j;
+    EXPECT_EQ(std::isnan(rows.offset[j]), !affine[j]) << j;
+    double sum = rows.offset[j] + rows.rate[j] * t;
+    for (std::size_t k = rows.start[j]; k < rows.start[j + 1]; ++k) sum += rows.coefficient[k] * x[rows.column[k]];
+    if (affine[j]) {
+      EXPECT_NEAR(sum, values[j], 1e-15) << j;
+    }
+  }
+}
+
+TEST(ModelKernel, RowsOfLieDerivatives) {
+  auto system = example();
+  system.switching[1].psi = system.x(1);
+  const SX a = system.x(0);
+  const SX b = system.x(1);
+  system.f = SX::vertcat({b, a * b * b + system.t});
+  const auto kernel = ModelKernel::compile(system);
+  ASSERT_TRUE(kernel.has_value());
+  const double alpha[] = {0.25, 1.0, 0.0};
+  AffineRow row;
+  EXPECT_FALSE(kernel->lie_row(1, {}, alpha, row));
+  ASSERT_TRUE(kernel->lie_row(1, {1, 0.7}, alpha, row));  // affine where b is held
+  const double x[] = {0.3, 0.7};
+  const double expected = kernel->lie_derivative(1, 1, 2.0, x, alpha);
+  EXPECT_NEAR(row.offset + row.rate * 2.0 + row.coefficient[0] * x[0], expected, 1e-15);
+  EXPECT_EQ(row.coefficient[1], 0.0);
+}
+
+TEST(ModelKernel, PreparedFieldsHaveTheSameBits) {
+  const auto system = example();
+  const auto kernel = ModelKernel::compile(system);
+  ASSERT_TRUE(kernel.has_value());
+  const casadi::Function whole("whole", {system.t, system.x, system.p, system.alpha},
+                               {SX::substitute(system.f, system.u, system.input)});
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-2.0, 2.0);
+  for (int trial = 0; trial < 100; ++trial) {
+    const double t = uniform(random);
+    const std::vector<double> x{uniform(random), uniform(random)};
+    const std::vector<double> alpha{uniform(random), uniform(random), uniform(random)};
+    FieldConstants constants;
+    kernel->prepare_field(alpha.data(), constants);
+    std::vector<double> prepared(2);
+    std::vector<double> field(2);
+    kernel->prepared_field(t, x.data(), constants, prepared.data());
+    kernel->field(t, x.data(), alpha.data(), field.data());
+    const auto expected = whole(std::vector<casadi::DM>{t, x, 0.75, alpha}).front().nonzeros();
+    EXPECT_EQ(prepared, expected);
+    EXPECT_EQ(field, expected);
   }
 }
 

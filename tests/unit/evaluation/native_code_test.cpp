@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
 namespace {

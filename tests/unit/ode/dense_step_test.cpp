@@ -52,6 +52,31 @@ TEST_P(DenseOutput, is_exact_at_both_ends) {
   EXPECT_LT(distance(expected.data(), slope), 64 * epsilon / dense.h);
 }
 
+TEST_P(DenseOutput, stays_within_its_bounds) {
+  for (const double h : {1e-3, 0.1, 0.5, 1.0}) {
+    for (double t = 0.0; t < 6.0; t += 0.37) {
+      Stepper stepper(GetParam(), Kepler::n);
+      const auto start = Kepler::exact(t);
+      const DenseStep dense = one_step(stepper, Kepler{}, t, start, h);
+      std::vector<double> low(start.size()), high(start.size()), early_low(start.size()), early_high(start.size());
+      dense.bounds(low.data(), high.data());
+      const bool early = stepper.bounds(early_low.data(), early_high.data());
+      EXPECT_EQ(early, GetParam() != Method::radau5);
+      std::vector<double> x(start.size());
+      for (int k = 0; k <= 200; ++k) {
+        dense.evaluate(k / 200.0, x.data());
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          ASSERT_GE(x[i], low[i] - 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
+          ASSERT_LE(x[i], high[i] + 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
+          if (!early) continue;
+          ASSERT_GE(x[i], early_low[i] - 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
+          ASSERT_LE(x[i], early_high[i] + 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
+        }
+      }
+    }
+  }
+}
+
 TEST_P(DenseOutput, both_ways_of_writing_it_meet_in_the_middle) {
   const DenseStep dense = kepler_step(GetParam(), 0.0, 0.3);
   std::vector<double> left(Kepler::n);

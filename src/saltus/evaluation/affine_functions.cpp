@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include <casadi/core/function.hpp>
+#include <casadi/core/sx.hpp>
+
+// Needs names that only the headers above bring.
+#include <casadi/core/calculus.hpp>
+
+#include "saltus/evaluation/affine_functions_internal.hpp"
+
+namespace saltus::evaluation {
+namespace {
+
+using casadi::SX;
+
+constexpr int constant = 0;
+constexpr int linear = 1;
+constexpr int other = 2;
+
+/// Degree of a result from those of its operands.
+int degree_of(casadi_int operation, const std::vector<int>& operands) {
+  const int first = operands.empty() ? constant : operands.front();
+  const int second = operands.size() < 2 ? constant : operands[1];
+  switch (operation) {
+    case casadi::OP_ADD:
+    case casadi::OP_SUB:
+    case casadi::OP_NEG:
+    case casadi::OP_TWICE:
+    case casadi::OP_ASSIGN:
+      return std::max(first, second);
+    case casadi::OP_MUL:
+      return first + second <= linear ? first + second : other;
+    case casadi::OP_DIV:
+      return second == constant ? first : other;
+    case casadi::OP_IF_ELSE_ZERO:
+      return first == constant ? second : other;
+    default:
+      return std::max(first, second) == constant ? constant : other;
+  }
+}
+
+std::vector<SX> inputs(const ModelSymbols& symbols) { return {symbols.t, symbols.x, symbols.p, symbols.alpha}; }
+
+std::size_t at(casadi_int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+std::vector<bool> affine_entries(const SX& expression, const ModelSymbols& symbols, int fixed) {
+  std::vector<bool> affine(at(expression.numel()), true);
+  const casadi::Function tape("tape", inputs(symbols), {SX::densify(expression)});
+  std::vector<int> degree(tape.sz_w(), constant);
+  for (casadi_int k = 0; k < tape.n_instructions(); ++k) {
+    const auto operation = tape.instruction_id(k);
+    const auto in = tape.instruction_input(k);
+    const auto out = tape.instruction_output(k);
+    if (operation == casadi::OP_CONST) {
+      degree[at(out[0])] = constant;
+    } else if (operation == casadi::OP_INPUT) {
+      const bool varies = in[0] == 0 || (in[0] == 1 && in[1] != fixed);
+      degree[at(out[0])] = varies ? linear : constant;
+    } else if (operation == casadi::OP_OUTPUT) {
+      affine[at(out[1])] = degree[at(in[0])] != other;
+    } else if (operation == casadi::OP_CALL) {
+      for (const auto place : out) degree[at(place)] = other;
+    } else {
+      std::vector<int> operands;
+      for (const auto place : in) operands.push_back(degree[at(place)]);
+      degree[at(out[0])] = degree_of(operation, operands);
+    }
+  }
+  return affine;
+}
+
+AffineRowFunctions::AffineRowFunctions(const SX& functions, const ModelSymbols& symbols,
+                                       const std::vector<bool>& affine)
+    : origin_(at(symbols.x.numel()), 0.0), start_{0} {
+  const SX jacobian = SX::jacobian(functions, symbols.x);
+  const SX rates = SX::densify(SX::jacobian(functions, symbols.t));
+  const auto& sparsity = jacobian.sparsity();
+  std::vector<std::vector<std::pair<std::size_t, casadi_int>>> entries(affine.size());  // column, place
+  for (casadi_int column = 0; column < sparsity.size2(); ++column) {
+    for (casadi_int k = sparsity.colind()[column]; k < sparsity.colind()[column + 1]; ++k) {
+      const auto row = at(sparsity.row()[k]);
+      if (affine[row]) entries[row].emplace_back(at(column), k);
+    }
+  }
+  std::vector<SX> coefficients, rate, offset;
+  const SX values = SX::densify(functions);
+  for (std::size_t j = 0; j < affine.size(); ++j) {
+    const auto row = static_cast<casadi_int>(j);
+    for (const auto& [column, place] : entries[j]) {
+      column_.push_back(column);
+      coefficients.emplace_back(jacobian.nonzeros()[at(place)]);
+    }
+    start_.push_back(column_.size());
+    rate.push_back(affine[j] ? SX(rates(row)) : SX(0.0));
+    offset.push_back(affine[j] ? SX(values(row)) : SX(std::numeric_limits<double>::quiet_NaN()));
+  }
+  const auto column_of = [](const std::vector<SX>& rows) { return rows.empty() ? SX(0, 1) : SX::vertcat(rows); };
+  values_ =
+      ModelFunction("affine_rows", inputs(symbols), {column_of(coefficients), column_of(rate), column_of(offset)});
+}
+
+void AffineRowFunctions::fill(const double* p, const double* alpha, AffineRows& rows) {
+  rows.start = start_;
+  rows.column = column_;
+  rows.coefficient.resize(column_.size());
+  rows.rate.resize(start_.size() - 1);
+  rows.offset.resize(start_.size() - 1);
+  // At the origin an affine function is its offset.
+  const double t = 0.0;
+  values_(std::array<const double*, 4>{&t, origin_.data(), p, alpha},
+          std::array<double*, 3>{rows.coefficient.data(), rows.rate.data(), rows.offset.data()});
+}
+
+AffineRowFunction::AffineRowFunction(const SX& function, const ModelSymbols& symbols, int fixed)
+    : origin_(at(symbols.x.numel()), 0.0) {
+  if (!affine_entries(function, symbols, fixed).front()) return;
+  values_ = ModelFunction("affine_row", inputs(symbols),
+                          {SX::jacobian(function, symbols.x), SX::jacobian(function, symbols.t), function});
+}
+
+void AffineRowFunction::fill(FixedState fixed, const double* p, const double* alpha, AffineRow& row) {
+  row.coefficient.resize(origin_.size());
+  if (fixed.component >= 0) origin_[at(fixed.component)] = fixed.value;
+  const double t = 0.0;
+  values_(std::array<const double*, 4>{&t, origin_.data(), p, alpha},
+          std::array<double*, 3>{row.coefficient.data(), &row.rate, &row.offset});
+  if (fixed.component >= 0) row.coefficient[at(fixed.component)] = 0.0;
+}
+
+}  // namespace saltus::evaluation

@@ -1,0 +1,50 @@
+// Which model functions are affine in (t, x), and their rows as functions of (p, alpha).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <casadi/core/sx.hpp>
+
+#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+
+namespace saltus::evaluation {
+
+/// The symbols of a model and the values of its parameters.
+struct ModelSymbols {
+  casadi::SX t, x, p, alpha;
+};
+
+/// For every entry of `expression` whether it is affine in t and x (`fixed` >= 0: but for this component, a constant),
+/// by the operations it is made of. Sufficient, not necessary: x * x / x is not.
+[[nodiscard]] std::vector<bool> affine_entries(const casadi::SX& expression, const ModelSymbols& symbols,
+                                               int fixed = -1);
+
+/// Rows of the affine entries of a vector of functions.
+class AffineRowFunctions {
+ public:
+  AffineRowFunctions() = default;
+  AffineRowFunctions(const casadi::SX& functions, const ModelSymbols& symbols, const std::vector<bool>& affine);
+  void fill(const double* p, const double* alpha, AffineRows& rows);
+
+ private:
+  ModelFunction values_;  ///< coefficients, rates, offsets
+  std::vector<double> origin_;
+  std::vector<std::size_t> start_, column_;
+};
+
+/// One function as a row, if it is affine in what is not fixed.
+class AffineRowFunction {
+ public:
+  AffineRowFunction() = default;
+  AffineRowFunction(const casadi::SX& function, const ModelSymbols& symbols, int fixed);
+  [[nodiscard]] bool is_affine() const { return !values_.is_null(); }
+  void fill(FixedState fixed, const double* p, const double* alpha, AffineRow& row);
+
+ private:
+  ModelFunction values_;  ///< null where it is not affine
+  std::vector<double> origin_;
+};
+
+}  // namespace saltus::evaluation

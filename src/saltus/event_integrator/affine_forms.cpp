@@ -1,0 +1,142 @@
+#include "saltus/event_integrator/affine_forms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace saltus::event_integrator {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Of the size of the terms: the roundings of a value, of the bounds and of the dense output are a few units each. Twice
+// what the search takes for noise at most, so nothing it would find is passed over.
+constexpr double margin = 64.0 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+AffineForms::AffineForms(std::size_t states) : lower_(states, -infinity), upper_(states, infinity) {}
+
+void AffineForms::load(const evaluation::AffineRows& rows) {
+  terms_.clear();
+  table_.clear();
+  for (std::size_t j = 0; j < rows.offset.size(); ++j) table_.push_back(form_of(rows, j));
+  loaded_terms_ = terms_.size();
+}
+
+void AffineForms::reset(std::size_t functions) {
+  forms_.assign(functions, Form{});
+  terms_.resize(loaded_terms_);
+  watch_none();
+}
+
+AffineForms::Form AffineForms::form_of(const evaluation::AffineRows& rows, std::size_t j) {
+  if (!std::isfinite(rows.offset[j]) || !std::isfinite(rows.rate[j])) return {};
+  Form form{terms_.size(), 0, rows.rate[j], rows.offset[j], 0, true};
+  for (std::size_t k = rows.start[j]; k < rows.start[j + 1]; ++k) {
+    if (!std::isfinite(rows.coefficient[k])) return {};
+    if (rows.coefficient[k] != 0.0) terms_.push_back({rows.column[k], rows.coefficient[k]});
+  }
+  form.count = terms_.size() - form.first;
+  return form;
+}
+
+void AffineForms::set(std::size_t i, const evaluation::AffineRows& rows, std::size_t j) {
+  forms_[i] = form_of(rows, j);
+}
+
+void AffineForms::set(std::size_t i, const evaluation::AffineRow& row) {
+  if (!std::isfinite(row.offset) || !std::isfinite(row.rate)) return;
+  Form form{terms_.size(), 0, row.rate, row.offset, 0, true};
+  for (std::size_t k = 0; k < row.coefficient.size(); ++k) {
+    if (!std::isfinite(row.coefficient[k])) return;
+    if (row.coefficient[k] != 0.0) terms_.push_back({k, row.coefficient[k]});
+  }
+  form.count = terms_.size() - form.first;
+  forms_[i] = form;
+}
+
+double AffineForms::value(std::size_t i, double t, const double* x) const {
+  const Form& form = forms_[i];
+  double sum = form.rate == 0.0 ? 0.0 : form.rate * t;  // without a rate the time may be anything
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    sum += terms_[k].coefficient * x[terms_[k].column];
+  }
+  return sum + form.offset;
+}
+
+double AffineForms::terms(const Form& form, const StepBounds& bounds) const {
+  double sum = std::abs(form.offset) + std::abs(form.rate) * std::max(std::abs(bounds.begin), std::abs(bounds.end));
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    const auto column = terms_[k].column;
+    sum += std::abs(terms_[k].coefficient) * std::max(std::abs(bounds.low[column]), std::abs(bounds.high[column]));
+  }
+  return sum;
+}
+
+double AffineForms::terms(std::size_t i, const StepBounds& bounds) const { return terms(forms_[i], bounds); }
+
+void AffineForms::watch_none() {
+  std::fill(lower_.begin(), lower_.end(), -infinity);
+  std::fill(upper_.begin(), upper_.end(), infinity);
+  several_.clear();
+  for (Form& form : forms_) form.sign = 0;
+}
+
+void AffineForms::watch(std::size_t i, int sign) {
+  Form& form = forms_[i];
+  form.sign = sign;
+  if (!is_threshold(form)) {
+    several_.push_back(i);
+    return;
+  }
+  const Term& term = terms_[form.first];
+  const double threshold = -form.offset / term.coefficient;
+  const bool above = sign * term.coefficient > 0.0;
+  if (above) {
+    lower_[term.column] = std::max(lower_[term.column], threshold);
+  } else {
+    upper_[term.column] = std::min(upper_[term.column], threshold);
+  }
+}
+
+bool AffineForms::reaches_zero(const Form& form, const StepBounds& bounds) const {
+  const double side = form.sign;
+  const double at_begin = form.rate == 0.0 ? 0.0 : side * form.rate * bounds.begin;
+  const double at_end = form.rate == 0.0 ? 0.0 : side * form.rate * bounds.end;
+  double least = side * form.offset + std::min(at_begin, at_end);
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    const double slope = side * terms_[k].coefficient;
+    least += slope * (slope > 0.0 ? bounds.low : bounds.high)[terms_[k].column];
+  }
+  return !(least > margin * terms(form, bounds));
+}
+
+bool AffineForms::reaches_threshold(std::size_t state, const StepBounds& bounds) const {
+  const double low = bounds.low[state];
+  const double high = bounds.high[state];
+  const double room = margin * std::max(std::abs(low), std::abs(high));
+  return !(low - room > lower_[state] && high + room < upper_[state]);
+}
+
+bool AffineForms::may_vanish(const StepBounds& bounds) const {
+  for (std::size_t state = 0; state < lower_.size(); ++state) {
+    if (reaches_threshold(state, bounds)) return true;
+  }
+  return std::any_of(several_.begin(), several_.end(), [&](std::size_t i) { return reaches_zero(forms_[i], bounds); });
+}
+
+void AffineForms::append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const {
+  bool thresholds = false;
+  for (std::size_t state = 0; state < lower_.size(); ++state) thresholds |= reaches_threshold(state, bounds);
+  if (thresholds) {
+    for (std::size_t i = 0; i < forms_.size(); ++i) {
+      const Form& form = forms_[i];
+      if (form.sign != 0 && is_threshold(form) && reaches_zero(form, bounds)) suspects.push_back(i);
+    }
+  }
+  for (const std::size_t i : several_) {
+    if (reaches_zero(forms_[i], bounds)) suspects.push_back(i);
+  }
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,81 @@
+// Event functions that are affine in (t, x), and which of them can vanish within a step at all.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+
+namespace saltus::event_integrator {
+
+/// Bounds of a step: its times, and the states over it, n_x each.
+struct StepBounds {
+  double begin = 0.0;
+  double end = 0.0;
+  const double* low = nullptr;
+  const double* high = nullptr;
+};
+
+/// Forms phi_i(t, x) = offset_i + rate_i t + sum_k a_k x_k, one for every event function of a mode that is affine.
+///
+/// A form of one state is a threshold of that state. Of the thresholds of a state on the same side only the nearest can
+/// be the first to be reached, so a step is compared with two numbers per state, however many thresholds there are.
+/// Owns its memory; allocates while forms are set only.
+class AffineForms {
+ public:
+  explicit AffineForms(std::size_t states);
+  /// Rows for use_row, which stay the same from mode to mode.
+  void load(const evaluation::AffineRows& rows);
+  /// No forms, for `functions` functions.
+  void reset(std::size_t functions);
+  /// The form of function i is loaded row j; nothing if that row is not affine.
+  void use_row(std::size_t i, std::size_t j) { forms_[i] = table_[j]; }
+  /// The form of function i is row j; nothing if that row is not affine.
+  void set(std::size_t i, const evaluation::AffineRows& rows, std::size_t j);
+  void set(std::size_t i, const evaluation::AffineRow& row);
+
+  [[nodiscard]] bool has(std::size_t i) const { return forms_[i].known; }
+  [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
+  /// Sum of the sizes of the terms that a value is the sum of, at most this over the step: what its rounding follows
+  /// from.
+  [[nodiscard]] double terms(std::size_t i, const StepBounds& bounds) const;
+
+  /// No function is watched.
+  void watch_none();
+  /// From now on function i, whose sign is `sign` (+1, -1), is among those that may_vanish and append_suspects look at.
+  void watch(std::size_t i, int sign);
+  /// Whether any watched function may vanish within the bounds; true where a bound is not finite. Cost: O(n_x), and the
+  /// terms of the forms of several states.
+  [[nodiscard]] bool may_vanish(const StepBounds& bounds) const;
+  /// The watched functions that may, in no particular order.
+  void append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const;
+
+ private:
+  struct Form {
+    std::size_t first = 0;  ///< term
+    std::size_t count = 0;
+    double rate = 0.0;
+    double offset = 0.0;
+    int sign = 0;  ///< 0 = not watched
+    bool known = false;
+  };
+  struct Term {
+    std::size_t column = 0;
+    double coefficient = 0.0;
+  };
+  [[nodiscard]] bool is_threshold(const Form& form) const { return form.count == 1 && form.rate == 0.0; }
+  [[nodiscard]] bool reaches_zero(const Form& form, const StepBounds& bounds) const;
+  [[nodiscard]] double terms(const Form& form, const StepBounds& bounds) const;
+  [[nodiscard]] bool reaches_threshold(std::size_t state, const StepBounds& bounds) const;
+
+  Form form_of(const evaluation::AffineRows& rows, std::size_t j);
+
+  std::vector<Form> table_;  ///< loaded rows
+  std::size_t loaded_terms_ = 0;
+  std::vector<Form> forms_;  ///< one per function
+  std::vector<Term> terms_;
+  std::vector<double> lower_, upper_;  ///< nearest watched thresholds of every state
+  std::vector<std::size_t> several_;   ///< watched functions that are not thresholds
+};
+
+}  // namespace saltus::event_integrator

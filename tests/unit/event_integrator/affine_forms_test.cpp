@@ -1,0 +1,88 @@
+#include "saltus/event_integrator/affine_forms.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace saltus::event_integrator {
+namespace {
+
+/// x1 - 1, x1 - 3, 2 - x1, x2 - x1, t - 5, and a function that is not affine.
+evaluation::AffineRows rows() {
+  evaluation::AffineRows rows;
+  rows.start = {0, 1, 2, 3, 5, 5, 5};
+  rows.column = {0, 0, 0, 0, 1};
+  rows.coefficient = {1.0, 1.0, -1.0, -1.0, 1.0};
+  rows.rate = {0.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  rows.offset = {-1.0, -3.0, 2.0, 0.0, -5.0, std::numeric_limits<double>::quiet_NaN()};
+  return rows;
+}
+
+class Forms : public ::testing::Test {
+ protected:
+  Forms() : forms(2) {
+    forms.load(rows());
+    forms.reset(6);
+    for (std::size_t i = 0; i < 6; ++i) forms.use_row(i, i);
+  }
+
+  std::vector<std::size_t> suspects(double begin, double end, std::vector<double> low, std::vector<double> high) {
+    const StepBounds bounds{begin, end, low.data(), high.data()};
+    std::vector<std::size_t> found;
+    forms.append_suspects(bounds, found);
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(forms.may_vanish(bounds), !found.empty());
+    return found;
+  }
+
+  AffineForms forms;
+};
+
+using Indices = std::vector<std::size_t>;
+
+TEST_F(Forms, EvaluateTheirRows) {
+  const double x[] = {1.5, 4.0};
+  const double expected[] = {0.5, -1.5, 0.5, 2.5, -4.0};
+  for (std::size_t i = 0; i < 5; ++i) {
+    ASSERT_TRUE(forms.has(i));
+    EXPECT_EQ(forms.value(i, 1.0, x), expected[i]);
+  }
+  EXPECT_FALSE(forms.has(5));
+}
+
+TEST_F(Forms, OnlyWhatIsWatchedAndReachedIsSuspect) {
+  // x1 between 1 and 2, both thresholds hidden behind those at 3; x2 above x1; t before 5.
+  forms.watch(0, +1);
+  forms.watch(1, -1);
+  forms.watch(2, +1);
+  forms.watch(3, +1);
+  forms.watch(4, -1);
+  EXPECT_EQ(suspects(0, 1, {1.2, 3.5}, {1.8, 3.6}), Indices{});
+  EXPECT_EQ(suspects(0, 1, {0.9, 3.5}, {1.8, 3.6}), (Indices{0}));
+  EXPECT_EQ(suspects(0, 1, {1.2, 3.5}, {2.0, 3.6}), (Indices{2}));
+  EXPECT_EQ(suspects(0, 1, {1.2, 4.5}, {3.5, 4.6}), (Indices{1, 2}));
+  EXPECT_EQ(suspects(0, 1, {1.2, 1.7}, {1.8, 3.6}), (Indices{3}));
+  EXPECT_EQ(suspects(4.5, 5.0, {1.2, 3.5}, {1.8, 3.6}), (Indices{4}));
+  forms.watch_none();
+  EXPECT_EQ(suspects(0, 10, {-9, -9}, {9, 9}), Indices{});
+}
+
+TEST_F(Forms, ANeighbourhoodOfRoundingSizeIsReached) {
+  forms.watch(0, +1);
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  EXPECT_EQ(suspects(0, 1, {1.0 + 8.0 * epsilon, 0}, {1.5, 0}), (Indices{0}));
+  EXPECT_EQ(suspects(0, 1, {1.0 + 1e-9, 0}, {1.5, 0}), Indices{});
+}
+
+TEST_F(Forms, BoundsThatAreNotFiniteReachEverything) {
+  forms.watch(0, +1);
+  forms.watch(3, +1);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(suspects(0, 1, {-infinity, 3}, {infinity, 4}), (Indices{0, 3}));
+  EXPECT_EQ(suspects(0, 1, {nan, 3}, {nan, 4}), (Indices{0, 3}));
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
