@@ -6,14 +6,14 @@
 #include <numbers>
 #include <utility>
 
+#include "saltus/event_integrator/event_search_internal.hpp"
+
 namespace saltus::event_integrator {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int deepest = 10;  // a step is cut into at most 2^10 pieces before it is shortened instead
-
-int sign_of(double value) { return value > 0.0 ? 1 : value < 0.0 ? -1 : 0; }
 
 /// cos(pi degree (n - k) / n) of the last two degrees.
 const std::array<std::array<double, ode::event_nodes>, 2>& tail_cosines() {
@@ -58,11 +58,6 @@ bool stays_far(const std::array<double, 5>& v, int sign) {
   return sign * c0 > std::abs(c1) + std::abs(c2) + 8.0 * tail;
 }
 
-bool uses_phi(const EventFunction& function) {
-  return function.kind == FunctionKind::surface || function.kind == FunctionKind::user ||
-         function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
-}
-
 /// d phi / d theta of an interpolant by a central difference: starts a Newton correction, no more.
 double slope_at(const ode::BernsteinCoefficients& coefficients, double theta) {
   constexpr double width = 1e-4;
@@ -86,155 +81,6 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
   for (auto* vector : {&x_, &low_, &high_}) vector->resize(at(kernel.states()));
   user_sign_.assign(n_phi - at(kernel.switching_functions()), 0);
   user_vanishes_.assign(user_sign_.size(), false);
-}
-
-/// A step that led from one event to the next was not settled: the zeros at its start are history.
-void EventSearch::start_at(double t) {
-  if (zeros_at_ && *zeros_at_ != t) {
-    for (auto& function : functions_) function.zero_order = 0;
-    user_vanishes_.assign(user_vanishes_.size(), false);
-  }
-  zeros_at_ = t;
-}
-
-void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
-  state_ = state;
-  start_at(t);
-  functions_.clear();
-  nested_ = false;
-  const int n_psi = kernel_.switching_functions();
-  for (int j = 0; j < n_psi; ++j) {
-    if (state.mode[at(j)] == 0) continue;
-    const bool around_sliding =
-        nesting_[at(j)] && state.sliding.size() == 1 &&
-        std::any_of(kernel_.inner(j).begin(), kernel_.inner(j).end(), [&](int i) { return state.mode[at(i)] == 0; });
-    if (around_sliding) {
-      const int below = state.corner_alpha[0][at(j)] > 0.5 ? 1 : -1;
-      const int above = state.corner_alpha[1][at(j)] > 0.5 ? 1 : -1;
-      nested_ = true;
-      functions_.push_back({FunctionKind::nested_below, j, 0, below, zero_order[at(j)]});
-      functions_.push_back({FunctionKind::nested_above, j, 0, above, zero_order[at(j)]});
-    } else {
-      functions_.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
-    }
-  }
-  exits_.resize(state.sliding.size());
-  if (!state.sliding.empty()) field_.exits(t, x, exits_.data());
-  for (std::size_t row = 0; row < state.sliding.size(); ++row) {
-    const int r = static_cast<int>(row);
-    // On a repelling surface (a forced mode) both fields leave and the signs are the other way round.
-    const int arriving = exits_[row].below >= exits_[row].above ? +1 : -1;
-    functions_.push_back({FunctionKind::exit_below, state.sliding[row], r, arriving});
-    functions_.push_back({FunctionKind::exit_above, state.sliding[row], r, -arriving});
-    if (field_.solve() == SlidingSolve::nonaffine) {
-      functions_.push_back({FunctionKind::loss, state.sliding[row], r, sign_of(exits_[row].loss)});
-    }
-  }
-  const auto is_held = [&](int u) {
-    return std::any_of(held_.begin(), held_.end(), [u](const HeldGuard& guard) { return guard.hold.function == u; });
-  };
-  for (int u = n_psi; u < kernel_.event_functions(); ++u) {
-    if (!is_held(u)) functions_.push_back({FunctionKind::user, u, 0, 0});
-  }
-  pressure_.resize(held_.size());
-  for (std::size_t row = 0; row < held_.size(); ++row) {
-    functions_.push_back({FunctionKind::release, held_[row].hold.function, static_cast<int>(row), held_[row].inward});
-  }
-  set_forms(x);
-  noise_.assign(functions_.size(), 0.0);
-  accuracy_.assign(functions_.size(), 0.0);
-  point_.resize(functions_.size());
-  samples_.resize(functions_.size() * ode::event_nodes);
-  for (auto* list : {&suspects_, &special_, &curved_}) list->reserve(functions_.size());
-  rescale(t, x);
-  evaluate(t, x, point_);
-  read_user_signs();
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    auto& function = functions_[i];
-    const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
-                         function.kind == FunctionKind::release;
-    // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
-    if (is_exit && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
-    // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
-    // zero of this start.
-    if (function.zero_order > 0) function.offset = point_[i];
-  }
-  sort_functions();
-}
-
-/// The affine functions of the mode as forms. Selections of a mode are constants, so a function that holds some is
-/// affine if it is for each value of theirs.
-void EventSearch::set_forms(const double* x) {
-  const bool selections = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
-  if (rows_[0].start.empty() || selections) {
-    kernel_.affine_rows(state_.alpha.data(), rows_[0]);
-    forms_.load(rows_[0]);
-  }
-  if (nested_) {
-    kernel_.affine_rows(state_.corner_alpha[0].data(), rows_[1]);
-    kernel_.affine_rows(state_.corner_alpha[1].data(), rows_[2]);
-  }
-  forms_.reset(functions_.size());
-  curved_.clear();
-  curved_phi_ = curved_exits_ = false;
-  prefilter_.assign(functions_.size(), false);
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    const auto& function = functions_[i];
-    switch (function.kind) {
-      case FunctionKind::surface:
-      case FunctionKind::user:
-        forms_.use_row(i, at(function.index));
-        break;
-      case FunctionKind::nested_below:
-        forms_.set(i, rows_[1], at(function.index));
-        break;
-      case FunctionKind::nested_above:
-        forms_.set(i, rows_[2], at(function.index));
-        break;
-      case FunctionKind::exit_below:
-      case FunctionKind::exit_above: {
-        const auto side = function.kind == FunctionKind::exit_below ? Region::below : Region::above;
-        if (field_.exit_row(at(function.row), side, x, row_)) forms_.set(i, row_);
-        break;
-      }
-      case FunctionKind::loss:
-      case FunctionKind::release:
-        break;
-    }
-    if (forms_.has(i)) continue;
-    curved_.push_back(i);
-    (uses_phi(function) ? curved_phi_ : curved_exits_) = true;
-    // Functions that are not affine in the state may oscillate within a step: five nodes do not speak for them.
-    prefilter_[i] = five_nodes_suffice_ && !uses_phi(function);
-  }
-}
-
-/// What is watched by its form, and what is looked at in every step because its start is special.
-void EventSearch::sort_functions() {
-  forms_.watch_none();
-  special_.clear();
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    const auto& function = functions_[i];
-    if (function.sign == 0 || function.zero_order != 0 || function.offset != 0.0) {
-      special_.push_back(i);
-    } else if (forms_.has(i)) {
-      forms_.watch(i, function.sign);
-    }
-  }
-}
-
-/// From the values in point_.
-void EventSearch::read_user_signs() {
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    auto& function = functions_[i];
-    if (function.kind != FunctionKind::user) continue;
-    const auto user = at(function.index - kernel_.switching_functions());
-    auto& sign = user_sign_[user];
-    const bool at_zero = user_vanishes_[user] || std::abs(point_[i]) <= noise_[i];
-    if (!at_zero) sign = sign_of(point_[i]);
-    function.sign = sign;
-    function.zero_order = at_zero ? 1 : 0;
-  }
 }
 
 void EventSearch::find_pressure(double t, const double* x) {
@@ -468,55 +314,6 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
     if (half != SearchOutcome::none) return half;
   }
   return SearchOutcome::none;
-}
-
-bool EventSearch::settle(double t, const double* x) {
-  user_vanishes_.assign(user_vanishes_.size(), false);
-  zeros_at_ = t;
-  if (special_.empty()) return false;
-  bool unknown = false;
-  const bool offset =
-      std::any_of(special_.begin(), special_.end(), [&](auto i) { return functions_[i].offset != 0.0; });
-  if (offset) evaluate(t, x, point_);
-  std::size_t kept = 0;
-  for (const std::size_t i : special_) {
-    auto& function = functions_[i];
-    function.zero_order = 0;
-    unknown = unknown || function.sign == 0;
-    // Far enough behind the start that what was left there cannot be mistaken for a new zero.
-    if (function.offset != 0.0 && function.sign * point_[i] > 2.0 * std::abs(function.offset)) function.offset = 0.0;
-    if (function.offset != 0.0 || function.sign == 0) {
-      special_[kept++] = i;
-    } else if (forms_.has(i)) {
-      forms_.watch(i, function.sign);
-    }
-  }
-  special_.resize(kept);
-  if (!unknown) return false;
-  rescale(t, x);
-  evaluate(t, x, point_);
-  read_user_signs();
-  sort_functions();
-  return true;
-}
-
-void EventSearch::set_user_signs(std::vector<int> signs, std::vector<bool> vanish) {
-  user_sign_ = std::move(signs);
-  user_vanishes_ = std::move(vanish);
-  zeros_at_.reset();
-}
-
-void EventSearch::set_user_sign(std::size_t function, int sign, double t, const double* x) {
-  start_at(t);
-  auto& entry = functions_[function];
-  const auto user = at(entry.index - kernel_.switching_functions());
-  entry.sign = sign;
-  entry.zero_order = 1;
-  kernel_.functions(t, x, state_.alpha.data(), phi_.data());
-  entry.offset = phi_[at(entry.index)];
-  user_sign_[user] = sign;
-  user_vanishes_[user] = true;
-  sort_functions();
 }
 
 }  // namespace saltus::event_integrator
