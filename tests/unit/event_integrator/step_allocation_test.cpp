@@ -42,7 +42,7 @@ Count count(const model::System& system, ode::Method method, double until) {
   const auto observer = [&](const Progress& progress) {
     // The first two steps of a mode fill what later ones use again.
     quiet = progress.events == events ? quiet + 1 : 0;
-    if (quiet > 2) {
+    if (quiet > 2 && progress.t < until) {  // the end has a row
       ++count.steps;
       count.with_allocation += allocations != seen ? 1 : 0;
     }
