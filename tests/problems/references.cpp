@@ -21,6 +21,7 @@ ReferenceEvent event_of(const json& entry) {
                        .mode_before = std::nullopt,
                        .mode_after = entry.at("mode_after"),
                        .x = entry.at("x"),
+                       .x_after = entry.contains("x_after") ? entry.at("x_after") : entry.at("x"),
                        .unique = true,
                        .alternatives = {}};
   if (!entry.at("mode_before").is_null()) event.mode_before = entry.at("mode_before").get<std::vector<int>>();

@@ -21,7 +21,7 @@ struct ReferenceEvent {
   std::vector<std::string> surfaces;
   std::optional<std::vector<int>> mode_before;  ///< absent for a start
   std::vector<int> mode_after;
-  std::vector<double> x;
+  std::vector<double> x, x_after;  ///< they differ at jumps
   std::optional<bool> unique = true;
   std::vector<ReferenceAlternative> alternatives;
 };

@@ -14,6 +14,16 @@ constexpr std::size_t fewest_laps = 4;
 /// Laps whose durations give the ratio, at most: more average out the rounding of t where the ratio is near 1.
 constexpr std::size_t most_laps = 48;
 
+/// Jumps without a pattern that are looked at together.
+constexpr std::size_t many = 64;
+constexpr double hundredth = 0.01;
+
+double longest(const std::vector<double>& shortest, const std::vector<int>& jumps) {
+  double result = 0.0;
+  for (const int jump : jumps) result = std::max(result, shortest[at(jump)]);
+  return result;
+}
+
 /// Ratio of successive durations, over as many laps as it takes to shrink to a third: the rounding of t is divided by
 /// their number.
 double ratio_of(const std::vector<double>& durations) {
@@ -27,11 +37,18 @@ double ratio_of(const std::vector<double>& durations) {
 }  // namespace
 
 void JumpSeries::clear() {
+  clear_laps();
+  recent_.clear();
+}
+
+void JumpSeries::clear_laps() {
   entries_.clear();
   std::fill(std::begin(laps_), std::end(laps_), std::size_t{0});
 }
 
 void JumpSeries::add(double t, std::vector<int> jumps, const std::vector<double>& x) {
+  recent_.emplace_back(t, jumps);
+  if (recent_.size() > many) recent_.pop_front();
   entries_.push_back({t, std::move(jumps), x});
   if (entries_.size() > longest_period * (most_laps + 2)) entries_.pop_front();
   for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
@@ -73,9 +90,9 @@ std::vector<double> JumpSeries::extrapolated(std::size_t period, double ratio) c
   return x;
 }
 
-std::vector<int> JumpSeries::jumps_of_lap(std::size_t period) const {
+std::vector<int> JumpSeries::last_jumps(std::size_t entries) const {
   std::vector<int> result;
-  for (std::size_t k = 0; k < period; ++k) {
+  for (std::size_t k = 0; k < entries; ++k) {
     result.insert(result.end(), back(k).jumps.begin(), back(k).jumps.end());
   }
   std::sort(result.begin(), result.end());
@@ -83,13 +100,16 @@ std::vector<int> JumpSeries::jumps_of_lap(std::size_t period) const {
   return result;
 }
 
-std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period) const {
+std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period, const std::vector<double>& shortest) const {
   // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
   if (laps_[period] < 2 * period || entries_.size() <= 2 * period) return std::nullopt;
   const auto now = durations(period, 0);
   const double t = back(0).t;
   const double resolution = rounding_unit * std::abs(t);
-  if (now.size() >= 2 && now[0] <= 16.0 * resolution) return JumpLimit{t, back(0).x, jumps_of_lap(period)};
+  const auto jumps = last_jumps(period);
+  const double drowning = longest(shortest, jumps);
+  if (now.size() >= 2 && now[0] <= std::max(16.0 * resolution, hundredth * drowning))
+    return JumpLimit{t, back(0).x, jumps, false};
   if (laps_[period] < fewest_laps * period || now.size() < fewest_laps) return std::nullopt;
   const auto before = durations(period, 1);
   const double ratio = ratio_of(now);
@@ -98,18 +118,30 @@ std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period) const {
   const double remaining = now[0] * ratio / (1.0 - ratio);
   const double remaining_before = before[0] * ratio_before / (1.0 - ratio_before);
   const double taken = t - start_[period];
-  if (remaining > std::max(1e-8 * taken, 100.0 * resolution)) return std::nullopt;
+  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && now[0] > drowning) return std::nullopt;
   // A fiftieth of what remains is 2e-10 of the time taken.
   const double difference = (t + remaining) - (back(period).t + remaining_before);
   if (std::abs(difference) > 0.02 * remaining + 4.0 * resolution) return std::nullopt;
-  return JumpLimit{t + remaining, extrapolated(period, ratio), jumps_of_lap(period)};
+  return JumpLimit{t + remaining, extrapolated(period, ratio), jumps, false};
 }
 
-std::optional<JumpLimit> JumpSeries::limit() const {
+std::optional<JumpLimit> JumpSeries::end_of_rattling(const std::vector<double>& shortest) const {
+  if (recent_.size() < many || entries_.empty()) return std::nullopt;
+  std::vector<int> jumps;
+  for (const auto& [time, executed] : recent_) jumps.insert(jumps.end(), executed.begin(), executed.end());
+  std::sort(jumps.begin(), jumps.end());
+  jumps.erase(std::unique(jumps.begin(), jumps.end()), jumps.end());
+  const double t = recent_.back().first;
+  const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * longest(shortest, jumps));
+  if (t - recent_.front().first > static_cast<double>(many) * resolved) return std::nullopt;
+  return JumpLimit{t, entries_.back().x, std::move(jumps), true};
+}
+
+std::optional<JumpLimit> JumpSeries::limit(const std::vector<double>& shortest) const {
   for (std::size_t period = 1; period <= longest_period; ++period) {
-    if (auto found = limit_of(period)) return found;
+    if (auto found = limit_of(period, shortest)) return found;
   }
-  return std::nullopt;
+  return end_of_rattling(shortest);
 }
 
 std::optional<double> JumpSeries::last_lap() const {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace saltus::event_integrator {
@@ -13,6 +14,7 @@ struct JumpLimit {
   double t = 0.0;
   std::vector<double> x;
   std::vector<int> jumps;  ///< of one lap, ascending, each once
+  bool rattling = false;   ///< no laps: jumps in any order, faster than their guards are resolved
 };
 
 /// Watches the times and states of jumps for laps whose durations shrink geometrically. A lap is a cycle of jumps that
@@ -26,9 +28,14 @@ class JumpSeries {
  public:
   /// Jumps executed at t in this order, and the state behind them.
   void add(double t, std::vector<int> jumps, const std::vector<double>& x);
-  [[nodiscard]] std::optional<JumpLimit> limit() const;
+  /// @param shortest  by jump: laps not longer than this drown in the rounding of its guard; their sequence is
+  ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
+  ///                  hundredth of it, in any order, have their limit where they are.
+  [[nodiscard]] std::optional<JumpLimit> limit(const std::vector<double>& shortest) const;
   /// How long the last lap of a shrinking sequence was; nullopt outside of one.
   [[nodiscard]] std::optional<double> last_lap() const;
+  /// Behind a limit, or where guards came to rest: laps start anew. Rattling is followed through such rests.
+  void clear_laps();
   void clear();
 
  private:
@@ -39,15 +46,17 @@ class JumpSeries {
   };
   static constexpr std::size_t longest_period = 8;
   [[nodiscard]] const Entry& back(std::size_t steps) const { return entries_[entries_.size() - 1 - steps]; }
-  [[nodiscard]] std::optional<JumpLimit> limit_of(std::size_t period) const;
+  [[nodiscard]] std::optional<JumpLimit> limit_of(std::size_t period, const std::vector<double>& shortest) const;
+  [[nodiscard]] std::optional<JumpLimit> end_of_rattling(const std::vector<double>& shortest) const;
   [[nodiscard]] std::vector<double> extrapolated(std::size_t period, double ratio) const;
-  [[nodiscard]] std::vector<int> jumps_of_lap(std::size_t period) const;
+  [[nodiscard]] std::vector<int> last_jumps(std::size_t entries) const;
   /// Durations of the laps behind the entry `skipped` laps ago, the last one first, as far as jumps repeat.
   [[nodiscard]] std::vector<double> durations(std::size_t period, std::size_t skipped) const;
 
   std::deque<Entry> entries_;
-  double start_[longest_period + 1] = {};      ///< of the shrinking sequence of each period
-  std::size_t laps_[longest_period + 1] = {};  ///< in it
+  std::deque<std::pair<double, std::vector<int>>> recent_;  ///< times and jumps of the last events, for rattling
+  double start_[longest_period + 1] = {};                   ///< of the shrinking sequence of each period
+  std::size_t laps_[longest_period + 1] = {};               ///< in it
 };
 
 }  // namespace saltus::event_integrator

@@ -83,6 +83,8 @@ class EventSearch {
   /// Behind a jump: the signs of all user functions, 0 = not known, and whether they vanish here. Takes effect with the
   /// next enter().
   void set_user_signs(std::vector<int> signs, std::vector<bool> vanish);
+  /// Time has passed since the user functions were at zero.
+  void forget_user_zeros() { user_vanishes_.assign(user_vanishes_.size(), false); }
   /// Held guards of jumps are not searched, their releases are. Takes effect with the next enter().
   void set_held(std::vector<HeldGuard> held) { held_ = std::move(held); }
   /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.

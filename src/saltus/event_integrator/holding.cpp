@@ -22,31 +22,14 @@ std::optional<std::string> Holding::set(std::vector<HeldGuard> guards) {
   std::vector<evaluation::Hold> holds;
   for (const auto& guard : guards) holds.push_back(guard.hold);
   guards_ = std::move(guards);
+  const auto m = static_cast<Eigen::Index>(guards_.size());
+  rows_.resize(m, kernel_.states());
+  residual_.resize(m);
+  normal_.resize(m, m);
   // The kernel's functions are the model's own ones; what they hold is a state of the run, which is its only user.
   auto done = const_cast<evaluation::ModelKernel&>(kernel_).hold(holds);
   if (!done) return done.error().message;
   return std::nullopt;
-}
-
-bool Holding::put_on_zero(const HeldGuard& guard, double t, const std::vector<double>& alpha, std::vector<double>& x) {
-  kernel_.functions(t, x.data(), alpha.data(), values_.data());
-  const double value = values_[at(guard.hold.function)];
-  if (value == 0.0 || !std::isfinite(value)) return false;
-  double rate = 0.0;
-  kernel_.gradient(guard.hold.function, t, x.data(), alpha.data(), row_.data(), &rate);
-  double square = 0.0;
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    if (system_.discrete_states[i]) row_[i] = 0.0;
-    square += row_[i] * row_[i];
-  }
-  if (!(square > 0.0 && std::isfinite(square))) return false;
-  bool moved = false;
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    const double next = x[i] - value * row_[i] / square;
-    moved = moved || next != x[i];
-    x[i] = next;
-  }
-  return moved;
 }
 
 /// d (dg/dt) / dx in the states that the jump sets, in row_; returns its square.
@@ -74,34 +57,77 @@ bool Holding::can_rest(const evaluation::Hold& hold, double t, const std::vector
   return square > 0.0 && std::isfinite(square);
 }
 
-bool Holding::bring_to_rest(const HeldGuard& guard, double t, const std::vector<double>& alpha,
-                            std::vector<double>& x) {
-  const double rate = kernel_.lie_derivative(guard.hold.function, 1, t, x.data(), alpha.data());
-  if (rate == 0.0 || !std::isfinite(rate)) return false;
-  const double square = find_rate_row(guard.hold, t, alpha, x);
-  if (!(square > 0.0 && std::isfinite(square))) return false;
+/// Values and gradients of the held guards in the continuous states; whether any is not 0.
+bool Holding::find_positions(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
+  kernel_.functions(t, x.data(), alpha.data(), values_.data());
+  bool away = false;
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    const auto r = static_cast<Eigen::Index>(k);
+    residual_[r] = values_[at(guards_[k].hold.function)];
+    away = away || residual_[r] != 0.0;
+  }
+  if (!away) return false;
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    double rate = 0.0;
+    kernel_.gradient(guards_[k].hold.function, t, x.data(), alpha.data(), row_.data(), &rate);
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = system_.discrete_states[i] ? 0.0 : row_[i];
+    }
+  }
+  return true;
+}
+
+/// The same for their rates, in the states that the jumps set.
+bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+  bool away = false;
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    const auto r = static_cast<Eigen::Index>(k);
+    residual_[r] = kernel_.lie_derivative(guards_[k].hold.function, 1, t, x.data(), alpha.data());
+    away = away || residual_[r] != 0.0;
+  }
+  if (!away) return false;
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    static_cast<void>(find_rate_row(guards_[k].hold, t, alpha, x));
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = row_[i];
+    }
+  }
+  return true;
+}
+
+/// x less the shortest vector that makes the residuals 0; returns whether x changed.
+bool Holding::correct(std::vector<double>& x) {
+  if (guards_.size() == 1) {
+    residual_ /= rows_.squaredNorm();  // one division: a guard that is a coordinate becomes exactly 0
+  } else {
+    normal_.noalias() = rows_ * rows_.transpose();
+    cholesky_.compute(normal_);
+    if (cholesky_.info() != Eigen::Success) return false;
+    cholesky_.solveInPlace(residual_);
+  }
+  if (!residual_.allFinite()) return false;
   bool moved = false;
-  for (const int target : system_.jumps[at(guard.hold.jump)].targets) {
-    if (row_[at(target)] == 0.0) continue;
-    const double next = x[at(target)] - rate * row_[at(target)] / square;
-    moved = moved || next != x[at(target)];
-    x[at(target)] = next;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double correction = 0.0;
+    for (Eigen::Index r = 0; r < residual_.size(); ++r) {
+      correction += rows_(r, static_cast<Eigen::Index>(i)) * residual_[r];
+    }
+    const double next = x[i] - correction;
+    moved = moved || next != x[i];
+    x[i] = next;
   }
   return moved;
 }
 
 bool Holding::project(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+  if (guards_.empty()) return false;
   bool changed = false;
   // Newton with a slope good to ten digits: the second step is at rounding, the others settle its last bits.
   for (int iteration = 0; iteration < 4; ++iteration) {
-    bool moved = false;
-    for (const auto& guard : guards_) {
-      const bool placed = put_on_zero(guard, t, alpha, x);
-      const bool rested = bring_to_rest(guard, t, alpha, x);
-      moved = moved || placed || rested;
-    }
-    changed = changed || moved;
-    if (!moved) break;
+    const bool placed = find_positions(t, alpha, x) && correct(x);
+    const bool rested = find_rates(t, alpha, x) && correct(x);
+    changed = changed || placed || rested;
+    if (!placed && !rested) break;
   }
   return changed;
 }

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/model/system.hpp"
 
@@ -38,15 +41,19 @@ class Holding {
   [[nodiscard]] double largest_rate(double t, const std::vector<double>& alpha, const std::vector<double>& x) const;
 
  private:
-  bool put_on_zero(const HeldGuard& guard, double t, const std::vector<double>& alpha, std::vector<double>& x);
   double find_rate_row(const evaluation::Hold& hold, double t, const std::vector<double>& alpha,
                        std::vector<double>& x);
-  bool bring_to_rest(const HeldGuard& guard, double t, const std::vector<double>& alpha, std::vector<double>& x);
+  bool find_positions(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  bool find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x);
+  bool correct(std::vector<double>& x);
 
   const evaluation::ModelKernel& kernel_;
   const model::System& system_;
   std::vector<HeldGuard> guards_;
   std::vector<double> values_, row_;
+  Eigen::MatrixXd rows_, normal_;  ///< of all held guards
+  Eigen::VectorXd residual_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 
 }  // namespace saltus::event_integrator

@@ -1,6 +1,7 @@
 #include "saltus/event_integrator/integrate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -47,6 +48,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       holding_(kernel, system),
       last_guard_(system.jumps.size(), {{-1, -1}, -1}),
       last_rate_(system.jumps.size(), 0.0),
+      shortest_lap_(system.jumps.size(), 0.0),
       recorder_(kernel, system),
       t_(options.from),
       x_(system.initial_state),
@@ -54,7 +56,14 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       row_x_(x_.size()),
       row_slope_(x_.size()),
       evaluations_before_(kernel.field_evaluations()),
-      series_(options.until - options.from) {}
+      series_(options.until - options.from) {
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    if (i >= system.discrete_states.size() || !system.discrete_states[i]) continuous_.push_back(i);
+  }
+  if (!continuous_.empty()) {
+    error_share_ = std::sqrt(static_cast<double>(x_.size()) / static_cast<double>(continuous_.size()));
+  }
+}
 
 std::string Run::where() const {
   std::string text;

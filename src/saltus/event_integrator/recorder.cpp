@@ -7,6 +7,23 @@
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
+namespace {
+
+std::string why_executed(const model::Jump& jump) {
+  switch (jump.trigger) {
+    case model::JumpTrigger::times:
+      return "a given time";
+    case model::JumpTrigger::condition:
+      return "its condition became true";
+    case model::JumpTrigger::guard_down:
+    case model::JumpTrigger::guard_up:
+    case model::JumpTrigger::guard_both:
+      return "its guard passed 0";
+  }
+  __builtin_unreachable();
+}
+
+}  // namespace
 
 Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& system)
     : kernel_(kernel), system_(system) {}
@@ -52,7 +69,7 @@ void Recorder::add_transition(result::Event event, const Transition& transition)
   event.mode_after = mode_columns(transition.state.mode, transition.state.alpha);
   event.alpha_after = alpha_columns(transition.state.alpha);
   event.unique = transition.unique;
-  event.reason = transition.reason;
+  event.reason += (event.reason.empty() || transition.reason.empty() ? "" : "; ") + transition.reason;
   for (const auto& other : transition.alternatives) {
     event.alternatives.push_back({mode_columns(other.mode, other.alpha), alpha_columns(other.alpha)});
   }
@@ -128,6 +145,7 @@ void Recorder::jumped(double t, const std::vector<ExecutedJump>& jumps, const st
     entry.surfaces = {name};
     entry.x = jumps[k].x;
     entry.x_after = jumps[k].x_after;
+    entry.reason = why_executed(system_.jumps[at(jumps[k].jump)]);
     if (k == 0 && before) {
       entry.mode_before = mode_columns(before->mode, before->alpha);
       entry.alpha_before = alpha_columns(before->alpha);

@@ -124,6 +124,8 @@ Run::Arrival Run::arrive(RowBefore row) {
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
   const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
+  // What was left at zero by the last event has moved away since, also where no step has ended in between.
+  if (located.t > t_) search_.forget_user_zeros();
   t_ = located.t;
   x_ = located.x;
   static_cast<void>(holding_.project(t_, state_.alpha, x_));

@@ -110,6 +110,8 @@ class Run {
     return std::max(4.0 * rounding_unit * std::abs(t_), std::numeric_limits<double>::min());
   }
   [[nodiscard]] double span() const { return options_.until - options_.from; }
+  /// Of the last attempt: discrete states take no part in it.
+  [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }
   [[nodiscard]] std::string where() const;
 
   auto right_hand_side() {
@@ -135,11 +137,14 @@ class Run {
   JumpSeries jump_series_;
   std::vector<HeldGuard> last_guard_;  ///< by jump: the guard that was at zero when it was executed last
   std::vector<double> last_rate_;      ///< by jump: |dg/dt| then
+  std::vector<double> shortest_lap_;   ///< by jump: shorter ones drown in the rounding of the guard
   Recorder recorder_;
 
   double t_;
   std::vector<double> x_, slope_;
   std::vector<double> row_x_, row_slope_;
+  std::vector<std::size_t> continuous_;  ///< states that are not discrete
+  double error_share_ = 1.0;             ///< the mean square over the continuous states to that over all, its root
   ModeState state_;
   ModeState before_;  ///< of the event being handled, as are the next three
   std::vector<double> x_before_;

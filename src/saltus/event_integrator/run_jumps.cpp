@@ -198,12 +198,8 @@ bool Run::hold_resting(Landing& landing) {
 
 /// Puts the state on the guards and keeps it there; false if that fails, with the status set.
 bool Run::hold(std::vector<HeldGuard> guards, Landing& landing) {
-  std::vector<int> jumps;
-  for (const auto& guard : guards) jumps.push_back(guard.hold.jump);
-  const auto problem = holding_.set(std::move(guards));
-  if (problem) {
-    fail(Termination::outside_class,
-         fmt::format("the jumps {} accumulate at t = {:.17g}: {}", jump_names(jumps), t_, *problem));
+  if (const auto problem = holding_.set(std::move(guards))) {
+    fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", t_, *problem));
     return false;
   }
   search_.set_held(holding_.guards());
@@ -318,10 +314,23 @@ bool Run::settle_at_start(Landing& landing) {
   return true;
 }
 
-/// A step as at a start: from the field alone, not beyond the last lap of a shrinking sequence of jumps.
+/// A step as at a start: from the field of the continuous states alone, not beyond the last lap of a shrinking sequence
+/// of jumps.
 void Run::start_step() {
-  h_ = ode::initial_step(options_.method, right_hand_side(), t_, x_.data(), slope_.data(), kernel_.states(), span(),
-                         tolerances_);
+  const auto select = [&](const std::vector<double>& all) {
+    std::vector<double> selected;
+    for (const auto i : continuous_) selected.push_back(all[i]);
+    return selected;
+  };
+  std::vector<double> point = x_;
+  std::vector<double> rate(x_.size());
+  const auto right_hand_side_of_continuous = [&](double t, const double* x, double* xdot) {
+    for (std::size_t k = 0; k < continuous_.size(); ++k) point[continuous_[k]] = x[k];
+    field_(t, point.data(), rate.data());
+    for (std::size_t k = 0; k < continuous_.size(); ++k) xdot[k] = rate[continuous_[k]];
+  };
+  h_ = ode::initial_step(options_.method, right_hand_side_of_continuous, t_, select(x_).data(), select(slope_).data(),
+                         static_cast<int>(continuous_.size()), span(), tolerances_);
   if (const auto lap = jump_series_.last_lap()) h_ = std::min(h_, *lap);
   field_(t_, x_.data(), row_slope_.data());  // selections back to those of this point
   control_.reset();

@@ -14,6 +14,8 @@ using result::Termination;
 /// Notes the jumps of an event: when, where to, and which guards were at zero.
 void Run::note_series(const Landing& landing) {
   if (landing.executed.empty()) return;
+  std::vector<double> magnitude(landing.rates.size()), slope(landing.rates.size());
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
   std::vector<int> jumps;
   for (const auto& executed : landing.executed) jumps.push_back(executed.jump);
   for (const int jump : jumps) {
@@ -24,14 +26,14 @@ void Run::note_series(const Landing& landing) {
       const int inward = jumps_.trigger_sign(jump, g, jump_point(),
                                              -search_.user_signs()[at(function - kernel_.switching_functions())]);
       last_guard_[at(jump)] = {{jump, function}, inward};
-      last_rate_[at(jump)] = landing.rates[at(function)];
+      const double rate = landing.rates[at(function)];
+      last_rate_[at(jump)] = rate;
+      // Between two zeros a time T apart a guard gets about as far as its rate times T/4: here 200 roundings.
+      shortest_lap_[at(jump)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(function)] / rate : 0.0;
     }
   }
-  if (!landing.resting.empty()) {
-    jump_series_.clear();
-  } else {
-    jump_series_.add(t_, std::move(jumps), x_);
-  }
+  jump_series_.add(t_, std::move(jumps), x_);
+  if (!landing.resting.empty()) jump_series_.clear_laps();
 }
 
 /// Held guards on which nothing presses any more are free; returns whether there were any.
@@ -60,7 +62,7 @@ bool Run::release(const Located& located) {
 /// If the jumps up to here have a limit that nothing else precedes, the run goes on from there.
 void Run::accumulate_jumps() {
   if (jumps_.none()) return;
-  const auto limit = jump_series_.limit();
+  const auto limit = jump_series_.limit(shortest_lap_);
   if (limit && limit->t <= std::min(options_.until, jumps_.next_time())) follow_limit(*limit);
 }
 
@@ -86,12 +88,18 @@ void Run::follow_limit(const JumpLimit& limit) {
   const bool time_passes = limit.t > t_;
   t_ = limit.t;
   x_ = limit.x;
-  jump_series_.clear();
+  if (limit.rattling) {
+    jump_series_.clear();
+  } else {
+    jump_series_.clear_laps();
+  }
   if (time_passes) row(t_, x_last);
   Landing landing = landing_here();
   const auto accumulated = [&] {
     recorder_.accumulated(t_, limit.jumps, {x_last, x_, before, state_},
-                          "the intervals of these jumps shrink geometrically: the state is their limit");
+                          limit.rattling
+                              ? "these jumps follow each other faster than their guards are resolved"
+                              : "the intervals of these jumps shrink geometrically: the state is their limit");
     row(t_, x_);
     last_event_time_ = t_;
   };

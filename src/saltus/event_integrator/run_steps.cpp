@@ -93,7 +93,7 @@ Run::Step Run::accept(double t_new) {
   } else {
     std::copy(stepper_.slope_new(), stepper_.slope_new() + slope_.size(), slope_.begin());
   }
-  h_ = h * control_.accepted(stepper_.error_norm());
+  h_ = h * control_.accepted(error_norm());
   // A step that was cut short at a time of a jump says nothing against the one that was proposed.
   if (t_ < options_.until && t_ == jumps_.next_time()) h_ = std::max(h_, h_try_);
   step_memory_.accepted(h_);
@@ -118,7 +118,7 @@ Run::Step Run::attempt() {
   if (stepper_.attempt(right_hand_side(), t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
     return shorten(0.25) ? Step::shortened : undefined_step();
   }
-  if (const double error = stepper_.error_norm(); !(error <= 1.0)) {
+  if (const double error = error_norm(); !(error <= 1.0)) {
     if (shorten(control_.rejected(error))) return Step::shortened;
     if (stopped_by_singularity()) return Step::failed;
     fail(Termination::step_size_too_small,
