@@ -332,6 +332,31 @@ until = 4
   EXPECT_EQ(result.final.x[0], 0.0);
 }
 
+// A comparison of discrete states beside a sliding surface: slides while phase is 1, leaves with the jump at 3.
+TEST(Jumps, ADiscreteStateChoosesTheField) {
+  const Result result = simulated(R"toml(
+[states]
+x = -1
+phase = 1
+[dynamics]
+x = "if(phase == 1, -sign(x), 1)"
+phase = "0"
+[[jumps]]
+at = [3]
+set = { phase = "2" }
+[simulate]
+until = 4
+)toml");
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_EQ(result.events[0].kind, EventKind::enter_sliding);
+  EXPECT_EQ(result.events[0].surfaces, std::vector<std::string>{"x"});
+  EXPECT_NEAR(result.events[0].t, 1.0, 1e-13);
+  EXPECT_EQ(result.events[1].kind, EventKind::jump);
+  EXPECT_EQ(result.events[1].x_after[0], 0.0);
+  EXPECT_NEAR(result.final.x[0], 1.0, 1e-13);
+}
+
 // The jump happens where psi itself is 0: one entry, and the mode behind it is that of the motion.
 TEST(Jumps, AGuardThatIsASwitchingFunction) {
   const Result result = simulated(R"toml(

@@ -270,6 +270,7 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Lan
   fire_user_events(x_before, before);
   note_series(landing);
   start_step();
+  static_cast<void>(step_memory_.change(state_.mode, t_, h_));  // the mode lasts from here; its step is that of a start
   return running_;
 }
 
