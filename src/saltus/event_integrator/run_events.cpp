@@ -28,7 +28,8 @@ bool Run::too_many_events() {
     fail(Termination::iteration_limit, fmt::format("max_events = {} reached at {}", options_.max_events, where()));
     return true;
   }
-  if (!series_.too_dense(t_)) return false;
+  // Jumps have their own limits.
+  if (jumped_ || !series_.too_dense(t_)) return false;
   accumulates();
   return true;
 }
@@ -118,6 +119,7 @@ Run::Arrival Run::arrive(RowBefore row) {
   if (!state_.sliding.empty()) state_.alpha = field_.alpha();
   before_ = state_;
   x_before_ = x_;
+  jumped_ = false;
   return {recorder_.events(), row};
 }
 

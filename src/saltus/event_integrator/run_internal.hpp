@@ -155,6 +155,7 @@ class Run {
   double h_try_ = 0.0;              ///< step under trial
   double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
   std::size_t next_output_ = 0;
+  bool jumped_ = false;  ///< at the event in hand
   double last_event_time_ = -std::numeric_limits<double>::infinity();
   long evaluations_before_;  ///< the kernel may have been used before
   SwitchSeries series_;

@@ -248,6 +248,7 @@ bool Run::settle_jumps(Landing& landing) {
 
 /// Rules 4 to 6 at an event: user events of the motion before, the jumps, user events by them.
 bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Landing landing) {
+  jumped_ = true;
   fire_user_events(x_, before);
   const Termination stopped = result_.status.termination;
   const std::string message = result_.status.message;
