@@ -13,6 +13,15 @@
 namespace saltus::model {
 namespace {
 
+Error nothing_stated() {
+  return {ErrorCode::invalid_model,
+          "the model has no states",
+          "declare at least one in [states], with its right-hand side in [dynamics]; without states there are "
+          "[outputs] and [[events]] of t only",
+          {},
+          {"in [states]"}};
+}
+
 /// The steps from a statement to a system, each of which fills some of its fields.
 class Assembly {
  public:
@@ -37,12 +46,7 @@ class Assembly {
  private:
   std::optional<Error> take_values() {
     if (statement_.states.empty() && statement_.outputs.empty() && statement_.events.empty()) {
-      return Error{ErrorCode::invalid_model,
-                   "the model has no states",
-                   "declare at least one in [states], with its right-hand side in [dynamics]; without states there are "
-                   "[outputs] and [[events]] of t only",
-                   {},
-                   {"in [states]"}};
+      return nothing_stated();
     }
     system_.name = statement_.name;
     system_.description = statement_.description;
