@@ -99,7 +99,7 @@ Json surface_json(const result::Surface& surface) {
 Json options_json(const result::OptionRecord& options) {
   Json json = Json::object();
   for (const auto& [name, value] : options) {
-    std::visit([&](const auto& content) { json[name] = content; }, value);
+    std::visit([&json, &key = name](const auto& content) { json[key] = content; }, value);
   }
   return json;
 }

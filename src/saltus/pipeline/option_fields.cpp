@@ -369,10 +369,10 @@ OptionRecord option_record(const SimulateOptions& options) {
   return record;
 }
 
-double number_of_rows(const OutputGrid& grid, double from, double until) {
+double number_of_rows(const OutputGrid& grid, double begin, double end) {
   if (const auto* points = std::get_if<NumberOfPoints>(&grid)) return static_cast<double>(points->points);
   if (const auto* every = std::get_if<EveryInterval>(&grid)) {
-    return 1.0 + std::floor((until - from) / every->interval * (1.0 + 1e-12));
+    return 1.0 + std::floor((end - begin) / every->interval * (1.0 + 1e-12));
   }
   const auto* at = std::get_if<AtTimes>(&grid);
   return at == nullptr ? 0.0 : static_cast<double>(at->times.size());

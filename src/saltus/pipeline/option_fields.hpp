@@ -50,7 +50,7 @@ struct OptionProblem {
 };
 
 /// Rows an output grid asks for between two times, both ends among them; 0 for every step.
-[[nodiscard]] double number_of_rows(const OutputGrid& grid, double from, double until);
+[[nodiscard]] double number_of_rows(const OutputGrid& grid, double begin, double end);
 
 /// Checks the options against each other: `until` given and after `from`, rtol + atol > 0, output times within
 /// the span and not too many, no initial_mode where no modes are decided.
