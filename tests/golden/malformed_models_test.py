@@ -5,9 +5,10 @@ import itertools
 import resource
 
 import tool
-from malformed import base, expressions, names, texts, values
+from malformed import base, expressions, names, tables, texts, values
 
-TOPICS = {"texts": texts.FILES, "names": names.FILES, "values": values.FILES, "expressions": expressions.FILES}
+TOPICS = {"texts": texts.FILES, "names": names.FILES, "values": values.FILES, "expressions": expressions.FILES,
+          "tables": tables.FILES}
 SECONDS = 5.0  # of the processor; ten megabytes take about one
 
 

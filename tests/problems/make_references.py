@@ -20,6 +20,7 @@ import catalogue_problems
 import classic_problems
 import jump_problems
 import mpmath
+import phased_problems
 from mpmath import mp, mpf
 from taylor_events import solve
 
@@ -68,9 +69,10 @@ def written(value):
 
 def entry_of(problem):
     mp.dps = 40
-    first = solve(problem, 40)
+    run = getattr(problem, "solve", lambda degree: solve(problem, degree))
+    first = run(40)
     mp.dps = 50
-    second = solve(problem, 52)
+    second = run(52)
     assert [e["kind"] for e in first["events"]] == [e["kind"] for e in second["events"]], problem.model
     digits = min(agreement(a, b) for a, b in zip(numbers_of(first), numbers_of(second)))
     assert digits > DIGITS, f"{problem.model}: only {digits:.1f} digits"
@@ -120,16 +122,23 @@ def jump_entries():
                "events": b["events"], "final": b["final"]}
 
 
+def report_on(problem, entries):
+    entry, digits = entry_of(problem)
+    entries.append(entry)
+    counted = sum(e["kind"] != "start" for e in entry["events"])
+    print(f"{problem.model} {problem.case}: {counted} events, both runs agree to {digits:.1f} digits", file=sys.stderr)
+    return entry
+
+
 def main():
     entries = []
     for problem in [*catalogue_problems.problems(), *classic_problems.classics()]:
-        entry, digits = entry_of(problem)
-        entries.append(entry)
+        entry = report_on(problem, entries)
         closed = {**catalogue_problems.closed_forms(), **classic_problems.closed_forms()}
         catalogue_problems.compare_with_closed_form(problem, entry, closed)
-        counted = sum(e["kind"] != "start" for e in entry["events"])
-        print(f"{problem.model} {problem.case}: {counted} events, both runs agree to {digits:.1f} digits", file=sys.stderr)
     entries += jump_entries()
+    for problem in phased_problems.problems():
+        phased_problems.compare_with_literature(problem, report_on(problem, entries))
     text = dump(entries)
     json.loads(text)
     if "--check" in sys.argv:

@@ -11,6 +11,7 @@
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/evaluation/affine_functions_internal.hpp"
+#include "saltus/evaluation/cell_functions_internal.hpp"
 #include "saltus/evaluation/field_split_internal.hpp"
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
@@ -61,11 +62,14 @@ struct Motion {
 };
 
 struct ModelKernel::Implementation {
-  SX t, x, p, alpha;
+  SX t, x, p, alpha;  ///< p: parameters, then constants, upper and lower ends of cells
   SX phi, outputs, input;
-  std::vector<double> parameters;
-  std::vector<bool> discrete;  ///< n_x
+  std::vector<double> parameters;  ///< values of p
+  std::vector<bool> discrete;      ///< n_x
   int n_psi = 0;
+
+  CellFunctions cells;
+  std::vector<std::vector<bool>> on_cells;  ///< by event function
 
   ModelFunction functions, scales, output_function, input_function;
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
@@ -175,6 +179,8 @@ ModelKernel::Implementation::Implementation(const model::System& system)
       jump_guards.push_back({jump.name, guard, jump.targets, with_inputs(jump.values), discrete});
     }
   }
+  cells = CellFunctions(system, p, parameters);
+  for (auto& end : cells.rows(system)) rows.push_back(std::move(end));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
   gradients.resize(index(static_cast<int>(phi.numel())));
 
@@ -190,6 +196,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   find_structure();
   compile_conditions(system);
   jumps = JumpFunctions(system, arguments, input, first_jump_guard);
+  cells.compile(arguments, system, input);
 }
 
 void ModelKernel::Implementation::find_structure() {
@@ -204,6 +211,7 @@ void ModelKernel::Implementation::find_structure() {
     const auto& states = on_states[index(j)];
     time_only[index(j)] = std::all_of(states.begin(), states.end(), is_discrete);
   }
+  if (cells.size() > 0) on_cells = cells.dependencies(dependencies(phi, p));
   free.depends = normal_dependencies(free.f);
 }
 
@@ -443,6 +451,27 @@ void ModelKernel::hold_pressure(double t, const double* x, const double* alpha, 
   SALTUS_ASSERT(!self.motion->pressure.is_null());
   self.motion->pressure(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
                         std::array<double*, 1>{pressure});
+}
+
+int ModelKernel::cells() const { return implementation_->cells.size(); }
+int ModelKernel::cell_function(int cell) const { return event_functions() - 2 * (cells() - cell); }
+const model::CellTable& ModelKernel::cell_table(int cell) const { return implementation_->cells.table(cell); }
+long ModelKernel::cell(int cell) const { return implementation_->cells.index(cell); }
+
+void ModelKernel::set_cell(int cell, long target) const {
+  auto& self = *implementation_;
+  self.cells.move(cell, target, self.parameters);
+  for (std::size_t j = 0; j < self.on_cells.size(); ++j) {
+    if (self.on_cells[j][index(cell)]) self.gradients[j].constant.clear();
+  }
+}
+
+double ModelKernel::cell_argument(int cell, double t, const double* x, const double* alpha) const {
+  return implementation_->cells.argument(cell, {&t, x, implementation_->parameters.data(), alpha});
+}
+
+bool ModelKernel::depends_on_cell(int function, int cell) const {
+  return implementation_->on_cells[index(function)][index(cell)];
 }
 
 bool ModelKernel::is_affine(int function) const { return implementation_->affine[index(function)]; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/model/cells.hpp"
 
 namespace saltus::model {
 struct System;
@@ -55,7 +56,11 @@ struct FieldConstants {
 };
 
 /// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons
-/// (guards) of their conditions, then the guards of [[jumps]], jump by jump.
+/// (guards) of their conditions, then the guards of [[jumps]], jump by jump, then two for every cell: its argument less
+/// the upper end of the cell it is in, and less the lower end.
+///
+/// Floor, tables and sampled inputs are smooth in the cells of their arguments. The kernel holds in which cell each is
+/// (set_cell), and all functions are those of these cells, also where the argument has left them.
 ///
 /// All functions take t (model time), x (n_x), alpha (n_psi, in [0, 1]) and write to the caller's memory; values that
 /// are not finite mark points where the model is undefined. Controls are replaced by their inputs u(t). Not thread
@@ -134,6 +139,17 @@ class ModelKernel {
   [[nodiscard]] const std::vector<int>& inner(int function) const;
   /// Whether the normal component grad psi_i . f + d psi_i/dt depends on alpha_j (structurally).
   [[nodiscard]] bool depends(int surface, int alpha) const;
+
+  [[nodiscard]] int cells() const;
+  /// The event function of a cell's upper end (argument - end, negative inside); that of the lower one follows it.
+  [[nodiscard]] int cell_function(int cell) const;
+  [[nodiscard]] const model::CellTable& cell_table(int cell) const;
+  [[nodiscard]] long cell(int cell) const;
+  /// Moves one argument to another cell. Part of where a run is, like t and x; const, as the kernel is its work space.
+  void set_cell(int cell, long index) const;
+  [[nodiscard]] double cell_argument(int cell, double t, const double* x, const double* alpha) const;
+  /// Whether phi_j holds constants of this cell.
+  [[nodiscard]] bool depends_on_cell(int function, int cell) const;
 
   [[nodiscard]] long field_evaluations() const;
 

@@ -29,15 +29,24 @@ std::vector<int> dependencies(const SX& expression, const SX& variables) {
 
 /// A switching function with what it depends on, the inner ones' dependencies included.
 struct Composed {
-  SX psi;  ///< over t and x only
+  SX psi;  ///< over t, x and the constants of cells
   std::set<int> states;
+  std::set<int> cells;  ///< in it, and in their arguments
   bool on_time = false;
   bool nested = false;
+  bool resolved = true;  ///< no selections are left in it
 };
 
 class Composer {
  public:
   explicit Composer(const model::System& system) : system_(system), parameters_(DM(system.parameter_values)) {
+    std::vector<SX> symbols{SX(0, 1)};
+    for (std::size_t c = 0; c < system.cells.size(); ++c) {
+      symbols.push_back(system.cells[c].symbols);
+      owners_.insert(owners_.end(), static_cast<std::size_t>(symbols.back().numel()), static_cast<int>(c));
+    }
+    symbols_ = SX::vertcat(symbols);
+    for (const auto& cell : system.cells) arguments_.push_back(compose(cell.argument));
     // Inner functions have smaller indices, so one pass in order composes all.
     for (const auto& entry : system.switching) composed_.push_back(compose(entry.psi));
   }
@@ -49,29 +58,52 @@ class Composer {
     Composed result;
     for (const int i : dependencies(psi, system_.x)) result.states.insert(i);
     result.on_time = !dependencies(psi, system_.t).empty();
+    for (const int symbol : dependencies(psi, symbols_)) {
+      const int cell = owners_[static_cast<std::size_t>(symbol)];
+      result.cells.insert(cell);
+      include(arguments_[static_cast<std::size_t>(cell)], result);
+    }
     const auto inner = dependencies(psi, system_.alpha);
+    if (!inner.empty() && composed_.empty()) {
+      // The argument of a cell holds selections only where an input of time brings them.
+      result.on_time = true;
+      result.resolved = false;
+      return result;
+    }
     SX selections = SX::zeros(system_.alpha.numel(), 1);
     for (const int j : inner) {
       const auto& other = composed_[static_cast<std::size_t>(j)];
       selections(j) = SX::if_else(other.psi > 0, 1, 0);
-      result.states.insert(other.states.begin(), other.states.end());
-      result.on_time = result.on_time || other.on_time;
+      include(other, result);
     }
     result.nested = !inner.empty();
     result.psi = result.nested ? SX::substitute(psi, system_.alpha, selections) : psi;
     return result;
   }
 
+  /// The arguments of all cells, each over x and the constants of earlier ones.
+  [[nodiscard]] const std::vector<Composed>& arguments() const { return arguments_; }
+  [[nodiscard]] const SX& symbols() const { return symbols_; }
   [[nodiscard]] const Composed& function(int j) const { return composed_[static_cast<std::size_t>(j)]; }
 
  private:
+  static void include(const Composed& part, Composed& whole) {
+    whole.states.insert(part.states.begin(), part.states.end());
+    whole.cells.insert(part.cells.begin(), part.cells.end());
+    whole.on_time = whole.on_time || part.on_time;
+    whole.resolved = whole.resolved && part.resolved;
+  }
+
   const model::System& system_;
   SX parameters_;
+  SX symbols_;
+  std::vector<int> owners_;  ///< the cell of every symbol
+  std::vector<Composed> arguments_;
   std::vector<Composed> composed_;
 };
 
 std::optional<AffineForm> affine_part(const model::System& system, const Composed& composed) {
-  if (composed.nested) return std::nullopt;
+  if (composed.nested || !composed.cells.empty()) return std::nullopt;
   const SX arguments = SX::vertcat({system.x, system.t});
   const auto nonlinear = SX::which_depends(composed.psi, arguments, 2, false);
   if (std::any_of(nonlinear.begin(), nonlinear.end(), [](bool value) { return value; })) return std::nullopt;
@@ -87,27 +119,59 @@ std::optional<AffineForm> affine_part(const model::System& system, const Compose
   return affine;
 }
 
-std::function<double(double, const double*)> value_of(const model::System& system, const Composed& composed) {
-  std::vector<SX> arguments;
-  for (const int i : composed.states) arguments.push_back(system.x(i));
-  // std::function wants to be copied: the copies share one work space.
-  auto function = std::make_shared<ModelFunction>("surface", std::vector<SX>{system.t, SX::vertcat(arguments)},
-                                                  std::vector<SX>{composed.psi});
-  return [function](double t, const double* coordinates) {
-    double value = 0.0;
-    const double* time = &t;
-    (*function)(std::array{time, coordinates}, std::array{&value});
-    return value;
+/// psi, and what it needs of cells: looked up at every point, arguments of arguments first.
+struct PointFunction {
+  struct CellAt {
+    ModelFunction argument;
+    std::shared_ptr<const model::CellTable> table;
+    std::size_t first = 0;  ///< of its constants
   };
+  ModelFunction psi;
+  std::vector<CellAt> cells;
+  std::vector<double> constants;
+
+  double operator()(double t, const double* coordinates) {
+    const std::array at{static_cast<const double*>(&t), coordinates, static_cast<const double*>(constants.data())};
+    double value = 0.0;
+    for (auto& cell : cells) {
+      cell.argument(at, std::array{&value});
+      const long index = cell.table->cell(value);
+      for (int column = 0; column < cell.table->columns; ++column) {
+        constants[cell.first + static_cast<std::size_t>(column)] = cell.table->constant(index, column);
+      }
+    }
+    psi(at, std::array{&value});
+    return value;
+  }
+};
+
+std::function<double(double, const double*)> value_of(const model::System& system, const Composer& composer,
+                                                      const Composed& composed) {
+  std::vector<SX> states;
+  for (const int i : composed.states) states.push_back(system.x(i));
+  const std::vector<SX> arguments{system.t, SX::vertcat(states), composer.symbols()};
+  // std::function wants to be copied: the copies share one work space.
+  auto function = std::make_shared<PointFunction>();
+  function->psi = ModelFunction("surface", arguments, {composed.psi});
+  std::size_t first = 0;
+  for (std::size_t c = 0; c < system.cells.size(); ++c) {
+    if (composed.cells.contains(static_cast<int>(c))) {
+      function->cells.push_back(
+          {ModelFunction("argument", arguments, {composer.arguments()[c].psi}), system.cells[c].table, first});
+    }
+    first += static_cast<std::size_t>(system.cells[c].table->columns);
+  }
+  function->constants.resize(first);
+  return [function](double t, const double* coordinates) { return (*function)(t, coordinates); };
 }
 
-SurfaceFunction surface_function(const model::System& system, const Composed& composed) {
+SurfaceFunction surface_function(const model::System& system, const Composer& composer, const Composed& composed) {
   SurfaceFunction surface;
   surface.states.assign(composed.states.begin(), composed.states.end());
   surface.depends_on_time = composed.on_time;
   surface.affine = affine_part(system, composed);
-  if (!surface.affine && surface.states.size() <= most_states_of_curves) {
-    surface.value = value_of(system, composed);
+  if (!surface.affine && composed.resolved && surface.states.size() <= most_states_of_curves) {
+    surface.value = value_of(system, composer, composed);
   }
   return surface;
 }
@@ -119,7 +183,7 @@ std::vector<SurfaceFunction> surface_functions(const model::System& system) {
   std::vector<SurfaceFunction> surfaces;
   const auto add = [&](const Composed& composed, const std::string& name, SurfaceOwner owner) {
     if (composed.states.empty()) return;
-    surfaces.push_back(surface_function(system, composed));
+    surfaces.push_back(surface_function(system, composer, composed));
     surfaces.back().name = name;
     surfaces.back().owner = owner;
   };

@@ -79,7 +79,8 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
   const auto n_phi = at(kernel.event_functions());
   for (auto* vector : {&phi_, &phi_below_, &phi_above_, &magnitude_, &slope_}) vector->resize(n_phi);
   for (auto* vector : {&x_, &low_, &high_}) vector->resize(at(kernel.states()));
-  user_sign_.assign(n_phi - at(kernel.switching_functions()), 0);
+  entered_.assign(at(kernel.cells()), -1);
+  user_sign_.assign(n_phi - at(kernel.switching_functions()) - 2 * entered_.size(), 0);
   user_vanishes_.assign(user_sign_.size(), false);
 }
 
@@ -140,6 +141,8 @@ double EventSearch::part(std::size_t i) const {
   switch (function.kind) {
     case FunctionKind::surface:
     case FunctionKind::user:
+    case FunctionKind::cell_upper:
+    case FunctionKind::cell_lower:
       return phi_[at(function.index)] - function.offset;
     case FunctionKind::nested_below:
       return phi_below_[at(function.index)] - function.offset;
@@ -255,7 +258,13 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
   const auto& function = functions_[i];
   std::array<double, ode::event_nodes> values;
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
-  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return {false, {}};
+  const auto is_number = [](double v) { return std::isfinite(v); };
+  if (!std::all_of(values.begin(), values.end(), is_number)) {
+    // The argument of a cell may be undefined where a branch that is not taken holds it; a step that looks beyond the
+    // end of its region may find it defined there.
+    const bool is_cell = function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower;
+    return {is_cell && !is_number(values.front()), {}};
+  }
   const auto coefficients = ode::to_bernstein(values);
   int sign = function.sign;
   if (sign == 0) {  // a user function at zero: it gets the sign it moves to

@@ -25,13 +25,15 @@ enum class FunctionKind {
   loss,          ///< the sliding selection ceases to exist
   user,          ///< expression or guard of [[events]], guard of [[jumps]]
   release,       ///< what presses a held guard of [[jumps]]
+  cell_upper,    ///< argument of floor, a table or a sampled input less the upper end of its cell
+  cell_lower,    ///< … less the lower end
 };
 
 struct EventFunction {
   FunctionKind kind = FunctionKind::surface;
-  int index = 0;        ///< event function of the kernel; the surface for exits
-  int row = 0;          ///< exits: position in the sliding set; releases: in the list of held guards
-  int sign = 1;         ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
+  int index = 0;  ///< event function of the kernel; the surface for exits
+  int row = 0;    ///< exits: position in the sliding set; releases: in the list of held guards; ends of cells: the cell
+  int sign = 1;   ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
   int zero_order = 0;   ///< of the zero at the start of the next step (left behind by an event), 0 = none
   double offset = 0.0;  ///< value left at that zero by rounding; subtracted until the function has moved away
 };
@@ -83,10 +85,12 @@ class EventSearch {
   /// Behind a jump: the signs of all user functions, 0 = not known, and whether they vanish here. Takes effect with the
   /// next enter().
   void set_user_signs(std::vector<int> signs, std::vector<bool> vanish);
-  /// Time has passed since the user functions were at zero.
+  /// Time has passed since the user functions were at zero, or they have jumped.
   void forget_user_zeros() { user_vanishes_.assign(user_vanishes_.size(), false); }
   /// Held guards of jumps are not searched, their releases are. Takes effect with the next enter().
   void set_held(std::vector<HeldGuard> held) { held_ = std::move(held); }
+  /// The next enter() is at the end of a cell that was just entered there.
+  void entered_cell(const EventFunction& reached);
   /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.
   void set_user_sign(std::size_t function, int sign, double t, const double* x);
 
@@ -113,6 +117,7 @@ class EventSearch {
   [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;
   void read_user_signs();
   void find_pressure(double t, const double* x);
+  void enter_cells();
 
   const evaluation::ModelKernel& kernel_;
   ModeField& field_;
@@ -123,6 +128,7 @@ class EventSearch {
   std::vector<int> user_sign_;       ///< kept over changes of mode
   std::vector<bool> user_vanishes_;  ///< at the start of the next step
   std::optional<double> zeros_at_;   ///< time of that start; nullopt: that of the next enter()
+  std::vector<int> entered_;         ///< by cell: event function of the end at which it was entered, or -1
   std::vector<double> phi_, phi_below_, phi_above_, magnitude_, slope_;
   std::vector<ExitValues> exits_;
   std::vector<HeldGuard> held_;

@@ -53,13 +53,15 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   const auto is_held = [&](int u) {
     return std::any_of(held_.begin(), held_.end(), [u](const HeldGuard& guard) { return guard.hold.function == u; });
   };
-  for (int u = n_psi; u < kernel_.event_functions(); ++u) {
+  const int user_end = n_psi + static_cast<int>(user_sign_.size());
+  for (int u = n_psi; u < user_end; ++u) {
     if (!is_held(u)) functions_.push_back({FunctionKind::user, u, 0, 0});
   }
   pressure_.resize(held_.size());
   for (std::size_t row = 0; row < held_.size(); ++row) {
     functions_.push_back({FunctionKind::release, held_[row].hold.function, static_cast<int>(row), held_[row].inward});
   }
+  enter_cells();
   set_forms(x);
   noise_.assign(functions_.size(), 0.0);
   accuracy_.assign(functions_.size(), 0.0);
@@ -73,8 +75,9 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
     auto& function = functions_[i];
     const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
                          function.kind == FunctionKind::release;
+    const bool is_cell = function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower;
     // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
-    if (is_exit && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
+    if ((is_exit || is_cell) && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
     // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
     // zero of this start.
     if (function.zero_order > 0) function.offset = point_[i];
@@ -82,11 +85,30 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   sort_functions();
 }
 
+void EventSearch::entered_cell(const EventFunction& reached) {
+  // Its upper end is the lower end of the cell above, and the other way round.
+  entered_[at(reached.row)] = reached.kind == FunctionKind::cell_upper ? reached.index + 1 : reached.index - 1;
+}
+
+void EventSearch::enter_cells() {
+  for (int c = 0; c < kernel_.cells(); ++c) {
+    const auto& table = kernel_.cell_table(c);
+    const int upper = kernel_.cell_function(c);
+    const int entered = std::exchange(entered_[at(c)], -1);
+    if (std::isfinite(table.upper(kernel_.cell(c)))) {
+      functions_.push_back({FunctionKind::cell_upper, upper, c, -1, entered == upper ? 1 : 0});
+    }
+    if (std::isfinite(table.lower(kernel_.cell(c)))) {
+      functions_.push_back({FunctionKind::cell_lower, upper + 1, c, +1, entered == upper + 1 ? 1 : 0});
+    }
+  }
+}
+
 /// The affine functions of the mode as forms. Selections of a mode are constants, so a function that holds some is
 /// affine if it is for each value of theirs.
 void EventSearch::set_forms(const double* x) {
   const bool selections = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
-  if (rows_[0].start.empty() || selections) {
+  if (rows_[0].start.empty() || selections || kernel_.cells() > 0) {
     kernel_.affine_rows(state_.alpha.data(), rows_[0]);
     forms_.load(rows_[0]);
   }
@@ -103,6 +125,8 @@ void EventSearch::set_forms(const double* x) {
     switch (function.kind) {
       case FunctionKind::surface:
       case FunctionKind::user:
+      case FunctionKind::cell_upper:
+      case FunctionKind::cell_lower:
         forms_.use_row(i, at(function.index));
         break;
       case FunctionKind::nested_below:

@@ -40,6 +40,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       stepper_(options.method, kernel.states()),
       control_(options.method),
       tolerances_(local_tolerances(options.tolerances)),
+      cells_(kernel),
       search_(kernel, field_, options.method, tolerances_),
       locator_(options.method, kernel.states(), stepper_, field_, search_, tolerances_),
       single_surface_(surroundings_),
@@ -108,12 +109,20 @@ bool Run::begin() {
     fail(Termination::evaluation_failed, "the initial state is not finite");
     return false;
   }
+  if (!cells_.empty()) cells_.locate(t_, x_.data(), std::vector<double>(at(kernel_.switching_functions()), 0.5));
   Landing landing = landing_here();
   if (!begin_jumps(landing)) {
     recorder_.row(t_, x_, state_.mode, state_.alpha);
     return false;
   }
-  const auto start = decide_start(surroundings_, t_, x_.data(), h_scale_, options_.initial_mode);
+  const auto decided = [&] { return decide_start(surroundings_, t_, x_.data(), h_scale_, options_.initial_mode); };
+  auto start = decided();
+  // At a break the field says into which cell the solution moves, and the cells say what the field is.
+  for (int pass = 0; pass < 4 && !cells_.empty(); ++pass) {
+    if (start.transition.termination != Termination::completed) break;
+    if (cells_.locate(t_, x_.data(), start.transition.state.alpha) == CellChange::none) break;
+    start = decided();
+  }
   state_ = start.transition.state;
   if (state_.mode.empty() && kernel_.switching_functions() > 0)
     state_.mode.assign(at(kernel_.switching_functions()), 0);

@@ -44,6 +44,8 @@ void Run::accumulates() {
 }
 
 bool Run::change_mode(const Located& located) {
+  cell_change_ = leave_cells(located);
+  if (cell_change_ == CellChange::jump) return jump_with_cells();
   Occasion& occasion = occasion_;
   occasion.t = t_;
   occasion.x = x_.data();
@@ -53,7 +55,8 @@ bool Run::change_mode(const Located& located) {
   bool any = false;
   for (std::size_t k = 0; k < located.functions.size(); ++k) {
     const auto& function = search_.functions()[located.functions[k]];
-    if (function.kind == FunctionKind::user || function.kind == FunctionKind::release) continue;
+    const bool is_surface = function.kind != FunctionKind::user && function.kind != FunctionKind::release;
+    if (!is_surface || is_cell_end(function.kind)) continue;
     any = true;
     if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
     if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
@@ -70,13 +73,32 @@ bool Run::change_mode(const Located& located) {
     occasion.at_zero.push_back(function.index);
     occasion.touched.push_back(function.index);
   }
-  if (!any) return true;
+  for (const int j : state_.sliding) {
+    // Sliding goes on with the new gradient, or ends, behind a kink of its own psi.
+    if (cell_change_ != CellChange::none && cells_.moved_in(j)) occasion.touched.push_back(j);
+  }
+  if (!any && occasion.touched.empty()) {
+    if (cell_change_ == CellChange::none) return true;
+    transition_ = Transition{};
+    transition_.state = state_;
+    transition_.zero_order = zeros_at(kernel_, state_, t_, x_.data());
+    return enter(transition_);
+  }
   std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
   occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
   Transition& transition = transition_;
   if (!single_surface_.decide(before_, occasion, transition)) {
     transition = decide_mode(surroundings_, before_, occasion);
   }
+  if (transition.termination == Termination::completed) {
+    other_continuations(surroundings_, before_, occasion, transition);
+  }
+  return go_on();
+}
+
+/// Into the mode that was decided at this time, with its event.
+bool Run::go_on() {
+  Transition& transition = transition_;
   if (transition.termination != Termination::completed) {
     // Where switches accumulate the fields may have no limit: that is the reason then.
     const bool at_limit = transition.termination != Termination::outside_class && series_.shrinks(t_);
@@ -91,8 +113,7 @@ bool Run::change_mode(const Located& located) {
     accumulates();
     return false;
   }
-  other_continuations(surroundings_, before_, occasion, transition);
-  if (!enter(transition)) return false;
+  if (!enter(transition) || !find_undefined_cells()) return false;
   recorder_.switched(t_, x_, before_, transition);
   control_.reset();
   h_ = step_memory_.change(state_.mode, t_, h_);
@@ -120,6 +141,8 @@ Run::Arrival Run::arrive(RowBefore row) {
   before_ = state_;
   x_before_ = x_;
   jumped_ = false;
+  cells_before_ = cells_.indices();
+  cell_change_ = CellChange::none;
   return {recorder_.events(), row};
 }
 
@@ -138,6 +161,7 @@ Run::Step Run::handle(const Located& located) {
   if (jumps_have_problem()) return depart(arrival);
   Landing landing = landing_at(located);
   if (jumps_.due(t_)) {
+    cell_change_ = leave_cells(located);
     static_cast<void>(jump(before_, x_before_, std::move(landing)));
     return depart(arrival);
   }
@@ -161,16 +185,19 @@ Run::Step Run::handle(const Located& located) {
 Run::Step Run::depart(const Arrival& arrival) {
   const bool event = recorder_.events() > arrival.events;
   if (event || !running_) {
-    if (arrival.row == RowBefore::missing) recorder_.row(t_, x_before_, before_.mode, before_.alpha);
+    if (arrival.row == RowBefore::missing) rows_at_event();
     if (event) row(t_, x_);
   } else if (options_.output.rows == OutputTimes::Rows::at_steps) {
+    // Inputs and outputs may jump here: their values before and behind.
+    if (cell_change_ == CellChange::jump) rows_at_event();
     row(t_, x_);
   }
   while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) {
     // A requested time at a restart that is no event still gets its row.
-    const bool wanted = options_.output.times[next_output_] == t_ && !event &&
+    const double requested = options_.output.times[next_output_];
+    const bool wanted = (requested == t_ || cell_change_ != CellChange::none) && !event &&
                         options_.output.rows == OutputTimes::Rows::at_times && running_;
-    if (wanted) row(t_, x_);
+    if (wanted) row(requested, x_);
     ++next_output_;
   }
   if (event) last_event_time_ = t_;

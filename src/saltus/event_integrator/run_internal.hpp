@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saltus/event_integrator/accumulation.hpp"
+#include "saltus/event_integrator/cells.hpp"
 #include "saltus/event_integrator/event_search.hpp"
 #include "saltus/event_integrator/holding.hpp"
 #include "saltus/event_integrator/integrate.hpp"
@@ -68,6 +69,10 @@ class Run {
   Arrival arrive(RowBefore row);
   Step depart(const Arrival& arrival);
   bool change_mode(const Located& located);
+  CellChange leave_cells(const Located& located);
+  bool jump_with_cells();
+  bool find_undefined_cells();
+  bool go_on();
   bool enter(const Transition& transition);
   bool fire_user_events(const std::vector<double>& x_before, const ModeState& before);
   void flip_user_functions(const Located& located);
@@ -103,6 +108,8 @@ class Run {
   bool stopped_by_singularity();
   bool shorten(double factor);
   void rows_until(double t_end);
+  void rows_at_event();
+  [[nodiscard]] bool reaches_cell_end(const Located& located) const;
   void row(double t, const std::vector<double>& x);
   void fail(result::Termination termination, std::string message);
   /// Below this a step is no longer seen in t.
@@ -128,6 +135,8 @@ class Run {
   ode::StiffnessWatch stiffness_;
   ode::Tolerances tolerances_;  ///< of a step
   ode::DenseStep dense_;
+  Cells cells_;
+  CellChange cell_change_ = CellChange::none;  ///< at the event being handled
   EventSearch search_;
   Locator locator_;
   SingleSurface single_surface_;
@@ -146,8 +155,9 @@ class Run {
   std::vector<std::size_t> continuous_;  ///< states that are not discrete
   double error_share_ = 1.0;             ///< the mean square over the continuous states to that over all, its root
   ModeState state_;
-  ModeState before_;  ///< of the event being handled, as are the next three
+  ModeState before_;  ///< of the event being handled, as are the next four
   std::vector<double> x_before_;
+  std::vector<long> cells_before_;
   Occasion occasion_;
   Transition transition_;
   std::optional<double> stiff_at_;  ///< where the explicit method first looked out of place

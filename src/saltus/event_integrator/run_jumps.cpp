@@ -129,6 +129,7 @@ bool Run::execute_jump(Landing& landing) {
   executed.jump = jumps_.execute(jump_point(), x_);
   executed.x_after = x_;
   landing.executed.push_back(std::move(executed));
+  if (!cells_.empty()) cell_change_ = std::max(cell_change_, cells_.locate(t_, x_.data(), state_.alpha));
   drop_zeros(landing);
   state_.alpha = selections_at(surroundings_, t_, x_.data(), state_.alpha);
   read_user_signs(landing);

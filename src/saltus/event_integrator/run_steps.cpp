@@ -146,7 +146,8 @@ Run::Step Run::attempt() {
         const Located* located = locator_.locate(start, dense_, hit);
         if (!located) return shorten(0.5) ? Step::shortened : undefined_step();
         ++result_.statistics.steps;
-        rows_until(located->t);
+        // A requested time that is a break but for its rounding belongs to the cell behind it.
+        rows_until(reaches_cell_end(*located) ? located->t - 4.0 * rounding_unit * std::abs(located->t) : located->t);
         return handle(*located);
       }
     }

@@ -20,8 +20,10 @@ constexpr std::array functions1{
     Function1{"asin", std::asin}, Function1{"acos", std::acos}, Function1{"atan", std::atan},
     Function1{"sinh", std::sinh}, Function1{"cosh", std::cosh}, Function1{"tanh", std::tanh},
     Function1{"exp", std::exp},   Function1{"log", std::log},   Function1{"log10", std::log10},
-    Function1{"sqrt", std::sqrt}, Function1{"abs", std::fabs},
+    Function1{"sqrt", std::sqrt}, Function1{"abs", std::fabs},  Function1{"floor", std::floor},
 };
+
+double floored_remainder(double e, double m) { return e - m * std::floor(e / m); }
 
 struct Function2 {
   std::string_view name;
@@ -29,7 +31,7 @@ struct Function2 {
 };
 constexpr std::array functions2{
     Function2{"atan2", std::atan2}, Function2{"hypot", std::hypot}, Function2{"pow", std::pow},
-    Function2{"max", std::fmax},    Function2{"min", std::fmin},
+    Function2{"max", std::fmax},    Function2{"min", std::fmin},    Function2{"mod", floored_remainder},
 };
 
 struct Evaluate {

@@ -114,7 +114,7 @@ Expected<void> set_expression(model::Description& description, std::string_view 
     return refused(key, ErrorCode::unknown_name, fmt::format("the model has no '{}' there", path),
                    known.empty() ? "--set changes what the file states and adds nothing" : suggest(name, known));
   }
-  auto tree = expression::parse(value, place_of(key));
+  auto tree = expression::parse(value, place_of(key), names_of(description.tables));
   if (!tree) return tl::unexpected(tree.error());
   *place = std::move(*tree);
   return {};
@@ -169,9 +169,10 @@ tl::unexpected<Error> not_settable(std::string_view key, std::string_view table)
                  suggest(std::string(table), known));
 }
 
-Expected<void> set_input(model::Description& description, std::string_view name, std::string_view value) {
-  auto tree = expression::parse(value, place_of(fmt::format("simulate.inputs.{}", name)));
+Expected<void> set_input_expression(model::Description& description, std::string_view name, std::string_view value) {
+  auto tree = expression::parse(value, place_of(fmt::format("simulate.inputs.{}", name)), names_of(description.tables));
   if (!tree) return tl::unexpected(tree.error());
+  std::erase_if(description.sampled_inputs, [&](const auto& input) { return input.name == name; });
   if (auto* place = place_in(description.inputs, name); place != nullptr) {
     *place = std::move(*tree);
   } else {
@@ -179,6 +180,28 @@ Expected<void> set_input(model::Description& description, std::string_view name,
         {std::string(name), std::move(*tree), place_of(fmt::format("simulate.inputs.{}", name))});
   }
   return {};
+}
+
+/// simulate.inputs.u.file=… and simulate.inputs.u.result=…, relative to the working folder.
+Expected<void> set_samples(model::Description& description, std::string_view name, std::string_view source,
+                           std::string_view file) {
+  const auto place = place_of(fmt::format("simulate.inputs.{}.{}", name, source));
+  auto input = sampled_input(std::string(name), source, std::string(file), place);
+  if (!input) return tl::unexpected(input.error());
+  const auto same = [&](const auto& other) { return other.name == name; };
+  std::erase_if(description.sampled_inputs, same);
+  std::erase_if(description.inputs, same);
+  description.sampled_inputs.push_back(std::move(*input));
+  return {};
+}
+
+Expected<void> set_input(model::Description& description, std::string_view path, std::string_view value) {
+  const auto dot = path.find('.');
+  if (dot == std::string_view::npos) return set_input_expression(description, path, value);
+  const auto source = path.substr(dot + 1);
+  if (source == "file" || source == "result") return set_samples(description, path.substr(0, dot), source, value);
+  return refused(fmt::format("simulate.inputs.{}", path), ErrorCode::unknown_name,
+                 fmt::format("an input has no key '{}'", source), suggest(std::string(source), {"file", "result"}));
 }
 
 }  // namespace

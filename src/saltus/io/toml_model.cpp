@@ -39,6 +39,7 @@ constexpr std::array sections{
     Section{"jumps", read_jumps},
     Section{"outputs", read_into<&model::Description::outputs>},
     Section{"events", read_events},
+    Section{"tables", read_tables},
     Section{"simulate", read_simulate},
 };
 
@@ -47,8 +48,9 @@ struct LaterTable {
   std::string_view written;
 };
 constexpr std::array later_tables{
-    LaterTable{"tables", "[tables]"},           LaterTable{"mechanics", "[mechanics]"},
-    LaterTable{"contacts", "[[contacts]]"},     LaterTable{"optimize", "[optimize]"},
+    LaterTable{"mechanics", "[mechanics]"},
+    LaterTable{"contacts", "[[contacts]]"},
+    LaterTable{"optimize", "[optimize]"},
     LaterTable{"sensitivity", "[sensitivity]"},
 };
 
@@ -90,6 +92,7 @@ Expected<ModelFile> parse_model(std::string_view text, const std::string& file) 
   model.description.file = file;
   model.sha256 = sha256(text);
   TomlReader reader(file);
+  reader.set_functions(table_names(*document));
   for (const auto& entry : *document) {
     model.table_locations.emplace_back(entry.key, entry.location);
     read_section(reader, entry, model);

@@ -27,7 +27,7 @@ struct ModelFile {
 /// Reads a model file. Every error has file, line, column, what was expected and found, and a remedy; unknown tables
 /// and keys name the nearest known ones; tables that this version does not support are refused (not_available).
 [[nodiscard]] Expected<ModelFile> read_model(const std::filesystem::path& file);
-/// The same for text in memory; `file` is used in messages and to resolve nothing else.
+/// The same for text in memory; `file` is used in messages, and the folder it is in to find files that the model names.
 [[nodiscard]] Expected<ModelFile> parse_model(std::string_view text, const std::string& file);
 
 /// Larger files are refused: no model is written by hand at that length.

@@ -68,7 +68,8 @@ expression::NodePtr TomlReader::expression(const TomlValue& value) {
   }
   const bool as_it_stands = text->anchors.empty();
   const StringPlaces places(text->text, text->anchors);
-  auto tree = expression::parse(text->text, as_it_stands ? text->start : SourceLocation{text->start.file, 1, 1});
+  auto tree =
+      expression::parse(text->text, as_it_stands ? text->start : SourceLocation{text->start.file, 1, 1}, functions_);
   if (tree) return as_it_stands ? *tree : places.in_file(*tree);
   if (!as_it_stands) tree.error().location = places.in_file(tree.error().location);
   fail(tree.error());
@@ -79,6 +80,12 @@ expression::NodePtr TomlReader::bound(const TomlValue& value) {
   const auto number = number_in(value);
   if (number && std::isinf(*number)) return nullptr;
   return expression(value);
+}
+
+std::optional<double> TomlReader::number(const TomlValue& value) {
+  const auto number = number_in(value);
+  if (!number) wrong_type("a number", value);
+  return number;
 }
 
 std::string TomlReader::string(const TomlValue& value, std::string_view expected) {

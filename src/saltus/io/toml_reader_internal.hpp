@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saltus/base/error.hpp"
@@ -21,6 +22,9 @@ class TomlReader {
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
   [[nodiscard]] bool failed() const { return error_.has_value(); }
+
+  /// Names of tables of the model, which expressions may call; set before the first expression is read.
+  void set_functions(std::vector<std::string> names) { functions_ = std::move(names); }
 
   /// The table that errors are in, as a context frame; empty for none.
   void enter(std::string table) { table_ = std::move(table); }
@@ -38,12 +42,15 @@ class TomlReader {
   expression::NodePtr expression(const TomlValue& value);
   /// As `expression`, but plus or minus infinity means no bound: null.
   expression::NodePtr bound(const TomlValue& value);
+  /// A number, not an expression; nothing after an error.
+  std::optional<double> number(const TomlValue& value);
   std::string string(const TomlValue& value, std::string_view expected);
   bool boolean(const TomlValue& value);
 
  private:
   std::string file_;
   std::string table_;
+  std::vector<std::string> functions_;
   std::optional<Error> error_;
 };
 

@@ -15,6 +15,17 @@ void read_modes(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_jumps(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
+void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+
+/// Names of [tables.…]: expressions anywhere in the file may call them.
+[[nodiscard]] std::vector<std::string> table_names(const TomlTable& document);
+/// A file named in a model file, relative to it.
+[[nodiscard]] std::filesystem::path beside(const std::string& model, const std::string& file);
+/// Samples of a control from a file of numbers (source "file") or a stored result ("result").
+[[nodiscard]] Expected<model::SampledInput> sampled_input(const std::string& control, std::string_view source,
+                                                          const std::filesystem::path& file,
+                                                          const SourceLocation& location);
+
 /// A table of name = expression.
 void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<model::NamedExpression>& expressions);
 

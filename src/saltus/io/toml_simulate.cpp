@@ -109,15 +109,38 @@ void read_options(TomlReader& reader, const std::string& prefix, const TomlTable
   }
 }
 
+/// { file = "u.csv" } or { result = "r.json" }.
+void read_samples(TomlReader& reader, const TomlEntry& field, const TomlTable& source, ModelFile& model) {
+  const bool one = source.size() == 1;
+  if (one && source.front().key != "file" && source.front().key != "result") {
+    reader.unknown_key(source.front(), {"file", "result"});
+    return;
+  }
+  if (!one) {
+    reader.fail({ErrorCode::parse_failure,
+                 fmt::format("expected one of file and result for the input '{}', found {}", field.key,
+                             source.empty() ? "none" : "several"),
+                 "write e.g. u = { file = \"u.csv\" }",
+                 field.value.location,
+                 {}});
+    return;
+  }
+  const auto name = reader.string(source.front().value, "a file name in quotes");
+  if (reader.failed()) return;
+  auto input = sampled_input(field.key, source.front().key, beside(reader.file(), name), field.location);
+  if (!input) {
+    reader.fail(with_context(input.error(), fmt::format("line {} of {}", field.location.line, reader.file())));
+    return;
+  }
+  model.description.sampled_inputs.push_back(std::move(*input));
+}
+
 void read_inputs(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "a table like { u = \"sin(t)\" }");
   if (table == nullptr) return;
   for (const auto& field : *table) {
     if (const auto* source = std::get_if<TomlTable>(&field.value.value)) {
-      const bool known = source->size() == 1 && (source->front().key == "file" || source->front().key == "result");
-      if (known)
-        reader.not_available(field.location, fmt::format("the input '{}' from a {}", field.key, source->front().key));
-      reader.wrong_type("an expression of the time in quotes", field.value);
+      read_samples(reader, field, *source, model);
       continue;
     }
     model.description.inputs.push_back({field.key, reader.expression(field.value), field.location});

@@ -37,6 +37,7 @@ class Assembly {
     classify_functions();
     if (auto error = take_right_hand_side()) return tl::unexpected(*error);
     take_switching();
+    take_cells();
     take_columns();
     system_.warnings = statement_.warnings;
     add_switching_warnings();
@@ -104,7 +105,7 @@ class Assembly {
       input.push_back(control.input ? *control.input : SXElem(control.initial));
       std::vector<int> node;
       if (auto error = take_root(input.back(), node)) return located_error(*error, control.input_location);
-      constexpr KindSet forbidden = changing_kinds & ~kind_bit(VariableKind::time);
+      constexpr KindSet forbidden = changing_kinds & ~kind_bit(VariableKind::time) & ~kind_bit(VariableKind::cell);
       if ((graph_.tape()[node.front()].reached & forbidden) != 0) {
         return Error{ErrorCode::invalid_model,
                      fmt::format("the input of '{}' depends on a state or a control", control.name),
@@ -294,6 +295,22 @@ class Assembly {
     system_.alpha = column(alphas);
   }
 
+  /// Those that something needs; switching functions that were dropped may leave some without use.
+  void take_cells() {
+    std::vector<int> roots = f_;
+    roots.insert(roots.end(), others_.begin(), others_.end());
+    roots.insert(roots.end(), inputs_.begin(), inputs_.end());
+    for (const int index : kept_) roots.push_back(met(index).psi_node);
+    std::set<int> used;
+    for (const int node : graph_.tape().cone(roots, Links::through_alpha)) {
+      if (graph_.tape()[node].operation == cell_operation) used.insert(node);
+    }
+    for (const auto& cell : graph_.cells()) {
+      if (std::none_of(cell.nodes.begin(), cell.nodes.end(), [&](int node) { return used.contains(node); })) continue;
+      system_.cells.push_back({cell.name, casadi::SX(cell.argument), column(cell.symbols), cell.table});
+    }
+  }
+
   void take_columns() {
     for (const auto& stated : statement_.switching) {
       const SharedFunction& function = stated.declared.function;
@@ -332,7 +349,8 @@ class Assembly {
       const auto variables = moving_variables(graph_.tape(), std::span(&psi, 1));
       const bool still = std::all_of(variables.begin(), variables.end(), [&](int variable) {
         const auto& entry = graph_.tape().variables()[static_cast<std::size_t>(variable)];
-        return system_.discrete_states[static_cast<std::size_t>(entry.index)];
+        if (entry.kind != VariableKind::state) return true;  // of a cell's argument
+        return static_cast<bool>(system_.discrete_states[static_cast<std::size_t>(entry.index)]);
       });
       if (!still) continue;
       system_.warnings.push_back(fmt::format(

@@ -40,9 +40,7 @@ class BranchCounter {
     if ((product || node.operation == casadi::OP_IF_ELSE_ZERO) && left == 0.0) return 0.0;
     if (product && right == 0.0) return 0.0;
     if (std::isnan(left) || std::isnan(right)) return unknown;
-    double value = 0.0;
-    casadi::casadi_math<double>::fun(static_cast<unsigned char>(node.operation), left, right, value);
-    return value;
+    return tape_.operate(node, left, right);
   }
 
   void propagate() {
@@ -52,7 +50,7 @@ class BranchCounter {
       if (node.psi >= 0) {
         const auto decided = decided_.find(current);
         value = decided != decided_.end() ? decided->second : step_value(known(node.psi));
-      } else if (node.variable >= 0) {
+      } else if (node.variable >= 0 && node.operation != cell_operation) {
         const Variable& variable = tape_.variables()[static_cast<std::size_t>(node.variable)];
         if (variable.kind == VariableKind::parameter) value = variable.value;
       } else {

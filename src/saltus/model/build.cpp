@@ -1,5 +1,6 @@
 #include "saltus/model/build.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <map>
@@ -108,7 +109,11 @@ class Build {
   MaybeError controls() {
     int index = 0;
     for (const auto& entry : description_.controls) {
-      const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = VariableKind::control, .index = index++});
+      const auto same = [&](const auto& input) { return input.name == entry.name; };
+      const auto& samples = description_.sampled_inputs;
+      const bool sampled = std::any_of(samples.begin(), samples.end(), same) && !set_values_.contains(entry.name);
+      const VariableKind kind = sampled ? VariableKind::sampled_control : VariableKind::control;
+      const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++});
       statement_.controls.push_back({.name = entry.name, .symbol = symbol, .location = entry.location});
     }
     return std::nullopt;
@@ -240,16 +245,27 @@ class Build {
   MaybeError jumps() { return state_jumps(description_, scope_, statement_); }
 
   MaybeError inputs() {
-    for (const auto& entry : description_.inputs) {
-      const Meaning* meaning = scope_.names().find(entry.name);
-      if (meaning == nullptr || meaning->kind != NameKind::control) {
-        const auto known = scope_.names().of({NameKind::control});
-        return Error{ErrorCode::unknown_name,
-                     fmt::format("expected the name of a control, found '{}'", entry.name),
-                     known.empty() ? "the model has no controls: declare it in [controls]" : suggest(entry.name, known),
+    for (const auto& entry : description_.sampled_inputs) {
+      const auto* meaning = control_named(entry.name);
+      if (meaning == nullptr) return no_such_control(entry.name, entry.location);
+      if (set_values_.contains(entry.name)) continue;  // a constant from --set replaces it
+      if (const auto mistake = find_mistake(entry.times, entry.values)) {
+        return Error{ErrorCode::invalid_model,
+                     fmt::format("input '{}': {}", entry.name, mistake->message),
+                     mistake->remedy,
                      entry.location,
-                     {"in inputs"}};
+                     {}};
       }
+      auto input = recognition_.lookup(std::make_shared<const CellTable>(step_cells(entry.times, entry.values)),
+                                       statement_.time, entry.name);
+      if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
+      auto& control = statement_.controls[static_cast<std::size_t>(meaning->index)];
+      control.input = *input;
+      control.input_location = entry.location;
+    }
+    for (const auto& entry : description_.inputs) {
+      const auto* meaning = control_named(entry.name);
+      if (meaning == nullptr) return no_such_control(entry.name, entry.location);
       auto input = scope_.expression(*entry.expression);
       if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
       if (set_values_.contains(entry.name)) continue;  // a constant from --set replaces it
@@ -265,6 +281,20 @@ class Build {
       control.input_location = entry.expression->location;
     }
     return std::nullopt;
+  }
+
+  const Meaning* control_named(const std::string& name) const {
+    const Meaning* meaning = scope_.names().find(name);
+    return meaning != nullptr && meaning->kind == NameKind::control ? meaning : nullptr;
+  }
+
+  Error no_such_control(const std::string& name, const SourceLocation& location) const {
+    const auto known = scope_.names().of({NameKind::control});
+    return {ErrorCode::unknown_name,
+            fmt::format("expected the name of a control, found '{}'", name),
+            known.empty() ? "the model has no controls: declare it in [controls]" : suggest(name, known),
+            location,
+            {}};
   }
 
   MaybeError definitions() {
@@ -311,6 +341,11 @@ class Build {
     warn_of_unused(description_.parameters, "parameter");
     warn_of_unused(description_.controls, "control");
     warn_of_unused(description_.definitions, "definition");
+    for (std::size_t i = 0; i < description_.tables.size(); ++i) {
+      const auto& table = description_.tables[i];
+      if (scope_.is_table_used(i)) continue;
+      statement_.warnings.push_back(located(table.location, fmt::format("table '{}' is never used", table.name)));
+    }
   }
 
   const Description& description_;

@@ -104,6 +104,19 @@ struct Builder::Parts {
     known->modes.push_back(std::move(mode));
   }
 
+  /// The cells of points without mistake; null with the mistake kept.
+  std::shared_ptr<const CellTable> cells(const std::string& kind, const std::string& name,
+                                         const std::optional<PointMistake>& mistake, FunctionRef<CellTable()> make) {
+    if (!mistake) return std::make_shared<const CellTable>(make());
+    const std::string point = mistake->point ? fmt::format(", point {}", *mistake->point + 1) : "";
+    fail({ErrorCode::invalid_model,
+          fmt::format("{} '{}'{}: {}", kind, name, point, mistake->message),
+          mistake->remedy,
+          {},
+          {}});
+    return nullptr;
+  }
+
   template <class Entries>
   typename Entries::value_type* find(Entries& entries, const std::string& name, NameKind kind) {
     const Meaning* meaning = names.find(name);
@@ -212,6 +225,31 @@ SX Builder::if_(const Condition& condition, const SX& a, const SX& b) {
       [&] { return parts_->recognition.select(condition, parts_->entry(a, "if"), parts_->entry(b, "if")); });
 }
 
+SX Builder::floor(const SX& e) {
+  return parts_->kept(
+      [&] { return parts_->recognition.floor(parts_->entry(e, "floor"), fmt::format("floor({})", e.get_str())); });
+}
+
+SX Builder::mod(const SX& e, const SX& m) {
+  return parts_->kept([&] {
+    const std::string name = fmt::format("mod({},{})", e.get_str(), m.get_str());
+    return parts_->recognition.mod(parts_->entry(e, "mod"), parts_->entry(m, "mod"), name);
+  });
+}
+
+std::function<SX(const SX&)> Builder::table(const std::string& name, const std::vector<double>& x,
+                                            const std::vector<double>& y, TableKind kind) {
+  std::shared_ptr<const CellTable> cells;
+  if (parts_->declare(name, NameKind::table, 0))
+    cells = parts_->cells("table", name, find_mistake(x, y, kind), [&] { return table_cells(x, y, kind); });
+  return [parts = parts_.get(), cells, name](const SX& e) {
+    if (!cells) return SX(0.0);
+    return parts->kept([&] {
+      return parts->recognition.lookup(cells, parts->entry(e, name), fmt::format("{}({})", name, e.get_str()));
+    });
+  };
+}
+
 void Builder::dynamics(const std::string& state, const SX& rate) {
   const SXElem e = parts_->entry(rate, "dynamics of " + state);
   auto* entry = parts_->find(parts_->statement.states, state, NameKind::state);
@@ -298,6 +336,16 @@ void Builder::jump_every(double period, const std::map<std::string, SX>& set, co
 void Builder::input(const std::string& control, const SX& expression) {
   const SXElem e = parts_->entry(expression, "input of " + control);
   if (auto* entry = parts_->find(parts_->statement.controls, control, NameKind::control)) entry->input = e;
+}
+
+void Builder::input(const std::string& control, const std::vector<double>& times, const std::vector<double>& values) {
+  auto* entry = parts_->find(parts_->statement.controls, control, NameKind::control);
+  if (entry == nullptr) return;
+  const auto cells =
+      parts_->cells("input", control, find_mistake(times, values), [&] { return step_cells(times, values); });
+  if (!cells) return;
+  entry->input =
+      parts_->kept([&] { return parts_->recognition.lookup(cells, parts_->statement.time, control); }).scalar();
 }
 
 Expected<System> Builder::build() {

@@ -1,6 +1,7 @@
 // A system stated in C++, in CasADi expressions.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -85,6 +86,20 @@ class Builder {
   /// a where the condition holds, else b; NaN of the branch not taken does not spread.
   casadi::SX if_(const Condition& condition, const casadi::SX& a, const casadi::SX& b);
 
+  /// The largest integer not above e, an expression of time and parameters: right-continuous, it jumps there.
+  casadi::SX floor(const casadi::SX& e);
+  /// e - m floor(e / m), in [0, m) for m > 0; m a constant other than 0.
+  casadi::SX mod(const casadi::SX& e, const casadi::SX& m);
+  /// Declares a table under a name and returns it as a function of one argument, any expression of the model:
+  ///   const auto road = model.table("road", {0, 1, 2}, {0, 0.1, 0});
+  ///   model.dynamics("z", road(x) - z);
+  /// Constant outside the points. Every cell between two of them is smooth for the integrators, so its cost does not
+  /// depend on their number.
+  /// @param x  ascending; y one value each; 2 to 10^6 finite points, cubic at least 4
+  /// @return the function; valid as long as this builder
+  std::function<casadi::SX(const casadi::SX&)> table(const std::string& name, const std::vector<double>& x,
+                                                     const std::vector<double>& y, TableKind kind = TableKind::linear);
+
   /// d state / dt; at most once for every state, and exactly once for one that no mode mentions.
   void dynamics(const std::string& state, const casadi::SX& rate);
   /// One mode of a group: where the condition holds, the rates are added to those of dynamics() and of the modes of
@@ -109,6 +124,9 @@ class Builder {
   void jump_every(double period, const std::map<std::string, casadi::SX>& set, const JumpOptions& options = {});
   /// The control during a simulation, an expression of time and parameters; its initial value otherwise.
   void input(const std::string& control, const casadi::SX& expression);
+  /// The same, piecewise constant: values[k] from times[k] on, the first one before.
+  /// @param times  ascending; one finite value each
+  void input(const std::string& control, const std::vector<double>& times, const std::vector<double>& values);
 
   /// @return the system, or the first mistake. May be called again after more has been stated.
   [[nodiscard]] Expected<System> build();

@@ -7,6 +7,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/expression/syntax_tree.hpp"
+#include "saltus/model/cells.hpp"
 
 namespace saltus::model {
 
@@ -82,6 +83,21 @@ struct JumpDescription {
   SourceLocation location;
 };
 
+/// [tables.name]: name(e) is a function of one argument.
+struct TableDescription {
+  std::string name;
+  std::vector<double> x, y;  ///< free of mistakes (find_mistake)
+  TableKind kind = TableKind::linear;
+  SourceLocation location;
+};
+
+/// A piecewise constant input: value k from times[k] on, the first one before.
+struct SampledInput {
+  std::string name;
+  std::vector<double> times, values;  ///< free of mistakes (find_mistake)
+  SourceLocation location;
+};
+
 /// A model file without its [simulate] table. All vectors are in the order of the file.
 struct Description {
   std::string file;
@@ -98,7 +114,9 @@ struct Description {
   std::vector<NamedExpression> outputs;
   std::vector<UserEventDescription> events;
   std::vector<JumpDescription> jumps;
+  std::vector<TableDescription> tables;
   std::vector<NamedExpression> inputs;  ///< values of controls during a simulation, over t and parameters
+  std::vector<SampledInput> sampled_inputs;
 };
 
 /// `--set NAME=VALUE`: replaces a parameter, an initial value or a control's constant value; VALUE is an expression of

@@ -28,6 +28,7 @@ std::optional<Error> ModelScope::declare_names() {
   collect(description_.definitions, NameKind::definition, found);
   collect(description_.switching, NameKind::switching, found);
   collect(description_.outputs, NameKind::output, found);
+  collect(description_.tables, NameKind::table, found);
   int position = 0;
   for (const auto& event : description_.events) {
     const std::string name = event.name.value_or(fmt::format("event{}", position + 1));
@@ -126,7 +127,15 @@ Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meani
     case NameKind::output:
     case NameKind::event:
     case NameKind::jump:
+    case NameKind::table:
       break;
+  }
+  if (meaning.kind == NameKind::table) {
+    return tl::unexpected(Error{ErrorCode::invalid_model,
+                                fmt::format("'{}' is a table, a function of one argument", name),
+                                fmt::format("write {}(t), or another argument", name),
+                                location,
+                                {}});
   }
   return tl::unexpected(
       Error{ErrorCode::invalid_model,
@@ -134,6 +143,23 @@ Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meani
             "make it a definition and use that in both places",
             location,
             {}});
+}
+
+Expected<std::shared_ptr<const CellTable>> ModelScope::table(const std::string& name) {
+  const auto index = static_cast<std::size_t>(names_.find(name)->index);
+  if (tables_.size() <= index) tables_.resize(description_.tables.size());
+  auto& cells = tables_[index];
+  if (cells) return cells;
+  const TableDescription& stated = description_.tables[index];
+  if (const auto mistake = find_mistake(stated.x, stated.y, stated.kind)) {
+    return tl::unexpected(Error{ErrorCode::invalid_model,
+                                fmt::format("table '{}': {}", name, mistake->message),
+                                mistake->remedy,
+                                stated.location,
+                                {}});
+  }
+  cells = std::make_shared<const CellTable>(table_cells(stated.x, stated.y, stated.kind));
+  return cells;
 }
 
 std::optional<Error> ModelScope::enter(const std::string& name, const SourceLocation& location) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ class ModelScope {
 
   /// The expression a name stands for (pi excepted, which the translation knows).
   [[nodiscard]] Expected<SXElem> number(const std::string& name, const SourceLocation& location);
+  /// The cells of a table of the description; only for names the parser took for one.
+  [[nodiscard]] Expected<std::shared_ptr<const CellTable>> table(const std::string& name);
   /// The condition a name stands for; only for names of which is_condition is true.
   [[nodiscard]] Expected<Condition> condition(const std::string& name, const SourceLocation& location);
   [[nodiscard]] bool is_condition(const std::string& name) const;
@@ -51,6 +54,7 @@ class ModelScope {
   /// Names that occur in some expression of the description, replaced ones (--set) included.
   void note_names(const saltus::expression::NodePtr& node);
   [[nodiscard]] bool is_used(const std::string& name) const { return used_.contains(name); }
+  [[nodiscard]] bool is_table_used(std::size_t index) const { return index < tables_.size() && tables_[index]; }
   [[nodiscard]] const NameTable& names() const { return names_; }
   Translation& translation() { return translation_; }
 
@@ -71,6 +75,7 @@ class ModelScope {
   std::vector<std::string> open_;  ///< definitions and switching functions being worked out
   std::map<int, SXElem> definitions_;
   std::map<int, SXElem> switching_;
+  std::vector<std::shared_ptr<const CellTable>> tables_;  ///< null until used
   std::set<std::string> used_;
 };
 

@@ -25,6 +25,8 @@ std::string with_article(NameKind kind) {
       return "an event";
     case NameKind::jump:
       return "a jump";
+    case NameKind::table:
+      return "a table";
   }
   return "";
 }

@@ -10,7 +10,7 @@
 
 namespace saltus::model {
 
-enum class NameKind { parameter, state, control, definition, switching, output, event, jump };
+enum class NameKind { parameter, state, control, definition, switching, output, event, jump, table };
 
 /// "a parameter", "a state" …
 [[nodiscard]] std::string with_article(NameKind kind);

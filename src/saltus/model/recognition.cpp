@@ -55,8 +55,8 @@ int Recognition::append(const std::string& name, const SXElem& psi, int psi_node
   const auto index = static_cast<int>(functions_.size());
   MetFunction met{shown(psi, name), psi, psi_node, SXElem(0.0), 0, false};
   const KindSet reached = graph.tape()[psi_node].reached;
-  met.discrete = (reached & moving_kinds) == 0 && (reached & kind_bit(VariableKind::discrete)) != 0;
-  if ((reached & kind_bit(VariableKind::discrete)) != 0) met.alpha_at_zero = at_zero;
+  met.discrete = (reached & moving_kinds) == 0 && (reached & jumping_kinds) != 0;
+  if ((reached & jumping_kinds) != 0) met.alpha_at_zero = at_zero;
   if (met.discrete) {
     const bool taken =
         std::any_of(functions_.begin(), functions_.end(), [&](const auto& other) { return other.name == met.name; });

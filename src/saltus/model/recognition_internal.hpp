@@ -1,6 +1,7 @@
 // Nonsmooth terms -> switching functions and selections alpha.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,14 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> min(const SXElem& a, const SXElem& b, const std::string& name);
   [[nodiscard]] Expected<SXElem> select(const Condition& condition, const SXElem& a, const SXElem& b);
 
+  /// floor(e): e of time and parameters only.
+  [[nodiscard]] Expected<SXElem> floor(const SXElem& e, const std::string& name);
+  /// e - m floor(e/m): m a constant other than 0, e of time and parameters only.
+  [[nodiscard]] Expected<SXElem> mod(const SXElem& e, const SXElem& m, const std::string& name);
+  /// The value of a table at e. Alphas in e are taken out of it: the tables at e with them at 0 and 1, blended.
+  [[nodiscard]] Expected<SXElem> lookup(const std::shared_ptr<const CellTable>& table, const SXElem& e,
+                                        const std::string& name);
+
   /// Where a condition holds, over the functions it consists of (literals by their numbers).
   [[nodiscard]] Expected<Truth> truth(TruthDiagram& diagram, const Condition& condition);
 
@@ -82,10 +91,14 @@ class Recognition {
   [[nodiscard]] Expected<Truth> comparison_truth(TruthDiagram& diagram, const Comparison& comparison);
   [[nodiscard]] std::optional<SharedFunction> find(int psi_node, std::optional<double> at_zero);
   int append(const std::string& name, const SXElem& psi, int psi_node, std::optional<double> at_zero);
+  [[nodiscard]] Expected<SXElem> whole_part(const SXElem& e, const std::string& name);
+  [[nodiscard]] std::optional<SXElem> lookup_corners(const std::shared_ptr<const CellTable>& table, const SXElem& e,
+                                                     const std::string& name, int& corners);
   [[nodiscard]] std::vector<int> alphas_in(int node) const;
 
   std::vector<MetFunction> functions_;
   SharingIndex index_;
+  std::shared_ptr<const CellTable> integers_ = std::make_shared<const CellTable>(integer_cells());
 };
 
 /// Number of smooth branches an expression unfolds into when the alphas in it and in their switching functions are

@@ -40,11 +40,25 @@ void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& 
     if (tape[node].variable < 0) continue;
     const auto i = static_cast<std::size_t>(tape[node].variable);
     const VariableKind kind = tape.variables()[i].kind;
-    if (kind == VariableKind::parameter || kind == VariableKind::alpha) continue;
+    if (kind == VariableKind::parameter || kind == VariableKind::alpha || kind == VariableKind::cell) continue;
     const double draw = magnitude * seeded_draw(static_cast<std::uint64_t>(k), i);
     point[i] = k < 4 ? std::abs(draw) : draw;
   }
 }
+
+namespace {
+
+/// Constants of cells at numbers of their own: functions of time and state that look alike at the points of the pool
+/// may differ in a cell that none of them lies in, so only the same cells, used in the same way, are equal.
+void draw_cells(const Tape& tape, std::span<const int> cone, int k, Point& point) {
+  for (const int node : cone) {
+    if (tape[node].operation != cell_operation) continue;
+    const auto i = static_cast<std::size_t>(tape[node].variable);
+    point[i] = seeded_draw(static_cast<std::uint64_t>(k) + 20000, i);
+  }
+}
+
+}  // namespace
 
 std::optional<double> constant_value(const Tape& tape, int node) {
   const auto cone = tape.cone(std::span(&node, 1), Links::written);
@@ -86,6 +100,7 @@ SharingIndex::Samples SharingIndex::sample(const Tape& tape, int psi) {
   Point point = blank_point(tape);
   for (int k = 0; k < pool_points + extreme_points; ++k) {
     draw_pool_point(tape, cone, k, point);
+    draw_cells(tape, cone, k, point);
     evaluate_with_bounds(tape, cone, point, {}, epsilon, values);
     samples.value[static_cast<std::size_t>(k)] = values.value[static_cast<std::size_t>(psi)];
     samples.error[static_cast<std::size_t>(k)] = values.bound[static_cast<std::size_t>(psi)];
@@ -130,6 +145,7 @@ ThresholdSamples threshold_samples(const Tape& tape, int psi) {
   Point point = blank_point(tape);
   for (int k = 0; k < pool_points; ++k) {
     draw_pool_point(tape, cone, k, point);
+    draw_cells(tape, cone, k, point);
     evaluate(tape, cone, point, values);
     samples.value[static_cast<std::size_t>(k)] = values.value[static_cast<std::size_t>(psi)];
   }

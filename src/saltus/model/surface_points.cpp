@@ -18,7 +18,7 @@ std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots) 
     const int variable = tape[node].variable;
     if (variable < 0 || tape[node].psi >= 0) continue;
     const VariableKind kind = tape.variables()[static_cast<std::size_t>(variable)].kind;
-    if (kind != VariableKind::parameter) found.push_back(variable);
+    if (kind != VariableKind::parameter && kind != VariableKind::cell) found.push_back(variable);
   }
   return found;
 }

@@ -34,6 +34,7 @@ class Profiler {
     std::vector<int> roots = targets;
     roots.push_back(surface.psi);
     cone_ = tape.cone(roots, Links::through_alpha);
+    cells_ = std::any_of(cone_.begin(), cone_.end(), [&](int i) { return tape[i].operation == cell_operation; });
   }
 
   void at(Point point, const std::vector<double>& scale) {
@@ -57,7 +58,10 @@ class Profiler {
     const double reference = std::isfinite(nearby) ? nearby : size;
     const double distance = std::sqrt(std::abs(psi_here_ / psi_nearby_));
     const double part = std::isfinite(distance) ? std::max(jump_tolerance, 10.0 * distance) : jump_tolerance;
-    const double rounding = std::isfinite(bound_[target]) ? std::min(bound_[target], 1e-5 * size) : 0.0;
+    // Where a surface lies on a break of a table, values may vanish on it and be constant away from it: their size says
+    // nothing then.
+    const double most = cells_ ? bound_[target] : std::min(bound_[target], 1e-5 * size);
+    const double rounding = std::isfinite(bound_[target]) ? most : 0.0;
     return found > part * reference + rounding;
   }
 
@@ -101,6 +105,7 @@ class Profiler {
   Surface surface_;
   const std::vector<int>& targets_;
   std::vector<int> cone_;
+  bool cells_ = false;
   TapeValues values_;
   std::vector<Triple> here_, nearby_;
   std::vector<double> bound_;
@@ -259,7 +264,8 @@ std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>&
   for (const Surface& surface : surfaces) {
     const KindSet reached = tape[surface.psi].reached;
     constexpr KindSet states = kind_bit(VariableKind::state) | kind_bit(VariableKind::discrete);
-    if ((reached & states) == 0) {
+    const bool still = (reached & moving_kinds) == 0 && (reached & jumping_kinds) != 0;
+    if ((reached & states) == 0 && !still) {
       classes.push_back({SwitchingRole::time_event, false});
       continue;
     }

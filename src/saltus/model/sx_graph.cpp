@@ -32,7 +32,7 @@ std::string builder_function_for(int operation) {
     case casadi::OP_CEIL:
     case casadi::OP_FMOD:
     case casadi::OP_REMAINDER:
-      return "step: floor and mod come with a later version, until then add steps of t";
+      return "floor and mod";
     default:
       return "";
   }
@@ -83,6 +83,22 @@ SXElem SxGraph::alpha_symbol(const std::string& name, int index, int psi) {
   SXElem result = SXElem::sym(name);
   remember(result, tape_.alpha(index, psi));
   return result;
+}
+
+const CellUse& SxGraph::cell(const SXElem& argument, const std::shared_ptr<const CellTable>& table,
+                             const std::string& name) {
+  const int node = this->node(argument);
+  for (const auto& known : cells_) {
+    if (known.table == table && tape_[known.nodes.front()].left == node) return known;
+  }
+  CellUse use{.name = name, .argument = argument, .symbols = {}, .nodes = {}, .table = table};
+  for (int column = 0; column < table->columns; ++column) {
+    use.nodes.push_back(tape_.cell(node, table, column));
+    use.symbols.push_back(SXElem::sym(name + "_" + std::to_string(column)));
+    remember(use.symbols.back(), use.nodes.back());
+  }
+  cells_.push_back(std::move(use));
+  return cells_.back();
 }
 
 Expected<int> SxGraph::add_one(const SXElem& expression) {
@@ -140,8 +156,8 @@ SXElem SxGraph::with_alphas(int root, const std::map<int, double>& fixed) {
     const TapeNode& node = tape_[current];
     if (const auto it = fixed.find(current); it != fixed.end()) {
       rebuilt.emplace(current, SXElem(it->second));
-    } else if (node.left < 0) {
-      rebuilt.emplace(current, expression(current));
+    } else if (node.left < 0 || node.operation == cell_operation) {
+      rebuilt.emplace(current, expression(current));  // arguments of cells are free of alphas
     } else if (node.operation == casadi::OP_IF_ELSE_ZERO && rebuilt.at(node.left).is_one()) {
       rebuilt.emplace(current, rebuilt.at(node.right));  // an open guard, which CasADi would leave standing
     } else if (node.right < 0) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -18,6 +19,15 @@ namespace saltus::model {
 
 using casadi::SXElem;
 
+/// A place where a table, or floor, is applied: one symbol per constant of the cell its argument lies in.
+struct CellUse {
+  std::string name;  ///< "floor(t/T)"
+  SXElem argument;
+  std::vector<SXElem> symbols;
+  std::vector<int> nodes;  ///< of the symbols
+  std::shared_ptr<const CellTable> table;
+};
+
 class SxGraph {
  public:
   [[nodiscard]] const Tape& tape() const { return tape_; }
@@ -25,6 +35,12 @@ class SxGraph {
 
   SXElem symbol(const std::string& name, const Variable& variable);
   SXElem alpha_symbol(const std::string& name, int index, int psi);
+
+  /// The constants of the cell in which `argument` (added before, free of alphas) lies; the same ones for the same
+  /// argument and table.
+  const CellUse& cell(const SXElem& argument, const std::shared_ptr<const CellTable>& table, const std::string& name);
+  /// In the order they were met, hence arguments of arguments first.
+  [[nodiscard]] const std::vector<CellUse>& cells() const { return cells_; }
 
   /// The number of an expression made of this graph's symbols.
   /// @return the node, or invalid_model for a foreign symbol, a function call or a nonsmooth CasADi operation: those
@@ -60,6 +76,7 @@ class SxGraph {
   std::unordered_map<const void*, int> numbers_;
   std::vector<SXElem> keep_alive_;   ///< the addresses in numbers_ stay theirs
   std::vector<SXElem> expressions_;  ///< by node
+  std::vector<CellUse> cells_;
 };
 
 /// The only entry of a scalar; nothing for other shapes.

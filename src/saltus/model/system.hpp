@@ -1,12 +1,14 @@
 // The model as a value: a piecewise-smooth system over step selections alpha, in CasADi expressions.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <casadi/core/sx.hpp>
 #include <casadi/core/sx_elem.hpp>
 
+#include "saltus/model/cells.hpp"
 #include "saltus/model/description.hpp"
 
 namespace saltus::model {
@@ -73,16 +75,26 @@ struct Jump {
   JumpValues evaluated = JumpValues::at_trigger;
 };
 
+/// A piece of an expression that is smooth in every cell of its argument: floor, a table, a sampled input. The
+/// expressions of a System hold the symbols; whoever evaluates them keeps the constants of the cell in which the
+/// argument is, and moves them where it leaves the cell.
+struct Cell {
+  std::string name;     ///< as written: "floor(t/T)", "road(x)"
+  casadi::SX argument;  ///< scalar over t, x, u, p and the symbols of earlier cells
+  casadi::SX symbols;   ///< column of the constants
+  std::shared_ptr<const CellTable> table;
+};
+
 /// A group of [[modes]], of which one holds at a time; its part of the right-hand side is in f.
 struct ModeGroup {
   std::string name;  ///< empty for the group without a name
   int regions = 0;
 };
 
-/// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j). With Inclusion::filippov f is multi-affine in the alphas of
-/// listed functions (those of kinks and time events are 0 or 1 wherever their value matters). All expressions are over
-/// the symbols t, x, u, p, alpha of this value. Units are the model's. Structure (which functions exist, what folded,
-/// what is a kink) holds for parameter_values.
+/// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j), with the constants of cells as further symbols. With
+/// Inclusion::filippov f is multi-affine in the alphas of listed functions (those of kinks and time events are 0 or 1
+/// wherever their value matters). All expressions are over the symbols t, x, u, p, alpha of this value. Units are the
+/// model's. Structure (which functions exist, what folded, what is a kink) holds for parameter_values.
 ///
 /// A branch of if, abs, max, min that can be NaN or infinite is guarded: alpha = 0 and 1 select a branch exactly, also
 /// when the other is NaN. Take derivatives with respect to alpha as differences of corners, not by differentiating a
@@ -108,6 +120,7 @@ struct System {
   std::vector<SwitchingColumn> columns;  ///< of the result: order of appearance, named ones first in file order
   std::vector<UserEvent> events;
   std::vector<Jump> jumps;
+  std::vector<Cell> cells;            ///< arguments hold symbols of earlier ones only
   std::vector<bool> discrete_states;  ///< n_x: dynamics 0, changed by jumps only
   std::vector<ModeGroup> mode_groups;
 

@@ -79,6 +79,12 @@ bool is_leaf(const TapeNode& node) {
   return node.operation == casadi::OP_CONST || node.operation == casadi::OP_PARAMETER;
 }
 
+/// The constant of a cell that the point holds; NaN where it is to be looked up.
+double held_constant(const TapeNode& node, const Point& point) {
+  if (node.operation != cell_operation) return std::numeric_limits<double>::quiet_NaN();
+  return point[static_cast<std::size_t>(node.variable)];
+}
+
 /// |d| b. A derivative that does not exist (of a negative base with respect to the exponent) has no share.
 double share(double derivative, double bound) {
   return bound == 0.0 || std::isnan(derivative) ? 0.0 : std::abs(derivative) * bound;
@@ -133,6 +139,33 @@ int Tape::operation(int operation, int left, int right) {
   return append(node);
 }
 
+int Tape::cell(int argument, const std::shared_ptr<const CellTable>& table, int column) {
+  const TapeNode& operand = (*this)[argument];
+  const auto index = static_cast<int>(cells_.size());
+  cells_.push_back({table, column});
+  variables_.push_back({VariableKind::cell, index, std::numeric_limits<double>::quiet_NaN()});
+  // A constant that jumps is like a discrete state: it does not move between its jumps.
+  const bool jumps = table->change == CellTable::Change::jump && (operand.reached & changing_kinds) != 0;
+  return append({.operation = cell_operation,
+                 .left = argument,
+                 .variable = static_cast<int>(variables_.size()) - 1,
+                 .written = jumps ? kind_bit(VariableKind::cell) : operand.written,
+                 .reached = jumps ? kind_bit(VariableKind::cell) : operand.reached,
+                 .may_be_nonfinite = operand.may_be_nonfinite});
+}
+
+double Tape::operate(const TapeNode& node, double left, double right) const {
+  if (node.operation == cell_operation) {
+    if (std::isnan(left)) return left;
+    const auto& variable = variables_[static_cast<std::size_t>(node.variable)];
+    const auto& [table, column] = cells_[static_cast<std::size_t>(variable.index)];
+    return table->constant(table->cell(left), column);
+  }
+  double value = 0.0;
+  casadi::casadi_math<double>::fun(static_cast<unsigned char>(node.operation), left, right, value);
+  return value;
+}
+
 std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
   std::vector<int> nodes;
   std::unordered_map<int, bool> seen;
@@ -168,12 +201,14 @@ Point blank_point(const Tape& tape) {
         point.push_back(variable.value);
         break;
       case VariableKind::alpha:
+      case VariableKind::cell:
         point.push_back(std::numeric_limits<double>::quiet_NaN());
         break;
       case VariableKind::time:
       case VariableKind::state:
       case VariableKind::discrete:
       case VariableKind::control:
+      case VariableKind::sampled_control:
         point.push_back(0.0);
         break;
     }
@@ -193,9 +228,10 @@ void evaluate(const Tape& tape, std::span<const int> cone, const Point& point, T
     double& value = values.value[static_cast<std::size_t>(current)];
     if (is_leaf(node)) {
       value = leaf_value(node, point, values);
+    } else if (const double held = held_constant(node, point); !std::isnan(held)) {
+      value = held;
     } else {
-      casadi::casadi_math<double>::fun(static_cast<unsigned char>(node.operation), operand(values, node.left),
-                                       operand(values, node.right), value);
+      value = tape.operate(node, operand(values, node.left), operand(values, node.right));
     }
   }
 }
@@ -213,6 +249,12 @@ void evaluate_with_bounds(const Tape& tape, std::span<const int> cone, const Poi
       const bool moves = node.variable >= 0 && !scale.empty() && node.psi < 0;
       bound = node.psi < 0 ? local * std::abs(value) : 0.0;
       if (moves) bound += scale[static_cast<std::size_t>(node.variable)];
+      continue;
+    }
+    if (node.operation == cell_operation) {
+      const double held = held_constant(node, point);
+      value = std::isnan(held) ? tape.operate(node, operand(values, node.left), 0.0) : held;
+      bound = local * std::abs(value);
       continue;
     }
     double derivative[2] = {0.0, 0.0};
@@ -234,7 +276,8 @@ std::vector<double> gradient(const Tape& tape, const TapeValues& values, int roo
       if (node.variable >= 0) result[static_cast<std::size_t>(node.variable)] = seed;
       continue;
     }
-    if (seed == 0.0) continue;  // 0 times an infinite slope of a branch not taken must stay 0
+    if (node.operation == cell_operation) continue;  // constant where it has a derivative
+    if (seed == 0.0) continue;                       // 0 times an infinite slope of a branch not taken must stay 0
     double derivative[2] = {0.0, 0.0};
     casadi::casadi_math<double>::der(static_cast<unsigned char>(node.operation), operand(values, node.left),
                                      operand(values, node.right), values.value[static_cast<std::size_t>(*it)],

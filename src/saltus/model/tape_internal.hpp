@@ -4,9 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
+
+#include "saltus/model/cells.hpp"
 
 namespace saltus::model {
 
@@ -15,8 +18,10 @@ enum class VariableKind {
   state,     ///< moves
   discrete,  ///< a state that changes by jumps only
   control,
+  sampled_control,  ///< piecewise constant in time
   parameter,
   alpha,
+  cell,  ///< a constant of a cell; in a set of kinds: of one that jumps
 };
 
 /// Set of variable kinds, one bit each.
@@ -25,9 +30,13 @@ using KindSet = unsigned;
 
 /// What changes during a simulation.
 inline constexpr KindSet changing_kinds = kind_bit(VariableKind::time) | kind_bit(VariableKind::state) |
-                                          kind_bit(VariableKind::discrete) | kind_bit(VariableKind::control);
+                                          kind_bit(VariableKind::discrete) | kind_bit(VariableKind::control) |
+                                          kind_bit(VariableKind::sampled_control) | kind_bit(VariableKind::cell);
+/// What changes by jumps only.
+inline constexpr KindSet jumping_kinds =
+    kind_bit(VariableKind::discrete) | kind_bit(VariableKind::sampled_control) | kind_bit(VariableKind::cell);
 /// What changes between jumps.
-inline constexpr KindSet moving_kinds = changing_kinds & ~kind_bit(VariableKind::discrete);
+inline constexpr KindSet moving_kinds = changing_kinds & ~jumping_kinds;
 
 struct Variable {
   VariableKind kind = VariableKind::time;
@@ -38,13 +47,16 @@ struct Variable {
 struct TapeNode {
   int operation = 0;          ///< casadi::Operation; OP_CONST and OP_PARAMETER for the leaves
   int left = -1, right = -1;  ///< smaller node numbers; right is -1 for one operand
-  int variable = -1;          ///< of a leaf
+  int variable = -1;          ///< of a leaf or a constant of a cell
   int psi = -1;               ///< of an alpha: the node of its switching function, a smaller number
   double constant = 0.0;
   KindSet written = 0;            ///< kinds of the variables in the expression
   KindSet reached = 0;            ///< the same, with those in the switching functions of its alphas
   bool may_be_nonfinite = false;  ///< can overflow or be NaN for moderate arguments
 };
+
+/// A constant of the cell in which the operand `left` lies; its variable holds it (NaN: looked up at the point).
+inline constexpr int cell_operation = 1000;
 
 /// Whether the walk down an expression stops at an alpha or goes on into its switching function.
 enum class Links { written, through_alpha };
@@ -56,10 +68,14 @@ class Tape {
   int variable(const Variable& variable);
   int alpha(int index, int psi);
   int operation(int operation, int left, int right);
+  /// Constant number `column` of the cell of a table in which `argument` lies.
+  int cell(int argument, const std::shared_ptr<const CellTable>& table, int column);
 
   [[nodiscard]] const TapeNode& operator[](int node) const { return nodes_[static_cast<std::size_t>(node)]; }
   [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
+  /// The value of an operation for given operands; a constant of a cell by looking it up.
+  [[nodiscard]] double operate(const TapeNode& node, double left, double right) const;
   void set_value(int variable, double value) { variables_[static_cast<std::size_t>(variable)].value = value; }
 
   /// All nodes the roots consist of, ascending (hence in order of evaluation). Negative roots are skipped.
@@ -70,6 +86,11 @@ class Tape {
 
   std::vector<TapeNode> nodes_;
   std::vector<Variable> variables_;
+  struct CellConstant {
+    std::shared_ptr<const CellTable> table;
+    int column = 0;
+  };
+  std::vector<CellConstant> cells_;  ///< by the index of their variables
   std::unordered_map<std::uint64_t, std::vector<int>> by_key_;
 };
 
@@ -77,10 +98,11 @@ class Tape {
 /// then the same, which a narrow bell exp(-(x - 30)^2) is not to a constant.
 [[nodiscard]] bool is_polynomial(const Tape& tape, std::span<const int> cone);
 
-/// One value per variable of a tape. NaN for an alpha means: the step of its switching function at this point.
+/// One value per variable of a tape. NaN for an alpha means: the step of its switching function at this point; for a
+/// constant of a cell: that of the cell in which the argument lies at this point.
 using Point = std::vector<double>;
 
-/// Parameters at their values, alphas by the sign of their psi, everything else 0.
+/// Parameters at their values, alphas by the sign of their psi, cells where their arguments are, everything else 0.
 [[nodiscard]] Point blank_point(const Tape& tape);
 
 /// Values by node number; meaningful for the nodes of the cone evaluated last.

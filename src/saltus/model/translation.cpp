@@ -63,6 +63,12 @@ std::string difference_text(const NodePtr& a, const NodePtr& b) {
   return expression::to_text(difference);
 }
 
+std::string call_text(const expression::Call& call) {
+  Node node;
+  node.value = call;
+  return expression::to_text(node);
+}
+
 Error condition_found(const Node& node) {
   return {ErrorCode::invalid_model,
           fmt::format("expected a number, found the condition '{}'", expression::to_text(node)),
@@ -134,15 +140,6 @@ Expected<SXElem> Translation::binary(const expression::Binary& binary, const Sou
 
 Expected<SXElem> Translation::call(const expression::Call& call, const SourceLocation& location) {
   if (call.function == "if") return branch(call).map_error([&](Error e) { return located(std::move(e), location); });
-  if (call.function == "floor" || call.function == "mod") {
-    return tl::unexpected(Error{ErrorCode::not_available,
-                                fmt::format("'{}' is not available yet: time events by floor and mod come with a later "
-                                            "version",
-                                            call.function),
-                                "until then write the switching times out, e.g. step(t - 1) + step(t - 2)",
-                                location,
-                                {}});
-  }
   const auto first = number(*call.arguments.front());
   if (!first) return first;
   if (call.function == "log10") return log10_of(*first);
@@ -163,18 +160,22 @@ Expected<SXElem> Translation::nonsmooth(const expression::Call& call, const Sour
   if (call.function == "step") return recognition_.step(*a, text).map_error(locate);
   if (call.function == "sign") return recognition_.sign(*a, text).map_error(locate);
   if (call.function == "abs") return recognition_.abs(*a, text).map_error(locate);
-  if (call.function != "max" && call.function != "min") {
-    return tl::unexpected(Error{ErrorCode::not_available,
-                                fmt::format("'{}' is not available: tables come with a later version", call.function),
-                                "write the function as an expression",
-                                location,
-                                {}});
-  }
+  if (call.arguments.size() == 1) return cells(call, *a).map_error(locate);
   const auto b = number(*call.arguments.back());
   if (!b) return b;
+  if (call.function == "mod") return recognition_.mod(*a, *b, call_text(call)).map_error(locate);
   const std::string difference = difference_text(call.arguments.front(), call.arguments.back());
   return (call.function == "max" ? recognition_.max(*a, *b, difference) : recognition_.min(*a, *b, difference))
       .map_error(locate);
+}
+
+/// floor, or a table of the model: the parser knows no other functions.
+Expected<SXElem> Translation::cells(const expression::Call& call, const SXElem& argument) {
+  const std::string text = call_text(call);
+  if (call.function == "floor") return recognition_.floor(argument, text);
+  auto table = scope_.table(call.function);
+  if (!table) return tl::unexpected(table.error());
+  return recognition_.lookup(*table, argument, text);
 }
 
 Expected<SXElem> Translation::branch(const expression::Call& call) {

@@ -25,6 +25,7 @@ class Translation {
   [[nodiscard]] Expected<SXElem> binary(const expression::Binary& binary, const SourceLocation& location);
   [[nodiscard]] Expected<SXElem> call(const expression::Call& call, const SourceLocation& location);
   [[nodiscard]] Expected<SXElem> nonsmooth(const expression::Call& call, const SourceLocation& location);
+  [[nodiscard]] Expected<SXElem> cells(const expression::Call& call, const SXElem& argument);
   [[nodiscard]] Expected<SXElem> branch(const expression::Call& call);
   [[nodiscard]] Expected<Condition> comparison(const expression::Binary& binary, const SourceLocation& location);
   [[nodiscard]] Expected<Condition> equality(const expression::Binary& binary, const SourceLocation& location);

@@ -28,7 +28,9 @@ the command line as `--set simulate.KEY=VALUE`. `*` stands for the name of a swi
 
 constexpr std::string_view page_tail = R"md(
 Values of the controls during a simulation stand in `inputs = { u = "sin(t)" }`: expressions of the time and the
-parameters; without one a control keeps its `initial`. On the command line: `--set simulate.inputs.u="sin(t)"`.
+parameters, or piecewise constant as `{ file = "u.csv" }` (columns t and u) or `{ result = "r.json" }` (the control of that
+name in a stored result), files being relative to the model's; without one a control keeps its `initial`. On the command line:
+`--set simulate.inputs.u="sin(t)"`, `--set simulate.inputs.u.file=u.csv`.
 )md";
 
 }  // namespace

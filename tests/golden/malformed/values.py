@@ -102,7 +102,6 @@ FILES = {
     "native": (after("native = 'never'\n"), 13, "native", 'expected "auto" or "on" or "off"'),
     "native a boolean": (after("native = true\n"), 13, 'expected "auto" or "on" or "off", found true'),
     # later versions
-    "tables": (after("[tables.road]\nx = [0, 1]\n"), 13, "[tables]", "a later one brings it"),
     "mechanics": (after("[mechanics]\npositions = ['x']\n"), 13, "[mechanics]", "a later one brings it"),
     "contacts": (after("[[contacts]]\nname = 'c'\n"), 13, "[[contacts]]", "a later one brings it"),
     "optimize": (after("[optimize]\nhorizon = 1\n"), 13, "[optimize]", "a later one brings it"),
@@ -114,7 +113,6 @@ FILES = {
     "method": (after("method = 'fesd'\n"), 13, "error: method \"fesd\" is not available", "a later one brings it"),
     "selection": (after("event.selection = 'scaled'\n"), 13, "selection", "a later one brings it"),
     "branches": (after("event.branches = 'all'\n"), 13, "branches", "a later one brings it"),
-    "input from a file": (after("inputs.u = { file = 'u.csv' }\n"), 13, "from a file", "a later one brings it"),
     "free state": (with_line(6, "x = { initial = 1, free = true }"), 6, "free = true", "a later one brings it"),
     "free parameter": (with_line(4, "mu = { initial = 1, free = true }"), 4, "free = true", "a later one brings it"),
 }

@@ -133,11 +133,7 @@ TEST(Errors, NumbersAndConditionsExchanged) {
          {ErrorCode::invalid_model, "expected a number", "", 2, 23});
 }
 
-TEST(Errors, WhatComesLater) {
-  expect(refused({.states = {{"x", "0"}}, .dynamics = {{"x", "1 + floor(t)"}}}),
-         {ErrorCode::not_available, "'floor'", "step(t - 1)", 2, 25});
-  expect(refused({.states = {{"x", "0"}}, .dynamics = {{"x", "mod(t, 2)"}}}),
-         {ErrorCode::not_available, "later version", "", 2, 21});
+TEST(Errors, EqualityOfWhatMoves) {
   expect(refused({.states = {{"x", "0"}}, .dynamics = {{"x", "if(x == 1, 1, 0)"}}}),
          {ErrorCode::invalid_model, "== and !=", "abs(x - a)", 2, 26});
 }

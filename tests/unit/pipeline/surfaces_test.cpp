@@ -138,5 +138,35 @@ TEST(Surfaces, NestedOnesFollowTheirInnerSwitches) {
   EXPECT_NEAR(lowest, -1.0, 2e-3);
 }
 
+TEST(Surfaces, TablesAreLookedUpAtEveryPointOfACurve) {
+  const auto found = surfaces_of([](model::Builder& model, const SX& x, const SX& y, const SX&) {
+    const auto road = model.table("road", {-2, 0, 1, 2}, {0, 1, -1, 0});
+    const SX surface = model.sign(y - road(x), "road surface");
+    return surface + model.sign(y - model.mod(model.time(), 2), "ramp");
+  });
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].states, (std::vector<std::string>{"x", "y"}));
+  EXPECT_FALSE(found[0].affine.has_value());
+  EXPECT_FALSE(found[0].depends_on_time);
+  ASSERT_FALSE(found[0].curves.empty());
+  const auto exact = [](double x) {
+    if (x < -2.0 || x > 2.0) return 0.0;
+    return x < 0.0 ? 1.0 + 0.5 * x : x < 1.0 ? 1.0 - 2.0 * x : x - 2.0;
+  };
+  for (const auto& curve : found[0].curves) {
+    ASSERT_EQ(curve.coordinates.size(), 2U);
+    for (std::size_t i = 0; i < curve.coordinates[0].size(); ++i) {
+      EXPECT_NEAR(curve.coordinates[1][i], exact(curve.coordinates[0][i]), 0.02);
+    }
+  }
+  // A surface that moves, and jumps back: where it is at the time of each curve.
+  EXPECT_TRUE(found[1].depends_on_time);
+  EXPECT_FALSE(found[1].affine.has_value());
+  for (const auto& curve : found[1].curves) {
+    ASSERT_TRUE(curve.t.has_value());
+    EXPECT_NEAR(curve.coordinates[0][0], *curve.t - 2.0 * std::floor(*curve.t / 2.0), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace saltus::pipeline

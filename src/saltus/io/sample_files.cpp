@@ -1,0 +1,170 @@
+#include "saltus/io/sample_files.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "saltus/io/atomic_file.hpp"
+#include "saltus/io/json_result.hpp"
+
+namespace saltus::io {
+namespace {
+
+constexpr std::size_t largest_file = std::size_t{64} << 20;
+
+/// The fields of a line. It is separated by semicolons if there are some, else by commas, else by tabs, between which a
+/// field may be empty; else by spaces.
+std::vector<std::string_view> fields_of(std::string_view line) {
+  char separator = ' ';
+  for (const char candidate : {'\t', ',', ';'}) {
+    if (line.find(candidate) != std::string_view::npos) separator = candidate;
+  }
+  std::vector<std::string_view> fields;
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  for (std::size_t from = 0; from <= line.size();) {
+    const auto to = std::min(line.find(separator, from), line.size());
+    auto field = line.substr(from, to - from);
+    while (!field.empty() && is_blank(field.front())) field.remove_prefix(1);
+    while (!field.empty() && is_blank(field.back())) field.remove_suffix(1);
+    if (field.size() > 1 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
+    if (separator != ' ' || !field.empty()) fields.push_back(field);
+    from = to + 1;
+  }
+  return fields;
+}
+
+std::optional<double> number_in(std::string_view field) {
+  if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (failure != std::errc{} || end != field.data() + field.size()) return std::nullopt;
+  return value;
+}
+
+/// Reads line by line; the first mistake ends it.
+class ColumnReader {
+ public:
+  ColumnReader(const std::string& file, const std::string& second) : second_(second) { columns_.file = file; }
+
+  Expected<Columns> read(std::string_view text) {
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    while (!text.empty() && !error_) {
+      const auto end = std::min(text.find('\n'), text.size());
+      auto line = text.substr(0, end);
+      text.remove_prefix(std::min(end + 1, text.size()));
+      ++line_;
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      if (line.find_first_not_of(" \t") == std::string_view::npos || line.starts_with('#')) continue;
+      row(fields_of(line));
+    }
+    if (error_) return tl::unexpected(*error_);
+    return std::move(columns_);
+  }
+
+ private:
+  void fail(std::string message, std::string remedy) {
+    error_ = Error{ErrorCode::parse_failure, std::move(message), std::move(remedy), {columns_.file, line_, 1}, {}};
+  }
+
+  void row(const std::vector<std::string_view>& fields) {
+    const bool begins = !width_;
+    if (begins) width_ = fields.size();
+    if (begins && !number_in(fields.front()) &&
+        std::none_of(fields.begin(), fields.end(), [](auto field) { return number_in(field).has_value(); })) {
+      header(fields);
+      return;
+    }
+    if (begins && fields.size() != 2) {
+      fail(fmt::format("expected two columns, found {}", fields.size()),
+           "write two numbers a line, e.g. 0.5,1.25, or a first line with the names of the columns");
+      return;
+    }
+    if (fields.size() != *width_) {
+      fail(fmt::format("expected {} columns as before, found {}", *width_, fields.size()), "complete the line");
+      return;
+    }
+    const auto first = value(fields[0]), second = value(fields[taken_]);
+    if (!first || !second) return;
+    columns_.first.push_back(*first);
+    columns_.second.push_back(*second);
+    columns_.lines.push_back(line_);
+  }
+
+  void header(const std::vector<std::string_view>& names) {
+    const auto named = std::find(names.begin() + 1, names.end(), second_);
+    if (named != names.end()) {
+      taken_ = static_cast<std::size_t>(named - names.begin());
+    } else if (names.size() != 2) {
+      std::vector<std::string> known(names.begin() + 1, names.end());
+      fail(fmt::format("expected a column '{}' or two columns, found {}", second_, names.size()),
+           known.empty() ? "separate the columns by commas" : suggest(second_, known));
+    }
+  }
+
+  std::optional<double> value(std::string_view field) {
+    auto number = number_in(field);
+    if (!number) {
+      constexpr std::size_t shown = 40;
+      fail(fmt::format("expected a number, found '{}'", field.substr(0, shown)),
+           "columns are separated by commas, decimals by a point");
+    }
+    return number;
+  }
+
+  const std::string& second_;
+  Columns columns_;
+  std::optional<std::size_t> width_;
+  std::size_t taken_ = 1;
+  int line_ = 0;
+  std::optional<Error> error_;
+};
+
+}  // namespace
+
+Expected<Columns> parse_columns(std::string_view text, const std::string& file, const std::string& second) {
+  return ColumnReader(file, second).read(text);
+}
+
+Expected<Columns> read_columns(const std::filesystem::path& file, const std::string& second) {
+  const auto text = read_file(file, largest_file);
+  if (!text) return tl::unexpected(text.error());
+  return parse_columns(*text, file.string(), second);
+}
+
+Error located(const model::PointMistake& mistake, const Columns& columns) {
+  const int line = mistake.point && *mistake.point < columns.lines.size() ? columns.lines[*mistake.point] : 0;
+  return {ErrorCode::invalid_model, mistake.message, mistake.remedy, {columns.file, line, line > 0 ? 1 : 0}, {}};
+}
+
+Expected<Columns> read_control(const std::filesystem::path& file, const std::string& control) {
+  const auto result = read_result(file);
+  if (!result) return tl::unexpected(result.error());
+  const auto found = std::find(result->controls.begin(), result->controls.end(), control);
+  if (found == result->controls.end()) {
+    return tl::unexpected(
+        Error{ErrorCode::unknown_name,
+              fmt::format("the result has no control '{}'", control),
+              result->controls.empty() ? "its model has no controls" : suggest(control, result->controls),
+              {file.string(), 0, 0},
+              {}});
+  }
+  const auto index = static_cast<std::size_t>(found - result->controls.begin());
+  Columns columns;
+  columns.file = file.string();
+  for (std::size_t i = 0; i < result->trajectory.t.size(); ++i) {
+    const double t = result->trajectory.t[i], u = result->trajectory.u[i][index];
+    if (!columns.first.empty() && columns.first.back() == t) {
+      columns.second.back() = u;
+      continue;
+    }
+    columns.first.push_back(t);
+    columns.second.push_back(u);
+  }
+  return columns;
+}
+
+}  // namespace saltus::io

@@ -1,0 +1,36 @@
+"""Tables, inputs from files, floor and mod."""
+
+from malformed.base import after, with_line
+
+FILES = {
+    "table without values": (after("[tables.road]\nx = [0, 1]\n"), 13, "table 'road' has no y", "x = [0, 1, 2]"),
+    "table without points": (after("[tables.road]\nkind = 'linear'\n"), 13, "table 'road' has no points"),
+    "table with points and file": (after("[tables.road]\nx = [0]\ny = [1]\nfile = 'r.csv'\n"), 13, "a file and points"),
+    "table of unequal lists": (after("[tables.road]\nx = [0, 1]\ny = [0, 1, 2]\n"), 13, "2 arguments, but 3 values"),
+    "table that descends": (after("[tables.road]\nx = [0, 2,\n 1]\ny = [0, 1, 2]\n"), 15, "found 1 after 2"),
+    "table with a point twice": (after("[tables.road]\nx = [0, 1, 1]\ny = [0, 1, 2]\n"), 14, "found 1 after 1"),
+    "table of one point": (after("[tables.road]\nx = [0]\ny = [0]\n"), 13, "at least 2 points", "found 1"),
+    "cubic table of three": (after("[tables.road]\nx = [0, 1, 2]\ny = [0, 1, 2]\nkind = 'cubic'\n"), 13,
+                             "at least 4 points", "linear"),
+    "table of infinity": (after("[tables.road]\nx = [0, 1]\ny = [0, inf]\n"), 15, "finite number, found inf"),
+    "table of texts": (after("[tables.road]\nx = ['a', 1]\ny = [0, 1]\n"), 14, "expected a number, found the string"),
+    "table of another kind": (after("[tables.road]\nx = [0, 1]\ny = [0, 1]\nkind = 'quintic'\n"), 16,
+                              'expected "linear" or "cubic"', "quintic"),
+    "table misspelt": (after("[tables.road]\nxs = [0, 1]\n"), 14, "unknown key 'xs'", "'x'"),
+    "table without a name": (after("[tables]\nx = [0, 1]\n"), 14, "[tables.x]", "found a list"),
+    "table with a taken name": (after("[tables.mu]\nx = [0, 1]\ny = [0, 1]\n"), 13, "'mu' is already a parameter"),
+    "table with a reserved name": (after("[tables.sin]\nx = [0, 1]\ny = [0, 1]\n"), 13, "'sin' is reserved"),
+    "table as a name": (with_line(9, "x = 'v + road'") + "[tables.road]\nx = [0, 1]\ny = [0, 1]\n", 9,
+                        "'road' stands without its arguments", "write road(x)"),
+    "table with two arguments": (with_line(9, "x = 'road(x, v)'") + "[tables.road]\nx = [0, 1]\ny = [0, 1]\n", 9,
+                                 "road", "1 argument"),
+    "unknown table function": (with_line(9, "x = 'raod(x)'") + "[tables.road]\nx = [0, 1]\ny = [0, 1]\n", 9, "'raod'",
+                               "did you mean 'road'"),
+    "floor of a state": (with_line(9, "x = 'floor(x)'"), 9, "depends on a state", "[[jumps]]"),
+    "mod of a state": (with_line(9, "x = 'mod(v, 1)'"), 9, "depends on a state", "[[jumps]]"),
+    "mod by zero": (with_line(9, "x = 'mod(t, 0)'"), 9, "a constant other than 0"),
+    "mod by a state": (with_line(9, "x = 'mod(t, x)'"), 9, "a constant other than 0", "found 'x'"),
+    "input of two sources": (after("inputs.u = { file = 'a', result = 'b' }\n"), 13, "one of file and result"),
+    "input from what": (after("inputs.u = { fil = 'a' }\n"), 13, "unknown key 'fil'", "'file'"),
+    "input of no control": (after("inputs.u = 't'\n"), 13, "expected the name of a control, found 'u'"),
+}

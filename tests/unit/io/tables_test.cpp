@@ -1,0 +1,142 @@
+// [tables.name], inputs from files and from results: what is read, relative to what, and every mistake with its place.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "saltus/io/json_result.hpp"
+#include "saltus/io/sample_files.hpp"
+#include "saltus/io/toml_model.hpp"
+#include "saltus/model/build.hpp"
+
+namespace saltus::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view head =
+    "[model]\nname = 'm'\n[states]\nx = 1\n[controls]\nu = 0\n[dynamics]\nx = 'road(x) + u'\n";
+
+class Tables : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "saltus-tables-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  Expected<ModelFile> parse(const std::string& rest) {
+    return parse_model(std::string(head) + rest, (folder_ / "m.toml").string());
+  }
+  Error refused(const std::string& rest) {
+    const auto model = parse(rest);
+    EXPECT_FALSE(model.has_value()) << rest;
+    return model ? Error{} : model.error();
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Tables, OfTheModelFileAndOfAFileBesideIt) {
+  write("road.csv", "# measured\nposition; height\r\n0; 0\n\n1; +0.5\n2;\t.25\n");
+  const auto model =
+      parse("[tables.road]\nfile = 'road.csv'\n[tables.other]\nx = [0, 1, 2, 3]\ny = [1, 2.5, 0, 0]\nkind = 'cubic'\n");
+  ASSERT_TRUE(model.has_value()) << to_text(model.error());
+  const auto& tables = model->description.tables;
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(tables[0].name, "road");
+  EXPECT_EQ(tables[0].kind, model::TableKind::linear);
+  EXPECT_EQ(tables[0].x, (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(tables[0].y, (std::vector<double>{0, 0.5, 0.25}));
+  EXPECT_EQ(tables[1].kind, model::TableKind::cubic);
+  EXPECT_EQ(tables[1].y[1], 2.5);
+  // A table that stands behind its use, and one that nobody uses.
+  const auto system = model::build(model->description, {});
+  ASSERT_TRUE(system.has_value()) << to_text(system.error());
+  EXPECT_EQ(system->cells.size(), 1U);
+  ASSERT_EQ(system->warnings.size(), 1U);
+  EXPECT_NE(system->warnings[0].find("table 'other' is never used"), std::string::npos);
+}
+
+TEST_F(Tables, MistakesInFilesHaveTheLineOfTheFile) {
+  struct Case {
+    std::string content;
+    int line;
+    std::string message;
+  };
+  for (const auto& [content, line, message] : {
+           Case{"0,0\n1,1\n1,2\n", 3, "must ascend"},
+           Case{"s,h\n0,0\n1,x\n", 3, "expected a number, found 'x'"},
+           Case{"0,0\n1,\n", 2, "expected a number, found ''"},
+           Case{"0,0\n1,2,3\n", 2, "expected 2 columns as before, found 3"},
+           Case{"0 0 0\n", 1, "expected two columns, found 3"},
+           Case{"0,0\n1,nan\n", 2, "finite"},
+           Case{"0,0\n", 0, "at least 2 points"},
+           Case{"", 0, "at least 2 points"},
+           Case{"s,h,w\n0,0,0\n", 1, "expected a column 'road'"},
+           Case{"0,0\n1,1e999\n", 2, "expected a number"},
+       }) {
+    write("road.csv", content);
+    const auto error = refused("[tables.road]\nfile = 'road.csv'\n");
+    EXPECT_NE(error.message.find(message), std::string::npos) << content << to_text(error);
+    EXPECT_EQ(error.location.line, line) << content;
+    EXPECT_EQ(fs::path(error.location.file).filename(), "road.csv") << content;
+    ASSERT_FALSE(error.context.empty());
+    EXPECT_NE(to_text(error).find("[tables.road], line 10"), std::string::npos) << to_text(error);
+  }
+  const auto missing = refused("[tables.road]\nfile = 'nowhere.csv'\n");
+  EXPECT_NE(to_text(missing).find("nowhere.csv"), std::string::npos);
+}
+
+TEST_F(Tables, SamplesOfAnInput) {
+  write("u.csv", "t,a,u\n0,9,1\n2,9,3\n");
+  const auto model =
+      parse("[tables.road]\nx = [0, 1]\ny = [0, 1]\n[simulate]\nuntil = 3\ninputs = { u = { file = 'u.csv' } }\n");
+  ASSERT_TRUE(model.has_value()) << to_text(model.error());
+  const auto& inputs = model->description.sampled_inputs;
+  ASSERT_EQ(inputs.size(), 1U);
+  EXPECT_EQ(inputs[0].times, (std::vector<double>{0, 2}));
+  EXPECT_EQ(inputs[0].values, (std::vector<double>{1, 3}));
+
+  const auto other = with_setting(*model, "simulate.inputs.u.file", (folder_ / "v.csv").string());
+  EXPECT_FALSE(other.has_value());
+  write("v.csv", "0 7\n");
+  const auto changed = with_setting(*model, "simulate.inputs.u.file", (folder_ / "v.csv").string());
+  ASSERT_TRUE(changed.has_value()) << to_text(changed.error());
+  EXPECT_EQ(changed->description.sampled_inputs.at(0).values, (std::vector<double>{7}));
+  const auto expression = with_setting(*model, "simulate.inputs.u", "road(t)");
+  ASSERT_TRUE(expression.has_value()) << to_text(expression.error());
+  EXPECT_TRUE(expression->description.sampled_inputs.empty());
+  EXPECT_EQ(expression->description.inputs.size(), 1U);
+  EXPECT_FALSE(with_setting(*model, "simulate.inputs.u.fil", "v.csv").has_value());
+}
+
+TEST_F(Tables, SamplesOfAStoredResult) {
+  result::Result stored;
+  stored.states = {"x"};
+  stored.controls = {"w", "u"};
+  stored.final = {2.0, {0.0}, {}, {}, {}};
+  stored.trajectory = {{0, 1, 1, 2},     {{0}, {0}, {0}, {0}}, {{5, 1}, {5, 1}, {5, 4}, {5, 4}},
+                       {{}, {}, {}, {}}, {{}, {}, {}, {}},     {{}, {}, {}, {}}};
+  write("r.json", to_json(stored));
+  const std::string road = "[tables.road]\nx = [0, 1]\ny = [0, 1]\n";
+  const auto model = parse(road + "[simulate]\nuntil = 3\ninputs = { u = { result = 'r.json' } }\n");
+  ASSERT_TRUE(model.has_value()) << to_text(model.error());
+  const auto& input = model->description.sampled_inputs.at(0);
+  EXPECT_EQ(input.times, (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(input.values, (std::vector<double>{1, 4, 4}));  // of rows at one time the last
+
+  stored.controls = {"w", "v"};
+  write("r.json", to_json(stored));
+  const auto error = refused(road + "[simulate]\nuntil = 3\ninputs = { u = { result = 'r.json' } }\n");
+  EXPECT_NE(error.message.find("no control 'u'"), std::string::npos) << to_text(error);
+  write("r.json", "{");
+  EXPECT_EQ(refused(road + "[simulate]\nuntil = 3\ninputs = { u = { result = 'r.json' } }\n").code,
+            ErrorCode::parse_failure);
+}
+
+}  // namespace
+}  // namespace saltus::io
