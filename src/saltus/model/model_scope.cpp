@@ -116,14 +116,11 @@ Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meani
       return statement_.controls[index].symbol;
     case NameKind::definition:
       return definition(meaning.index, location);
-    case NameKind::switching: {
+    case NameKind::switching:
       if (!switching_.contains(meaning.index)) {
-        if (auto error = enter(name, location)) return tl::unexpected(*error);
-        open_.pop_back();  // only the check for cycles: resolving enters it again
-        if (auto error = resolve_switching(meaning.index)) return tl::unexpected(*error);
+        if (auto error = work_out(meaning, location)) return tl::unexpected(*error);
       }
       return switching_.at(meaning.index);
-    }
     case NameKind::output:
     case NameKind::event:
     case NameKind::jump:
@@ -162,38 +159,18 @@ Expected<std::shared_ptr<const CellTable>> ModelScope::table(const std::string& 
   return cells;
 }
 
-std::optional<Error> ModelScope::enter(const std::string& name, const SourceLocation& location) {
-  const auto first = std::find(open_.begin(), open_.end(), name);
-  if (first == open_.end()) {
-    open_.push_back(name);
-    return std::nullopt;
-  }
-  std::string cycle;
-  for (auto it = first; it != open_.end(); ++it) cycle += *it + " -> ";
-  return Error{ErrorCode::invalid_model,
-               fmt::format("'{}' is defined by itself: {}{}", name, cycle, name),
-               "break the cycle; a quantity that feeds back on itself is a state",
-               location,
-               {}};
-}
-
 Expected<SXElem> ModelScope::definition(int index, const SourceLocation& location) {
   if (const auto known = definitions_.find(index); known != definitions_.end()) return known->second;
-  const NamedExpression& entry = description_.definitions[static_cast<std::size_t>(index)];
-  if (auto error = enter(entry.name, location)) return tl::unexpected(*error);
-  auto result = translation_.number(*entry.expression);
-  open_.pop_back();
-  if (result) definitions_.emplace(index, *result);
-  return result;
+  if (auto error = work_out({NameKind::definition, index, {}}, location)) return tl::unexpected(*error);
+  return definitions_.at(index);
 }
 
 Expected<Condition> ModelScope::condition(const std::string& name, const SourceLocation& location) {
-  const auto index = static_cast<std::size_t>(names_.find(name)->index);
-  if (reach_ != Reach::everything) return tl::unexpected(out_of_reach(name, *names_.find(name), location));
-  if (auto error = enter(name, location)) return tl::unexpected(*error);
-  auto result = translation_.condition(*description_.definitions[index].expression);
-  open_.pop_back();
-  return result;
+  const Meaning& meaning = *names_.find(name);
+  if (reach_ != Reach::everything) return tl::unexpected(out_of_reach(name, meaning, location));
+  if (const auto known = conditions_.find(meaning.index); known != conditions_.end()) return known->second;
+  if (auto error = work_out(meaning, location)) return tl::unexpected(*error);
+  return conditions_.at(meaning.index);
 }
 
 bool ModelScope::is_condition(const std::string& name) const {
@@ -227,33 +204,6 @@ Expected<double> ModelScope::value(const saltus::expression::Node& node, Reach r
                               "use numbers and parameters",
                               node.location,
                               {}});
-}
-
-std::optional<Error> ModelScope::resolve_switching(int index) {
-  if (switching_.contains(index)) return std::nullopt;
-  const NamedExpression& entry = description_.switching[static_cast<std::size_t>(index)];
-  if (auto error = enter(entry.name, entry.location)) return error;
-  auto psi = expression(*entry.expression);
-  open_.pop_back();
-  if (!psi) return psi.error();
-  auto declared = recognition_.declare(entry.name, *psi);
-  if (!declared) {
-    declared.error().location = entry.expression->location;
-    return declared.error();
-  }
-  switching_.emplace(index, *psi);
-  statement_.switching[static_cast<std::size_t>(index)].declared = *declared;
-  return std::nullopt;
-}
-
-std::optional<Error> ModelScope::resolve_definition(int index) {
-  const NamedExpression& entry = description_.definitions[static_cast<std::size_t>(index)];
-  if (is_condition(entry.name)) {
-    const auto result = condition(entry.name, entry.location);
-    return result ? std::nullopt : std::optional(result.error());
-  }
-  const auto result = definition(index, entry.location);
-  return result ? std::nullopt : std::optional(result.error());
 }
 
 void ModelScope::note_names(const saltus::expression::NodePtr& node) {

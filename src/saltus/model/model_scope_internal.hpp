@@ -64,6 +64,14 @@ class ModelScope {
                                    const SourceLocation& location) const;
   [[nodiscard]] Expected<SXElem> meant(const std::string& name, const Meaning& meaning, const SourceLocation& location);
   [[nodiscard]] Expected<SXElem> definition(int index, const SourceLocation& location);
+  /// What has an expression of its own: definitions, conditions among them, and switching functions
+  /// (definition_chains.cpp).
+  [[nodiscard]] const NamedExpression& entry(const Meaning& meaning) const;
+  [[nodiscard]] bool is_worked_out(const Meaning& meaning) const;
+  [[nodiscard]] std::optional<Error> work_out(const Meaning& meaning, const SourceLocation& location);
+  [[nodiscard]] std::optional<Error> work_out_needs(const Meaning& meaning);
+  [[nodiscard]] std::optional<Error> translate(const Meaning& meaning);
+  [[nodiscard]] std::optional<Error> declare_switching(int index);
   [[nodiscard]] std::optional<Error> enter(const std::string& name, const SourceLocation& location);
 
   const Description& description_;
@@ -74,6 +82,7 @@ class ModelScope {
   Reach reach_ = Reach::everything;
   std::vector<std::string> open_;  ///< definitions and switching functions being worked out
   std::map<int, SXElem> definitions_;
+  std::map<int, Condition> conditions_;  ///< those of the definitions that are conditions
   std::map<int, SXElem> switching_;
   std::vector<std::shared_ptr<const CellTable>> tables_;  ///< null until used
   std::set<std::string> used_;
