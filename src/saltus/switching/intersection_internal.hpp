@@ -1,0 +1,38 @@
+// What the decision trees share: from a leaf to a decision.
+#pragma once
+
+#include <optional>
+
+#include "saltus/switching/intersection.hpp"
+#include "saltus/switching/plane_internal.hpp"
+#include "saltus/switching/plane_symmetry_internal.hpp"
+
+namespace saltus::switching {
+
+/// What a tree finds.
+struct LeafMode {
+  Leaf leaf = Leaf::none;
+  PlaneMode mode{};
+};
+
+/// The first symmetry after which `canonical(symmetry, plane)` holds.
+template <class Canonical>
+std::optional<PlaneSymmetry> find_symmetry(const Plane& plane, Canonical&& canonical) {
+  for (unsigned i = 0; i < 8; ++i) {
+    const auto symmetry = PlaneSymmetry::number(i);
+    if (canonical(symmetry, symmetry.apply(plane))) return symmetry;
+  }
+  return std::nullopt;
+}
+
+/// Selections of a mode, whether or not it is admissible: the sliding ones by their formulas.
+[[nodiscard]] PlaneContinuation continuation(const PlaneTable& table, PlaneMode mode);
+
+/// The decision for `mode`, with all other admissible modes.
+[[nodiscard]] PlaneDecision conclude(const PlaneTable& table, Leaf leaf, PlaneMode mode, const SignTests& signs,
+                                     const PlaneModes& admissible);
+
+/// Where no symmetry brings the situation into canonical form.
+[[nodiscard]] PlaneDecision not_canonical(const PlaneTable& table, std::string_view what);
+
+}  // namespace saltus::switching
