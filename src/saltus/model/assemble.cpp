@@ -221,10 +221,11 @@ class Assembly {
     std::vector<int> targets = f_;
     targets.insert(targets.end(), others_.begin(), others_.end());
     for (const int index : kept_) {
+      if (met(index).discrete) discrete_[met(index).alpha_node] = met(index).alpha_at_zero.value_or(0.5);
       surfaces_.push_back({met(index).psi_node, met(index).alpha_node});
       targets.push_back(met(index).psi_node);
     }
-    classes_ = classify(graph_.tape(), surfaces_, targets);
+    classes_ = classify(graph_.tape(), surfaces_, discrete_, targets);
     mark_equalities();
   }
 
@@ -275,7 +276,7 @@ class Assembly {
     for (const int alpha : nonaffine_alphas(graph_.tape(), node)) {
       if (!sliding.contains(alpha)) continue;
       system_.multi_affine = false;
-      found = found || bends_on_surface(graph_.tape(), {graph_.tape()[alpha].psi, alpha}, node);
+      found = found || bends_on_surface(graph_.tape(), {graph_.tape()[alpha].psi, alpha}, discrete_, node);
     }
     return found;
   }
@@ -368,6 +369,7 @@ class Assembly {
   std::vector<bool> used_;                ///< by met function: something but a named psi needs it
   std::vector<int> kept_, new_index_;     ///< met functions that stay, and the new number of every one
   std::vector<Surface> surfaces_;
+  Selections discrete_;  ///< of the discrete functions, where they are 0
   std::vector<SurfaceClass> classes_;
   std::vector<std::string> event_warnings_;
 };

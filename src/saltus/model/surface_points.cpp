@@ -102,26 +102,61 @@ bool Projection::step(double level, Point& point, std::vector<double>& scale) {
   return true;
 }
 
-bool move_to_sides(const Tape& tape, Projection& held, const std::map<int, double>& sides, Point& point,
-                   std::vector<double>& scale) {
-  std::vector<std::pair<Projection, double>> wanted;
-  for (const auto& [alpha, side] : sides) wanted.emplace_back(Projection(tape, tape[alpha].psi), side);
-  const auto on_wrong_side = [&](auto& surface) {
-    const double psi = surface.first.at(point).psi;
-    return surface.second > 0.5 ? !(psi > 0.0) : !(psi < 0.0);
-  };
+namespace {
+
+/// A surface, and the side of it that a point is wanted on.
+class WantedSide {
+ public:
+  WantedSide(const Tape& tape, int alpha, double side, const Selections& discrete)
+      : projection_(tape, tape[alpha].psi), above_(side > 0.5) {
+    const auto at_zero = discrete.find(alpha);
+    closed_ = at_zero != discrete.end() && at_zero->second == side;
+    const bool of_cells = (tape[tape[alpha].psi].reached & kind_bit(VariableKind::cell)) != 0;
+    fixed_ = at_zero != discrete.end() && of_cells;
+  }
+
+  [[nodiscard]] bool holds(const Point& point) {
+    const auto [psi, size] = projection_.at(point);
+    // As near as a projection comes.
+    return fixed_ || (above_ ? psi > 0.0 : psi < 0.0) || (closed_ && std::abs(psi) <= 1e-12 * size);
+  }
+
+  /// @param margin  distance from the surface where the side does not contain it, as a part of the terms of psi
+  bool reach(double margin, Point& point, std::vector<double>& scale) {
+    const double level = closed_ ? 0.0 : margin * projection_.at(point).size;
+    return projection_.onto(above_ ? level : -level, point, scale);
+  }
+
+ private:
+  Projection projection_;
+  bool above_;
+  bool closed_ = false;  ///< the side contains the surface
+  bool fixed_ = false;   ///< no point changes it
+};
+
+}  // namespace
+
+bool move_to_sides(const Tape& tape, Projection& held, const Selections& sides, const Selections& discrete,
+                   Point& point, std::vector<double>& scale) {
+  std::vector<WantedSide> wanted;
+  for (const auto& [alpha, side] : sides) wanted.emplace_back(tape, alpha, side, discrete);
   // The margin falls to 1e-6 of the terms: narrower regions than that are not looked for.
   double margin = 0.2;
   for (int turn = 0; turn < 20; ++turn, margin *= 0.5) {
     bool moved = false;
     for (auto& surface : wanted) {
-      if (!on_wrong_side(surface)) continue;
+      if (surface.holds(point)) continue;
       moved = true;
-      const double level = margin * surface.first.at(point).size;
-      if (!surface.first.onto(surface.second > 0.5 ? level : -level, point, scale)) return false;
+      if (!surface.reach(margin, point, scale)) return false;
     }
     if (!held.onto(0.0, point, scale)) return false;
-    if (!moved && std::none_of(wanted.begin(), wanted.end(), on_wrong_side)) return true;
+    if (moved || !std::all_of(wanted.begin(), wanted.end(), [&](auto& surface) { return surface.holds(point); })) {
+      continue;
+    }
+    for (const auto& [alpha, side] : sides) {
+      if (discrete.contains(alpha)) point[static_cast<std::size_t>(tape[alpha].variable)] = side;
+    }
+    return true;
   }
   return false;
 }

@@ -45,11 +45,16 @@ class Projection {
   TapeValues values_;
 };
 
-/// Moves a point to the wanted sides (alpha node -> 1 or 0) of some surfaces by projecting onto them in turns, with a
-/// margin that shrinks from turn to turn.
-/// @param held  the surface the point must stay on
+/// Selections by alpha node: wanted sides of surfaces (1 or 0), or the values where psi is 0.
+using Selections = std::map<int, double>;
+
+/// Moves a point to the wanted sides of some surfaces by projecting onto them in turns, with a margin that shrinks from
+/// turn to turn. Discrete functions come to 0 itself if that is their wanted side (of n == 2 nothing else is), and have
+/// their wanted sides in the point found; those of cells, which nothing moves, have them wherever the point is.
+/// @param held      the surface the point must stay on
+/// @param discrete  the discrete functions, and the side that their zero is on
 /// @return whether a point was found
-[[nodiscard]] bool move_to_sides(const Tape& tape, Projection& held, const std::map<int, double>& sides, Point& point,
-                                 std::vector<double>& scale);
+[[nodiscard]] bool move_to_sides(const Tape& tape, Projection& held, const Selections& sides,
+                                 const Selections& discrete, Point& point, std::vector<double>& scale);
 
 }  // namespace saltus::model

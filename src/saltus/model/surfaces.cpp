@@ -2,12 +2,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <set>
 
 #include "saltus/model/sharing_internal.hpp"
-#include "saltus/model/surface_points_internal.hpp"
 #include "saltus/model/surfaces_internal.hpp"
 
 namespace saltus::model {
@@ -124,7 +122,11 @@ using Difference = double (*)(const Triple&);
 class CornerSearch {
  public:
   CornerSearch(const Tape& tape, const Surface& surface, int target)
-      : tape_(tape), surface_(surface), target_(target), cone_(tape.cone(std::span(&target, 1), Links::written)) {
+      : tape_(tape),
+        surface_(surface),
+        target_(target),
+        cone_(tape.cone(std::span(&target, 1), Links::written)),
+        cone_of_signs_(tape.cone(std::span(&target, 1), Links::through_alpha)) {
     for (const int node : cone_) {
       if (tape[node].psi >= 0 && node != surface.alpha) others_.push_back(node);
     }
@@ -133,19 +135,23 @@ class CornerSearch {
   [[nodiscard]] bool has_others() const { return !others_.empty(); }
 
   /// Empty if no difference is found.
-  [[nodiscard]] std::map<int, double> corner(Point point, Difference difference, std::uint64_t seed) {
-    for (const int other : others_)
-      at(point, other) = 0.5 + 0.25 * seeded_draw(seed, static_cast<std::uint64_t>(other));
-    if (!(value(point, difference) > 0.0)) return {};
-    std::map<int, double> sides;
+  [[nodiscard]] Selections corner(Point point, Difference difference, std::uint64_t seed) {
+    evaluate(tape_, cone_of_signs_, point, values_);
+    Selections sides;
     for (const int other : others_) {
+      sides[other] = entry(values_.value, other) > 0.5 ? 1.0 : 0.0;
+      at(point, other) = 0.5 + 0.25 * seeded_draw(seed, static_cast<std::uint64_t>(other));
+    }
+    if (!(value(point, difference) > 0.0)) return {};
+    for (auto& [other, side] : sides) {
       at(point, other) = 1.0;
       const double above = value(point, difference);
       at(point, other) = 0.0;
       const double below = value(point, difference);
-      const double side = above > below || std::isnan(below) ? 1.0 : 0.0;
+      // Where both are alike it stays: n != 2 holds on either side of 2, and not below and above it at once.
+      if (above > below || std::isnan(below)) side = 1.0;
+      if (below > above || std::isnan(above)) side = 0.0;
       at(point, other) = side;
-      sides[other] = side;
     }
     return sides;
   }
@@ -169,7 +175,7 @@ class CornerSearch {
   const Tape& tape_;
   Surface surface_;
   int target_;
-  std::vector<int> cone_;
+  std::vector<int> cone_, cone_of_signs_;
   std::vector<int> others_;
   TapeValues values_;
 };
@@ -177,9 +183,11 @@ class CornerSearch {
 /// The search for a difference on one surface: at seeded points first, then at corners they did not reach.
 class SurfaceSearch {
  public:
-  SurfaceSearch(const Tape& tape, const Surface& surface, const std::vector<int>& targets, Difference difference)
+  SurfaceSearch(const Tape& tape, const Surface& surface, const Selections& discrete, const std::vector<int>& targets,
+                Difference difference)
       : tape_(tape),
         surface_(surface),
+        discrete_(discrete),
         targets_(targets),
         difference_(difference),
         projection_(tape, surface.psi),
@@ -218,7 +226,7 @@ class SurfaceSearch {
     for (const int target : targets_) {
       CornerSearch search(tape_, surface_, target);
       if (!search.has_others()) continue;
-      std::set<std::map<int, double>> tried;
+      std::set<Selections> tried;
       for (std::size_t k = 0; k < points_.size() && k < corner_points; ++k) {
         const auto sides = search.corner(points_[k], difference_, 11000 + k);
         if (sides.empty()) continue;
@@ -226,7 +234,7 @@ class SurfaceSearch {
         if (!tried.insert(sides).second && k > 4) continue;
         std::vector<double> scale;
         Point point = points_[k];
-        if (move_to_sides(tape_, projection_, sides, point, scale) && seen_at(point, scale)) return true;
+        if (move_to_sides(tape_, projection_, sides, discrete_, point, scale) && seen_at(point, scale)) return true;
       }
     }
     return false;
@@ -234,6 +242,7 @@ class SurfaceSearch {
 
   const Tape& tape_;
   Surface surface_;
+  const Selections& discrete_;
   const std::vector<int>& targets_;
   Difference difference_;
   Projection projection_;
@@ -254,7 +263,7 @@ std::vector<int> containing(const std::vector<int>& targets, int alpha,
 
 }  // namespace
 
-std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>& surfaces,
+std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>& surfaces, const Selections& discrete,
                                    const std::vector<int>& targets) {
   std::vector<std::vector<int>> alphas_of_target;
   for (const int target : targets) {
@@ -270,7 +279,7 @@ std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>&
       continue;
     }
     const auto affected = containing(targets, surface.alpha, alphas_of_target);
-    const bool jumps = !affected.empty() && SurfaceSearch(tape, surface, affected, jump_of).found();
+    const bool jumps = !affected.empty() && SurfaceSearch(tape, surface, discrete, affected, jump_of).found();
     if ((reached & moving_kinds) == 0) {
       classes.push_back({SwitchingRole::discrete, jumps});
     } else {
@@ -280,9 +289,9 @@ std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>&
   return classes;
 }
 
-bool bends_on_surface(const Tape& tape, const Surface& surface, int target) {
+bool bends_on_surface(const Tape& tape, const Surface& surface, const Selections& discrete, int target) {
   const std::vector<int> targets{target};
-  return SurfaceSearch(tape, surface, targets, bend_of).found();
+  return SurfaceSearch(tape, surface, discrete, targets, bend_of).found();
 }
 
 }  // namespace saltus::model

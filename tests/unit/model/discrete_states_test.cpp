@@ -22,6 +22,14 @@ std::vector<double> alphas_as_written(const System& system, const std::vector<do
   return alpha;
 }
 
+/// Of the function of this name; a kink if it has gone, as one without a use does.
+SwitchingRole role_of(const System& system, const std::string& name) {
+  for (const auto& function : system.switching) {
+    if (function.name == name || function.name == name + "-0") return function.role;
+  }
+  return SwitchingRole::kink;
+}
+
 double rate_of_x(const System& system, double n) {
   const std::vector<double> x{1.0, n, 0.0};
   return values(system, system.f, x, alphas_as_written(system, x)).at(0);
@@ -96,6 +104,36 @@ TEST(DiscreteStates, WithTimeOrMovingStatesAFunctionIsListed) {
   EXPECT_EQ(system.switching[0].role, SwitchingRole::listed);
   EXPECT_EQ(system.switching[1].role, SwitchingRole::listed);
   EXPECT_EQ(system.switching[2].role, SwitchingRole::time_event);
+}
+
+TEST(DiscreteStates, WhatTheyMakeJumpIsListedThoughTheyRarelyDo) {
+  const std::vector<std::string> jumping{
+      "if(n == 1, -sign(x), 1)",
+      "if(n == 1 and last == 7, -sign(x), 1)",
+      "if(n != 1 and last == 7, -sign(x), 1)",
+      "if(n == 1 and last >= 3 and last < 4, -sign(x), 1)",
+      "if(n == 1, 1, if(n == 2, 1, if(n == last, sign(x), 1)))",
+      "if(n == 3 and x > -2, sign(x), 2)",
+      "if(floor(t) == 57, -sign(x), 1)",
+      "if(n == -0.3, if(x > 0, 1, 2), 0)",
+      "if(n == 1, 0, 2)*sign(x)",
+  };
+  for (const auto& text : jumping) {
+    const System system = built(machine(text));
+    EXPECT_EQ(role_of(system, "x"), SwitchingRole::listed) << text;
+  }
+  // What jumps for no value of n does not: two conditions that exclude each other, on their surfaces, too.
+  const std::vector<std::string> continuous{
+      "if(n == 1, abs(x), 1)",
+      "if(n == 1 and n == 2, sign(x), 1) + max(x, 0)",
+      "if(n > 1 and n < 1, sign(x), 1)",
+      "if(n < 1, 1, 0)*if(n > 1, 1, 0)*sign(x)",
+      "(if(n == 1, 1, 0) - if(n == 1, 1, 0))*sign(x)",
+  };
+  for (const auto& text : continuous) {
+    const System system = built(machine(text));
+    EXPECT_EQ(role_of(system, "x"), SwitchingRole::kink) << text;
+  }
 }
 
 TEST(DiscreteStates, EqualityOfWhatMovesIsRefused) {
