@@ -47,4 +47,31 @@ n = "0"
 a = "0"
 )toml";
 
+inline std::vector<Event> limits_of(const Result& result) {
+  std::vector<Event> found;
+  for (const auto& event : result.events) {
+    if (event.kind == EventKind::accumulation) found.push_back(event);
+  }
+  return found;
+}
+
+/// Falls from y = 10 with gravity 9.8.
+inline std::string ball(const std::string& restitution, double until) {
+  return "[parameters]\ne = " + restitution + R"toml(
+[states]
+y = 10
+v = 0
+[dynamics]
+y = "v"
+v = "-9.8"
+[[jumps]]
+name = "bounce"
+when = "y"
+direction = "down"
+set = { v = "-e*v" }
+[simulate]
+until = )toml" +
+         std::to_string(until) + "\n";
+}
+
 }  // namespace saltus::problems

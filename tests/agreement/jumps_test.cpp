@@ -44,25 +44,11 @@ until = 12
 // Falls from 10, keeps 9/10 of its speed: impacts at t1, t1 + 2 e t1, t1 + 2 (e + e^2) t1, …
 TEST(Jumps, BouncingBallMeetsEveryImpact) {
   for (const auto& accuracy : {standard, tight, implicit}) {
-    const Result result = simulated(R"toml(
-[states]
-y = 10
-v = 0
-[dynamics]
-y = "v"
-v = "-9.8"
-[[jumps]]
-when = "y"
-direction = "down"
-set = { v = "-0.9*v" }
-[simulate]
-until = 26
-)toml",
-                                    accuracy);
+    const Result result = simulated(ball("0.9", 26), accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     std::vector<double> times{10.0 / 7.0};
     for (double e = 0.9; times.back() + e * 20.0 / 7.0 < 26; e *= 0.9) times.push_back(times.back() + e * 20.0 / 7.0);
-    expect_times(jumps_of(result, "jump1"), times, 1e-11);
+    expect_times(jumps_of(result, "bounce"), times, 1e-11);
     EXPECT_NEAR(result.events[3].x_after[1], 14 * std::pow(0.9, 4), 1e-11);
   }
 }

@@ -9,32 +9,6 @@
 namespace saltus::problems {
 namespace {
 
-std::vector<Event> limits_of(const Result& result) {
-  std::vector<Event> found;
-  for (const auto& event : result.events) {
-    if (event.kind == EventKind::accumulation) found.push_back(event);
-  }
-  return found;
-}
-
-std::string ball(const std::string& restitution, double until) {
-  return "[parameters]\ne = " + restitution + R"toml(
-[states]
-y = 10
-v = 0
-[dynamics]
-y = "v"
-v = "-9.8"
-[[jumps]]
-name = "bounce"
-when = "y"
-direction = "down"
-set = { v = "-e*v" }
-[simulate]
-until = )toml" +
-         std::to_string(until) + "\n";
-}
-
 // The first fall takes 10/7; the impacts accumulate at 10/7 (1 + e)/(1 - e).
 TEST(Zeno, BouncingBallsComeToRestAtTheLimit) {
   for (const auto& accuracy : {standard, tight, implicit}) {

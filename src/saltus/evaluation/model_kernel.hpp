@@ -117,7 +117,7 @@ class ModelKernel {
 
   /// From now on field(), lie_derivative() and depends() are those of the held system
   ///   xdot = f + D mu,  d_k = (d set_k/dx - I) w_k,  w_k = d/dx (d g_k/dt) restricted to the continuous states that
-  ///   jump k sets (and those of rate 0 that are in d g_k/dt and get values that depend on continuous states),
+  ///   jump k sets (and those of rate 0 that are in d g_k/dt),
   ///   mu from d^2 g/dt^2 = 0 for all held guards.
   /// An empty list releases all. Fails (outside_class's message) where d g/dt does not hold the states the jump sets;
   /// the motion then is what it was. Cost: expressions and functions are made once per list.

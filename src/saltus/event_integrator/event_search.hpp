@@ -88,7 +88,10 @@ class EventSearch {
   /// Time has passed since the user functions were at zero, or they have jumped.
   void forget_user_zeros() { user_vanishes_.assign(user_vanishes_.size(), false); }
   /// Held guards of jumps are not searched, their releases are. Takes effect with the next enter().
-  void set_held(std::vector<HeldGuard> held) { held_ = std::move(held); }
+  void set_held(std::vector<HeldGuard> held, std::vector<HeldGuard> followers) {
+    held_ = std::move(held);
+    followers_ = std::move(followers);
+  }
   /// The next enter() is at the end of a cell that was just entered there.
   void entered_cell(const EventFunction& reached);
   /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.
@@ -131,7 +134,7 @@ class EventSearch {
   std::vector<int> entered_;         ///< by cell: event function of the end at which it was entered, or -1
   std::vector<double> phi_, phi_below_, phi_above_, magnitude_, slope_;
   std::vector<ExitValues> exits_;
-  std::vector<HeldGuard> held_;
+  std::vector<HeldGuard> held_, followers_;
   std::vector<double> pressure_;
   std::vector<double> x_, point_;
   std::vector<double> samples_;  ///< node by node

@@ -51,7 +51,8 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
     }
   }
   const auto is_held = [&](int u) {
-    return std::any_of(held_.begin(), held_.end(), [u](const HeldGuard& guard) { return guard.hold.function == u; });
+    const auto is_it = [u](const HeldGuard& guard) { return guard.hold.function == u; };
+    return std::any_of(held_.begin(), held_.end(), is_it) || std::any_of(followers_.begin(), followers_.end(), is_it);
   };
   const int user_end = n_psi + static_cast<int>(user_sign_.size());
   for (int u = n_psi; u < user_end; ++u) {

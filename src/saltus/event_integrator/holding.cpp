@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/jumps.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -10,36 +15,139 @@ namespace saltus::event_integrator {
 Holding::Holding(const evaluation::ModelKernel& kernel, const model::System& system)
     : kernel_(kernel), system_(system), values_(at(kernel.event_functions())), row_(at(kernel.states())) {}
 
-Holding::~Holding() { static_cast<void>(set({})); }
+Holding::~Holding() { release_all(); }
 
-bool Holding::holds(int function) const {
-  return std::any_of(guards_.begin(), guards_.end(),
-                     [function](const HeldGuard& guard) { return guard.hold.function == function; });
+std::vector<HeldGuard> Holding::resting() const {
+  std::vector<HeldGuard> all = guards_;
+  all.insert(all.end(), followers_.begin(), followers_.end());
+  return all;
 }
 
-std::optional<std::string> Holding::set(std::vector<HeldGuard> guards) {
-  if (guards.empty() && guards_.empty()) return std::nullopt;
+bool Holding::holds(int function) const {
+  const auto is_it = [function](const HeldGuard& guard) { return guard.hold.function == function; };
+  return std::any_of(guards_.begin(), guards_.end(), is_it) || std::any_of(followers_.begin(), followers_.end(), is_it);
+}
+
+void Holding::release_all() {
+  if (guards_.empty() && followers_.empty()) return;
+  guards_.clear();
+  followers_.clear();
+  // The kernel's functions are the model's own ones; what they hold is a state of the run, which is its only user.
+  static_cast<void>(const_cast<evaluation::ModelKernel&>(kernel_).hold({}));
+}
+
+double Holding::second_derivative(const HeldGuard& guard, double t, const std::vector<double>& alpha,
+                                  const std::vector<double>& x) const {
+  return kernel_.lie_derivative(guard.hold.function, 2, t, x.data(), alpha.data());
+}
+
+std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, double t,
+                                         const std::vector<double>& alpha, std::vector<double>& x) {
+  release_all();
+  absorbing_.clear();
+  basis_.clear();
+  for (const auto* list : {&guards, &loose}) {
+    for (const auto& guard : *list) {
+      const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+      absorbing_.insert(absorbing_.end(), targets.begin(), targets.end());
+      pressing_ = std::max(pressing_, std::abs(second_derivative(guard, t, alpha, x)));
+    }
+  }
+  std::sort(absorbing_.begin(), absorbing_.end());
+  absorbing_.erase(std::unique(absorbing_.begin(), absorbing_.end()), absorbing_.end());
+  // Guards whose own jumps hold them come first: the others may be left to follow.
+  std::stable_partition(guards.begin(), guards.end(),
+                        [&](const HeldGuard& guard) { return can_rest(guard.hold, t, alpha, x); });
+  for (const auto& guard : guards) {
+    auto& list = is_independent(guard, t, alpha, x) ? guards_ : loose;
+    list.push_back(guard);
+  }
+  if (auto problem = set(t, alpha, x)) return problem;
+  for (std::size_t k = 0; k < loose.size();) {
+    const double second = second_derivative(loose[k], t, alpha, x);
+    const bool still = std::abs(second) <= 1e-9 * pressing_;
+    const bool pressed = !still && second * loose[k].inward > 0.0;
+    const std::size_t dimension = basis_.size();
+    const bool independent = (still || pressed) && is_independent(loose[k], t, alpha, x);
+    if (still && !independent) followers_.push_back(loose[k]);
+    if (pressed && !independent) return "their guards press on each other and cannot be held at rest together";
+    if (!pressed || !can_rest(loose[k].hold, t, alpha, x)) {
+      basis_.resize(dimension);
+      ++k;
+      continue;
+    }
+    guards_.push_back(loose[k]);
+    loose.erase(loose.begin() + static_cast<std::ptrdiff_t>(k));
+    loose.insert(loose.end(), followers_.begin(), followers_.end());
+    followers_.clear();
+    if (auto problem = set(t, alpha, x)) return problem;
+    k = 0;
+  }
+  return std::nullopt;
+}
+
+/// Whether the rate of a guard does not depend on those in the basis, in the states that the jumps set; it is in the
+/// basis then.
+bool Holding::is_independent(const HeldGuard& guard, double t, const std::vector<double>& alpha,
+                             std::vector<double>& x) {
+  const double square = find_rate_row(guard.hold, absorbing_, t, alpha, x);
+  if (!(square > 0.0)) return false;
+  std::vector<double> rest = row_;
+  for (const auto& direction : basis_) {
+    double part = 0.0;
+    for (std::size_t i = 0; i < rest.size(); ++i) part += rest[i] * direction[i];
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= part * direction[i];
+  }
+  double rest_square = 0.0;
+  for (const double entry : rest) rest_square += entry * entry;
+  // Rows are good to about ten digits.
+  if (!(rest_square > 1e-12 * square)) return false;
+  for (double& entry : rest) entry /= std::sqrt(rest_square);
+  basis_.push_back(std::move(rest));
+  return true;
+}
+
+/// The kernel holds guards_, and x is there.
+std::optional<std::string> Holding::set(double t, const std::vector<double>& alpha, std::vector<double>& x) {
   std::vector<evaluation::Hold> holds;
-  for (const auto& guard : guards) holds.push_back(guard.hold);
-  guards_ = std::move(guards);
+  for (const auto& guard : guards_) holds.push_back(guard.hold);
   const auto m = static_cast<Eigen::Index>(guards_.size());
   rows_.resize(m, kernel_.states());
   residual_.resize(m);
   normal_.resize(m, m);
-  // The kernel's functions are the model's own ones; what they hold is a state of the run, which is its only user.
+  if (auto problem = moves_what_is_compared(t, alpha, x)) return problem;
   auto done = const_cast<evaluation::ModelKernel&>(kernel_).hold(holds);
   if (!done) return done.error().message;
+  static_cast<void>(project(t, alpha, x));
   return std::nullopt;
 }
 
-/// d (dg/dt) / dx in the states that the jump sets, in row_; returns its square.
-double Holding::find_rate_row(const evaluation::Hold& hold, double t, const std::vector<double>& alpha,
-                              std::vector<double>& x) {
+/// A state of rate 0 is discrete: comparisons of it are read at jumps only. While it holds a guard it moves.
+std::optional<std::string> Holding::moves_what_is_compared(double t, const std::vector<double>& alpha,
+                                                           std::vector<double>& x) {
+  for (const auto& guard : guards_) {
+    static_cast<void>(find_rate_row(guard.hold, system_.jumps[at(guard.hold.jump)].targets, t, alpha, x));
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      if (row_[i] == 0.0 || !system_.discrete_states[i]) continue;
+      const auto compared = compared_at_jumps_only(system_, static_cast<int>(i));
+      if (!compared) continue;
+      return fmt::format(
+          "the state '{}' would have to move to hold the guard of '{}' at 0, but its right-hand side is 0, so '{}' is "
+          "read at jumps only: give the state a parameter of value 0 as its right-hand side",
+          system_.state_names[i], system_.jumps[at(guard.hold.jump)].name, *compared);
+    }
+  }
+  return std::nullopt;
+}
+
+/// d (dg/dt) / dx in some states, in row_; returns its square.
+double Holding::find_rate_row(const evaluation::Hold& hold, const std::vector<int>& states, double t,
+                              const std::vector<double>& alpha, std::vector<double>& x) {
   const auto rate_of = [&] { return kernel_.lie_derivative(hold.function, 1, t, x.data(), alpha.data()); };
   const double rate = rate_of();
   double square = 0.0;
   std::fill(row_.begin(), row_.end(), 0.0);
-  for (const int target : system_.jumps[at(hold.jump)].targets) {
+  for (const int target : states) {
     // dg/dt is affine in velocities, or nearly: a difference over 2^-20 of the state is good to ten digits.
     const double kept = x[at(target)];
     x[at(target)] = kept + std::ldexp(std::exp2(std::ceil(std::log2(std::abs(kept) + 1.0))), -20);
@@ -53,7 +161,7 @@ double Holding::find_rate_row(const evaluation::Hold& hold, double t, const std:
 bool Holding::can_rest(const evaluation::Hold& hold, double t, const std::vector<double>& alpha,
                        const std::vector<double>& x) {
   std::vector<double> point = x;
-  const double square = find_rate_row(hold, t, alpha, point);
+  const double square = find_rate_row(hold, system_.jumps[at(hold.jump)].targets, t, alpha, point);
   return square > 0.0 && std::isfinite(square);
 }
 
@@ -87,7 +195,8 @@ bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector
   }
   if (!away) return false;
   for (std::size_t k = 0; k < guards_.size(); ++k) {
-    static_cast<void>(find_rate_row(guards_[k].hold, t, alpha, x));
+    const auto& targets = system_.jumps[at(guards_[k].hold.jump)].targets;
+    static_cast<void>(find_rate_row(guards_[k].hold, targets, t, alpha, x));
     for (std::size_t i = 0; i < row_.size(); ++i) {
       rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = row_[i];
     }
@@ -134,9 +243,17 @@ bool Holding::project(double t, const std::vector<double>& alpha, std::vector<do
 
 double Holding::largest_rate(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
   double largest = 0.0;
-  for (const auto& guard : guards_) {
-    const double rate = kernel_.lie_derivative(guard.hold.function, 1, t, x.data(), alpha.data());
+  const auto note = [&](int function, const std::vector<double>& point) {
+    const double rate = kernel_.lie_derivative(function, 1, t, point.data(), alpha.data());
     largest = std::isfinite(rate) ? std::max(largest, std::abs(rate)) : rate;
+  };
+  for (const auto& guard : resting()) {
+    note(guard.hold.function, x);
+    const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+    std::vector<double> behind = x, values(targets.size());
+    kernel_.jump_values(guard.hold.jump, t, x.data(), alpha.data(), values.data());
+    for (std::size_t i = 0; i < targets.size(); ++i) behind[at(targets[i])] = values[i];
+    note(guard.hold.function, behind);
   }
   return largest;
 }

@@ -19,8 +19,11 @@ struct HeldGuard {
   int inward = -1;
 };
 
-/// Keeps g = 0 and dg/dt = 0 for the held guards. The kernel's fields keep d^2 g/dt^2 = 0; what steps and roundings
-/// leave is removed by Newton steps: the position along grad g, its rate in the continuous states that the jump sets.
+/// Keeps g = 0 and dg/dt = 0 for guards at rest. The kernel's fields keep d^2 g/dt^2 = 0; what steps and roundings
+/// leave is removed by Newton steps: the position along grad g, its rate in the states that the jump sets.
+///
+/// Of guards at rest whose rates depend on each other (three legs of a plate, two guards of one contact, a jump that
+/// counts impacts beside the one that reflects) an independent part is held by the kernel; the others follow.
 class Holding {
  public:
   Holding(const evaluation::ModelKernel& kernel, const model::System& system);
@@ -28,28 +31,43 @@ class Holding {
   Holding& operator=(const Holding&) = delete;
   ~Holding();  ///< the kernel is as it was
 
-  [[nodiscard]] const std::vector<HeldGuard>& guards() const { return guards_; }
+  [[nodiscard]] const std::vector<HeldGuard>& guards() const { return guards_; }  ///< held by the kernel
+  [[nodiscard]] const std::vector<HeldGuard>& followers() const { return followers_; }
+  [[nodiscard]] std::vector<HeldGuard> resting() const;  ///< both
   [[nodiscard]] bool holds(int function) const;
-  /// Holds exactly these guards from now on. Returns what is wrong if the kernel cannot.
-  [[nodiscard]] std::optional<std::string> set(std::vector<HeldGuard> guards);
+  /// Holds these guards from now on, and those of `loose` that they press on or take along; puts x there. Guards of
+  /// `loose` that are left out leave by themselves. Returns what is wrong if they cannot be held.
+  [[nodiscard]] std::optional<std::string> hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, double t,
+                                                const std::vector<double>& alpha, std::vector<double>& x);
+  void release_all();
   /// Puts x on g = 0, dg/dt = 0; returns whether it changed.
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
   /// Whether what the jump sets has an influence on dg/dt.
   [[nodiscard]] bool can_rest(const evaluation::Hold& hold, double t, const std::vector<double>& alpha,
                               const std::vector<double>& x);
-  /// The largest |dg/dt| at a point.
+  /// The largest |dg/dt| at a point, and there behind the jumps of the guards at rest: an impact at rest changes
+  /// nothing.
   [[nodiscard]] double largest_rate(double t, const std::vector<double>& alpha, const std::vector<double>& x) const;
 
  private:
-  double find_rate_row(const evaluation::Hold& hold, double t, const std::vector<double>& alpha,
-                       std::vector<double>& x);
+  double find_rate_row(const evaluation::Hold& hold, const std::vector<int>& states, double t,
+                       const std::vector<double>& alpha, std::vector<double>& x);
+  bool is_independent(const HeldGuard& guard, double t, const std::vector<double>& alpha, std::vector<double>& x);
+  [[nodiscard]] std::optional<std::string> set(double t, const std::vector<double>& alpha, std::vector<double>& x);
+  [[nodiscard]] std::optional<std::string> moves_what_is_compared(double t, const std::vector<double>& alpha,
+                                                                  std::vector<double>& x);
+  [[nodiscard]] double second_derivative(const HeldGuard& guard, double t, const std::vector<double>& alpha,
+                                         const std::vector<double>& x) const;
   bool find_positions(double t, const std::vector<double>& alpha, const std::vector<double>& x);
   bool find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x);
   bool correct(std::vector<double>& x);
 
   const evaluation::ModelKernel& kernel_;
   const model::System& system_;
-  std::vector<HeldGuard> guards_;
+  std::vector<HeldGuard> guards_, followers_;
+  double pressing_ = 0.0;       ///< the largest |d^2 g/dt^2| without a hold that was met: what counts as none
+  std::vector<int> absorbing_;  ///< states that the jumps in question set
+  std::vector<std::vector<double>> basis_;  ///< of the rows of rates of guards_, orthonormal
   std::vector<double> values_, row_;
   Eigen::MatrixXd rows_, normal_;  ///< of all held guards
   Eigen::VectorXd residual_;

@@ -38,6 +38,22 @@ std::vector<bool> discrete_guards(const model::System& system, const model::Jump
 
 }  // namespace
 
+std::optional<std::string> compared_at_jumps_only(const model::System& system, int state) {
+  const casadi::SX symbol = system.x(state);
+  for (const auto& function : system.switching) {
+    if (function.role == model::SwitchingRole::discrete && casadi::SX::depends_on(function.psi, symbol)) {
+      return function.name;
+    }
+  }
+  for (const auto& jump : system.jumps) {
+    const auto discrete = discrete_guards(system, jump);
+    for (std::size_t g = 0; g < discrete.size(); ++g) {
+      if (discrete[g] && casadi::SX::depends_on(jump.guards(static_cast<casadi_int>(g)), symbol)) return jump.name;
+    }
+  }
+  return std::nullopt;
+}
+
 Jumps::Jumps(const evaluation::ModelKernel& kernel, const model::System& system, double from)
     : kernel_(kernel),
       system_(system),

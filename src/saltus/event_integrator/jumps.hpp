@@ -18,6 +18,9 @@ struct JumpPoint {
   const std::vector<int>& signs;     ///< of the user functions (those behind psi), just behind this time; 0 = at zero
 };
 
+/// A switching function or a jump that a discrete state decides, so that it is read at jumps only; nothing without.
+[[nodiscard]] std::optional<std::string> compared_at_jumps_only(const model::System& system, int state);
+
 /// Follows the truth of all conditions and the queue of executions (rules 1 to 5 of the model file's [[jumps]]). Knows
 /// no modes and takes no steps; it is asked at events only.
 class Jumps {

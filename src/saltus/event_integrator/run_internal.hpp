@@ -50,12 +50,16 @@ class Run {
     long events = 0;  ///< recorded before it
     RowBefore row = RowBefore::missing;
   };
+  /// dg/dt, and the sum of the sizes of its terms.
+  struct Rate {
+    double value = 0.0, terms = 0.0;
+  };
   /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
   struct Landing {
     std::vector<ExecutedJump> executed;
     std::vector<int> zeros;           ///< event functions that are at zero here whatever is left of their value
     std::vector<double> zero_values;  ///< what is left
-    std::vector<double> rates;        ///< by event function: largest |dg/dt| of guards of jumps at this time
+    std::vector<Rate> rates;          ///< by event function: largest |dg/dt| of guards of jumps at this time
     std::vector<HeldGuard> held_before;
     std::vector<int> resting;  ///< jumps whose guards stay at zero from here on
     Transition transition;
@@ -85,7 +89,7 @@ class Run {
   bool execute_jump(Landing& landing);
   bool decide_behind_jumps(Landing& landing);
   bool hold_resting(Landing& landing);
-  bool hold(std::vector<HeldGuard> guards, Landing& landing);
+  bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
   void give_directions(Landing& landing);
   [[nodiscard]] Landing landing_here() const;
   [[nodiscard]] Landing landing_at(const Located& located) const;
@@ -94,7 +98,7 @@ class Run {
   void drop_zeros(Landing& landing);
   void read_user_signs(const Landing& landing);
   [[nodiscard]] Motion motion_of(int function, const Landing& landing);
-  [[nodiscard]] double rate_along_field(int function, double t, const double* x, const double* slope) const;
+  [[nodiscard]] Rate rate_along_field(int function, double t, const double* x, const double* slope) const;
   bool release(const Located& located);
   void accumulate_jumps();
   void follow_limit(const JumpLimit& limit);

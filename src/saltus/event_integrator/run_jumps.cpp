@@ -40,8 +40,8 @@ Run::Landing Run::landing_here() const {
   landing.zeros = state_.sliding;
   landing.zero_values.resize(at(kernel_.event_functions()));
   kernel_.functions(t_, x_.data(), state_.alpha.data(), landing.zero_values.data());
-  landing.rates.assign(landing.zero_values.size(), 0.0);
-  landing.held_before = holding_.guards();
+  landing.rates.assign(landing.zero_values.size(), {});
+  landing.held_before = holding_.resting();
   return landing;
 }
 
@@ -56,11 +56,16 @@ Run::Landing Run::landing_at(const Located& located) const {
   return landing;
 }
 
-double Run::rate_along_field(int function, double t, const double* x, const double* slope) const {
+Run::Rate Run::rate_along_field(int function, double t, const double* x, const double* slope) const {
   std::vector<double> row(x_.size());
-  double rate = 0.0;
-  kernel_.gradient(function, t, x, state_.alpha.data(), row.data(), &rate);
-  for (std::size_t i = 0; i < row.size(); ++i) rate += row[i] == 0.0 ? 0.0 : row[i] * slope[i];
+  Rate rate;
+  kernel_.gradient(function, t, x, state_.alpha.data(), row.data(), &rate.value);
+  rate.terms = std::abs(rate.value);
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double term = row[i] == 0.0 ? 0.0 : row[i] * slope[i];
+    rate.value += term;
+    rate.terms += std::abs(term);
+  }
   return rate;
 }
 
@@ -72,8 +77,10 @@ void Run::note_guards(Landing& landing) {
     const int guards = static_cast<int>(surroundings_.system.jumps[k].guards.numel());
     for (int g = 0; g < guards; ++g) {
       const int function = kernel_.jump_guard(static_cast<int>(k), g);
-      const double rate = std::abs(rate_along_field(function, t_, x_.data(), slope.data()));
-      if (std::isfinite(rate)) landing.rates[at(function)] = std::max(landing.rates[at(function)], rate);
+      const Rate rate = rate_along_field(function, t_, x_.data(), slope.data());
+      if (!std::isfinite(rate.terms)) continue;
+      Rate& largest = landing.rates[at(function)];
+      largest = {std::max(largest.value, std::abs(rate.value)), std::max(largest.terms, rate.terms)};
     }
   }
 }
@@ -157,16 +164,20 @@ Motion Run::motion_of(int function, const Landing& landing) {
   occasion.t = t_;
   occasion.x = x_.data();
   occasion.time_scale = h_scale_;
-  const double velocity = rate_along_field(function, t_, x_.data(), slope_.data());
-  const double scale = std::max(landing.rates[at(function)], std::abs(velocity));
+  // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
+  // than sign_tolerance / 1000 of them.
+  constexpr double cancelled = 1e-3;
+  const Rate rate = rate_along_field(function, t_, x_.data(), slope_.data());
+  const Rate& here = landing.rates[at(function)];
+  const double scale = std::max({here.value, std::abs(rate.value), cancelled * here.terms, cancelled * rate.terms});
   const ProjectedFields fields(kernel_, occasion);
-  return fields.motion(state_.alpha, function, velocity, scale);
+  return fields.motion(state_.alpha, function, rate.value, scale);
 }
 
 /// Holds the guards of executed jumps, and those held before, that were left at zero without a velocity and are pressed
 /// on. Returns whether the field has changed.
 bool Run::hold_resting(Landing& landing) {
-  std::vector<HeldGuard> guards;
+  std::vector<HeldGuard> guards, loose;
   std::vector<int> jumps;
   for (const auto& executed : landing.executed) {
     if (!contains(jumps, executed.jump)) jumps.push_back(executed.jump);
@@ -184,8 +195,8 @@ bool Run::hold_resting(Landing& landing) {
       const int drift = static_cast<int>(motion.side.drift);
       const int inward = jumps_.trigger_sign(jump, g, jump_point(), drift);
       if (motion.order < 2 || inward == 0 || drift != inward) continue;
-      if (!holding_.can_rest({jump, function}, t_, state_.alpha, x_)) continue;
-      guards.push_back({{jump, function}, inward});
+      auto& list = holding_.can_rest({jump, function}, t_, state_.alpha, x_) ? guards : loose;
+      list.push_back({{jump, function}, inward});
     }
   }
   if (guards.empty()) return false;
@@ -194,20 +205,21 @@ bool Run::hold_resting(Landing& landing) {
                                    [&](const HeldGuard& other) { return other.hold.function == guard.hold.function; });
     if (!known && !contains(landing.resting, guard.hold.jump)) landing.resting.push_back(guard.hold.jump);
   }
-  return hold(std::move(guards), landing);
+  return hold(std::move(guards), std::move(loose), landing);
 }
 
 /// Puts the state on the guards and keeps it there; false if that fails, with the status set.
-bool Run::hold(std::vector<HeldGuard> guards, Landing& landing) {
-  if (const auto problem = holding_.set(std::move(guards))) {
+bool Run::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing) {
+  for (const auto* list : {&guards, &loose}) {
+    for (const auto& guard : *list) {
+      if (!contains(landing.zeros, guard.hold.function)) landing.zeros.push_back(guard.hold.function);
+    }
+  }
+  if (const auto problem = holding_.hold(std::move(guards), std::move(loose), t_, state_.alpha, x_)) {
     fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", t_, *problem));
     return false;
   }
-  search_.set_held(holding_.guards());
-  static_cast<void>(holding_.project(t_, state_.alpha, x_));
-  for (const auto& guard : holding_.guards()) {
-    if (!contains(landing.zeros, guard.hold.function)) landing.zeros.push_back(guard.hold.function);
-  }
+  search_.set_held(holding_.guards(), holding_.followers());
   read_user_signs(landing);
   return true;
 }
@@ -256,8 +268,8 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Lan
   running_ = true;  // an event that stops the run lets the jumps of its time happen
   note_guards(landing);
   if (!landing.held_before.empty()) {
-    static_cast<void>(holding_.set({}));
-    search_.set_held({});
+    holding_.release_all();
+    search_.set_held({}, {});
   }
   const bool settled = settle_jumps(landing);
   if (!landing.executed.empty()) {

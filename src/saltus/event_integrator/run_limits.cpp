@@ -26,7 +26,7 @@ void Run::note_series(const Landing& landing) {
       const int inward = jumps_.trigger_sign(jump, g, jump_point(),
                                              -search_.user_signs()[at(function - kernel_.switching_functions())]);
       last_guard_[at(jump)] = {{jump, function}, inward};
-      const double rate = landing.rates[at(function)];
+      const double rate = landing.rates[at(function)].value;
       last_rate_[at(jump)] = rate;
       // Between two zeros a time T apart a guard gets about as far as its rate times T/4: here 200 roundings.
       shortest_lap_[at(jump)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(function)] / rate : 0.0;
@@ -45,16 +45,20 @@ bool Run::release(const Located& located) {
     const auto& entry = search_.functions()[function];
     if (entry.kind == FunctionKind::user) vanish[at(entry.index - kernel_.switching_functions())] = true;
     if (entry.kind != FunctionKind::release) continue;
-    const auto user = at(entry.index - kernel_.switching_functions());
     std::erase_if(guards, [&](const HeldGuard& guard) { return guard.hold.function == entry.index; });
-    // It moves outward from here, whatever the roundings of its derivatives say.
-    signs[user] = -entry.sign;
-    vanish[user] = true;
   }
   if (guards.size() == holding_.guards().size()) return false;
-  const auto problem = holding_.set(std::move(guards));
-  if (problem) fail(Termination::outside_class, *problem);
-  search_.set_held(holding_.guards());
+  const auto before = holding_.resting();
+  const auto problem = holding_.hold(std::move(guards), holding_.followers(), t_, state_.alpha, x_);
+  if (problem) fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", t_, *problem));
+  for (const auto& guard : before) {
+    if (holding_.holds(guard.hold.function)) continue;
+    // It moves outward from here, whatever the roundings of its derivatives say.
+    const auto user = at(guard.hold.function - kernel_.switching_functions());
+    signs[user] = -guard.inward;
+    vanish[user] = true;
+  }
+  search_.set_held(holding_.guards(), holding_.followers());
   search_.set_user_signs(std::move(signs), std::move(vanish));
   return true;
 }
@@ -71,7 +75,7 @@ void Run::follow_limit(const JumpLimit& limit) {
   if (!state_.sliding.empty()) state_.alpha = field_.alpha();
   const ModeState before = state_;
   const std::vector<double> x_last = x_;
-  std::vector<HeldGuard> guards = holding_.guards();
+  std::vector<HeldGuard> guards = holding_.resting();
   std::vector<int> jumps;
   double rate = 0.0;
   for (const int jump : limit.jumps) {
@@ -109,7 +113,8 @@ void Run::follow_limit(const JumpLimit& limit) {
                      "determined",
                      jump_names(limit.jumps), t_));
   }
-  if (running_ && hold(std::move(guards), landing) && !(holding_.largest_rate(t_, state_.alpha, x_) <= 1e-3 * rate)) {
+  if (running_ && hold(std::move(guards), {}, landing) &&
+      !(holding_.largest_rate(t_, state_.alpha, x_) <= 1e-3 * rate)) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but their guards cannot be at rest at 0 together",
                      jump_names(jumps), t_));
