@@ -1,0 +1,62 @@
+// Does a trajectory of the hidden dynamics come back to where it was?
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace saltus::switching {
+
+/// What the trajectory was doing between two passages of one section, in the same zones and direction.
+struct Lap {
+  enum class Kind { none, cycle, spiral_out } kind = Kind::none;
+  double remaining = 0.0;    ///< how far the limit of the passages is still away
+  std::vector<int> side;     ///< m: 0 if the selection varied, else the side on which u_j stayed
+  std::vector<double> mean;  ///< m: selections averaged over the lap
+};
+
+/// Passages of sections: changes of zone, and maxima of components inside a zone. A passage is compared with up to four
+/// earlier ones of the same section (cycles may pass a section more than once).
+///
+/// A cycle is taken for proven where the distances of successive passages shrink geometrically towards a limit that is
+/// close, or are 0 up to rounding; a spiral, and a cycle of slow attraction, where only closed-form zones were visited:
+/// there the return map is affine, and the ratio of two distances is its factor.
+class Recurrence {
+ public:
+  explicit Recurrence(int surfaces);
+
+  /// Accumulates the time integral of the selections.
+  void add_time(double t) { time_ += t; }
+  void add_selection(int j, double integral) { integral_[static_cast<std::size_t>(j)] += integral; }
+  /// Notes that a zone is visited: its free components vary; `closed_form` if it is solved exactly.
+  void visit(const std::vector<int>& zone, bool closed_form);
+
+  /// @param section  identifies zone and event
+  Lap pass(std::uint64_t section, const std::vector<double>& u, const std::vector<int>& zone);
+
+ private:
+  static constexpr std::size_t remembered = 96;
+  static constexpr std::size_t lags = 4;
+  struct Passage {
+    std::uint64_t section = 0;
+    long count = 0;
+    double time = 0.0;
+    double amplitude = 0.0;
+    std::vector<double> u, integral;
+    std::array<double, lags> distance{}, ratio{};
+    std::array<int, lags> compared{};  ///< laps in a row
+  };
+
+  Lap compare(Passage& now, const Passage& before, std::size_t lag, const std::vector<int>& zone) const;
+
+  std::vector<Passage> passages_;  ///< ring
+  std::size_t next_ = 0;
+  long count_ = 0;
+  long last_interior_ = -1;
+  std::vector<long> last_free_;
+  std::vector<double> integral_;
+  double time_ = 0.0;
+};
+
+}  // namespace saltus::switching

@@ -1,0 +1,87 @@
+// One trajectory of the hidden dynamics, from a start to its limit set.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "saltus/ode/stepper.hpp"
+#include "saltus/switching/hidden_dynamics.hpp"
+#include "saltus/switching/hidden_face_internal.hpp"
+#include "saltus/switching/hidden_recurrence_internal.hpp"
+#include "saltus/switching/matrix_stability.hpp"
+
+namespace saltus::switching {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+
+struct TrajectoryEnd {
+  HiddenLimit limit = HiddenLimit::undecided;
+  std::vector<int> mode;
+  std::vector<double> alpha;
+  bool nudged = false;    ///< it rested where it could have gone either way
+  bool marginal = false;  ///< a final velocity vanishes, or no root explains the oscillation
+  std::string_view reason;
+};
+
+struct TrajectoryOptions {
+  int budget = 20000;
+  double tolerance = 1e-9;   ///< of u, absolute and relative
+  bool closed_forms = true;  ///< g is multi-affine
+};
+
+class HiddenTrajectory {
+ public:
+  HiddenTrajectory(HiddenFace& face, const TrajectoryOptions& options);
+  /// @param u  m numbers: the start
+  TrajectoryEnd follow(const std::vector<double>& u);
+  /// Whether all components rest at an unstable root inside the cube, close to u.
+  [[nodiscard]] bool rests_near(const std::vector<double>& u);
+
+ private:
+  enum class Status { goes_on, ended };
+  enum class Rest { none, settled, moved };
+
+  /// Where a step ends early.
+  struct StepEvent {
+    enum class Kind { none, boundary, maximum } kind = Kind::none;
+    int component = -1;
+    double theta = 1.0;
+  };
+
+  void enter_zones();
+  Status cross_corner();
+  Status cross_strip();
+  Status cross_interior();
+  StepEvent first_event(ode::Stepper& stepper);
+  void look_for_boundary(int j, StepEvent& event);
+  void look_for_maximum(int j, StepEvent& event);
+  Status at_boundary(int j);
+  Status pass_section(std::uint64_t event);
+  void perturb();
+
+  Status settle(std::string_view reason, const double* limit_velocity);
+  Rest look_for_rest();
+  bool polish_rest(double* u);
+  void enclosed_root(const Lap& lap);
+  [[nodiscard]] double boundary(int j) const;
+  [[nodiscard]] std::uint64_t zone_number() const;
+
+  HiddenFace& face_;
+  TrajectoryOptions options_;
+  int m_;
+  int used_ = 0;
+  std::vector<double> u_, v_;
+  std::vector<int> zone_;
+  Recurrence recurrence_;
+  ode::Stepper stepper_;
+  ode::Stepper stiff_stepper_;
+  ode::DenseStep dense_;
+  bool stiff_ = false;
+  std::vector<double> low_, high_, point_, point_velocity_, root_, derivatives_, matrix_, jacobian_here_, step_;
+  std::vector<double> samples_;  ///< of the dense output at the interpolation nodes, node by node
+  TrajectoryEnd end_;
+};
+
+}  // namespace saltus::switching
