@@ -1,6 +1,7 @@
 #include "saltus/switching/hidden_dynamics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -234,7 +235,7 @@ HiddenDecision decide_by_hidden_dynamics(const CornerTable& table, const HiddenS
 HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rate, const HiddenSituation& situation,
                               double eta, const HiddenOptions& options) {
   constexpr double tolerance = 1e-11;  // far below eta, which is all that the solution gets away from the root by
-  constexpr double nudge = 1e-4;
+  constexpr std::array nudges{1e-4, -1e-4, 6e-5, -6e-5};  // on different turns of a spiral
   std::vector<double> velocity(at(surfaces));
   double after = eta;
   const auto later = [&](const double* alpha, double* result) {
@@ -259,9 +260,9 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
         }
         // The root is still there, but no longer stable: which way it is left is not the event's to say.
         for (std::size_t j = 0; fraction == 1.0 && j < start.size(); ++j) {
-          for (const double way : {nudge, -nudge}) {
+          for (const double nudge : nudges) {
             auto moved = start;
-            moved[j] += way;
+            moved[j] += nudge;
             add(trajectory.follow(moved), decision);
           }
         }
