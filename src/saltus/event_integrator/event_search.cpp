@@ -109,11 +109,13 @@ void EventSearch::set_noise(std::size_t i) {
     accuracy_[i] = 0.1 * tolerances_.rtol * size;
   } else {
     const auto& exit = exits_[at(function.row)];
-    const double size =
-        function.kind == FunctionKind::loss ? std::abs(exit.loss) : std::abs(exit.below) + std::abs(exit.above);
+    const bool coupled = field_.solve() == SlidingSolve::coupled;
+    const bool is_side = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
+    // Loss and stability of coupled surfaces are relative to their terms.
+    const double size = is_side ? std::abs(exit.below) + std::abs(exit.above) : coupled ? 1.0 : std::abs(exit.loss);
     noise_[i] = 32.0 * epsilon * size;
     // Near a two-fold point both fields vanish, but not the terms they are the sum of.
-    if (field_.solve() == SlidingSolve::decoupled) {
+    if (field_.solve() == SlidingSolve::decoupled || (coupled && is_side)) {
       noise_[i] = std::max(noise_[i], 8.0 * epsilon * field_.normal_terms(at(function.row)));
     }
     accuracy_[i] = 0.1 * tolerances_.rtol * size;
@@ -154,6 +156,8 @@ double EventSearch::part(std::size_t i) const {
       return exits_[at(function.row)].above - function.offset;
     case FunctionKind::loss:
       return exits_[at(function.row)].loss - function.offset;
+    case FunctionKind::instability:
+      return exits_[at(function.row)].stability - function.offset;
     case FunctionKind::release:
       return pressure_[at(function.row)] - function.offset;
   }

@@ -22,7 +22,8 @@ enum class FunctionKind {
   nested_above,  ///< … above it
   exit_below,    ///< the lower field of a sliding surface stops arriving: alpha = 0
   exit_above,    ///< … the upper one: alpha = 1
-  loss,          ///< the sliding selection ceases to exist
+  loss,          ///< the sliding selection ceases to exist: its root and another one coalesce
+  instability,   ///< the sliding selections of coupled surfaces lose their stability, (4.12) of [guglielmi2022]
   user,          ///< expression or guard of [[events]], guard of [[jumps]]
   release,       ///< what presses a held guard of [[jumps]]
   cell_upper,    ///< argument of floor, a table or a sampled input less the upper end of its cell

@@ -46,8 +46,14 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
     const int arriving = exits_[row].below >= exits_[row].above ? +1 : -1;
     functions_.push_back({FunctionKind::exit_below, state.sliding[row], r, arriving});
     functions_.push_back({FunctionKind::exit_above, state.sliding[row], r, -arriving});
-    if (field_.solve() == SlidingSolve::nonaffine) {
-      functions_.push_back({FunctionKind::loss, state.sliding[row], r, sign_of(exits_[row].loss)});
+    // Where the value is 0 the event that led here was located on it: what follows keeps to the side it moves to.
+    const auto side_of = [](double value) { return value < 0.0 ? -1 : 1; };
+    if (field_.has_loss(row)) {
+      functions_.push_back({FunctionKind::loss, state.sliding[row], r, side_of(exits_[row].loss)});
+    }
+    // A forced mode may lack it from the beginning.
+    if (field_.has_stability(row) && exits_[row].stability > 0.0) {
+      functions_.push_back({FunctionKind::instability, state.sliding[row], r, 1});
     }
   }
   const auto is_held = [&](int u) {
@@ -75,7 +81,7 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     auto& function = functions_[i];
     const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
-                         function.kind == FunctionKind::release;
+                         function.kind == FunctionKind::instability || function.kind == FunctionKind::release;
     const bool is_cell = function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower;
     // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
     if ((is_exit || is_cell) && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
@@ -143,6 +149,7 @@ void EventSearch::set_forms(const double* x) {
         break;
       }
       case FunctionKind::loss:
+      case FunctionKind::instability:
       case FunctionKind::release:
         break;
     }

@@ -55,12 +55,7 @@ void ModeField::enter(const ModeState& state) {
   exits_.assign(sliding_.size(), {});
   coordinate_.assign(sliding_.size(), -1);
   constant_row_.assign(sliding_.size(), false);
-  solve_ = affine_in_alpha_ ? SlidingSolve::decoupled : SlidingSolve::nonaffine;
-  for (const int i : sliding_) {
-    for (const int j : sliding_) {
-      if (i != j && kernel_.depends(i, j)) solve_ = SlidingSolve::coupled;
-    }
-  }
+  find_groups();
   if (sliding_.size() != 1) return;
   between_.clear();
   for (std::size_t corner = 0; corner < 2; ++corner) {
@@ -114,6 +109,7 @@ bool ModeField::exit_row(std::size_t row, Region region, const double* x, evalua
 }
 
 double ModeField::normal_terms(std::size_t row) const {
+  if (solve_ == SlidingSolve::coupled) return condition_[row];
   const auto r = static_cast<Eigen::Index>(row);
   double sum = std::abs(rates_[r]);
   for (std::size_t i = 0; i < f_[0].size(); ++i) {
@@ -146,62 +142,6 @@ void ModeField::slide_on_one(double t, const double* x, double* xdot) {
   for (std::size_t i = 0; i < n; ++i) normal += row[i] * xdot[i];
   const double factor = row_square_ > 0.0 ? normal / row_square_ : not_a_number;
   for (std::size_t i = 0; i < n; ++i) xdot[i] -= row[i] * factor;
-}
-
-void ModeField::evaluate_decoupled(double t, const double* x) {
-  trial_ = start_alpha_;
-  for (const int j : sliding_) trial_[at(j)] = 0.0;
-  kernel_.field(t, x, trial_.data(), f_[0].data());
-  for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row].below = normal_velocity(row, f_[0]);
-  for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    const auto j = at(sliding_[row]);
-    trial_[j] = 1.0;
-    kernel_.field(t, x, trial_.data(), f_[1].data());
-    trial_[j] = 0.0;
-    exits_[row].above = normal_velocity(row, f_[1]);
-    alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
-  }
-  kernel_.field(t, x, alpha_.data(), f_[0].data());
-}
-
-void ModeField::evaluate_coupled(double t, const double* x) {
-  trial_ = start_alpha_;
-  bool converged = false;
-  for (int iteration = 0; iteration < 20 && !converged; ++iteration) {
-    // g is multi-affine: the difference of its values at 1 and 0 is the exact partial derivative.
-    for (std::size_t column = 0; column < sliding_.size(); ++column) {
-      const auto j = at(sliding_[column]);
-      const double kept = trial_[j];
-      trial_[j] = 0.0;
-      kernel_.field(t, x, trial_.data(), f_[0].data());
-      trial_[j] = 1.0;
-      kernel_.field(t, x, trial_.data(), f_[1].data());
-      trial_[j] = kept;
-      for (std::size_t row = 0; row < sliding_.size(); ++row) {
-        normal_matrix_(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
-            normal_velocity(row, f_[1]) - normal_velocity(row, f_[0]);
-      }
-    }
-    kernel_.field(t, x, trial_.data(), f_[0].data());
-    for (std::size_t row = 0; row < sliding_.size(); ++row) {
-      residual_[static_cast<Eigen::Index>(row)] = normal_velocity(row, f_[0]);
-    }
-    const Eigen::VectorXd step = normal_matrix_.partialPivLu().solve(residual_);
-    converged = step.cwiseAbs().maxCoeff() <= 4.0 * std::numeric_limits<double>::epsilon();
-    for (std::size_t row = 0; row < sliding_.size(); ++row) {
-      trial_[at(sliding_[row])] -= step[static_cast<Eigen::Index>(row)];
-    }
-    if (!step.allFinite()) break;
-    // A step at rounding level twice in a row is as good as it gets.
-    converged = converged || (iteration > 8 && step.cwiseAbs().maxCoeff() <= 1e-13);
-  }
-  if (!converged) trial_.assign(trial_.size(), not_a_number);
-  alpha_ = trial_;
-  for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    const double selection = alpha_[at(sliding_[row])];
-    exits_[row] = {selection, selection - 1.0, 0.0};
-  }
-  kernel_.field(t, x, alpha_.data(), f_[0].data());
 }
 
 double ModeField::selected_velocity(double t, const double* x, std::size_t row, double selection) {
@@ -277,9 +217,8 @@ void ModeField::select(double t, const double* x) {
     case SlidingSolve::none:
       return;
     case SlidingSolve::decoupled:
-      return evaluate_decoupled(t, x);
     case SlidingSolve::coupled:
-      return evaluate_coupled(t, x);
+      return evaluate_groups(t, x);
     case SlidingSolve::nonaffine:
       return evaluate_nonaffine(t, x);
   }

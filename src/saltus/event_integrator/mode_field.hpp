@@ -1,6 +1,7 @@
 // The vector field of a mode: the region's own, or the sliding field with its selections.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -8,6 +9,7 @@
 
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/switching/bilinear_root.hpp"
 
 namespace saltus::event_integrator {
 
@@ -15,7 +17,7 @@ namespace saltus::event_integrator {
 enum class SlidingSolve {
   none,       ///< no sliding
   decoupled,  ///< each normal component depends on its own selection only: closed form
-  coupled,    ///< multi-affine in several selections: Newton from the mode's selections
+  coupled,    ///< multi-affine in several selections: closed form for pairs, otherwise Newton from the mode's ones
   nonaffine,  ///< decoupled, but not affine (Aizerman-Pyatnitskii): secant from the mode's selections
 };
 
@@ -23,7 +25,10 @@ enum class SlidingSolve {
 struct ExitValues {
   double below = 0.0;  ///< > 0 while sliding: the lower region's field still arrives (alpha > 0)
   double above = 0.0;  ///< < 0 while sliding: the upper region's field still arrives (alpha < 1)
-  double loss = 0.0;   ///< nonaffine only: d g / d alpha, keeps its sign while the root exists
+  /// Keeps its sign while the root exists. Not affine: d g / d alpha. First of a group of coupled surfaces: det G
+  /// squared for two, det G for more, relative to the size of g.
+  double loss = 0.0;
+  double stability = 0.0;  ///< first of a group of coupled surfaces: > 0 while (4.12) of [guglielmi2022] holds
 };
 
 enum class Region { below, above };
@@ -50,9 +55,11 @@ class ModeField {
   /// Behind exits(): one of the exit functions of a surface as a row, if it is affine in t and in all states but the
   /// one that sliding keeps constant; x is any point of the mode.
   [[nodiscard]] bool exit_row(std::size_t row, Region region, const double* x, evaluation::AffineRow& form);
-  /// Behind exits(): size of the terms whose sum is the normal component on a sliding surface, which bounds its
-  /// rounding.
+  /// Behind exits(): size of the terms whose sum an exit function of a sliding surface is, which bounds its rounding.
   [[nodiscard]] double normal_terms(std::size_t row) const;
+  /// Whether `loss` and `stability` of a sliding surface mean something.
+  [[nodiscard]] bool has_loss(std::size_t row) const;
+  [[nodiscard]] bool has_stability(std::size_t row) const;
   /// Newton steps onto psi_I(t, x) = 0 along the normals; returns whether x changed.
   bool project(double t, double* x);
 
@@ -63,8 +70,11 @@ class ModeField {
   [[nodiscard]] double normal_velocity(std::size_t row, const std::vector<double>& f) const;
   void evaluate_corners(double t, const double* x);
   void slide_on_one(double t, const double* x, double* xdot);
-  void evaluate_decoupled(double t, const double* x);
-  void evaluate_coupled(double t, const double* x);
+  void find_groups();
+  void evaluate_groups(double t, const double* x);
+  void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
+  void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
+  void find_jacobian(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_nonaffine(double t, const double* x);
   double selected_velocity(double t, const double* x, std::size_t row, double selection);
   void remove_normal_part(double* xdot);
@@ -83,12 +93,18 @@ class ModeField {
   std::vector<double> f_[2];                 ///< n_x each
   std::vector<double> values_;               ///< all event functions
   std::vector<ExitValues> exits_;            ///< of the last evaluation
-  std::vector<bool> constant_row_;           ///< gradient known once and for all in this mode
-  std::vector<int> coordinate_;              ///< the only nonzero column of a row, or -1
-  Eigen::MatrixXd rows_;                     ///< J, m x n_x
-  double row_square_ = 0.0;                  ///< |J|^2 of one sliding surface
-  Eigen::VectorXd rates_, residual_;         ///< d psi_I/dt, m
-  Eigen::MatrixXd normal_matrix_;            ///< J J^T, then G
+  std::vector<std::vector<std::size_t>> groups_;  ///< rows that influence each other, connected and ascending
+  std::vector<std::size_t> group_size_;           ///< by row, 0 behind the first of a group
+  std::vector<std::optional<switching::RootKind>>
+      kind_;                          ///< by row, for the first of a pair: known once it was evaluated
+  std::vector<double> condition_;     ///< by row: of a coupled selection
+  std::vector<bool> constant_row_;    ///< gradient known once and for all in this mode
+  std::vector<int> coordinate_;       ///< the only nonzero column of a row, or -1
+  Eigen::MatrixXd rows_;              ///< J, m x n_x
+  double row_square_ = 0.0;           ///< |J|^2 of one sliding surface
+  Eigen::VectorXd rates_, residual_;  ///< d psi_I/dt, m
+  Eigen::MatrixXd normal_matrix_;     ///< J J^T
+  Eigen::MatrixXd jacobian_;          ///< G of a group of more than two
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 

@@ -1,0 +1,202 @@
+// Sliding on several surfaces: selections group by group, as far as they influence each other.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "saltus/event_integrator/mode_field.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/switching/bilinear_root.hpp"
+#include "saltus/switching/surface_decision.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// Whether a multi-affine root is stable under some scaling of the rows, as a number: the largest s such that an
+/// ordering of the surfaces exists in which every leading principal minor of -G, over the sizes of its rows, is at
+/// least s (the theorem of Fisher and Fuller; for two surfaces condition (4.12)). By nested minors, 2^m of them.
+double fisher_fuller(const Eigen::MatrixXd& jacobian) {
+  const auto m = jacobian.rows();
+  std::vector<double> best(std::size_t{1} << m, std::numeric_limits<double>::max());
+  std::vector<Eigen::Index> members;
+  Eigen::MatrixXd minor(m, m);
+  for (std::size_t subset = 1; subset < best.size(); ++subset) {
+    members.clear();
+    double through = -std::numeric_limits<double>::max();
+    for (Eigen::Index i = 0; i < m; ++i) {
+      if ((subset >> i & 1U) == 0) continue;
+      members.push_back(i);
+      through = std::max(through, best[subset & ~(std::size_t{1} << i)]);
+    }
+    const auto k = static_cast<Eigen::Index>(members.size());
+    double rows = 1.0;
+    for (Eigen::Index r = 0; r < k; ++r) {
+      const auto row = jacobian.row(members[static_cast<std::size_t>(r)]);
+      rows *= row.norm();
+      for (Eigen::Index c = 0; c < k; ++c) minor(r, c) = -row[members[static_cast<std::size_t>(c)]];
+    }
+    best[subset] = std::min(through, minor.topLeftCorner(k, k).partialPivLu().determinant() / rows);
+  }
+  return best.back();
+}
+
+/// Which of both roots a mode slides on, from the fields where it begins: the one whose selections it has; where these
+/// say nothing (a forced mode) the one with det G > 0 if it is in the square, else the other one if that is.
+switching::RootKind kind_of_mode(const switching::PairCorners& g, double alpha_1, double alpha_2) {
+  using switching::RootKind;
+  const auto rising = switching::bilinear_root(g, RootKind::rising);
+  const auto falling = switching::bilinear_root(g, RootKind::falling);
+  const auto has = [&](const switching::BilinearRoot& root) {
+    // Selections are carried along to about 1e-8.
+    return std::abs(root.alpha[0] - alpha_1) < 1e-6 && std::abs(root.alpha[1] - alpha_2) < 1e-6;
+  };
+  const auto inside = [](const switching::BilinearRoot& root) {
+    return std::min(root.alpha[0], root.alpha[1]) >= 0.0 && std::max(root.from_one[0], root.from_one[1]) <= 0.0;
+  };
+  if (has(rising) || (inside(rising) && !has(falling))) return RootKind::rising;
+  return inside(falling) || has(falling) ? RootKind::falling : RootKind::rising;
+}
+
+}  // namespace
+
+/// Groups of sliding surfaces that influence each other, and from them the way to solve.
+void ModeField::find_groups() {
+  const auto m = sliding_.size();
+  groups_.clear();
+  group_size_.assign(m, 0);
+  condition_.assign(m, 1.0);
+  kind_.assign(m, std::nullopt);
+  std::vector<bool> placed(m, false);
+  for (std::size_t first = 0; first < m; ++first) {
+    if (placed[first]) continue;
+    std::vector<std::size_t> group{first};
+    placed[first] = true;
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      for (std::size_t other = 0; other < m; ++other) {
+        const int i = sliding_[group[k]];
+        const int j = sliding_[other];
+        if (placed[other] || !(kernel_.depends(i, j) || kernel_.depends(j, i))) continue;
+        group.push_back(other);
+        placed[other] = true;
+      }
+    }
+    std::sort(group.begin(), group.end());
+    group_size_[first] = group.size();
+    groups_.push_back(std::move(group));
+  }
+  solve_ = !affine_in_alpha_     ? SlidingSolve::nonaffine
+           : groups_.size() == m ? SlidingSolve::decoupled
+                                 : SlidingSolve::coupled;
+  std::size_t largest = 0;
+  for (const auto& group : groups_) largest = std::max(largest, group.size());
+  jacobian_.resize(static_cast<Eigen::Index>(largest), static_cast<Eigen::Index>(largest));
+}
+
+bool ModeField::has_loss(std::size_t row) const {
+  return solve_ == SlidingSolve::nonaffine || (solve_ == SlidingSolve::coupled && group_size_[row] > 1);
+}
+
+bool ModeField::has_stability(std::size_t row) const { return solve_ == SlidingSolve::coupled && group_size_[row] > 1; }
+
+void ModeField::evaluate_groups(double t, const double* x) {
+  trial_ = start_alpha_;
+  for (const int j : sliding_) trial_[at(j)] = 0.0;
+  kernel_.field(t, x, trial_.data(), f_[0].data());
+  for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {normal_velocity(row, f_[0]), 0.0, 0.0, 0.0};
+  for (const auto& rows : groups_) {
+    if (rows.size() == 2) {
+      evaluate_pair(t, x, rows);
+      continue;
+    }
+    if (rows.size() > 2) {
+      evaluate_many(t, x, rows);
+      continue;
+    }
+    const std::size_t row = rows.front();
+    const auto j = at(sliding_[row]);
+    trial_[j] = 1.0;
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    trial_[j] = 0.0;
+    exits_[row].above = normal_velocity(row, f_[1]);
+    alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
+  }
+  kernel_.field(t, x, alpha_.data(), f_[0].data());
+}
+
+/// Two surfaces: the root with det G > 0 in closed form. Behind evaluate_groups()'s first corner.
+void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows) {
+  switching::PairCorners g;
+  for (std::size_t k = 0; k < 2; ++k) g[0][k] = exits_[rows[k]].below;
+  for (std::size_t corner = 1; corner < 4; ++corner) {
+    for (std::size_t k = 0; k < 2; ++k) trial_[at(sliding_[rows[k]])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    for (std::size_t k = 0; k < 2; ++k) g[corner][k] = normal_velocity(rows[k], f_[1]);
+  }
+  for (const std::size_t row : rows) trial_[at(sliding_[row])] = 0.0;
+  auto& kind = kind_[rows[0]];
+  if (!kind) kind = kind_of_mode(g, start_alpha_[at(sliding_[rows[0]])], start_alpha_[at(sliding_[rows[1]])]);
+  const auto root = switching::bilinear_root(g, *kind);
+  for (std::size_t k = 0; k < 2; ++k) {
+    alpha_[at(sliding_[rows[k]])] = root.alpha[k];
+    exits_[rows[k]] = {root.alpha[k], root.from_one[k], 0.0, 0.0};
+    condition_[rows[k]] = root.condition[k];
+  }
+  exits_[rows[0]].loss = root.discriminant;
+  exits_[rows[0]].stability = root.stability;
+}
+
+/// G of the group at the selections of trial_, into jacobian_.
+void ModeField::find_jacobian(double t, const double* x, const std::vector<std::size_t>& rows) {
+  for (std::size_t column = 0; column < rows.size(); ++column) {
+    // g is multi-affine: the difference of its values at 1 and 0 is the exact partial derivative.
+    const auto j = at(sliding_[rows[column]]);
+    const double kept = trial_[j];
+    trial_[j] = 0.0;
+    kernel_.field(t, x, trial_.data(), f_[0].data());
+    trial_[j] = 1.0;
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    trial_[j] = kept;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      jacobian_(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+          normal_velocity(rows[row], f_[1]) - normal_velocity(rows[row], f_[0]);
+    }
+  }
+}
+
+/// More than two surfaces: Newton from the mode's selections.
+void ModeField::evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows) {
+  const auto m = static_cast<Eigen::Index>(rows.size());
+  for (const std::size_t row : rows) trial_[at(sliding_[row])] = start_alpha_[at(sliding_[row])];
+  auto jacobian = jacobian_.topLeftCorner(m, m);
+  auto residual = residual_.head(m);
+  bool converged = false;
+  for (int iteration = 0; iteration < 20 && !converged; ++iteration) {
+    find_jacobian(t, x, rows);
+    kernel_.field(t, x, trial_.data(), f_[0].data());
+    for (Eigen::Index row = 0; row < m; ++row)
+      residual[row] = normal_velocity(rows[static_cast<std::size_t>(row)], f_[0]);
+    const Eigen::VectorXd step = jacobian.partialPivLu().solve(residual);
+    if (!step.allFinite()) break;
+    converged = step.cwiseAbs().maxCoeff() <= 4.0 * rounding_unit;
+    for (Eigen::Index row = 0; row < m; ++row) trial_[at(sliding_[rows[static_cast<std::size_t>(row)]])] -= step[row];
+    // A step at rounding level twice in a row is as good as it gets.
+    converged = converged || (iteration > 8 && step.cwiseAbs().maxCoeff() <= 1e-13);
+  }
+  for (const std::size_t row : rows) {
+    const auto j = at(sliding_[row]);
+    alpha_[j] = converged ? trial_[j] : not_a_number;
+    exits_[row] = {alpha_[j], alpha_[j] - 1.0, 0.0, 0.0};
+    condition_[row] = 1.0;
+    trial_[j] = 0.0;
+  }
+  const double stability = fisher_fuller(jacobian);
+  double size = 1.0;
+  for (Eigen::Index row = 0; row < m; ++row) size *= jacobian.row(row).norm();
+  exits_[rows[0]].loss = jacobian.partialPivLu().determinant() / size;
+  exits_[rows[0]].stability = stability;
+}
+
+}  // namespace saltus::event_integrator
