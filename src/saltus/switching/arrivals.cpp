@@ -6,31 +6,23 @@
 namespace saltus::switching {
 namespace {
 
-struct Arrived {
-  PlaneMode mode{};
-  bool spirals_out = false;
-};
-
 /// Follows the solution of the constant fields that passes beside the intersection and reaches `surface` first.
 class Walk {
  public:
   Walk(const PlaneTable& table, const Plane& plane, SignTests& signs) : table_(table), plane_(plane), signs_(signs) {}
 
-  Arrived from(PlaneMode region, std::size_t surface) const {
+  PlaneMode from(PlaneMode region, std::size_t surface) const {
+    // It does not come back: the field of the first region points to both surfaces, so that it is not entered again.
     for (int crossings = 0; crossings < 4; ++crossings) {
       PlaneMode beyond = region;
       beyond[surface] = -region[surface];
       if (!moves(beyond, surface, beyond[surface])) return slide(region, surface);
       region = beyond;
       surface = 1 - surface;
-      if (moves(region, surface, region[surface])) return {region, false};
+      if (moves(region, surface, region[surface])) return region;
     }
-    // Round and round: towards the intersection, or not there at all.
-    const auto lap = spiral_lap(table_, 0);
-    if (!lap || signs_.positive(lap->lap_ratio - 1.0, 1.0, "ratio of successive laps of the spiral")) {
-      return {region, true};
-    }
-    return {{0, 0}, false};
+    signs_.fail("field of the region before, which does not point to both surfaces");
+    return region;
   }
 
  private:
@@ -42,7 +34,7 @@ class Walk {
                            "normal component of a field at the intersection");
   }
 
-  [[nodiscard]] Arrived slide(PlaneMode region, std::size_t surface) const {
+  [[nodiscard]] PlaneMode slide(PlaneMode region, std::size_t surface) const {
     const std::size_t other = 1 - surface;
     PlaneMode sliding = region;
     sliding[surface] = 0;
@@ -51,12 +43,12 @@ class Walk {
     const double velocity =
         (1.0 - alpha) * plane_.f[other][base] + alpha * plane_.f[other][base | std::size_t{1} << surface];
     if (signs_.positive(sliding[other] * velocity, plane_.scale[other], "velocity along the surface reached first")) {
-      return {sliding, false};
+      return sliding;
     }
     const PlaneDecision entered = decide_entering(table_, sliding);
     if (!entered.undecided.empty()) signs_.fail(entered.undecided);
     if (entered.ambiguous) signs_.fail("scaling of the surfaces");
-    return {entered.chosen.mode, false};
+    return entered.chosen.mode;
   }
 
   const PlaneTable& table_;
@@ -79,12 +71,11 @@ PlaneDecision decide_corner_arrival(const PlaneTable& table, PlaneMode incoming)
   const Plane plane(table);
   SignTests signs;
   const Walk walk(table, plane, signs);
-  const Arrived first = walk.from(incoming, 0);
-  const Arrived second = walk.from(incoming, 1);
-  const bool same = first.mode == second.mode && first.spirals_out == second.spirals_out;
+  const PlaneMode first = walk.from(incoming, 0);
+  const PlaneMode second = walk.from(incoming, 1);
+  const bool same = first == second;
   if (!same) signs.fail("order in which the surfaces are reached");
-  PlaneDecision decision = conclude(table, same ? Leaf::P1 : Leaf::P2, first.mode, signs, admissible_modes(table));
-  decision.spirals_out = first.spirals_out;
+  PlaneDecision decision = conclude(table, same ? Leaf::P1 : Leaf::P2, first, signs, admissible_modes(table));
   decision.ambiguous = !same;
   return decision;
 }
@@ -104,10 +95,25 @@ PlaneDecision decide_intersection_start(const PlaneTable& table) {
     signs.fail("admissible mode at the start");
     return conclude(table, Leaf::none, {0, 0}, signs, admissible);
   }
+  if (!best->attracts && turning(table)) {
+    // Sliding on an unstable root, or out: as where sliding loses its root (exit (c)).
+    PlaneDecision decision = conclude(table, Leaf::spiral_out, {-1, -1}, signs, admissible);
+    decision.spirals_out = decision.ambiguous = true;
+    return decision;
+  }
   const Leaf leaf = admissible.size() == 1 ? Leaf::S1 : attracting == 1 ? Leaf::S2 : Leaf::S3;
   PlaneDecision decision = conclude(table, leaf, best->mode, signs, admissible);
   decision.ambiguous = attracting > 1;
   return decision;
+}
+
+PlaneDecision decide_spiral_in(const PlaneTable& table) {
+  SignTests signs;
+  const auto lap = spiral_lap(table, 0);
+  if (!lap || !signs.negative(lap->lap_ratio - 1.0, 1.0, "ratio of successive laps of the spiral")) {
+    signs.fail("turning of the four fields around the intersection");
+  }
+  return conclude(table, Leaf::spiral_in, {0, 0}, signs, admissible_modes(table));
 }
 
 }  // namespace saltus::switching

@@ -10,7 +10,7 @@
 //   min(G11, G22) becomes 0, exit (c)                decide_exit_unstable   -
 //   a classical solution reaches both at once        decide_corner_arrival  the region it comes from
 //   a solution starts on the intersection            decide_intersection_start
-//   a spiral shrinks to the point                    spiral_lap (spiral.hpp); gamma < 1 goes on with the rising root
+//   a spiral shrinks to the point                    decide_spiral_in; times and places by spiral.hpp
 // // While sliding on, the selections are intersection_roots(table).rising; where the roots meet and part again (the
 // first case of exit (c)) nothing is to be decided.
 #pragma once
@@ -95,7 +95,12 @@ struct SquareEdge {
 [[nodiscard]] PlaneDecision decide_corner_arrival(const PlaneTable& table, PlaneMode incoming);
 
 /// A solution starts on the intersection: the only admissible mode; else the only one that attracts; else one of those
-/// with most sliding, psi > 0 rather than psi < 0 (and the first surface before the second).
+/// with most sliding, psi > 0 rather than psi < 0 (and the first surface before the second). Where the fields turn
+/// around an unstable root, the spiral.
 [[nodiscard]] PlaneDecision decide_intersection_start(const PlaneTable& table);
+
+/// The fields turn around the intersection with gamma < 1 (section 4.4 of [guglielmi2022]): sliding on it. The root has
+/// (4.12) then, and is the only continuation.
+[[nodiscard]] PlaneDecision decide_spiral_in(const PlaneTable& table);
 
 }  // namespace saltus::switching
