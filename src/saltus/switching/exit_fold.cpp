@@ -10,8 +10,7 @@ struct Touching {
   std::array<double, 2> up{};         ///< p_j = G_j2: sign of the direction in which curve j is run through
   std::array<double, 2> curvature{};  ///< d_j / p_j
 
-  explicit Touching(const Plane& p) {
-    const PlaneAlpha root = double_root(p);
+  Touching(const Plane& p, const PlaneAlpha& root) {
     for (std::size_t j = 0; j < 2; ++j) {
       const Bilinear g = p.g(j);
       up[j] = g.c + g.d * root[0];
@@ -22,9 +21,8 @@ struct Touching {
 
 /// In canonical form: both curves have positive slope (H_1 < 0, H_2 < 0), g_2 = 0 lies above g_1 = 0.
 /// NOTE: the printed signs of the first and the impossible case are exchanged (d_2 g_1 > 0, d_1 g_2 < 0 is "both up").
-LeafMode leave(const Plane& p, SignTests& signs) {
+LeafMode leave(const Plane& p, const Touching& touching, SignTests& signs) {
   const auto [s1, s2] = p.scale;
-  const Touching touching(p);
   const bool first_up = signs.positive(touching.up[0], s1, "G12 at the double root");
   const bool second_up = signs.positive(touching.up[1], s2, "G22 at the double root");
   if (first_up && second_up) {
@@ -45,9 +43,10 @@ LeafMode leave(const Plane& p, SignTests& signs) {
 
 PlaneDecision decide_exit_fold(const PlaneTable& table) {
   const Plane plane(table);
-  const auto symmetry = find_symmetry(plane, [](const PlaneSymmetry&, const Plane& p) {
+  const PlaneAlpha root = double_root(plane);
+  const auto symmetry = find_symmetry(plane, [&root](const PlaneSymmetry& s, const Plane& p) {
     if (!(p.h(0) < 0.0 && p.h(1) < 0.0)) return false;
-    const Touching touching(p);
+    const Touching touching(p, s.apply(root));
     return touching.curvature[1] < touching.curvature[0];
   });
   PlaneModes admissible;
@@ -63,11 +62,11 @@ PlaneDecision decide_exit_fold(const PlaneTable& table) {
   const auto [s1, s2] = canonical.scale;
   signs.negative(canonical.h(0), s1 * s1, "H1");
   signs.negative(canonical.h(1), s2 * s2, "H2");
-  const Touching touching(canonical);
+  const Touching touching(canonical, symmetry->apply(root));
   signs.positive(touching.curvature[0] - touching.curvature[1],
                  std::max(std::abs(touching.curvature[0]), std::abs(touching.curvature[1])),
                  "difference of the curvatures of g1 = 0 and g2 = 0");
-  const LeafMode found = leave(canonical, signs);
+  const LeafMode found = leave(canonical, touching, signs);
   return conclude(table, found.leaf, symmetry->apply_inverse(found.mode), signs, admissible);
 }
 

@@ -25,13 +25,11 @@ struct SlidingRoot {
   [[nodiscard]] bool inside() const;
 };
 
-/// Both solutions of g_1 = g_2 = 0, wherever they are. They have opposite signs of det G:
+/// Both solutions of g_1 = g_2 = 0, wherever they are (bilinear_root.hpp). They have opposite signs of det G:
 ///   rising: det G > 0, the only one that can be slid on;  falling: det G < 0.
-/// With P(s) = g_1(s, 0) g_2(s, 1) - g_1(s, 1) g_2(s, 0), a quadratic that vanishes at the roots alpha_1, det G = P',
-/// so that the two roots differ by the sign of the square root in the solution of P = 0, and no selection is needed.
 struct IntersectionRoots {
-  /// (det G)^2 at the roots, a polynomial of the table; negative: no root; 0: double root. The rows scaled to largest
-  /// entry 1.
+  /// (det G)^2 at the roots over the squares of the Euclidean norms of the rows, a polynomial of the table; negative:
+  /// no root; 0: double root.
   double discriminant = 0.0;
   std::optional<SlidingRoot> rising, falling;
 };

@@ -36,8 +36,11 @@ struct Plane {
     for (std::size_t j = 0; j < 2; ++j) {
       double largest = 0.0;
       for (std::size_t k = 0; k < 4; ++k) largest = std::max(largest, std::abs(table.velocity(j, k)));
-      scale[j] = std::frexp(largest, &exponent[j]);
-      for (std::size_t k = 0; k < 4; ++k) f[j][k] = std::ldexp(table.velocity(j, k), -exponent[j]);
+      static_cast<void>(std::frexp(largest, &exponent[j]));
+      exponent[j] = std::clamp(exponent[j], -1000, 1000);  // within the range of powers of two
+      const double factor = std::ldexp(1.0, -exponent[j]);
+      scale[j] = factor * largest;
+      for (std::size_t k = 0; k < 4; ++k) f[j][k] = factor * table.velocity(j, k);
     }
   }
 

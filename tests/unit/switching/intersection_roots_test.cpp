@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -68,10 +69,7 @@ TEST(IntersectionRoots, ResidualJacobianAndDeterminant) {
     EXPECT_EQ(roots.rising.has_value(), roots.discriminant >= 0.0);
     if (!roots.rising || !roots.falling) continue;
     double scale = 1.0;
-    for (const auto& row : f) {
-      scale *= std::abs(
-          *std::max_element(row.begin(), row.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
-    }
+    for (const auto& row : f) scale *= std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
     // The two roots have opposite signs of det G, and its square is the discriminant.
     EXPECT_GT(roots.rising->determinant, 0.0);
     EXPECT_LT(roots.falling->determinant, 0.0);
