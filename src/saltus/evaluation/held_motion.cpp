@@ -54,8 +54,8 @@ class Hold {
  private:
   [[nodiscard]] SX along_f(const SX& e) const { return SX::mtimes(SX::jacobian(e, x_), f_) + SX::jacobian(e, t_); }
 
-  /// A state that moves does. So does one of rate 0 that is in the guard's rate: the velocity of a free ball, as opposed
-  /// to a counter of its impacts.
+  /// A state that moves does. So does one of rate 0 that is in the guard's rate: the velocity of a free ball, as
+  /// opposed to a counter of its impacts.
   [[nodiscard]] bool absorbs(const HeldGuard& held, int state, const SX& normal) const {
     return !held.discrete_states[static_cast<std::size_t>(state)] || !vanishes(normal(0, state));
   }

@@ -29,8 +29,8 @@ struct HeldMotion {
 /// xdot = f + D mu with mu from d^2 g_i/dt^2 = 0 for all i:
 ///   d_k = (d set_k/dx - I) w_k,  w_k = d/dx (L_f g_k), rows and columns of the states that jump k sets and that
 ///   absorb, M_ik = d/dx (L_f g_i) d_k,  mu = -M^-1 L_f^2 g,  pressure_k = -M_kk mu_k.
-/// A state absorbs if it moves, or if it is in the guard's rate. Where M is singular at a point (two guards that mean the
-/// same), the motion is not finite there.
+/// A state absorbs if it moves, or if it is in the guard's rate. Where M is singular at a point (two guards that mean
+/// the same), the motion is not finite there.
 /// @return the motion, or why the jumped states cannot hold the guards: the message of an outside_class
 [[nodiscard]] Expected<HeldMotion> held_motion(const casadi::SX& t, const casadi::SX& x, const casadi::SX& f,
                                                const std::vector<HeldGuard>& guards);

@@ -9,6 +9,7 @@
 
 #include "saltus/event_integrator/run_internal.hpp"
 #include "saltus/event_integrator/start.hpp"
+#include "saltus/event_integrator/undefined.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -93,10 +94,11 @@ bool Run::enter(const Transition& transition) {
     field_(t_, x_.data(), slope_.data());
   }
   if (!is_finite(slope_)) {
-    fail(Termination::evaluation_failed,
-         fmt::format("the right-hand side is not finite at {}; change the initial values, or guard the expression with "
-                     "if(…)",
-                     where()));
+    fail(
+        Termination::evaluation_failed,
+        fmt::format("the right-hand side of {} is not finite at {}; change the initial values, or guard the expression "
+                    "with if(…)",
+                    undefined_states(surroundings_.system, slope_), where()));
     return false;
   }
   search_.enter(state_, transition.zero_order, t_, x_.data());
@@ -106,7 +108,8 @@ bool Run::enter(const Transition& transition) {
 bool Run::begin() {
   h_scale_ = 1e-3 * span();
   if (!is_finite(x_)) {
-    fail(Termination::evaluation_failed, "the initial state is not finite");
+    fail(Termination::evaluation_failed,
+         fmt::format("the initial value of {} is not finite", undefined_states(surroundings_.system, x_)));
     return false;
   }
   if (!cells_.empty()) cells_.locate(t_, x_.data(), std::vector<double>(at(kernel_.switching_functions()), 0.5));

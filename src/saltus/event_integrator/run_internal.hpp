@@ -68,6 +68,7 @@ class Run {
   bool begin();
   Step attempt();
   Step undefined_step();
+  [[nodiscard]] std::string undefined_beyond();
   Step accept(double t_new);
   Step handle(const Located& located);
   Arrival arrive(RowBefore row);

@@ -6,6 +6,7 @@
 
 #include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
+#include "saltus/event_integrator/undefined.hpp"
 
 namespace saltus::event_integrator {
 
@@ -54,6 +55,16 @@ bool Run::stopped_by_singularity() {
   return true;
 }
 
+/// The states whose right-hand side is undefined a little further along it; empty if none is found.
+std::string Run::undefined_beyond() {
+  for (double h = smallest_step(); h <= 1e6 * smallest_step(); h *= 4.0) {
+    for (std::size_t i = 0; i < x_.size(); ++i) row_x_[i] = x_[i] + h * slope_[i];
+    field_(t_ + h, row_x_.data(), row_slope_.data());
+    if (!is_finite(row_slope_)) return undefined_states(surroundings_.system, row_slope_);
+  }
+  return {};
+}
+
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
   std::vector<double> values(search_.functions().size());
@@ -73,10 +84,11 @@ Run::Step Run::undefined_step() {
     }
   }
   if (stopped_by_singularity()) return Step::failed;
+  const std::string states = undefined_beyond();
   fail(Termination::evaluation_failed,
-       fmt::format("the right-hand side is not finite beyond {}, however short the step; guard the expression with "
+       fmt::format("the right-hand side{} is not finite beyond {}, however short the step; guard the expression with "
                    "if(…), or end the simulation before",
-                   where()));
+                   states.empty() ? states : " of " + states, where()));
   return Step::failed;
 }
 

@@ -357,5 +357,31 @@ TEST(Behaviour, EveryEventHasTwoRowsAndTheEndIsARow) {
   EXPECT_TRUE(std::is_sorted(result.trajectory.t.begin(), result.trajectory.t.end()));
 }
 
+TEST(Behaviour, WhatIsNotFiniteIsNamed) {
+  const auto message = [](const auto& state) {
+    Builder b("undefined");
+    state(b);
+    const auto result = run(b, 2);
+    EXPECT_EQ(result.status.termination, Termination::evaluation_failed);
+    return result.status.message;
+  };
+  EXPECT_NE(message([](Builder& b) {
+              const SX a = b.state("a", {1}), deep = b.state("deep", {0});
+              b.dynamics("a", -a);
+              b.dynamics("deep", 1 / deep);
+            }).find("of 'deep' (inf) is not finite at t = 0;"),
+            std::string::npos);
+  const auto beyond = message([](Builder& b) {
+    b.dynamics("a", -b.state("a", {1}));
+    b.dynamics("deep", 0.1 * b.state("deep", {0}) + sqrt(1 - b.state("clock", {0})));
+    b.dynamics("clock", 1);
+  });
+  EXPECT_NE(beyond.find("of 'deep' (nan) is not finite beyond t = "), std::string::npos) << beyond;
+  const auto many = message([](Builder& b) {
+    for (const auto* name : {"a", "b", "c", "d", "e"}) b.dynamics(name, log(b.state(name, {-1})));
+  });
+  EXPECT_NE(many.find("'a' (nan), 'b' (nan), 'c' (nan) and 2 more"), std::string::npos) << many;
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator
