@@ -159,5 +159,46 @@ TEST(Roots, TwoLinesTakeAHandfulOfSteps) {
   }
 }
 
+/// x crosses the zero of an expression, and is faster behind it.
+Simulator crossing_at(const std::string& expression) {
+  return Simulator::from_text(
+      "[model]\nname = \"flat\"\n[states]\nx = -0.5\n[dynamics]\nx = \"1 + 0.3*sin(3*t) + 0.1*sign(" + expression +
+      ")\"\n[simulate]\nuntil = 3\n");
+}
+
+// Odd powers change sign where the simple function does, and are no more than their rounding for a while around it.
+TEST(Roots, MultipleZerosAreLocatedLikeSimpleOnes) {
+  for (const std::string level : {"-0.2", "0.3", "0.93", "1.1", "1.7"}) {
+    const std::string base = "(x - (" + level + "))";
+    for (const Integrator integrator : integrators) {
+      const auto run = [&](const std::string& expression) {
+        const Simulator model = crossing_at(expression);
+        return model.run(with(model.options(), {integrator, 1e-9, 1e-12}));
+      };
+      const result::Result simple = run(base);
+      ASSERT_EQ(simple.events.size(), 1u);
+      for (const std::string power : {"^3", "^5"}) {
+        SCOPED_TRACE(setting(integrator, 1e-9) + ", " + base + power);
+        const result::Result multiple = run(base + power);
+        ASSERT_EQ(multiple.status.termination, result::Termination::completed) << multiple.status.message;
+        ASSERT_EQ(multiple.events.size(), 1u);
+        // Bisection ends at neighbouring times: two roundings of t <= 3 each.
+        EXPECT_NEAR(multiple.events[0].t, simple.events[0].t, 4e-15);
+      }
+    }
+  }
+}
+
+// Multiplied out, the cube is nothing but rounding within 1e-5 of its zero: nobody can say when it changes sign.
+TEST(Roots, AMultipleZeroThatIsLostInRoundingIsSaid) {
+  for (const Integrator integrator : integrators) {
+    SCOPED_TRACE(setting(integrator, 1e-9));
+    const Simulator model = crossing_at("x^3 - 3*x^2 + 3*x - 1");
+    const result::Result result = model.run(with(model.options(), {integrator, 1e-9, 1e-12}));
+    EXPECT_EQ(result.status.termination, result::Termination::step_size_too_small);
+    EXPECT_NE(result.status.message.find("a multiple zero"), std::string::npos) << result.status.message;
+  }
+}
+
 }  // namespace
 }  // namespace saltus::problems

@@ -16,6 +16,10 @@ constexpr double two_stages_suffice = 1e-5;
 /// The same for one stage, dt^2/2 x''.
 constexpr double one_stage_suffices = 1e-8;
 
+/// Part of the step that the rounding of a function may leave open before its zero counts as a multiple one. A simple
+/// zero leaves about 1e-15 of it.
+constexpr double flat_zero = 1e-9;
+
 }  // namespace
 
 Locator::Locator(ode::Method method, int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
@@ -34,6 +38,12 @@ double Locator::time_resolution() const { return 2.0 * rounding_unit * (std::abs
 
 bool Locator::vanishes(double value) const {
   return value == 0.0 || std::abs(value) <= 0.125 * search_.noise(hit_.function);
+}
+
+/// At a multiple zero, (x - 1)^3, the rounding of the function where the step starts leaves the time open; where the
+/// trial ends it is smaller by far.
+void Locator::sharpen() {
+  if (flat_) search_.rescale(start_.t + trial_.h, trial_.x.data());
 }
 
 bool Locator::take(double h) {
@@ -101,6 +111,7 @@ bool Locator::correct(const Hit& hit) {
   double before = 0.0;        // longest step seen that ends before the event
   double beyond = dense_->h;  // shortest one that ends behind it
   double slope = hit.slope;
+  flat_ = !(search_.noise(hit.function) <= flat_zero * std::abs(slope) * dense_->h);
   double h = hit.theta * dense_->h;
   double previous_h = 0.0;
   double previous_value = 0.0;
@@ -113,10 +124,11 @@ bool Locator::correct(const Hit& hit) {
       continue;
     }
     const double value = trial_.values[hit.function];
-    if (vanishes(value) || trial_.h == 0.0 || finish(slope)) return true;
+    sharpen();
+    if (vanishes(value) || trial_.h == 0.0 || (!flat_ && finish(slope))) return true;
     (value * hit.sign > 0.0 ? before : beyond) = h;
     // The interpolant's slope is good to many digits; only where it fails (near a double zero) is a secant better.
-    if (iteration > 0 && std::abs(value) > 0.1 * std::abs(previous_value) && h != previous_h &&
+    if (iteration > 0 && (flat_ || std::abs(value) > 0.1 * std::abs(previous_value)) && h != previous_h &&
         value != previous_value) {
       slope = (value - previous_value) / (h - previous_h);
     }
@@ -125,11 +137,11 @@ bool Locator::correct(const Hit& hit) {
     double next = h - value / slope;
     if (!(next > before && next < beyond)) {
       // The correction left the bracket: within rounding of its end that is convergence, otherwise bisect.
-      if (std::abs(value / slope) <= time_resolution()) return true;
+      if (!flat_ && std::abs(value / slope) <= time_resolution()) return true;
       next = 0.5 * (before + beyond);
     }
     if (iteration >= newton_steps) next = 0.5 * (before + beyond);
-    if (std::abs(next - h) <= time_resolution() || beyond - before <= time_resolution()) return true;
+    if ((!flat_ && std::abs(next - h) <= time_resolution()) || beyond - before <= time_resolution()) return true;
     h = next;
   }
   return true;

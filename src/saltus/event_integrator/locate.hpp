@@ -48,6 +48,7 @@ class Locator {
     std::vector<double> x;
     std::vector<double> values;
   };
+  void sharpen();
   bool take(double h);
   bool correct(const Hit& hit);
   bool finish(double slope);
@@ -69,6 +70,7 @@ class Locator {
   StepStart start_;
   const ode::DenseStep* dense_ = nullptr;
   Hit hit_;
+  bool flat_ = false;  ///< a multiple zero
   Trial trial_, moved_;
   std::vector<double> slope_, slope_ahead_;  ///< f at the end of the trial, and just ahead of it
   std::vector<double> x_, earlier_;

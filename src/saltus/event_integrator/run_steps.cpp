@@ -85,10 +85,20 @@ Run::Step Run::undefined_step() {
   }
   if (stopped_by_singularity()) return Step::failed;
   const std::string states = undefined_beyond();
+  if (states.empty()) {
+    fail(Termination::step_size_too_small,
+         fmt::format(
+             "events cannot be told apart beyond {}, however short the step: a switching function or guard is no "
+             "more than its rounding there (a multiple zero), or changes faster than t is resolved; state it in "
+             "another form",
+             where()));
+    return Step::failed;
+  }
   fail(Termination::evaluation_failed,
-       fmt::format("the right-hand side{} is not finite beyond {}, however short the step; guard the expression with "
-                   "if(…), or end the simulation before",
-                   states.empty() ? states : " of " + states, where()));
+       fmt::format(
+           "the right-hand side of {} is not finite beyond {}, however short the step; guard the expression with "
+           "if(…), or end the simulation before",
+           states, where()));
   return Step::failed;
 }
 
