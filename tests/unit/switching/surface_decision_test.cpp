@@ -8,6 +8,7 @@
 
 #include "saltus/switching/group_decision.hpp"
 #include "saltus/switching/selection_root.hpp"
+#include "switching_cases.hpp"
 
 namespace saltus::switching {
 namespace {
@@ -61,6 +62,33 @@ TEST(SurfaceDecision, InvariantUnderScalingByPowersOfTwo) {
     const auto scaled = decide_surface({side(0.3 * scale), side(-0.7 * scale), Arrival::from_below});
     EXPECT_EQ(one.alpha, scaled.alpha);
   }
+}
+
+TEST(SurfaceDecision, VerifiedCasesAndTheirMirrorImages) {
+  int cases = 0;
+  const auto data = all_cases();
+  for (const auto& c : data) {
+    if (c.contains("f2")) continue;
+    ++cases;
+    for (const int sign : {1, -1}) {  // the mirror image exchanges the sides and the signs
+      const auto at = [&c, sign](const char* key) {
+        Side result = side(sign * c["f1"][key].get<double>());
+        // A tangent field is on its way out: its normal component grows along the sliding solution.
+        if (result.drift == Drift::stays) result.drift = side(sign * c["dfdt"]["df1"][key].get<double>()).drift;
+        return result;
+      };
+      const bool was_sliding = c["situation"] == "exit_codim1";
+      Arrival arrival = Arrival::along;
+      if (!was_sliding) arrival = sign * c["incoming"][0].get<int>() < 0 ? Arrival::from_below : Arrival::from_above;
+      const auto decision = decide_surface({at(sign > 0 ? "-" : "+"), at(sign > 0 ? "+" : "-"), arrival});
+      EXPECT_EQ(decision.mode, sign * c["expected"][0]["mode"][0].get<int>()) << c["id"];
+      EXPECT_TRUE(decision.other_modes.empty()) << c["id"];
+      const auto& lambda = c["expected"][0]["lambda"][0];
+      if (lambda.is_null()) continue;
+      EXPECT_NEAR(2.0 * decision.alpha - 1.0, sign * lambda.get<double>(), 1e-14) << c["id"];
+    }
+  }
+  EXPECT_EQ(cases, 40);
 }
 
 /// Table of m surfaces from functions g_j(corner).

@@ -31,12 +31,16 @@ struct SwitchingCase {
 
 inline constexpr std::array<const char*, 4> corner_keys{"--", "+-", "-+", "++"};
 
+inline nlohmann::json all_cases() {
+  std::ifstream file(std::string(SALTUS_SOURCE_DIR) + "/tests/data/switching_cases.json");
+  return nlohmann::json::parse(file)["cases"];
+}
+
 /// The cases of two surfaces.
 inline std::vector<SwitchingCase> plane_cases() {
-  std::ifstream file(std::string(SALTUS_SOURCE_DIR) + "/tests/data/switching_cases.json");
   std::vector<SwitchingCase> cases;
-  const auto data = nlohmann::json::parse(file);
-  for (const auto& item : data["cases"]) {
+  const auto data = all_cases();
+  for (const auto& item : data) {
     if (!item.contains("f2")) continue;
     SwitchingCase one{item["id"], item["leaf"], item["situation"], {}, {}, {}, {}, item.value("spiral_out", false),
                       item};
