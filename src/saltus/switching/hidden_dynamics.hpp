@@ -20,7 +20,7 @@ struct HiddenOptions {
   /// Multiplies the default speeds kappa_j = 1 / max |g_j| over the corners; m positive numbers, empty = ones.
   std::vector<double> scaling;
   Interpolation interpolation = Interpolation::multi_affine;
-  int budget = 20000;  ///< Runge-Kutta steps and changes of zone per trajectory before it is given up
+  int budget = 100000;  ///< Runge-Kutta steps and changes of zone per trajectory before it is given up
 };
 
 /// How a trajectory of the hidden dynamics ends.

@@ -30,14 +30,16 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
   double h = 0.05 / fastest;
   ode::StiffnessWatch watch;
   ode::StepControl control(stiff_ ? ode::Method::radau5 : ode::Method::dopri5);
-  stiff_stepper_.restart();
+  if (stiff_stepper_) stiff_stepper_->restart();
   for (int steps = 0; used_ < options_.budget; ++steps, ++used_) {
     if (steps % pause == 0) {
       const Rest rest = look_for_rest();
       if (rest == Rest::settled) return settle("the hidden dynamics comes to rest: sliding", point_velocity_.data());
       if (rest == Rest::moved) return Status::goes_on;
     }
-    ode::Stepper& stepper = stiff_ ? stiff_stepper_ : stepper_;
+    auto& made = stiff_ ? stiff_stepper_ : stepper_;
+    if (!made) made.emplace(stiff_ ? ode::Method::radau5 : ode::Method::dopri5, m_);
+    ode::Stepper& stepper = *made;
     if (stepper.attempt(f, 0.0, u_.data(), v_.data(), h, tolerances) != ode::Attempt::finite) {
       h *= 0.25;
       continue;

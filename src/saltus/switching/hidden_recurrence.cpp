@@ -1,15 +1,19 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "saltus/switching/hidden_recurrence_internal.hpp"
 
 namespace saltus::switching {
 namespace {
 
+constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double close = 1e-6;         ///< a thousand times the integration's tolerance
 constexpr double rounding = 1e-12;     ///< of closed forms, some laps long
 constexpr double shrinking = 0.9;      ///< a factor per lap that truncation errors do not imitate
 constexpr double affine_match = 1e-6;  ///< to which two factors of an affine return map agree
+constexpr double large = 1e6;          ///< times the cube: what happens inside it no longer matters
+constexpr double growing = 1.001;      ///< per lap, at large amplitudes
 constexpr double neutral = 1e-7;       ///< factors closer to 1 are not told from it
 
 double excursion(double u) { return std::max({0.0, -u, u - 1.0}); }
@@ -17,13 +21,17 @@ double excursion(double u) { return std::max({0.0, -u, u - 1.0}); }
 }  // namespace
 
 Recurrence::Recurrence(int surfaces)
-    : passages_(remembered),
-      last_free_(static_cast<std::size_t>(surfaces), -1),
-      integral_(static_cast<std::size_t>(surfaces)) {
-  for (auto& passage : passages_) {
-    passage.u.resize(integral_.size());
-    passage.integral.resize(integral_.size());
-  }
+    : last_free_(static_cast<std::size_t>(surfaces)), integral_(static_cast<std::size_t>(surfaces)) {
+  reset();
+}
+
+void Recurrence::reset() {
+  next_ = 0;
+  count_ = 0;
+  last_interior_ = -1;
+  time_ = 0.0;
+  std::fill(last_free_.begin(), last_free_.end(), -1);
+  std::fill(integral_.begin(), integral_.end(), 0.0);
 }
 
 void Recurrence::visit(const std::vector<int>& zone, bool closed_form) {
@@ -34,15 +42,22 @@ void Recurrence::visit(const std::vector<int>& zone, bool closed_form) {
   if (!closed_form) last_interior_ = count_;
 }
 
-Lap Recurrence::compare(Passage& now, const Passage& before, std::size_t lag, const std::vector<int>& zone) const {
+Lap Recurrence::compare(std::size_t now_number, std::size_t before_number, std::size_t lag,
+                        const std::vector<int>& zone) {
+  Passage& now = passage(now_number);
+  const Passage& before = passage(before_number);
+  const double* u = u_of(now_number);
+  const double* u_before = u_of(before_number);
+  const std::size_t m = integral_.size();
   Lap lap;
   double distance = 0.0;
-  for (std::size_t j = 0; j < now.u.size(); ++j) {
-    const double change = now.u[j] - before.u[j];
+  double back = infinite;  // in laps
+  for (std::size_t j = 0; j < m; ++j) {
+    const double change = u[j] - u_before[j];
     if (last_free_[j] >= before.count) {
       distance = std::max(distance, std::abs(change));
     } else if (!(change * zone[j] > 0.0)) {
-      return lap;  // coming back, sooner or later
+      back = std::min(back, excursion(u[j]) / std::abs(change));
     }
   }
   now.distance[lag] = distance;
@@ -58,7 +73,9 @@ Lap Recurrence::compare(Passage& now, const Passage& before, std::size_t lag, co
   if (now.compared[lag] > 1 && std::max(distance, before.distance[lag]) <= rounding * size) {
     lap.kind = Lap::Kind::cycle;
     lap.remaining = distance;
-  } else if (affine && ratio > 1.0 + neutral && now.amplitude > before.amplitude) {
+  } else if (now.compared[lag] > 2 && now.amplitude > before.amplitude &&
+             ((affine && ratio > 1.0 + neutral) ||
+              (now.amplitude > large && std::min(ratio, ratio_before) > growing))) {
     lap.kind = Lap::Kind::spiral_out;
   } else if ((now.compared[lag] > 2 && distance <= close * size && std::max(ratio, ratio_before) <= shrinking) ||
              (affine && ratio < 1.0 - neutral && remaining < 0.01 * size)) {
@@ -66,24 +83,35 @@ Lap Recurrence::compare(Passage& now, const Passage& before, std::size_t lag, co
     lap.remaining = remaining;
   }
   if (lap.kind == Lap::Kind::none) return lap;
-  lap.side.resize(now.u.size());
-  lap.mean.resize(now.u.size());
-  for (std::size_t j = 0; j < now.u.size(); ++j) {
+  if (back < infinite) {
+    // Two laps are left to be followed, since the cycle is known up to `remaining` only.
+    lap.laps_to_skip = std::floor(back) - 2.0;
+    if (lap.kind == Lap::Kind::spiral_out || !(lap.laps_to_skip >= 1.0)) return {};
+  }
+  lap.change.resize(m);
+  lap.side.resize(m);
+  lap.mean.resize(m);
+  for (std::size_t j = 0; j < m; ++j) {
     lap.side[j] = last_free_[j] >= before.count ? 0 : zone[j];
-    lap.mean[j] = (now.integral[j] - before.integral[j]) / (now.time - before.time);
+    lap.change[j] = u[j] - u_before[j];
+    lap.mean[j] = (integral_of(now_number)[j] - integral_of(before_number)[j]) / (now.time - before.time);
   }
   return lap;
 }
 
 Lap Recurrence::pass(std::uint64_t section, const std::vector<double>& u, const std::vector<int>& zone) {
-  Passage& now = passages_[next_ % remembered];
+  if (next_ < remembered && next_ >= passages_.size()) {
+    passages_.emplace_back();
+    values_.resize(values_.size() + 2 * u.size());
+  }
+  Passage& now = passage(next_);
   now.section = section;
   now.count = count_;
   now.time = time_;
   now.amplitude = 0.0;
   for (std::size_t j = 0; j < u.size(); ++j) {
-    now.u[j] = u[j];
-    now.integral[j] = integral_[j];
+    u_of(next_)[j] = u[j];
+    integral_of(next_)[j] = integral_[j];
     now.amplitude = std::max(now.amplitude, excursion(u[j]));
   }
   now.distance.fill(0.0);
@@ -93,8 +121,7 @@ Lap Recurrence::pass(std::uint64_t section, const std::vector<double>& u, const 
   std::size_t lag = 0;
   const std::size_t oldest = next_ >= remembered ? next_ - remembered + 1 : 0;
   for (std::size_t i = next_; i > oldest && lag < lags && found.kind == Lap::Kind::none; --i) {
-    const Passage& before = passages_[(i - 1) % remembered];
-    if (before.section == section) found = compare(now, before, lag++, zone);
+    if (passage(i - 1).section == section) found = compare(next_, i - 1, lag++, zone);
   }
   ++next_;
   return found;

@@ -14,6 +14,10 @@ struct Lap {
   double remaining = 0.0;    ///< how far the limit of the passages is still away
   std::vector<int> side;     ///< m: 0 if the selection varied, else the side on which u_j stayed
   std::vector<double> mean;  ///< m: selections averaged over the lap
+  /// Laps that can be skipped before the first saturated component is back, whose distance shrinks by `change` per lap:
+  /// 0 where all go outwards.
+  double laps_to_skip = 0.0;
+  std::vector<double> change;  ///< m: of u_j in a lap
 };
 
 /// Passages of sections: changes of zone, and maxima of components inside a zone. A passage is compared with up to four
@@ -25,6 +29,8 @@ struct Lap {
 class Recurrence {
  public:
   explicit Recurrence(int surfaces);
+  /// Forgets everything, for a new trajectory.
+  void reset();
 
   /// Accumulates the time integral of the selections.
   void add_time(double t) { time_ += t; }
@@ -43,14 +49,18 @@ class Recurrence {
     long count = 0;
     double time = 0.0;
     double amplitude = 0.0;
-    std::vector<double> u, integral;
     std::array<double, lags> distance{}, ratio{};
     std::array<int, lags> compared{};  ///< laps in a row
   };
 
-  Lap compare(Passage& now, const Passage& before, std::size_t lag, const std::vector<int>& zone) const;
+  /// Of passage number i (all are numbered, the last `remembered` are kept), with u and the integrals: m doubles each.
+  [[nodiscard]] Passage& passage(std::size_t i) { return passages_[i % remembered]; }
+  [[nodiscard]] double* u_of(std::size_t i) { return values_.data() + i % remembered * 2 * integral_.size(); }
+  [[nodiscard]] double* integral_of(std::size_t i) { return u_of(i) + integral_.size(); }
+  Lap compare(std::size_t now_number, std::size_t before_number, std::size_t lag, const std::vector<int>& zone);
 
-  std::vector<Passage> passages_;  ///< ring
+  std::vector<Passage> passages_;  ///< ring; grows up to `remembered`
+  std::vector<double> values_;
   std::size_t next_ = 0;
   long count_ = 0;
   long last_interior_ = -1;

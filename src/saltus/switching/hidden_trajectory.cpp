@@ -25,8 +25,6 @@ HiddenTrajectory::HiddenTrajectory(HiddenFace& face, const TrajectoryOptions& op
       v_(at(m_)),
       zone_(at(m_)),
       recurrence_(m_),
-      stepper_(ode::Method::dopri5, m_),
-      stiff_stepper_(ode::Method::radau5, m_),
       low_(at(m_)),
       high_(at(m_)),
       point_(at(m_)),
@@ -42,7 +40,7 @@ TrajectoryEnd HiddenTrajectory::follow(const std::vector<double>& u) {
   end_ = {};
   used_ = 0;
   stiff_ = false;
-  recurrence_ = Recurrence(m_);
+  recurrence_.reset();
   enter_zones();
   while (used_ < options_.budget) {
     ++used_;
@@ -96,6 +94,12 @@ HiddenTrajectory::Status HiddenTrajectory::at_boundary(int j) {
 HiddenTrajectory::Status HiddenTrajectory::pass_section(std::uint64_t event) {
   const Lap lap = recurrence_.pass(zone_number() * static_cast<std::uint64_t>(3 * m_) + event, u_, zone_);
   if (lap.kind == Lap::Kind::none) return Status::goes_on;
+  if (lap.laps_to_skip > 0.0) {
+    for (std::size_t j = 0; j < u_.size(); ++j) {
+      if (lap.side[j] != 0) u_[j] += lap.laps_to_skip * lap.change[j];
+    }
+    return Status::goes_on;
+  }
   end_.mode = lap.side;
   end_.alpha = lap.mean;
   if (lap.kind == Lap::Kind::spiral_out) {

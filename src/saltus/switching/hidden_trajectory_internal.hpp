@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct TrajectoryEnd {
 };
 
 struct TrajectoryOptions {
-  int budget = 20000;
+  int budget = 100000;
   double tolerance = 1e-9;   ///< of u, absolute and relative
   bool closed_forms = true;  ///< g is multi-affine
 };
@@ -75,8 +76,7 @@ class HiddenTrajectory {
   std::vector<double> u_, v_;
   std::vector<int> zone_;
   Recurrence recurrence_;
-  ode::Stepper stepper_;
-  ode::Stepper stiff_stepper_;
+  std::optional<ode::Stepper> stepper_, stiff_stepper_;  ///< made when they are first needed
   ode::DenseStep dense_;
   bool stiff_ = false;
   std::vector<double> low_, high_, point_, point_velocity_, root_, derivatives_, matrix_, jacobian_here_, step_;
