@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "saltus/event_integrator/transition.hpp"
@@ -14,8 +13,7 @@ namespace saltus::event_integrator {
 /// to
 ///         where it says.
 [[nodiscard]] std::optional<Transition> decide_with(const Surroundings& surroundings, const ModeState& before,
-                                                    const Occasion& occasion,
-                                                    const std::vector<std::pair<int, int>>& given);
+                                                    const Occasion& occasion, const std::vector<GivenMode>& given);
 
 /// Fills `alternatives` from `other_choices`: every other choice with the rest decided for it; those that are
 /// admissible, each once.

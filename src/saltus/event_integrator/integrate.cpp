@@ -36,7 +36,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
     : kernel_(kernel),
       options_(options),
       observer_(observer),
-      surroundings_{kernel, system, is_affine(system)},
+      surroundings_{kernel, system, is_affine(system), options.selection, options.scaling},
       field_(kernel, surroundings_.affine_in_alpha),
       stepper_(options.method, kernel.states()),
       control_(options.method),
@@ -102,7 +102,26 @@ bool Run::enter(const Transition& transition) {
     return false;
   }
   search_.enter(state_, transition.zero_order, t_, x_.data());
+  spiral_start_ = transition.beyond_spiral;
   return true;
+}
+
+/// Over the first lap of a spiral that leaves an intersection, which is too small to be seen.
+void Run::begin_spiral() {
+  const SpiralStart start = *std::exchange(spiral_start_, std::nullopt);
+  const double t_new = std::min(t_ + start.duration, options_.until);
+  const auto& times = options_.output.times;
+  for (; next_output_ < times.size() && times[next_output_] <= t_new; ++next_output_) {
+    if (times[next_output_] > t_) row(times[next_output_], start.x);
+  }
+  t_ = t_new;
+  x_ = start.x;
+  Transition beyond;
+  beyond.state = state_;
+  beyond.zero_order.assign(state_.mode.size(), 0);
+  beyond.zero_order[at(start.surface)] = 1;
+  if (!enter(beyond)) return;
+  if (options_.output.rows == OutputTimes::Rows::at_steps) row(t_, x_);
 }
 
 bool Run::begin() {
@@ -170,6 +189,7 @@ Integration Run::to_end() {
         fail(Termination::iteration_limit, fmt::format("max_steps = {} reached at {}", options_.max_steps, where()));
         break;
       }
+      if (spiral_start_) begin_spiral();
       h_try_ = std::max(h_, 2.0 * smallest_step());
       if (options_.max_step) h_try_ = std::min(h_try_, *options_.max_step);
       while (running_ && attempt() == Step::shortened) {

@@ -10,6 +10,7 @@
 #include "saltus/model/system.hpp"
 #include "saltus/ode/stepper.hpp"
 #include "saltus/result/result.hpp"
+#include "saltus/switching/intersection.hpp"
 
 namespace saltus::event_integrator {
 
@@ -31,6 +32,9 @@ struct IntegrationOptions {
   long max_steps = 1000000;
   long max_events = 100000;
   std::vector<std::pair<int, int>> initial_mode;  ///< switching function -> forced mode at the start
+  /// Where the limit of regularised solutions depends on their scaling.
+  switching::SelectionPolicy selection = switching::SelectionPolicy::active_dominant;
+  std::vector<double> scaling;  ///< for SelectionPolicy::scaled: a factor per switching function; empty = ones
 };
 
 struct Progress {

@@ -172,9 +172,11 @@ switching::CornerTable ProjectedFields::table(const ModeState& before, const std
     }
     for (std::size_t corner = 0; corner < table.corners(); ++corner) {
       auto& side = table.sides[j * table.corners() + corner];
-      // An exit was located to rounding on this field's tangency: its velocity is 0 whatever its last bits say.
+      // An exit was located to rounding on this field's tangency: its velocity is 0 whatever its last bits say. Of
+      // coupled surfaces no single field need be tangent.
       const bool above = (corner >> j & 1U) != 0;
-      if (contains(above ? occasion_.exit_above : occasion_.exit_below, surface)) side.velocity = 0.0;
+      if (group.size() == 1 && contains(above ? occasion_.exit_above : occasion_.exit_below, surface))
+        side.velocity = 0.0;
       side = motion(alphas[corner], surface, side.velocity, scale).side;
     }
     const int mode = before.mode[at(surface)];

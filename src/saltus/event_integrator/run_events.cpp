@@ -51,7 +51,10 @@ bool Run::change_mode(const Located& located) {
   occasion.x = x_.data();
   occasion.time_scale = h_scale_;
   occasion.at_zero = state_.sliding;
-  for (auto* surfaces : {&occasion.touched, &occasion.exit_below, &occasion.exit_above}) surfaces->clear();
+  for (auto* surfaces :
+       {&occasion.touched, &occasion.exit_below, &occasion.exit_above, &occasion.coalesced, &occasion.destabilised}) {
+    surfaces->clear();
+  }
   bool any = false;
   for (std::size_t k = 0; k < located.functions.size(); ++k) {
     const auto& function = search_.functions()[located.functions[k]];
@@ -60,6 +63,8 @@ bool Run::change_mode(const Located& located) {
     any = true;
     if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
     if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
+    if (function.kind == FunctionKind::loss) occasion.coalesced.push_back(function.index);
+    if (function.kind == FunctionKind::instability) occasion.destabilised.push_back(function.index);
     const bool nested = function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
     if (nested && !continuous_across(kernel_, state_, function.index, t_, x_, h_scale_)) {
       fail(Termination::outside_class,

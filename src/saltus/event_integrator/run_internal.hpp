@@ -79,6 +79,7 @@ class Run {
   bool find_undefined_cells();
   bool go_on();
   bool enter(const Transition& transition);
+  void begin_spiral();
   bool fire_user_events(const std::vector<double>& x_before, const ModeState& before);
   void flip_user_functions(const Located& located);
 
@@ -165,10 +166,11 @@ class Run {
   std::vector<long> cells_before_;
   Occasion occasion_;
   Transition transition_;
-  std::optional<double> stiff_at_;  ///< where the explicit method first looked out of place
-  double h_ = 0.0;                  ///< proposed step
-  double h_try_ = 0.0;              ///< step under trial
-  double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
+  std::optional<SpiralStart> spiral_start_;  ///< of the mode just entered: time and state jump over the first lap
+  std::optional<double> stiff_at_;           ///< where the explicit method first looked out of place
+  double h_ = 0.0;                           ///< proposed step
+  double h_try_ = 0.0;                       ///< step under trial
+  double h_scale_ = 0.0;                     ///< of the last full step: time scale of the second-order sign tests
   std::size_t next_output_ = 0;
   bool jumped_ = false;  ///< at the event in hand
   double last_event_time_ = -std::numeric_limits<double>::infinity();

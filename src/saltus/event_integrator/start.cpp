@@ -129,7 +129,9 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
       return start;
     }
   }
-  auto chosen = decide_with(s, state, occasion, forced);
+  std::vector<GivenMode> given;
+  for (const auto& [surface, mode] : forced) given.push_back({surface, mode});
+  auto chosen = decide_with(s, state, occasion, given);
   if (!chosen) {
     start.transition.termination = result::Termination::no_admissible_mode;
     start.transition.message = "initial_mode does not continue the solution: its field does not move to where it says";
@@ -138,7 +140,8 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   chosen->reason = "initial_mode" + (chosen->reason.empty() ? "" : "; " + chosen->reason);
   start.transition = std::move(*chosen);
   if (decided.termination != result::Termination::completed) return start;
-  start.transition.unique = decided.unique && decided.state.mode == start.transition.state.mode;
+  start.transition.unique =
+      decided.state.mode == start.transition.state.mode ? decided.unique : std::optional<bool>(false);
   if (decided.state.mode != start.transition.state.mode) {
     start.transition.alternatives.push_back({decided.state.mode, decided.state.alpha});
   }

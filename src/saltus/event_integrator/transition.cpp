@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/at_surface.hpp"
-#include "saltus/event_integrator/mode_field.hpp"
-#include "saltus/event_integrator/projected_fields.hpp"
-#include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/event_integrator/transition_internal.hpp"
 #include "saltus/switching/selection_root.hpp"
 
 namespace saltus::event_integrator {
@@ -27,42 +24,13 @@ void append_reason(const model::System& system, int surface, const switching::Su
   reason += decision.reason;
 }
 
-namespace {
-
-using switching::Drift;
 using switching::SurfaceDecision;
 using switching::Verdict;
 
+namespace {
+
 /// Largest group whose 2^m corners are looked at.
 constexpr std::size_t largest_group = 12;
-
-bool contains(const std::vector<int>& values, int value) {
-  return std::find(values.begin(), values.end(), value) != values.end();
-}
-
-std::string names(const model::System& system, const std::vector<int>& surfaces) {
-  std::string text;
-  for (const int j : surfaces) text += (text.empty() ? "" : ", ") + system.switching[at(j)].name;
-  return text;
-}
-
-std::string two_fold_at(const std::string& surface, double t) {
-  return fmt::format(
-      "both fields are tangent to '{}' at t = {} (two-fold point): the sliding motion is not determined there", surface,
-      t);
-}
-
-/// Why the motion on a surface is not determined.
-std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
-                            const std::vector<double>& alpha, int surface, double t) {
-  const auto& name = system.switching[at(surface)].name;
-  if (!fields.gradient_vanishes(alpha, surface)) return two_fold_at(name, t);
-  return fmt::format(
-      "the gradient of '{}' vanishes where '{}' is 0, at t = {} (a square or another power?): the motion on that "
-      "surface "
-      "is not determined; use a function with the same sign and a gradient there, such as the root",
-      name, name, t);
-}
 
 /// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
 /// around j.
@@ -98,37 +66,7 @@ std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, c
   return groups;
 }
 
-/// One pass over all groups with the selections of `state` for everything else.
-class Decider {
- public:
-  Decider(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion)
-      : s_(surroundings), before_(before), occasion_(occasion), fields_(surroundings.kernel, occasion) {
-    transition_.state = before;
-    transition_.zero_order.assign(before.mode.size(), 0);
-  }
-
-  Transition run();
-  Transition run_forced();
-  Transition run_crossing(int jumping);
-
- private:
-  bool decide(const std::vector<int>& group);
-  switching::GroupDecision ask(const std::vector<int>& group);
-  SurfaceDecision ask_selection(const switching::CornerTable& table, int surface);
-  bool read_nested_anew();
-  bool set_corners();
-  bool check();
-  bool fail(result::Termination termination, std::string message);
-
-  const Surroundings& s_;
-  const ModeState& before_;
-  const Occasion& occasion_;
-  ProjectedFields fields_;
-  ModeState base_;  ///< selections held while a group is decided
-  Transition transition_;
-  std::vector<std::pair<int, SurfaceDecision>> decisions_;
-  std::vector<int> standing_;  ///< surfaces that psi does not leave, without consequence for the field
-};
+}  // namespace
 
 bool Decider::fail(result::Termination termination, std::string message) {
   transition_.termination = termination;
@@ -146,8 +84,7 @@ SurfaceDecision Decider::ask_selection(const switching::CornerTable& table, int 
   return switching::decide_selection({table.side(0, 0), table.side(0, 1), table.arrival[0]}, g, last);
 }
 
-switching::GroupDecision Decider::ask(const std::vector<int>& group) {
-  const auto table = fields_.table(base_, group);
+switching::GroupDecision Decider::ask(const std::vector<int>& group, const switching::CornerTable& table) {
   if (s_.affine_in_alpha || group.size() > 1) return switching::decide_group(table);
   SurfaceDecision decision = ask_selection(table, group.front());
   return {decision.verdict, 0, {decision}};
@@ -169,7 +106,14 @@ bool Decider::decide(const std::vector<int>& group) {
                             "codimension-{} switching of a later version",
                             group.size(), occasion_.t, names(s_.system, group), group.size()));
   }
-  const auto decision = ask(group);
+  const auto table = fields_.table(base_, group);
+  const auto tree = ask_tree(group, table);
+  if (tree && tree->undecided.empty()) {
+    const bool by_scaling = tree->by_scaling && s_.policy == switching::SelectionPolicy::scaled;
+    if (by_scaling) return resolve(group, table);
+    return tree->spirals_out ? spiral_out(group, switching::plane_table(table), *tree) : accept(group, *tree);
+  }
+  const auto decision = ask(group, table);
   const auto culprit = [&] { return s_.system.switching[at(group[at(std::max(decision.culprit, 0))])].name; };
   switch (decision.verdict) {
     case Verdict::decided:
@@ -188,10 +132,7 @@ bool Decider::decide(const std::vector<int>& group) {
           result::Termination::outside_class,
           undetermined_at(fields_, s_.system, base_.alpha, group[at(std::max(decision.culprit, 0))], occasion_.t));
     case Verdict::coupled:
-      return fail(result::Termination::outside_class,
-                  fmt::format("the surfaces {} meet at t = {} and influence each other: the continuation needs the "
-                              "codimension-{} switching of a later version",
-                              names(s_.system, group), occasion_.t, group.size()));
+      return decide_coupled(group, table);
   }
   for (std::size_t k = 0; k < group.size(); ++k) {
     SurfaceDecision surface = decision.surfaces[k];
@@ -222,99 +163,17 @@ bool Decider::read_nested_anew() {
   return flipped;
 }
 
-/// Selections of the regions that meet at the one sliding surface.
-bool Decider::set_corners() {
-  auto& state = transition_.state;
-  if (state.sliding.empty()) return true;
-  for (std::size_t corner = 0; corner < 2; ++corner) {
-    state.corner_alpha[corner] = fields_.corner_alpha(state.alpha, state.sliding, corner);
-  }
-  const auto is_nested = [&](int j) { return !s_.kernel.inner(j).empty(); };
-  std::vector<int> nested(state.mode.size());
-  std::iota(nested.begin(), nested.end(), 0);
-  if (state.sliding.size() == 1 || std::none_of(nested.begin(), nested.end(), is_nested)) return true;
-  // Several sliding surfaces: a function nested around one of them must have one sign in all regions.
-  for (std::size_t corner = 1; corner < (std::size_t{1} << std::min<std::size_t>(state.sliding.size(), 10)); ++corner) {
-    const auto alpha = fields_.corner_alpha(state.alpha, state.sliding, corner);
-    for (int j = 0; j < s_.kernel.switching_functions(); ++j) {
-      if (!contains(state.sliding, j) && alpha[at(j)] != state.alpha[at(j)]) {
-        return fail(result::Termination::outside_class,
-                    fmt::format("at t = {} the sign of '{}' depends on the selections of several sliding surfaces ({})",
-                                occasion_.t, s_.system.switching[at(j)].name, names(s_.system, state.sliding)));
-      }
-    }
-  }
-  return true;
-}
-
-/// The new mode must move to where it says: signs along its own field, selections inside [0, 1].
-bool Decider::check() {
-  auto& state = transition_.state;
-  ModeField field(s_.kernel, s_.affine_in_alpha);
-  field.enter(state);
-  std::vector<double> xdot(at(s_.kernel.states()));
-  field(occasion_.t, occasion_.x, xdot.data());
-  transition_.beside = fields_.point_beside(state.alpha);
-  const auto is_number = [](double value) { return std::isfinite(value); };
-  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) field(occasion_.t, transition_.beside.data(), xdot.data());
-  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) {
-    // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
-    for (const int j : state.sliding) {
-      if (!fields_.gradient_vanishes(state.alpha, j)) continue;
-      return fail(result::Termination::outside_class, undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
-    }
-    if (!state.sliding.empty()) {
-      return fail(result::Termination::evaluation_failed, fmt::format("the sliding field on {} is not finite at t = {}",
-                                                                      names(s_.system, state.sliding), occasion_.t));
-    }
-  }
-  for (const int j : state.sliding) {
-    const double selection = field.alpha()[at(j)];
-    // 1e-9: an exit located to rounding leaves the selection at its bound only to the conditioning of the quotient.
-    if (!(selection >= -1e-9 && selection <= 1.0 + 1e-9)) {
-      const auto& name = s_.system.switching[at(j)].name;
-      // Behind an exit located on one field the selection is at its bound, unless the other field vanishes with it.
-      const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
-      if (at_exit || fields_.nearly_two_fold(state.alpha, j)) {
-        return fail(result::Termination::outside_class,
-                    undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
-      }
-      return fail(result::Termination::no_admissible_mode,
-                  fmt::format("sliding on '{}' at t = {} would need the selection {}", name, occasion_.t, selection));
-    }
-    state.alpha[at(j)] = std::clamp(selection, 0.0, 1.0);
-  }
-  for (const int j : occasion_.at_zero) {
-    const int mode = state.mode[at(j)];
-    if (mode == 0) continue;
-    if (contains(standing_, j)) {
-      transition_.zero_order[at(j)] = 2;
-      continue;
-    }
-    double velocity = fields_.velocities(state.alpha, {j}).front();
-    const auto& tangent = mode > 0 ? occasion_.exit_above : occasion_.exit_below;
-    if (contains(tangent, j)) velocity = 0.0;
-    const double scale = std::max(std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
-                                  std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front()));
-    const Motion motion = fields_.motion(state.alpha, j, velocity, scale);
-    if (static_cast<int>(motion.side.drift) != mode) {
-      return fail(
-          result::Termination::no_admissible_mode,
-          fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not", occasion_.t,
-                      mode > 0 ? "the positive side" : "the negative side", s_.system.switching[at(j)].name));
-    }
-    transition_.zero_order[at(j)] = std::min(motion.order, 2);
-  }
-  return true;
-}
-
 Transition Decider::run() {
   base_ = before_;
   const auto groups = groups_of(s_.kernel, occasion_);
   // Nested functions that flip change the fields for everything else: decide again until nothing flips.
   for (int pass = 0; pass < 8; ++pass) {
     decisions_.clear();
+    group_reasons_.clear();
     standing_.clear();
+    transition_.unique = true;
+    transition_.other_choices.clear();
+    transition_.beyond_spiral.reset();
     for (const auto& group : groups) {
       // Sliding that nothing has touched goes on, also where it was forced on a repelling surface.
       const bool touched =
@@ -330,12 +189,15 @@ Transition Decider::run() {
   }
   for (const auto& [surface, decision] : decisions_) {
     if (contains(standing_, surface)) continue;
-    append_reason(s_.system, surface, decision, before_, occasion_, transition_.reason);
+    if (!decision.reason.empty()) {
+      append_reason(s_.system, surface, decision, before_, occasion_, transition_.reason);
+    }
     for (const int other : decision.other_modes) {
       transition_.unique = false;
-      transition_.other_choices.emplace_back(surface, other);
+      transition_.other_choices.push_back({{surface, other}});
     }
   }
+  for (const auto& reason : group_reasons_) transition_.reason += (transition_.reason.empty() ? "" : "; ") + reason;
   if (set_corners()) check();
   return transition_;
 }
@@ -353,12 +215,14 @@ Transition Decider::run_crossing(int jumping) {
   if (transition_.termination == result::Termination::no_admissible_mode) {
     fail(result::Termination::outside_class,
          fmt::format("'{}' jumps away from 0 at t = {} on a surface inside it, and the field behind does not lead on: "
-                     "the continuation needs the codimension-2 switching of a later version",
+                     "the continuation needs the hidden dynamics of functions that jump",
                      name, occasion_.t));
   }
   transition_.reason = fmt::format("'{}' jumps away from 0 on a surface inside it, which is crossed", name);
   return transition_;
 }
+
+namespace {
 
 /// While it slides on an inner surface a nested function is recorded between its selections in both regions; the mode
 /// decides what it is.
@@ -441,19 +305,6 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     if (auto crossed = cross_kinks(surroundings, exact, occasion)) return std::move(*crossed);
   }
   return transition;
-}
-
-std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state, double t,
-                                            const double* x) {
-  Occasion occasion;
-  occasion.t = t;
-  occasion.x = x;
-  occasion.at_zero = state.sliding;
-  const ProjectedFields fields(surroundings.kernel, occasion);
-  for (const int j : state.sliding) {
-    if (fields.nearly_two_fold(state.alpha, j)) return two_fold_at(surroundings.system.switching[at(j)].name, t);
-  }
-  return std::nullopt;
 }
 
 Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced, const Occasion& occasion) {

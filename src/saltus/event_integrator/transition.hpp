@@ -2,9 +2,9 @@
 // answer.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -12,19 +12,22 @@
 #include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
 #include "saltus/switching/group_decision.hpp"
+#include "saltus/switching/intersection.hpp"
 
 namespace saltus::event_integrator {
 
 /// Why the mode is decided afresh.
 struct Occasion {
   double t = 0.0;
-  const double* x = nullptr;    ///< n_x, on all surfaces of `at_zero`
-  std::vector<int> at_zero;     ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
-  std::vector<int> touched;     ///< those of `at_zero` whose event this is
-  std::vector<int> exit_below;  ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
-  std::vector<int> exit_above;  ///< … upper field (alpha = 1)
-  bool start = false;           ///< no mode before
-  double time_scale = 1.0;      ///< a step of the integrator: derivatives that do not move psi over it vanish
+  const double* x = nullptr;      ///< n_x, on all surfaces of `at_zero`
+  std::vector<int> at_zero;       ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
+  std::vector<int> touched;       ///< those of `at_zero` whose event this is
+  std::vector<int> exit_below;    ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
+  std::vector<int> exit_above;    ///< … upper field (alpha = 1)
+  std::vector<int> coalesced;     ///< first surfaces of coupled groups whose sliding root ceases to exist here
+  std::vector<int> destabilised;  ///< … loses its stability under every scaling
+  bool start = false;             ///< no mode before
+  double time_scale = 1.0;        ///< a step of the integrator: derivatives that do not move psi over it vanish
 };
 
 /// A mode of all switching functions with its selections.
@@ -33,17 +36,32 @@ struct Continuation {
   std::vector<double> alpha;
 };
 
+/// A mode of one surface that is given, with its selection if that is known.
+struct GivenMode {
+  int surface = 0;
+  int mode = 0;
+  double alpha = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Where a solution that spirals out of an intersection of two surfaces has completed its first lap.
+struct SpiralStart {
+  double duration = 0.0;
+  std::vector<double> x;
+  int surface = 0;  ///< on which x is
+};
+
 struct Transition {
   result::Termination termination = result::Termination::completed;  ///< completed = a mode was found
   std::string message;
   ModeState state;
   std::vector<double> beside;   ///< the point moved into the new regions by a few roundings
   std::vector<int> zero_order;  ///< n_psi: order in t of the zero of psi_j at this time along the new field, 0 = none
-  bool unique = true;
-  /// Surfaces on which another mode than the chosen one continues the solution, with that mode: what
-  /// other_continuations() starts from.
-  std::vector<std::pair<int, int>> other_choices;
-  std::vector<Continuation> alternatives;  ///< the other admissible modes as a whole
+  std::optional<bool> unique = true;  ///< nullopt: not decided
+  /// Modes of some surfaces, other than the chosen ones, that continue the solution: what other_continuations() starts
+  /// from.
+  std::vector<std::vector<GivenMode>> other_choices;
+  std::optional<SpiralStart> beyond_spiral;  ///< the mode is the first region of a spiral: where to go on
+  std::vector<Continuation> alternatives;    ///< the other admissible modes as a whole
   std::string reason;
 };
 
@@ -52,6 +70,8 @@ struct Surroundings {
   const evaluation::ModelKernel& kernel;
   const model::System& system;
   bool affine_in_alpha = true;
+  switching::SelectionPolicy policy = switching::SelectionPolicy::active_dominant;
+  std::vector<double> scaling;  ///< n_psi factors of the hidden dynamics under SelectionPolicy::scaled; empty = ones
 };
 
 /// Adds what decided about a surface, unless its mode stays, or it is not one that the result lists (a kink, a time).
@@ -60,9 +80,10 @@ void append_reason(const model::System& system, int surface, const switching::Su
 
 /// The mode behind an event, or a start, at one point.
 /// Surfaces that do not influence each other are decided one by one, the others in groups; switching functions nested
-/// around a surface that changes are read anew. The new mode is checked along its own field: it must move to where it
-/// says. Terminations: outside_class (two-fold, psi stays 0, coupled surfaces), no_admissible_mode (the check failed),
-/// evaluation_failed (fields undefined at the point).
+/// around a surface that changes are read anew. Two that influence each other are decided by the trees of
+/// switching/intersection.hpp; more, and what no tree decides, by the hidden dynamics. The new mode is checked along
+/// its own field: it must move to where it says. Terminations: outside_class (two-fold, psi stays 0, hidden dynamics
+/// without a limit), no_admissible_mode (the check failed), evaluation_failed (fields undefined at the point).
 [[nodiscard]] Transition decide_mode(const Surroundings& surroundings, const ModeState& before,
                                      const Occasion& occasion);
 

@@ -39,23 +39,54 @@ OutputTimes output_times(const OutputGrid& grid, double from, double until) {
   return output;
 }
 
+/// The switching function of a name in the options under `key`.
+Expected<model::SwitchingColumn> find_column(const model::System& system, const std::string& key,
+                                             const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& column : system.columns) {
+    if (column.name == name) return column;
+    known.push_back(column.name);
+  }
+  return tl::unexpected(
+      with_context({ErrorCode::unknown_name, "unknown switching function '" + name + "'", suggest(name, known), {}, {}},
+                   "in simulate." + key + "." + name));
+}
+
 Expected<std::vector<std::pair<int, int>>> forced_modes(const model::System& system, const SimulateOptions& options) {
   std::vector<std::pair<int, int>> forced;
   for (const auto& [name, mode] : options.initial_mode) {
-    std::vector<std::string> known;
-    const model::SwitchingColumn* found = nullptr;
-    for (const auto& column : system.columns) {
-      known.push_back(column.name);
-      if (column.name == name) found = &column;
-    }
-    if (found == nullptr) {
-      return tl::unexpected(with_context(
-          {ErrorCode::unknown_name, "unknown switching function '" + name + "'", suggest(name, known), {}, {}},
-          "in simulate.initial_mode." + name));
-    }
+    const auto found = find_column(system, "initial_mode", name);
+    if (!found) return tl::unexpected(found.error());
     forced.emplace_back(found->function, found->orientation * mode);
   }
   return forced;
+}
+
+switching::SelectionPolicy selection_policy(Selection selection) {
+  switch (selection) {
+    case Selection::active_dominant:
+      return switching::SelectionPolicy::active_dominant;
+    case Selection::passive_dominant:
+      return switching::SelectionPolicy::passive_dominant;
+    case Selection::scaled:
+      return switching::SelectionPolicy::scaled;
+    case Selection::report:
+      return switching::SelectionPolicy::report;
+  }
+  __builtin_unreachable();
+}
+
+/// One factor per switching function, or none.
+Expected<std::vector<double>> surface_scaling(const model::System& system, const SimulateOptions& options) {
+  std::vector<double> scaling;
+  if (options.event.scaling.empty()) return scaling;
+  scaling.assign(system.switching.size(), 1.0);
+  for (const auto& [name, kappa] : options.event.scaling) {
+    const auto found = find_column(system, "event.scaling", name);
+    if (!found) return tl::unexpected(found.error());
+    scaling[static_cast<std::size_t>(found->function)] = kappa;
+  }
+  return scaling;
 }
 
 Expected<IntegrationOptions> integration_options(const model::System& system, const SimulateOptions& options) {
@@ -84,6 +115,10 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
   auto forced = forced_modes(system, options);
   if (!forced) return tl::unexpected(forced.error());
   integration.initial_mode = std::move(*forced);
+  integration.selection = selection_policy(options.event.selection);
+  auto scaling = surface_scaling(system, options);
+  if (!scaling) return tl::unexpected(scaling.error());
+  integration.scaling = std::move(*scaling);
   return integration;
 }
 

@@ -1,0 +1,160 @@
+// The mode behind an event must move to where it says.
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/transition_internal.hpp"
+
+namespace saltus::event_integrator {
+
+std::string names(const model::System& system, const std::vector<int>& surfaces) {
+  std::string text;
+  for (const int j : surfaces) text += (text.empty() ? "" : ", ") + system.switching[at(j)].name;
+  return text;
+}
+
+std::string two_fold_at(const std::string& surface, double t) {
+  return fmt::format(
+      "both fields are tangent to '{}' at t = {} (two-fold point): the sliding motion is not determined there", surface,
+      t);
+}
+
+/// Why the motion on a surface is not determined.
+std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
+                            const std::vector<double>& alpha, int surface, double t) {
+  const auto& name = system.switching[at(surface)].name;
+  if (!fields.gradient_vanishes(alpha, surface)) return two_fold_at(name, t);
+  return fmt::format(
+      "the gradient of '{}' vanishes where '{}' is 0, at t = {} (a square or another power?): the motion on that "
+      "surface "
+      "is not determined; use a function with the same sign and a gradient there, such as the root",
+      name, name, t);
+}
+
+/// Selections of the regions that meet at the one sliding surface.
+bool Decider::set_corners() {
+  auto& state = transition_.state;
+  if (state.sliding.empty()) return true;
+  for (std::size_t corner = 0; corner < 2; ++corner) {
+    state.corner_alpha[corner] = fields_.corner_alpha(state.alpha, state.sliding, corner);
+  }
+  const auto is_nested = [&](int j) { return !s_.kernel.inner(j).empty(); };
+  std::vector<int> nested(state.mode.size());
+  std::iota(nested.begin(), nested.end(), 0);
+  if (state.sliding.size() == 1 || std::none_of(nested.begin(), nested.end(), is_nested)) return true;
+  // Several sliding surfaces: a function nested around one of them must have one sign in all regions.
+  for (std::size_t corner = 1; corner < (std::size_t{1} << std::min<std::size_t>(state.sliding.size(), 10)); ++corner) {
+    const auto alpha = fields_.corner_alpha(state.alpha, state.sliding, corner);
+    for (int j = 0; j < s_.kernel.switching_functions(); ++j) {
+      if (!contains(state.sliding, j) && alpha[at(j)] != state.alpha[at(j)]) {
+        return fail(result::Termination::outside_class,
+                    fmt::format("at t = {} the sign of '{}' depends on the selections of several sliding surfaces ({})",
+                                occasion_.t, s_.system.switching[at(j)].name, names(s_.system, state.sliding)));
+      }
+    }
+  }
+  return true;
+}
+
+/// The new mode must move to where it says: signs along its own field, selections inside [0, 1].
+bool Decider::check() {
+  auto& state = transition_.state;
+  if (transition_.beyond_spiral) {  // no field leads away from the intersection by itself
+    transition_.beside = transition_.beyond_spiral->x;
+    return true;
+  }
+  ModeField field(s_.kernel, s_.affine_in_alpha);
+  field.enter(state);
+  std::vector<double> xdot(at(s_.kernel.states()));
+  field(occasion_.t, occasion_.x, xdot.data());
+  transition_.beside = fields_.point_beside(state.alpha);
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) field(occasion_.t, transition_.beside.data(), xdot.data());
+  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) {
+    // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
+    for (const int j : state.sliding) {
+      if (!fields_.gradient_vanishes(state.alpha, j)) continue;
+      return fail(result::Termination::outside_class, undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
+    }
+    if (!state.sliding.empty()) {
+      return fail(result::Termination::evaluation_failed, fmt::format("the sliding field on {} is not finite at t = {}",
+                                                                      names(s_.system, state.sliding), occasion_.t));
+    }
+  }
+  for (const int j : state.sliding) {
+    const double selection = field.alpha()[at(j)];
+    // 1e-9: an exit located to rounding leaves the selection at its bound only to the conditioning of the quotient.
+    if (!(selection >= -1e-9 && selection <= 1.0 + 1e-9)) {
+      const auto& name = s_.system.switching[at(j)].name;
+      // Behind an exit located on one field the selection is at its bound, unless the other field vanishes with it.
+      const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
+      if (at_exit || fields_.nearly_two_fold(state.alpha, j)) {
+        return fail(result::Termination::outside_class,
+                    undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
+      }
+      return fail(result::Termination::no_admissible_mode,
+                  fmt::format("sliding on '{}' at t = {} would need the selection {}", name, occasion_.t, selection));
+    }
+    state.alpha[at(j)] = std::clamp(selection, 0.0, 1.0);
+  }
+  for (const int j : occasion_.at_zero) {
+    const int mode = state.mode[at(j)];
+    if (mode == 0) continue;
+    if (contains(standing_, j)) {
+      transition_.zero_order[at(j)] = 2;
+      continue;
+    }
+    double velocity = fields_.velocities(state.alpha, {j}).front();
+    const auto& tangent = mode > 0 ? occasion_.exit_above : occasion_.exit_below;
+    if (contains(tangent, j)) velocity = 0.0;
+    const double scale = std::max(std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
+                                  std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front()));
+    Motion motion = fields_.motion(state.alpha, j, velocity, scale);
+    const bool follows_selections =
+        std::any_of(state.sliding.begin(), state.sliding.end(), [&](int i) { return s_.kernel.depends(j, i); });
+    if (follows_selections && std::abs(velocity) <= sign_tolerance * scale) {
+      // A tangency along sliding whose selections change: no derivative with selections held speaks for it.
+      const double ahead = velocity_ahead(field, xdot, j);
+      motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
+    }
+    if (static_cast<int>(motion.side.drift) != mode) {
+      return fail(
+          result::Termination::no_admissible_mode,
+          fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not", occasion_.t,
+                      mode > 0 ? "the positive side" : "the negative side", s_.system.switching[at(j)].name));
+    }
+    transition_.zero_order[at(j)] = std::min(motion.order, 2);
+  }
+  return true;
+}
+
+/// Normal component of the mode's own field on a surface, a little later along it.
+double Decider::velocity_ahead(ModeField& field, const std::vector<double>& xdot, int surface) {
+  const double time = 1e-2 * occasion_.time_scale;
+  std::vector<double> x(occasion_.x, occasion_.x + xdot.size());
+  std::vector<double> later(xdot.size()), row(xdot.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * xdot[i];
+  field(occasion_.t + time, x.data(), later.data());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = occasion_.x[i] + 0.5 * time * (xdot[i] + later[i]);
+  field(occasion_.t + time, x.data(), later.data());
+  double velocity = 0.0;
+  s_.kernel.gradient(surface, occasion_.t + time, x.data(), field.alpha().data(), row.data(), &velocity);
+  for (std::size_t i = 0; i < x.size(); ++i) velocity += row[i] == 0.0 ? 0.0 : row[i] * later[i];
+  return velocity;
+}
+
+std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state, double t,
+                                            const double* x) {
+  Occasion occasion;
+  occasion.t = t;
+  occasion.x = x;
+  occasion.at_zero = state.sliding;
+  const ProjectedFields fields(surroundings.kernel, occasion);
+  for (const int j : state.sliding) {
+    if (fields.nearly_two_fold(state.alpha, j)) return two_fold_at(surroundings.system.switching[at(j)].name, t);
+  }
+  return std::nullopt;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,77 @@
+// What the sources of the switching at one point share: transition.cpp decides, transition_coupled.cpp where surfaces
+// influence each other, transition_check.cpp checks.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saltus/event_integrator/mode_field.hpp"
+#include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/event_integrator/transition.hpp"
+#include "saltus/switching/hidden_dynamics.hpp"
+#include "saltus/switching/intersection.hpp"
+
+namespace saltus::event_integrator {
+
+inline bool contains(const std::vector<int>& values, int value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+/// "a, b"
+std::string names(const model::System& system, const std::vector<int>& surfaces);
+
+std::string two_fold_at(const std::string& surface, double t);
+
+/// Why the motion on a surface is not determined.
+std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
+                            const std::vector<double>& alpha, int surface, double t);
+
+/// One pass over all groups with the selections of `state` for everything else.
+class Decider {
+ public:
+  Decider(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion)
+      : s_(surroundings), before_(before), occasion_(occasion), fields_(surroundings.kernel, occasion) {
+    transition_.state = before;
+    transition_.zero_order.assign(before.mode.size(), 0);
+  }
+
+  Transition run();
+  Transition run_forced();
+  Transition run_crossing(int jumping);
+
+ private:
+  bool decide(const std::vector<int>& group);
+  switching::GroupDecision ask(const std::vector<int>& group, const switching::CornerTable& table);
+  bool decide_coupled(const std::vector<int>& group, const switching::CornerTable& table);
+  std::optional<switching::PlaneDecision> ask_tree(const std::vector<int>& group,
+                                                   const switching::CornerTable& table) const;
+  bool accept(const std::vector<int>& group, const switching::PlaneDecision& decision);
+  bool accept_start(const std::vector<int>& group, const switching::CornerTable& table);
+  bool resolve(const std::vector<int>& group, const switching::CornerTable& table);
+  switching::HiddenDecision follow_hidden(const std::vector<int>& group, const switching::CornerTable& table);
+  void take(const std::vector<int>& group, const std::vector<int>& mode, const std::vector<double>& alpha);
+  void note_others(const std::vector<int>& group, const switching::PlaneModes& others);
+  bool spiral_out(const std::vector<int>& group, const switching::PlaneTable& table, switching::PlaneDecision decision);
+  double velocity_ahead(ModeField& field, const std::vector<double>& xdot, int surface);
+  switching::SurfaceDecision ask_selection(const switching::CornerTable& table, int surface);
+  bool read_nested_anew();
+  bool set_corners();
+  bool check();
+  bool fail(result::Termination termination, std::string message);
+
+  const Surroundings& s_;
+  const ModeState& before_;
+  const Occasion& occasion_;
+  ProjectedFields fields_;
+  ModeState base_;  ///< selections held while a group is decided
+  Transition transition_;
+  std::vector<std::pair<int, switching::SurfaceDecision>> decisions_;
+  std::vector<std::string> group_reasons_;  ///< of coupled groups
+  std::vector<int> standing_;               ///< surfaces that psi does not leave, without consequence for the field
+};
+
+}  // namespace saltus::event_integrator
