@@ -85,8 +85,8 @@ class BadInput(tool.ToolTest):
         self.refused("--set simulate.smoothed.epsilon: error: expected a finite number > 0, found 0", "simulate",
                      "crossing", "--set", "simulate.smoothed.epsilon=0")
         self.refused("did you mean 'smoothed'?", "simulate", "crossing", "--method", "smooth")
-        self.refused("a later one brings it", "simulate", "crossing", "--branch", "all")
-        self.refused("a later one brings it", "simulate", "crossing", "--branch", "3")
+        for wrong in ("0", "some", "1.5"):
+            self.refused('expected "report", "all" or a whole number >= 1', "simulate", "crossing", "--branch", wrong)
 
     def test_models(self):
         self.refused("did you mean 'crossing'?", "simulate", "crosing")

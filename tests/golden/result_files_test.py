@@ -82,6 +82,42 @@ class Json(tool.ToolTest):
         self.assertEqual(timeless("r.json"), timeless("s.json"))
 
 
+class Branches(tool.ToolTest):
+    def test_are_results_of_the_same_form(self):
+        out, _ = self.run_tool("simulate", "spontaneous-switch", "--branch", "all", "--out", "r.json", "--out", "r.csv",
+                               code=0)
+        self.assertIn("branches    2\n", out)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertEqual(list(result), [*KEYS, "branches"])
+        self.assertEqual(result["options"]["simulate.event.branches"], 64)
+        ends = [result["final"]["x"][0]]
+        for branch in result["branches"]:
+            self.assertEqual(list(branch), [*KEYS, "left_at"])
+            self.assertEqual(branch["model"], result["model"])
+            left = branch["left_at"]
+            taken = result["events"][left["event"]]["alternatives"][left["alternative"]]
+            self.assertEqual(branch["events"][0]["mode_after"], taken["mode"])
+            ends.append(branch["final"]["x"][0])
+        self.assertEqual(sorted(round(x, 12) for x in ends), [-1, 0, 1])
+        with open(self.folder / "r.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({row["branch"] for row in rows}, {"main", "1", "2"})
+        self.assertEqual(float(rows[-1]["x"]), result["branches"][1]["final"]["x"][0])
+        self.run_tool("report", "r.json", code=0)
+
+    def test_a_branch_that_stops_early_is_told(self):
+        # Downwards the right-hand side ends at x = -1/2.
+        model = self.write("m.toml", '[model]\nname = "m"\n[states]\nx = 0\n[dynamics]\n'
+                                     'x = "sign(x)/(x + 0.5)"\n[simulate]\nuntil = 5\nmax_steps = 1000\n'
+                                     '[simulate.event]\nbranches = "all"\n[[events]]\nwhen = "x + 0.49"\nstop = true\n')
+        self.run_tool("simulate", model, code=0)
+        model.write_text(model.read_text().split("[[events]]")[0])
+        out, err = self.run_tool("simulate", model, "--out", "r.json", code=3)
+        self.assertIn("branch 1 stopped early: ", err)
+        self.assertIn("completed at t = 5\n", out)
+        self.assertTrue((self.folder / "r.json").exists())
+
+
 class Atomicity(tool.ToolTest):
     def test_an_existing_file_survives_a_run_that_fails(self):
         model = self.write("m.toml", '[model]\nname = "m"\n[states]\nx = 0\n[dynamics]\nx = "y"\n[simulate]\nuntil = 1\n')

@@ -17,8 +17,9 @@ constexpr auto patience = std::chrono::milliseconds(300);
 
 std::string progress_text(const pipeline::StepRecord& step) {
   const double share = (step.t - step.from) / (step.until - step.from);
-  return fmt::format("t = {:.6g}   {:.0f} %   {} steps   {} events", step.t, 100.0 * std::clamp(share, 0.0, 1.0),
-                     step.steps, step.events);
+  const auto which = step.trajectories > 1 ? fmt::format("{} of {}   ", step.trajectory, step.trajectories) : "";
+  return which + fmt::format("t = {:.6g}   {:.0f} %   {} steps   {} events", step.t,
+                             100.0 * std::clamp(share, 0.0, 1.0), step.steps, step.events);
 }
 
 ProgressLine::ProgressLine(ShowProgress show)

@@ -31,7 +31,7 @@ class ProgressLine {
   Clock::time_point next_;
 };
 
-/// "t = 12.5   31 %   1234 steps   6 events".
+/// "t = 12.5   31 %   1234 steps   6 events"; "3 of 7   …" with several trajectories.
 [[nodiscard]] std::string progress_text(const pipeline::StepRecord& step);
 
 }  // namespace saltus::cli

@@ -35,7 +35,8 @@ constexpr std::array shortcuts{
     Shortcut{"--rtol", "simulate.rtol", "R", "relative tolerance"},
     Shortcut{"--atol", "simulate.atol", "A", "absolute tolerance"},
     Shortcut{"--integrator", "simulate.event.integrator", "I", "dopri5, dop853 or radau5"},
-    Shortcut{"--branch", "simulate.event.branches", "B", "report (following branches comes with a later version)"},
+    Shortcut{"--branch", "simulate.event.branches", "report|all|K",
+             "report, all or K: follow other admissible motions, at most K trajectories"},
 };
 
 struct Arguments {
@@ -67,6 +68,7 @@ void complete_record(const ModelInput& input, result::Result& result) {
   for (const auto& value : input.file.description.inputs) {
     result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));
   }
+  for (auto& branch : result.branches) complete_record(input, branch);
 }
 
 Expected<result::Result> compute(const Arguments& arguments, const ModelInput& input, const Outputs& outputs) {
@@ -87,6 +89,23 @@ Expected<result::Result> compute(const Arguments& arguments, const ModelInput& i
   return result;
 }
 
+/// Says which trajectories stopped early, if any did.
+ExitCode report_stops(const result::Result& result) {
+  constexpr std::size_t most_said = 5;
+  const auto tree = result::tree(result);
+  std::size_t stopped = 0;
+  for (const auto& entry : tree) {
+    const auto& status = entry.result->status;
+    if (is_done(status.termination) || ++stopped > most_said) continue;
+    const bool says_when = status.message.find("t = ") != std::string::npos;
+    print_error(fmt::format("{}stopped early: {}{}{}{}", entry.result == &result ? "" : "branch " + entry.label + " ",
+                            name(status.termination), says_when ? "" : fmt::format(" at t = {}", status.time_reached),
+                            status.message.empty() ? "" : ": ", status.message));
+  }
+  if (stopped > most_said) print_error(fmt::format("and {} more branches stopped early", stopped - most_said));
+  return stopped == 0 ? ExitCode::done : ExitCode::stopped_early;
+}
+
 ExitCode run(const Arguments& arguments) {
   auto input = read_input(arguments.model, arguments.settings);
   if (!input) return refuse(input.error());
@@ -101,13 +120,7 @@ ExitCode run(const Arguments& arguments) {
   const auto written = outputs->write(*result);
   if (!arguments.quiet) print(report::to_table(*result));  // also if nothing could be written: it is all that is left
   if (!written) return refuse(written.error());
-  if (is_done(result->status.termination)) return ExitCode::done;
-  const auto& status = result->status;
-  const bool says_when = status.message.find("t = ") != std::string::npos;
-  print_error(fmt::format("stopped early: {}{}{}{}", name(status.termination),
-                          says_when ? "" : fmt::format(" at t = {}", status.time_reached),
-                          status.message.empty() ? "" : ": ", status.message));
-  return ExitCode::stopped_early;
+  return report_stops(*result);
 }
 
 std::string footer() {

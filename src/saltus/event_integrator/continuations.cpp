@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace saltus::event_integrator {
 namespace {
 
 /// The same mode with the same selections: on an intersection there may be two sliding motions.
-bool is_same(const ModeState& state, const std::vector<int>& mode, const std::vector<double>& alpha) {
-  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-6; };
-  return state.mode == mode && std::equal(alpha.begin(), alpha.end(), state.alpha.begin(), near);
+bool is_same(const ModeState& a, const ModeState& b) {
+  const auto near = [](double first, double second) { return std::abs(first - second) <= 1e-6; };
+  return a.mode == b.mode && std::equal(a.alpha.begin(), a.alpha.end(), b.alpha.begin(), near);
 }
 
 }  // namespace
@@ -39,12 +41,24 @@ std::optional<Transition> decide_with(const Surroundings& surroundings, const Mo
 void other_continuations(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion,
                          Transition& transition) {
   for (const auto& choice : transition.other_choices) {
-    const auto other = decide_with(surroundings, before, occasion, choice);
-    if (!other || is_same(other->state, transition.state.mode, transition.state.alpha)) continue;
+    auto other = decide_with(surroundings, before, occasion, choice);
+    if (!other || is_same(other->state, transition.state)) continue;
     const bool known = std::any_of(transition.alternatives.begin(), transition.alternatives.end(),
-                                   [&](const Continuation& c) { return is_same(other->state, c.mode, c.alpha); });
-    if (!known) transition.alternatives.push_back({other->state.mode, other->state.alpha});
+                                   [&](const Transition& t) { return is_same(other->state, t.state); });
+    if (!known) transition.alternatives.push_back(std::move(*other));
   }
+}
+
+Transition alternative_of(Transition decided, std::size_t alternative) {
+  std::vector<Transition> others = std::move(decided.alternatives);
+  decided.alternatives.clear();
+  Transition taken = std::move(others[alternative]);
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(alternative));
+  others.insert(others.begin(), std::move(decided));
+  taken.alternatives = std::move(others);
+  taken.unique = false;
+  taken.reason = "followed as a branch" + (taken.reason.empty() ? "" : "; " + taken.reason);
+  return taken;
 }
 
 }  // namespace saltus::event_integrator

@@ -1,6 +1,7 @@
 // The other admissible modes at a point where the solution is not unique, and modes that a user prefers there.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -19,5 +20,9 @@ namespace saltus::event_integrator {
 /// admissible, each once.
 void other_continuations(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion,
                          Transition& transition);
+
+/// The transition to one of the alternatives; what was decided is the first among its alternatives then.
+/// @param alternative  below the number of decided.alternatives
+[[nodiscard]] Transition alternative_of(Transition decided, std::size_t alternative);
 
 }  // namespace saltus::event_integrator

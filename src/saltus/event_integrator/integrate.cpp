@@ -154,6 +154,8 @@ bool Run::begin() {
     fail(start.transition.termination, start.transition.message);
     return false;
   }
+  choose(start.transition);
+  state_ = start.transition.state;
   landing.transition = start.transition;
   if (!enter(start.transition) || !settle_at_start(landing)) {
     recorder_.row(t_, x_, state_.mode, state_.alpha);
@@ -209,6 +211,8 @@ Integration Run::to_end() {
   result_.statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
   result_.events = recorder_.take_events();
   result_.trajectory = recorder_.take_trajectory();
+  result_.branch_points = recorder_.take_branch_points();
+  begin_at_choice();
   const auto& rows = result_.trajectory;
   result_.final = {t_, rows.x.back(), rows.mode.back(), rows.alpha.back(), rows.outputs.back()};
   return std::move(result_);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/choices.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/ode/stepper.hpp"
 #include "saltus/result/result.hpp"
@@ -35,6 +36,8 @@ struct IntegrationOptions {
   /// Where the limit of regularised solutions depends on their scaling.
   switching::SelectionPolicy selection = switching::SelectionPolicy::active_dominant;
   std::vector<double> scaling;  ///< for SelectionPolicy::scaled: a factor per switching function; empty = ones
+  /// Ascending: what to go on with instead of what is decided. The result begins at the last of these decisions.
+  std::vector<Choice> choices;
 };
 
 struct Progress {
@@ -51,13 +54,17 @@ struct Integration {
   result::Final final;
   std::vector<result::Event> events;
   result::Trajectory trajectory;
-  result::Statistics statistics;  ///< wall_seconds is left to the caller
+  result::Statistics statistics;           ///< wall_seconds is left to the caller
+  std::vector<BranchPoint> branch_points;  ///< events with alternatives behind the last choice, ascending
+  bool chosen = true;                      ///< false: it stopped before the last choice, and begins at its own start
 };
 
 /// Integrates xdot in F(t, x) by classical and sliding motion, mode by mode ([guglielmi2022], sections 3, 4.1, 4.2).
 ///
 /// Between events the order is that of the method: a switch is found on the dense output, then the step is retaken to
 /// exactly that time and corrected until the event function is at rounding level.
+/// With choices it is the same run up to the last of them, with everything that waits, is held or was seen there, goes
+/// on in the chosen mode, and has that event with its two rows first.
 /// @return everything computed up to the termination; never throws for numerical reasons. Independent of the output
 ///         times bit for bit.
 /// Cost: evaluations of f (m + 1 or m + 2 per evaluation while sliding on m surfaces), 9 of the event functions a step.

@@ -71,8 +71,9 @@ void Recorder::add_transition(result::Event event, const Transition& transition)
   event.unique = transition.unique;
   event.reason += (event.reason.empty() || transition.reason.empty() ? "" : "; ") + transition.reason;
   for (const auto& other : transition.alternatives) {
-    event.alternatives.push_back({mode_columns(other.mode, other.alpha), alpha_columns(other.alpha)});
+    event.alternatives.push_back({mode_columns(other.state.mode, other.state.alpha), alpha_columns(other.state.alpha)});
   }
+  if (!event.alternatives.empty()) branch_points_.push_back({events_.size(), transition.decision});
   events_.push_back(std::move(event));
 }
 

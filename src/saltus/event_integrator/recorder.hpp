@@ -1,11 +1,13 @@
 // Rows and events of a run, in the columns of the result.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/choices.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/model/system.hpp"
@@ -47,8 +49,10 @@ class Recorder {
 
   [[nodiscard]] std::vector<result::Event> take_events() { return std::move(events_); }
   [[nodiscard]] result::Trajectory take_trajectory() { return std::move(trajectory_); }
+  [[nodiscard]] std::vector<BranchPoint> take_branch_points() { return std::move(branch_points_); }
   [[nodiscard]] bool ends_at(double t) const { return !trajectory_.t.empty() && trajectory_.t.back() == t; }
   [[nodiscard]] long events() const { return static_cast<long>(events_.size()); }
+  [[nodiscard]] std::size_t rows() const { return trajectory_.t.size(); }
 
  private:
   [[nodiscard]] result::Mode mode_columns(const std::vector<int>& mode, const std::vector<double>& alpha) const;
@@ -59,6 +63,7 @@ class Recorder {
   const model::System& system_;
   result::Trajectory trajectory_;
   std::vector<result::Event> events_;
+  std::vector<BranchPoint> branch_points_;
 };
 
 }  // namespace saltus::event_integrator

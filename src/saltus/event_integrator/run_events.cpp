@@ -114,6 +114,7 @@ bool Run::go_on() {
     fail(transition.termination, std::move(transition.message));
     return false;
   }
+  choose(transition);
   if (series_.repeats(t_, before_.mode, transition.state.mode)) {
     accumulates();
     return false;
@@ -148,6 +149,7 @@ Run::Arrival Run::arrive(RowBefore row) {
   jumped_ = false;
   cells_before_ = cells_.indices();
   cell_change_ = CellChange::none;
+  arrival_row_ = recorder_.rows() - (row == RowBefore::written ? 1 : 0);
   return {recorder_.events(), row};
 }
 

@@ -73,6 +73,8 @@ class Run {
   Step handle(const Located& located);
   Arrival arrive(RowBefore row);
   Step depart(const Arrival& arrival);
+  void choose(Transition& transition);
+  void begin_at_choice();
   bool change_mode(const Located& located);
   CellChange leave_cells(const Located& located);
   bool jump_with_cells();
@@ -173,6 +175,11 @@ class Run {
   double h_scale_ = 0.0;                     ///< of the last full step: time scale of the second-order sign tests
   std::size_t next_output_ = 0;
   bool jumped_ = false;  ///< at the event in hand
+  long decisions_ = 0;   ///< with alternatives, so far
+  std::size_t next_choice_ = 0;
+  std::size_t arrival_row_ = 0;  ///< the row before the event in hand, as are those of the last choice
+  std::size_t choice_row_ = 0;
+  result::Statistics before_choice_;
   double last_event_time_ = -std::numeric_limits<double>::infinity();
   long evaluations_before_;  ///< the kernel may have been used before
   SwitchSeries series_;

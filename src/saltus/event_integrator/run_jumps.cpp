@@ -155,6 +155,7 @@ bool Run::decide_behind_jumps(Landing& landing) {
     fail(landing.transition.termination, landing.transition.message);
     return false;
   }
+  choose(landing.transition);
   return enter(landing.transition);
 }
 

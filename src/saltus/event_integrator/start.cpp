@@ -143,10 +143,11 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   start.transition.unique =
       decided.state.mode == start.transition.state.mode ? decided.unique : std::optional<bool>(false);
   if (decided.state.mode != start.transition.state.mode) {
-    start.transition.alternatives.push_back({decided.state.mode, decided.state.alpha});
+    start.transition.alternatives.push_back(decided);
+    start.transition.alternatives.back().alternatives.clear();
   }
   for (const auto& other : decided.alternatives) {
-    if (other.mode != start.transition.state.mode) start.transition.alternatives.push_back(other);
+    if (other.state.mode != start.transition.state.mode) start.transition.alternatives.push_back(other);
   }
   return start;
 }

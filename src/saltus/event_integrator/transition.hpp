@@ -30,12 +30,6 @@ struct Occasion {
   double time_scale = 1.0;        ///< a step of the integrator: derivatives that do not move psi over it vanish
 };
 
-/// A mode of all switching functions with its selections.
-struct Continuation {
-  std::vector<int> mode;
-  std::vector<double> alpha;
-};
-
 /// A mode of one surface that is given, with its selection if that is known.
 struct GivenMode {
   int surface = 0;
@@ -61,7 +55,8 @@ struct Transition {
   /// from.
   std::vector<std::vector<GivenMode>> other_choices;
   std::optional<SpiralStart> beyond_spiral;  ///< the mode is the first region of a spiral: where to go on
-  std::vector<Continuation> alternatives;    ///< the other admissible modes as a whole
+  std::vector<Transition> alternatives;      ///< to the other admissible modes; these have no alternatives of their own
+  long decision = -1;                        ///< its number in the run, of those with alternatives
   std::string reason;
 };
 

@@ -20,6 +20,18 @@ void append(std::string& text, const Row& row) {
   for (const auto value : row) fmt::format_to(std::back_inserter(text), ",{}", value);
 }
 
+/// One line for every row, each with `end` behind it.
+void append_rows(std::string& text, const result::Trajectory& trajectory, const std::string& end) {
+  for (std::size_t i = 0; i < trajectory.t.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{}", trajectory.t[i]);
+    append(text, trajectory.x[i]);
+    append(text, trajectory.u[i]);
+    append(text, trajectory.alpha[i]);
+    append(text, trajectory.mode[i]);
+    text += end + "\n";
+  }
+}
+
 }  // namespace
 
 std::string to_csv(const result::Result& result) {
@@ -28,15 +40,10 @@ std::string to_csv(const result::Result& result) {
   for (const auto& control : result.controls) text += "," + field(control);
   for (const auto& name : result.switching_functions) text += "," + field("alpha(" + name + ")");
   for (const auto& name : result.switching_functions) text += "," + field("mode(" + name + ")");
-  text += "\n";
-  const auto& trajectory = result.trajectory;
-  for (std::size_t i = 0; i < trajectory.t.size(); ++i) {
-    fmt::format_to(std::back_inserter(text), "{}", trajectory.t[i]);
-    append(text, trajectory.x[i]);
-    append(text, trajectory.u[i]);
-    append(text, trajectory.alpha[i]);
-    append(text, trajectory.mode[i]);
-    text += "\n";
+  const bool with_branches = !result.branches.empty();
+  text += with_branches ? ",branch\n" : "\n";
+  for (const auto& [part, label, parent] : result::tree(result)) {
+    append_rows(text, part->trajectory, with_branches ? "," + label : "");
   }
   return text;
 }

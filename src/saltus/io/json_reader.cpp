@@ -186,8 +186,7 @@ void read_options(JsonReader& reader, const Json& json, const std::string& path,
 
 /// Every row of a table must have as many entries as there are names, and every table as many rows as times.
 template <class Rows>
-void check_rows(JsonReader& reader, const char* table, const Rows& rows, std::size_t times, std::size_t names) {
-  const auto path = fmt::format("/trajectory/{}", table);
+void check_rows(JsonReader& reader, const std::string& path, const Rows& rows, std::size_t times, std::size_t names) {
   if (rows.size() != times) {
     reader.fail(path, fmt::format("expected as many rows as times, {}, found {}", times, rows.size()));
   }
@@ -229,25 +228,43 @@ void check_surface(JsonReader& reader, const result::Surface& surface, const std
 }
 
 /// What tables and reports rely on when they index.
-void check_shapes(JsonReader& reader, const result::Result& result) {
+void check_shapes(JsonReader& reader, const std::string& path, const result::Result& result) {
   const auto& trajectory = result.trajectory;
   const std::size_t times = trajectory.t.size();
   const std::size_t columns = result.switching_functions.size();
-  check_rows(reader, "x", trajectory.x, times, result.states.size());
-  check_rows(reader, "u", trajectory.u, times, result.controls.size());
-  check_rows(reader, "alpha", trajectory.alpha, times, columns);
-  check_rows(reader, "mode", trajectory.mode, times, columns);
-  check_rows(reader, "outputs", trajectory.outputs, times, result.outputs.size());
-  check_length(reader, "/final/x", result.final.x, result.states.size());
-  check_length(reader, "/final/mode", result.final.mode, columns);
-  check_length(reader, "/final/alpha", result.final.alpha, columns);
-  check_length(reader, "/final/outputs", result.final.outputs, result.outputs.size());
+  check_rows(reader, path + "/trajectory/x", trajectory.x, times, result.states.size());
+  check_rows(reader, path + "/trajectory/u", trajectory.u, times, result.controls.size());
+  check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, columns);
+  check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, columns);
+  check_rows(reader, path + "/trajectory/outputs", trajectory.outputs, times, result.outputs.size());
+  check_length(reader, path + "/final/x", result.final.x, result.states.size());
+  check_length(reader, path + "/final/mode", result.final.mode, columns);
+  check_length(reader, path + "/final/alpha", result.final.alpha, columns);
+  check_length(reader, path + "/final/outputs", result.final.outputs, result.outputs.size());
   for (std::size_t i = 0; i < result.events.size(); ++i) {
-    check_event_lengths(reader, result.events[i], fmt::format("/events/{}", i), result.states.size(), columns);
+    check_event_lengths(reader, result.events[i], fmt::format("{}/events/{}", path, i), result.states.size(), columns);
   }
   for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
-    check_surface(reader, result.surfaces[i], fmt::format("/surfaces/{}", i), result.states);
+    check_surface(reader, result.surfaces[i], fmt::format("{}/surfaces/{}", path, i), result.states);
   }
+}
+
+/// A branch has the columns of its parent, and leaves it at an alternative of an event that it lists.
+void check_branch(JsonReader& reader, const std::string& path, const result::Result& parent,
+                  const result::Result& branch) {
+  const bool same = branch.states == parent.states && branch.controls == parent.controls &&
+                    branch.switching_functions == parent.switching_functions && branch.outputs == parent.outputs;
+  if (!same) reader.fail(path, "expected the states, controls, switching functions and outputs of what it leaves");
+  if (!branch.left_at) {
+    reader.fail(path, "'left_at' is missing");
+    return;
+  }
+  const auto& [event, alternative] = *branch.left_at;
+  if (event >= parent.events.size() || alternative >= parent.events[event].alternatives.size()) {
+    reader.fail(path + "/left_at",
+                fmt::format("what it leaves has no alternative {} of an event {}", alternative, event));
+  }
+  if (branch.events.empty()) reader.fail(path + "/events", "expected the event at which it leaves, found none");
 }
 
 void read_format(JsonReader& reader, const Json& json) {
@@ -259,30 +276,60 @@ void read_format(JsonReader& reader, const Json& json) {
 
 /// Applies a reader of a part to the member `key`.
 template <class Read, class Part>
-void read_part(JsonReader& reader, const Json& json, const char* key, Read read, Part& part) {
-  if (const auto* member = reader.member(json, "", key)) read(reader, *member, std::string("/") + key, part);
+void read_part(JsonReader& reader, const Json& json, const std::string& path, const char* key, Read read, Part& part) {
+  if (const auto* member = reader.member(json, path, key)) read(reader, *member, path + "/" + key, part);
 }
 
-result::Result read_whole(JsonReader& reader, const Json& json) {
+void read_departure(JsonReader& reader, const Json& json, const std::string& path,
+                    std::optional<result::Departure>& left_at) {
+  const auto number = [&](const char* key) {
+    std::int64_t value = 0;
+    reader.read_member(json, path, key, value);
+    if (value < 0) reader.fail(path + "/" + key, fmt::format("expected a number from 0, found {}", value));
+    return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
+  };
+  left_at = result::Departure{number("event"), number("alternative")};
+}
+
+result::Result read_whole(JsonReader& reader, const Json& json, const std::string& path, int depth);
+
+void read_branches(JsonReader& reader, const Json& json, const std::string& path, int depth, result::Result& result) {
+  constexpr int deepest = 500;  // one level for every decision on the way to a branch
+  if (depth > deepest) reader.fail(path, fmt::format("branches of branches, more than {} deep", deepest));
+  if (!json.is_array()) reader.mismatch(path, "a list", json);
+  for (std::size_t i = 0; i < json.size() && !reader.error(); ++i) {
+    const auto here = fmt::format("{}/{}", path, i);
+    result.branches.push_back(read_whole(reader, json[i], here, depth));
+    if (!reader.error()) check_branch(reader, here, result, result.branches.back());
+  }
+}
+
+result::Result read_whole(JsonReader& reader, const Json& json, const std::string& path, int depth) {
   result::Result result;
-  read_format(reader, json);
-  if (reader.error()) return result;
-  read_part(reader, json, "model", read_model, result.model);
-  reader.read_member(json, "", "command", result.command);
-  reader.read_member(json, "", "method", result.method);
-  read_part(reader, json, "status", read_status, result.status);
-  reader.read_member(json, "", "states", result.states);
-  reader.read_member(json, "", "controls", result.controls);
-  reader.read_member(json, "", "switching_functions", result.switching_functions);
-  reader.read_member(json, "", "outputs", result.outputs);
-  read_part(reader, json, "final", read_final, result.final);
-  read_part(reader, json, "events", read_events, result.events);
-  read_part(reader, json, "trajectory", read_trajectory, result.trajectory);
+  read_part(reader, json, path, "model", read_model, result.model);
+  reader.read_member(json, path, "command", result.command);
+  reader.read_member(json, path, "method", result.method);
+  read_part(reader, json, path, "status", read_status, result.status);
+  reader.read_member(json, path, "states", result.states);
+  reader.read_member(json, path, "controls", result.controls);
+  reader.read_member(json, path, "switching_functions", result.switching_functions);
+  reader.read_member(json, path, "outputs", result.outputs);
+  read_part(reader, json, path, "final", read_final, result.final);
+  read_part(reader, json, path, "events", read_events, result.events);
+  read_part(reader, json, path, "trajectory", read_trajectory, result.trajectory);
   // Results of versions before surfaces were recorded have none.
-  if (json.contains("surfaces")) read_part(reader, json, "surfaces", read_surfaces, result.surfaces);
-  read_part(reader, json, "statistics", read_statistics, result.statistics);
-  read_part(reader, json, "options", read_options, result.options);
-  if (!reader.error()) check_shapes(reader, result);
+  if (json.is_object() && json.contains("surfaces")) {
+    read_part(reader, json, path, "surfaces", read_surfaces, result.surfaces);
+  }
+  read_part(reader, json, path, "statistics", read_statistics, result.statistics);
+  read_part(reader, json, path, "options", read_options, result.options);
+  if (json.is_object() && json.contains("left_at")) {
+    read_part(reader, json, path, "left_at", read_departure, result.left_at);
+  }
+  if (!reader.error()) check_shapes(reader, path, result);
+  if (json.is_object() && json.contains("branches")) {
+    read_branches(reader, json["branches"], path + "/branches", depth + 1, result);
+  }
   return result;
 }
 
@@ -309,7 +356,9 @@ Expected<result::Result> parse_result(const std::string& text, const std::string
     return tl::unexpected(syntax_error(text, file, 1));
   }
   JsonReader reader(file);
-  auto result = read_whole(reader, json);
+  result::Result result;
+  read_format(reader, json);
+  if (!reader.error()) result = read_whole(reader, json, "", 0);
   if (reader.error()) return tl::unexpected(*reader.error());
   return result;
 }

@@ -131,6 +131,13 @@ Json whole_json(const result::Result& result) {
                         {"rhs_evaluations", result.statistics.rhs_evaluations},
                         {"wall_seconds", result.statistics.wall_seconds}};
   json["options"] = options_json(result.options);
+  if (result.left_at) {
+    json["left_at"] = {{"event", result.left_at->event}, {"alternative", result.left_at->alternative}};
+  }
+  if (!result.branches.empty()) {
+    json["branches"] = Json::array();
+    for (const auto& branch : result.branches) json["branches"].push_back(whole_json(branch));
+  }
   return json;
 }
 

@@ -254,20 +254,27 @@ void record_max_step(const SimulateOptions& options, std::string_view key, Optio
 }
 
 Expected<void> set_branches(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  constexpr long all = 64;
   const auto* word = std::get_if<std::string>(&value);
   const auto* count = std::get_if<std::int64_t>(&value);
-  if ((word != nullptr && *word == "all") || (count != nullptr && *count >= 1)) {
-    return tl::unexpected(later("following other branches", "\"report\", which lists them in every event"));
-  }
-  if (word == nullptr || *word != "report") {
+  if (word != nullptr && *word == "report") {
+    options.event.trajectories = 1;
+  } else if (word != nullptr && *word == "all") {
+    options.event.trajectories = all;
+  } else if (count != nullptr && *count >= 1) {
+    options.event.trajectories = *count;
+  } else {
     return tl::unexpected(out_of_range("\"report\", \"all\" or a whole number >= 1", value));
   }
-  options.event.branches = *word;
   return {};
 }
 
 void record_branches(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
-  record.emplace_back(key, options.event.branches);
+  if (options.event.trajectories == 1) {
+    record.emplace_back(key, std::string("report"));
+  } else {
+    record.emplace_back(key, std::int64_t{options.event.trajectories});
+  }
 }
 
 constexpr std::array fields{
@@ -307,8 +314,10 @@ constexpr std::array fields{
                 set_choice<selection, selections>, record_choice<selection, selections>},
     OptionField{"event.scaling.*", "a finite number > 0", "Scale of a surface for selection = \"scaled\".", set_scaling,
                 record_scaling},
-    OptionField{"event.branches", "report", "List other admissible motions; following them comes with a later version.",
-                set_branches, record_branches},
+    OptionField{
+        "event.branches", "report, all, or a whole number >= 1",
+        "Other admissible motions: only listed in the events, or followed, so many trajectories at most (all: 64).",
+        set_branches, record_branches},
     OptionField{"smoothed.epsilon", "a finite number > 0",
                 "Half width of the layer around every surface, in the units of its switching function.",
                 set_number<epsilon, Range::positive>, record_number<epsilon>},

@@ -10,6 +10,7 @@
 
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 #include "saltus/smoothed/regularise.hpp"
 #include "saltus/smoothed/restate.hpp"
@@ -144,6 +145,7 @@ class Integrand {
   /// What was computed, over the columns of the original system.
   [[nodiscard]] event_integrator::Integration restated(event_integrator::Integration run) const {
     if (!regularisation_) return run;
+    run.branch_points.clear();  // the regularised system has one solution
     smoothed::restate(*regularisation_, run.events, run.trajectory, run.status);
     const auto& rows = run.trajectory;
     run.final.mode = rows.mode.back();
@@ -193,31 +195,38 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   }
   const auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
-  const auto begin = std::chrono::steady_clock::now();
+  auto begin = std::chrono::steady_clock::now();
   const auto integrand_or = integrand(system, options);
   if (!integrand_or) return tl::unexpected(integrand_or.error());
   auto kernel = evaluation::ModelKernel::compile(integrand_or->system(), native_code(options.native));
   if (!kernel) return tl::unexpected(kernel.error());
 
-  event_integrator::StepObserver observer;
-  if (observers.on_step) {
-    observer = [&](const event_integrator::Progress& progress) {
-      const auto answer =
-          observers.on_step({progress.t, integration_or->from, integration_or->until, progress.steps, progress.events});
-      return answer == Proceed::on ? event_integrator::Continue::yes : event_integrator::Continue::no;
-    };
-  }
-  auto run =
-      integrand_or->restated(event_integrator::integrate(*kernel, integrand_or->system(), *integration_or, observer));
-
-  result::Result result = frame(system, options);
-  result.status = std::move(run.status);
-  result.final = std::move(run.final);
-  result.events = std::move(run.events);
-  result.trajectory = std::move(run.trajectory);
-  result.statistics = run.statistics;
-  result.statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return result;
+  auto integration = *integration_or;
+  const auto run_one = [&](const Path& path, const Count& count) -> Followed {
+    event_integrator::StepObserver observer;
+    if (observers.on_step) {
+      observer = [&](const event_integrator::Progress& progress) {
+        const auto answer = observers.on_step({progress.t, integration.from, integration.until, progress.steps,
+                                               progress.events, count.number, count.known});
+        return answer == Proceed::on ? event_integrator::Continue::yes : event_integrator::Continue::no;
+      };
+    }
+    integration.choices = path;
+    auto run =
+        integrand_or->restated(event_integrator::integrate(*kernel, integrand_or->system(), integration, observer));
+    Followed followed{frame(system, options), std::move(run.branch_points), run.chosen};
+    auto& result = followed.result;
+    result.status = std::move(run.status);
+    result.final = std::move(run.final);
+    result.events = std::move(run.events);
+    result.trajectory = std::move(run.trajectory);
+    result.statistics = run.statistics;
+    const auto end = std::chrono::steady_clock::now();
+    result.statistics.wall_seconds = std::chrono::duration<double>(end - begin).count();
+    begin = end;
+    return followed;
+  };
+  return follow_branches(run_one, options.event.trajectories);
 }
 
 }  // namespace saltus::pipeline

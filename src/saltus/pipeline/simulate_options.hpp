@@ -16,9 +16,15 @@ enum class Selection { active_dominant, passive_dominant, scaled, report };
 
 /// Rows of the trajectory beside the two of every event.
 struct EveryStep {};
-struct EveryInterval { double interval = 0.0; };
-struct NumberOfPoints { int points = 0; };  ///< both ends among them, >= 2
-struct AtTimes { std::vector<double> times; };
+struct EveryInterval {
+  double interval = 0.0;
+};
+struct NumberOfPoints {
+  int points = 0;
+};  ///< both ends among them, >= 2
+struct AtTimes {
+  std::vector<double> times;
+};
 using OutputGrid = std::variant<EveryStep, EveryInterval, NumberOfPoints, AtTimes>;
 
 /// [simulate.event]
@@ -27,7 +33,7 @@ struct EventOptions {
   std::optional<double> max_step;  ///< none by default
   Selection selection = Selection::active_dominant;
   std::vector<std::pair<std::string, double>> scaling;
-  std::string branches = "report";
+  long trajectories = 1;  ///< at most so many along other admissible modes; 1: those are only listed in the events
 };
 
 /// [simulate.smoothed]

@@ -142,6 +142,49 @@ std::string event_table(const result::Result& result) {
   return count + aligned(rows);
 }
 
+/// The first states, as many as fit.
+std::string short_state(const result::Result& result) {
+  constexpr std::size_t room = 40;
+  std::string text;
+  for (std::size_t i = 0; i < result.states.size() && i < result.final.x.size(); ++i) {
+    const auto piece = fmt::format("{}{} = {:.6g}", i > 0 ? "  " : "", result.states[i], result.final.x[i]);
+    if (i > 0 && width(text) + width(piece) > room) return text + " …";
+    text += piece;
+  }
+  return text;
+}
+
+/// One line for every other continuation that was followed, and how many were not.
+std::string branch_table(const result::Result& result) {
+  constexpr std::size_t most_lines = 64;
+  const auto tree = result::tree(result);
+  std::size_t left_out = 0;
+  for (const auto& entry : tree) left_out += result::not_followed(*entry.result);
+  if (tree.size() == 1) {
+    if (left_out == 0) return "";
+    return paragraph("branches", fmt::format("{} other continuation{} not followed: --branch all follows them",
+                                             left_out, left_out == 1 ? "" : "s"));
+  }
+  const std::size_t columns = result.switching_functions.size();
+  const bool with_modes = columns > 0 && columns <= most_signs;
+  std::vector<Row> rows{{"#", "leaves", "at t", with_modes ? "into" : "", "events", "ends", "with"}};
+  for (std::size_t i = 1; i < std::min(tree.size(), most_lines + 1); ++i) {
+    const auto& [branch, label, parent] = tree[i];
+    const auto event = branch->left_at ? branch->left_at->event + 1 : 0;
+    const bool begun = !branch->events.empty();
+    rows.push_back({label, fmt::format("{}, event {}", tree[parent].label, event),
+                    begun ? fmt::format("{:.12g}", branch->events.front().t) : "",
+                    with_modes && begun ? signs(branch->events.front().mode_after) : "",
+                    fmt::format("{}", branch->events.size()),
+                    fmt::format("{} at {:.6g}", name(branch->status.termination), branch->status.time_reached),
+                    short_state(*branch)});
+  }
+  if (tree.size() > most_lines + 1) rows.push_back({"…", "", "", "", "", "", ""});
+  return fmt::format("branches    {}{}\n", tree.size() - 1,
+                     left_out > 0 ? fmt::format(", {} more not followed", left_out) : "") +
+         aligned(rows);
+}
+
 std::string method_text(const result::Result& result) {
   const auto value_of = [&](std::string_view key, std::string_view form) -> std::string {
     for (const auto& [name, value] : result.options) {
@@ -197,6 +240,7 @@ std::string to_table(const result::Result& result) {
   if (!result.status.message.empty()) text += paragraph("", result.status.message);
   text += end_state(result);
   text += event_table(result);
+  text += branch_table(result);
   const auto& statistics = result.statistics;
   text += paragraph("statistics", fmt::format("{} steps, {} rejected, {} evaluations of the right-hand side, {:.3g} s",
                                               statistics.steps, statistics.rejected, statistics.rhs_evaluations,

@@ -1,5 +1,6 @@
 #include "saltus/result/result.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "saltus/base/contracts.hpp"
@@ -67,6 +68,29 @@ EventKind kind_of_switch(const Mode& before, const Mode& after) {
   if (entered > 0) return EventKind::enter_sliding;
   if (left > 0) return EventKind::leave_sliding;
   return EventKind::crossing;
+}
+
+std::vector<TreeEntry> tree(const Result& root) {
+  std::vector<TreeEntry> entries{{&root, "main", 0}};
+  const auto add = [&entries](const auto& self, std::size_t parent) -> void {
+    const auto& branches = entries[parent].result->branches;
+    const std::string prefix = parent == 0 ? "" : entries[parent].label + ".";
+    for (std::size_t i = 0; i < branches.size(); ++i) {
+      entries.push_back({&branches[i], prefix + std::to_string(i + 1), parent});
+      self(self, entries.size() - 1);
+    }
+  };
+  add(add, 0);
+  return entries;
+}
+
+std::size_t not_followed(const Result& result) {
+  std::size_t listed = 0;
+  // The alternatives to a branch's own first mode belong to its parent.
+  for (std::size_t i = result.left_at ? 1 : 0; i < result.events.size(); ++i) {
+    listed += result.events[i].alternatives.size();
+  }
+  return listed - std::min(listed, result.branches.size());
 }
 
 }  // namespace saltus::result

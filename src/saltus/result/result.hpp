@@ -1,6 +1,7 @@
 // One result for every method: plain data, everything a report needs.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -111,6 +112,12 @@ struct Surface {
 using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
 using OptionRecord = std::vector<std::pair<std::string, OptionValue>>;
 
+/// Where a branch leaves its parent.
+struct Departure {
+  std::size_t event = 0;        ///< number in the events of the parent, from 0
+  std::size_t alternative = 0;  ///< number in the alternatives of that event, from 0
+};
+
 struct Result {
   ModelRecord model;
   std::string command = "simulate";
@@ -123,6 +130,23 @@ struct Result {
   Statistics statistics;
   OptionRecord options;
   std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)
+
+  /// Of a branch. It has that event, with the mode that was taken, as its first event.
+  std::optional<Departure> left_at;
+  /// Other continuations that were followed, each to the end; by event, then by alternative.
+  std::vector<Result> branches;
 };
+
+/// A trajectory of a tree of branches.
+struct TreeEntry {
+  const Result* result = nullptr;
+  std::string label;   ///< "2.1": first branch of the second branch; empty for the root
+  std::size_t parent;  ///< number of the entry that it left; of the root its own, 0
+};
+/// A result and all its branches, parents before their branches, depth first.
+[[nodiscard]] std::vector<TreeEntry> tree(const Result& root);
+
+/// How many admissible continuations of the trajectory itself, not of its branches, were listed and not followed.
+[[nodiscard]] std::size_t not_followed(const Result& result);
 
 }  // namespace saltus::result

@@ -112,7 +112,7 @@ FILES = {
     "smoothed key": (after("[simulate.smoothed]\nepsilom = 1\n"), "14:1", "did you mean 'simulate.smoothed.epsilon'?"),
     "method": (after("method = 'fesd'\n"), 13, "error: method \"fesd\" is not available", "a later one brings it"),
     "selection": (after("event.selection = 'scaled'\n"), 13, "selection", "a later one brings it"),
-    "branches": (after("event.branches = 'all'\n"), 13, "branches", "a later one brings it"),
+    "branches": (after("event.branches = 'some'\n"), 13, "branches", 'expected "report", "all" or a whole number >= 1'),
     "free state": (with_line(6, "x = { initial = 1, free = true }"), 6, "free = true", "a later one brings it"),
     "free parameter": (with_line(4, "mu = { initial = 1, free = true }"), 4, "free = true", "a later one brings it"),
 }

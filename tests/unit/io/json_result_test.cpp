@@ -66,6 +66,18 @@ result::Result sample() {
   return r;
 }
 
+/// The sample, left at the second alternative of its first event by a branch, which the same sample leaves again.
+result::Result with_branches() {
+  auto root = sample();
+  for (int depth = 0; depth < 2; ++depth) {
+    auto parent = sample();
+    root.left_at = {0, 1};
+    parent.branches = {root, root};
+    root = std::move(parent);
+  }
+  return root;
+}
+
 // Texts are compared, since NaN is unequal to itself: equal values give equal texts.
 TEST(JsonResult, ReadsBackEqual) {
   const auto original = sample();
@@ -92,6 +104,17 @@ TEST(JsonResult, ReadsBackEqual) {
   EXPECT_EQ(read->surfaces[1].role, result::SurfaceRole::jump);
   EXPECT_EQ(read->surfaces[1].states, (std::vector<std::string>{"q", "v"}));
   EXPECT_EQ(read->surfaces[1].curves[0].coordinates[0], (std::vector<double>{1.0, 1e-300}));
+}
+
+TEST(JsonResult, ReadsBranchesBack) {
+  const auto text = to_json(with_branches());
+  const auto read = parse_result(text, "r.json");
+  ASSERT_TRUE(read) << to_text(read.error());
+  EXPECT_EQ(to_json(*read), text);
+  ASSERT_EQ(read->branches.size(), 2U);
+  EXPECT_FALSE(read->left_at.has_value());
+  EXPECT_EQ(read->branches[1].left_at->alternative, 1U);
+  EXPECT_EQ(read->branches[1].branches.size(), 2U);
 }
 
 TEST(JsonResult, ReadsResultsFromBeforeSurfacesWereRecorded) {
@@ -132,7 +155,7 @@ struct Damage {
 class DamagedResult : public testing::TestWithParam<Damage> {};
 
 TEST_P(DamagedResult, IsRefusedWithItsPlace) {
-  auto text = to_json(sample());
+  auto text = to_json(with_branches());
   const auto place = text.find(GetParam().from);
   ASSERT_NE(place, std::string::npos);
   text.replace(place, std::string(GetParam().from).size(), GetParam().to);
@@ -159,6 +182,12 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"gradient", "\"gradient\": [", "\"gradient\": [1.0,",
                "at /surfaces/0/affine/gradient: expected 1 entries, found 2"},
         Damage{"curve", "[7.0],", "[7.0,5.0],", "at /surfaces/1/curves/1/coordinates: expected 2 entries, found 1"},
+        Damage{"branches", "\"branches\": [", "\"branches\": [7,", "at /branches/0: expected an object, found 7"},
+        Damage{"departure", "\"left_at\"", "\"left\"", "at /branches/0: 'left_at' is missing"},
+        Damage{"alternative", "\"alternative\":1", "\"alternative\":2",
+               "at /branches/0/left_at: what it leaves has no alternative 2 of an event 0"},
+        Damage{"event", "\"event\":0", "\"event\":-1",
+               "at /branches/0/left_at/event: expected a number from 0, found -1"},
         Damage{"syntax", "\"saltus\": ", "\"saltus\" ", "r.json:3:"}),
     [](const auto& damage) {
       std::string name = damage.param.what;

@@ -47,6 +47,45 @@ TEST(Table, ShowsTheEndAndWhereItSlides) {
   EXPECT_NE(text.find("events      none\n"), std::string::npos) << text;
 }
 
+/// Two continuations beside the one taken.
+result::Event ambiguous(double t) {
+  auto event = crossing(t, "a");
+  event.unique = false;
+  event.alternatives = {{{0, 0}, {0.5, 0.5}}, {{-1, 0}, {0.0, 0.5}}};
+  return event;
+}
+
+TEST(Table, SaysHowManyOtherContinuationsThereAre) {
+  auto r = sample();
+  EXPECT_EQ(to_table(r).find("branches"), std::string::npos);
+  r.events = {crossing(0.5, "a"), ambiguous(1.5)};
+  EXPECT_NE(to_table(r).find("branches    2 other continuations not followed: --branch all follows them\n"),
+            std::string::npos)
+      << to_table(r);
+}
+
+TEST(Table, HasALineForEveryBranch) {
+  auto r = sample();
+  r.events = {crossing(0.5, "a"), ambiguous(1.5)};
+  auto branch = sample();
+  branch.events = {ambiguous(1.5), ambiguous(1.75)};
+  branch.events[0].mode_after = result::Mode{0, 0};
+  branch.left_at = {1, 0};
+  branch.status = {result::Termination::iteration_limit, "", 1.875};
+  auto inner = branch;
+  inner.left_at = {1, 1};
+  inner.events = {ambiguous(1.75)};
+  branch.branches = {inner};
+  r.branches = {branch};
+  const auto table = lines(to_table(r));
+  const auto head =
+      std::find_if(table.begin(), table.end(), [](const auto& line) { return line.starts_with("branches"); });
+  ASSERT_NE(head, table.end());
+  EXPECT_EQ(*head, "branches    2, 2 more not followed");
+  EXPECT_EQ(head[2], "  1    main, event 2  1.5   00    2       iteration_limit at 1.875  x = 0.1");
+  EXPECT_EQ(head[3], "  1.1  1, event 2     1.75  +0    1       iteration_limit at 1.875  x = 0.1");
+}
+
 TEST(Table, ColumnsOfEventsAreAligned) {
   auto r = sample();
   r.events = {crossing(1.0 / 3.0, "a"), crossing(1.5, "größer")};
