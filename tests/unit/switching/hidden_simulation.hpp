@@ -37,7 +37,7 @@ class HiddenSimulation {
         return mode;
       }
       const bool inside = side(u[0]) == 0 && side(u[1]) == 0;
-      if (inside && std::abs(v[0]) + std::abs(v[1]) < 1e-10 * fastest_) return std::array{0, 0};
+      if (inside && std::abs(v[0]) + std::abs(v[1]) < 1e-12 * fastest_) return std::array{0, 0};
       u = step(u, v, stride(u, v, h));
     }
     return std::nullopt;
