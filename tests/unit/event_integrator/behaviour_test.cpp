@@ -275,16 +275,21 @@ TEST(Behaviour, AForcedModeHasTheRestDecidedForIt) {
   }
 }
 
-TEST(Behaviour, CoupledSurfacesStopOutsideTheClassWithEverythingSoFar) {
+TEST(Behaviour, CoupledSurfacesAreSlidOnTogether) {
+  // Sliding on y = 0 from t = 2/3 (x = 2/3) with x' = -5/4, up to the origin.
   Builder b("coupled");
   const SX x = b.state("x", {1});
   const SX y = b.state("y", {1});
   b.dynamics("x", -b.sign(x) + 0.5 * b.sign(y));
   b.dynamics("y", -b.sign(y) - 0.5 * b.sign(x));
   const auto result = run(b, 5);
-  EXPECT_EQ(result.status.termination, Termination::outside_class);
-  EXPECT_NEAR(result.status.time_reached, 1.2, 1e-12);
-  EXPECT_FALSE(result.trajectory.t.empty());
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_NEAR(result.events[1].t, 1.2, 1e-12);
+  EXPECT_EQ(*result.events[1].mode_after, (result::Mode{0, 0}));
+  EXPECT_EQ(result.events[1].unique, std::optional<bool>(true));
+  EXPECT_NE(result.events[1].reason.find("sliding on the intersection"), std::string::npos) << result.events[1].reason;
+  EXPECT_EQ(result.final.x, (std::vector<double>{0.0, 0.0}));
 }
 
 TEST(Behaviour, AReasonIsAboutListedSurfacesOnly) {
