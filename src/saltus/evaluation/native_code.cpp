@@ -24,9 +24,19 @@ namespace fs = std::filesystem;
 
 /// What the machine code depends on besides the source: part of the content that is hashed and compared.
 const std::vector<std::string>& compiler_arguments() {
-  // No contraction and no fast math: the same roundings as the interpreter.
-  static const std::vector<std::string> arguments{
-      "-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-shared", "-x", "c"};
+  // No contraction and no fast math: the same roundings as the interpreter. Functions of the library call each other
+  // without a table. Nothing is read or written two components at a time: the Runge-Kutta steps, which write and read
+  // single ones, would wait for that.
+  static const std::vector<std::string> arguments{"-O3",
+                                                  "-march=native",
+                                                  "-ffp-contract=off",
+                                                  "-fno-math-errno",
+                                                  "-fno-tree-slp-vectorize",
+                                                  "-fno-semantic-interposition",
+                                                  "-fPIC",
+                                                  "-shared",
+                                                  "-x",
+                                                  "c"};
   return arguments;
 }
 

@@ -82,32 +82,34 @@ bool slope_behind_euler_step(RightHandSide f, double t, const double* x, const d
   return false;
 }
 
-/// previous^beta / error^exponent; infinite for an error of 0.
-double factor_of(Method method, double previous, double error) {
-  switch (method) {
+}  // namespace
+
+StepControl::StepControl(Method method) : method_(method), previous_logarithm_(std::log(least_error)) {}
+
+void StepControl::reset() { *this = StepControl(method_); }
+
+/// previous_error^beta / error^exponent; infinite for an error of 0.
+double StepControl::factor(double error_norm) {
+  switch (method_) {
     case Method::dopri5: {
-      const Gains gain = gains(method);
-      return std::exp(gain.beta * std::log(previous) - gain.exponent * std::log(error));
+      const Gains gain = gains(method_);
+      const double logarithm = std::log(error_norm);
+      const double factor = std::exp(gain.beta * previous_logarithm_ - gain.exponent * logarithm);
+      previous_logarithm_ = error_norm > least_error ? logarithm : std::log(least_error);
+      return factor;
     }
     case Method::dop853:
-      return 1.0 / std::sqrt(std::sqrt(std::sqrt(error)));
+      return 1.0 / std::sqrt(std::sqrt(std::sqrt(error_norm)));
     case Method::radau5:
-      return 1.0 / std::sqrt(std::sqrt(error));
+      return 1.0 / std::sqrt(std::sqrt(error_norm));
   }
   __builtin_unreachable();
 }
 
-}  // namespace
-
-StepControl::StepControl(Method method) : method_(method), previous_error_(least_error) {}
-
-void StepControl::reset() { *this = StepControl(method_); }
-
 double StepControl::accepted(double error_norm) {
   const Gains gain = gains(method_);
-  const double raw = safety * factor_of(method_, previous_error_, error_norm);
+  const double raw = safety * factor(error_norm);
   const double largest = last_rejected_ ? 1.0 : gain.largest;
-  previous_error_ = std::max(error_norm, least_error);
   last_rejected_ = false;
   // An increase that is worth less than a factorisation.
   if (method_ == Method::radau5 && raw >= 1.0 && raw <= 1.2) return 1.0;

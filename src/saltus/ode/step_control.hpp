@@ -17,8 +17,10 @@ class StepControl {
   void reset();
 
  private:
+  [[nodiscard]] double factor(double error_norm);
+
   Method method_;
-  double previous_error_;
+  double previous_logarithm_;  ///< of the error of the step before
   bool last_rejected_ = false;
 };
 

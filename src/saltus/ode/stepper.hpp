@@ -55,6 +55,8 @@ enum class Attempt {
 };
 
 class Radau5;
+struct ExplicitMethod;
+struct ExplicitStep;
 
 /// Workspace of one method for n states; allocates in the constructor only (and for a DenseStep filled the first time).
 class Stepper {
@@ -79,7 +81,7 @@ class Stepper {
   [[nodiscard]] double error_norm() const { return error_norm_; }
   [[nodiscard]] const double* x_new() const { return x_new_.data(); }
   /// f(t + h, x_new), n doubles: dopri5's last stage, computed by dop853 too.
-  [[nodiscard]] const double* slope_new() const;
+  [[nodiscard]] const double* slope_new() const { return stages_.data() + slope_new_; }
 
   /// Bounds of every component of the dense output of the last attempt, which was finite, without computing it; n
   /// doubles each. False where a method has none (radau5). With dop853 they rest on the slopes of the stages: right for
@@ -103,8 +105,12 @@ class Stepper {
   [[nodiscard]] long evaluations() const { return evaluations_; }  ///< of f, since construction
 
  private:
+  [[nodiscard]] ExplicitStep explicit_step() const;
+
   Method method_;
   int n_;
+  const ExplicitMethod* explicit_;  ///< null: radau5
+  std::size_t slope_new_ = 0;       ///< its place in stages_
   double t_ = 0.0;
   double h_ = 0.0;
   double error_norm_ = 0.0;

@@ -1,0 +1,146 @@
+// From a system's expressions to the functions that every run needs, and to their structure.
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "saltus/evaluation/field_split_internal.hpp"
+#include "saltus/evaluation/kernel_internal.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::evaluation {
+namespace {
+
+using casadi::SX;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// For every row of `expression`, which entries of `variables` it depends on.
+std::vector<std::vector<int>> dependencies(const SX& expression, const SX& variables) {
+  std::vector<std::vector<int>> rows(index(static_cast<int>(expression.numel())));
+  if (expression.numel() == 0 || variables.numel() == 0) return rows;
+  const auto sparsity = SX::jacobian_sparsity(SX::densify(expression), variables);
+  const casadi_int* column_start = sparsity.colind();
+  const casadi_int* row = sparsity.row();
+  for (casadi_int column = 0; column < sparsity.size2(); ++column) {
+    for (casadi_int k = column_start[column]; k < column_start[column + 1]; ++k) {
+      rows[static_cast<std::size_t>(row[k])].push_back(static_cast<int>(column));
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+ModelKernel::Implementation::Implementation(const model::System& system)
+    : t(system.t),
+      x(system.x),
+      p(system.p),
+      alpha(system.alpha),
+      parameters(system.parameter_values),
+      n_psi(static_cast<int>(system.switching.size())) {
+  input = SX::densify(system.input);
+  const auto with_inputs = [&](const SX& expression) {
+    return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, input);
+  };
+  free.f = with_inputs(system.f);
+  outputs = with_inputs(system.outputs);
+  std::vector<SX> rows;
+  for (const auto& entry : system.switching) rows.push_back(entry.psi);
+  for (const auto& event : system.events) {
+    if (event.guards.numel() == 0) rows.push_back(event.value);
+  }
+  for (const auto& event : system.events) {
+    if (event.guards.numel() > 0) rows.push_back(SX::vec(event.guards));
+  }
+  first_jump_guard = static_cast<int>(SX::vertcat(rows).numel());
+  discrete = system.discrete_states;
+  discrete.resize(index(static_cast<int>(x.numel())), false);
+  for (const auto& jump : system.jumps) {
+    rows.push_back(SX::vec(jump.guards));
+    for (casadi_int i = 0; i < jump.guards.numel(); ++i) {
+      const SX guard = with_inputs(jump.guards(i));
+      jump_guards.push_back({jump.name, guard, jump.targets, with_inputs(jump.values), discrete});
+    }
+  }
+  cells = CellFunctions(system, p, parameters);
+  for (auto& end : cells.rows(system)) rows.push_back(std::move(end));
+  phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
+  gradients.resize(index(static_cast<int>(phi.numel())));
+
+  const std::vector<SX> arguments{t, x, p, alpha};
+  compile_field(free, "saltus_field");
+  functions = ModelFunction("saltus_functions", arguments, {phi});
+  output_function = ModelFunction("saltus_outputs", arguments, {outputs});
+  input_function = ModelFunction("saltus_inputs", arguments, {input});
+  const SX slope = SX::jacobian(phi, x);
+  const SX rate = SX::jacobian(phi, t);
+  const SX magnitude = SX::mtimes(fabs(slope), fabs(x)) + fabs(rate * t);
+  scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
+  find_structure();
+  compile_conditions(system);
+  jumps = JumpFunctions(system, arguments, input, first_jump_guard);
+  cells.compile(arguments, system, input);
+}
+
+void ModelKernel::Implementation::find_structure() {
+  const int n_phi = static_cast<int>(phi.numel());
+  affine = affine_entries(phi, symbols());
+  affine_rows = AffineRowFunctions(phi, symbols(), affine);
+  time_only.assign(index(n_phi), true);
+  inner = dependencies(phi, alpha);
+  const auto on_states = dependencies(phi, x);
+  const auto is_discrete = [&](int state) { return static_cast<bool>(discrete[index(state)]); };
+  for (int j = 0; j < n_phi; ++j) {
+    const auto& states = on_states[index(j)];
+    time_only[index(j)] = std::all_of(states.begin(), states.end(), is_discrete);
+  }
+  if (cells.size() > 0) on_cells = cells.dependencies(dependencies(phi, p));
+  free.depends = normal_dependencies(free.f);
+}
+
+std::vector<std::vector<bool>> ModelKernel::Implementation::normal_dependencies(const SX& f) const {
+  const auto on_states = dependencies(phi, x);
+  const auto field_on_alpha = dependencies(f, alpha);
+  std::vector<std::vector<bool>> depends(index(n_psi), std::vector<bool>(index(n_psi), false));
+  for (int i = 0; i < n_psi; ++i) {
+    for (const int component : on_states[index(i)]) {
+      for (const int j : field_on_alpha[index(component)]) depends[index(i)][index(j)] = true;
+    }
+    for (const int j : inner[index(i)]) depends[index(i)][index(j)] = true;
+  }
+  return depends;
+}
+
+void ModelKernel::Implementation::compile_field(Motion& target, const std::string& name) const {
+  const FieldSplit split = split_field(target.f, symbols());
+  target.field = ModelFunction(name, {t, x, split.symbols}, {split.varying});
+  target.constants = ModelFunction(name + "_constants", {p, alpha}, {split.constants});
+}
+
+void ModelKernel::Implementation::compile_conditions(const model::System& system) {
+  for (const auto& event : system.events) {
+    if (event.guards.numel() == 0) {
+      conditions.emplace_back();
+      continue;
+    }
+    const SX value = system.u.numel() == 0 ? event.value : SX::substitute(event.value, system.u, input);
+    conditions.emplace_back("condition", std::vector<SX>{t, x, p, alpha, event.guard_alpha}, std::vector<SX>{value});
+  }
+}
+
+Expected<ModelKernel> ModelKernel::compile(const model::System& system, NativeCode native) {
+  try {
+    auto implementation = std::make_unique<Implementation>(system);
+    if (auto started = implementation->start_native(native); !started) return tl::unexpected(started.error());
+    return ModelKernel(std::move(implementation));
+  } catch (const std::exception& error) {
+    return tl::unexpected(Error{ErrorCode::invalid_model,
+                                std::string("the model's expressions cannot be compiled: ") + error.what(),
+                                "",
+                                {},
+                                {}});
+  }
+}
+
+}  // namespace saltus::evaluation

@@ -1,0 +1,88 @@
+// Derivatives of single event functions, made when first asked for, and the rows of affine ones.
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/evaluation/kernel_internal.hpp"
+
+namespace saltus::evaluation {
+namespace {
+
+using casadi::SX;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+SX ModelKernel::Implementation::lie_expression(int j, int order) {
+  if (order == 0) return phi_row(j);
+  const auto key = std::make_pair(j, order);
+  auto& known = motion->lie_expressions;
+  if (const auto found = known.find(key); found != known.end()) return found->second;
+  const SX previous = lie_expression(j, order - 1);
+  const SX next = SX::mtimes(SX::jacobian(previous, x), motion->f) + SX::jacobian(previous, t);
+  known[key] = next;
+  return next;
+}
+
+void ModelKernel::gradient(int function, double t, const double* x, const double* alpha, double* row,
+                           double* rate) const {
+  SALTUS_ASSERT(0 <= function && function < event_functions());
+  auto& self = *implementation_;
+  auto& gradient = self.gradients[index(function)];
+  const auto n = self.x.numel();
+  if (!gradient.constant.empty()) {
+    std::copy_n(gradient.constant.begin(), n, row);
+    *rate = gradient.constant.back();
+    return;
+  }
+  if (gradient.function.is_null()) {
+    const SX phi = self.phi_row(function);
+    gradient.function = ModelFunction("gradient", {self.t, self.x, self.p, self.alpha},
+                                      {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
+  }
+  gradient.function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+                    std::array<double*, 2>{row, rate});
+  if (is_affine(function) && inner(function).empty()) {
+    gradient.constant.assign(row, row + n);
+    gradient.constant.push_back(*rate);
+  }
+}
+
+double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {
+  SALTUS_ASSERT(0 <= function && function < event_functions() && order >= 1);
+  auto& self = *implementation_;
+  auto& compiled = self.motion->lie_derivatives[{function, order}];
+  if (compiled.is_null()) {
+    compiled =
+        ModelFunction("lie_derivative", {self.t, self.x, self.p, self.alpha}, {self.lie_expression(function, order)});
+  }
+  double value = 0.0;
+  compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{&value});
+  return value;
+}
+
+bool ModelKernel::is_affine(int function) const { return implementation_->affine[index(function)]; }
+void ModelKernel::affine_rows(const double* alpha, AffineRows& rows) const {
+  implementation_->affine_rows.fill(implementation_->parameters.data(), alpha, rows);
+}
+
+bool ModelKernel::lie_row(int function, FixedState fixed, const double* alpha, AffineRow& row) const {
+  auto& self = *implementation_;
+  const auto [entry, is_new] = self.motion->lie_rows.try_emplace({function, fixed.component});
+  if (is_new) {
+    entry->second = AffineRowFunction(self.lie_expression(function, 1), self.symbols(), fixed.component);
+  }
+  if (!entry->second.is_affine()) return false;
+  entry->second.fill(fixed, self.parameters.data(), alpha, row);
+  return true;
+}
+
+bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[index(function)]; }
+const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[index(function)]; }
+bool ModelKernel::depends(int surface, int alpha) const {
+  return implementation_->motion->depends[index(surface)][index(alpha)];
+}
+
+}  // namespace saltus::evaluation

@@ -1,0 +1,102 @@
+// What a ModelKernel holds: the model's expressions, and the functions that were made of them.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <casadi/core/sx.hpp>
+
+#include "saltus/evaluation/affine_functions_internal.hpp"
+#include "saltus/evaluation/cell_functions_internal.hpp"
+#include "saltus/evaluation/held_motion_internal.hpp"
+#include "saltus/evaluation/jump_functions_internal.hpp"
+#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/evaluation/native_code.hpp"
+
+namespace saltus::evaluation {
+
+/// d phi_j / d (x, t). Of a function that is affine, and does not hold selections, it is a constant: evaluated once.
+struct Gradient {
+  ModelFunction function;
+  std::vector<double> constant;  ///< row and rate, once known
+};
+
+/// f as native code: x, constants and xdot are not null and do not overlap.
+using DirectField = void (*)(double t, const double* x, const double* constants, double* xdot);
+
+/// xdot = f, free or with guards held, and what follows from it.
+struct Motion {
+  casadi::SX f;
+  ModelFunction field;           ///< of t, x and the constants
+  ModelFunction constants;       ///< of p and alpha
+  DirectField direct = nullptr;  ///< the field as native code, once there is some
+  ModelFunction pressure;        ///< of the holds; null without
+  std::vector<std::vector<bool>> depends;
+  std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
+  std::map<std::pair<int, int>, casadi::SX> lie_expressions;
+  std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
+};
+
+struct ModelKernel::Implementation {
+  casadi::SX t, x, p, alpha;  ///< p: parameters, then constants, upper and lower ends of cells
+  casadi::SX phi, outputs, input;
+  std::vector<double> parameters;  ///< values of p
+  std::vector<bool> discrete;      ///< n_x
+  int n_psi = 0;
+
+  CellFunctions cells;
+  std::vector<std::vector<bool>> on_cells;  ///< by event function
+
+  ModelFunction functions, scales, output_function, input_function;
+  std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
+  JumpFunctions jumps;
+  std::vector<bool> affine, time_only;
+  AffineRowFunctions affine_rows;
+  FieldConstants constants;  ///< work space of field()
+  std::vector<std::vector<int>> inner;
+  std::vector<Gradient> gradients;  ///< one per event function, compiled when first asked for
+  Motion free;
+  std::vector<HeldGuard> jump_guards;  ///< by event function, from first_jump_guard on
+  int first_jump_guard = 0;
+  std::map<std::vector<int>, Motion> held;  ///< by event functions; compiled when first held
+  Motion* motion = &free;
+  long field_evaluations = 0;
+
+  NativeCode native = NativeCode::off;
+  double operations = 0.0;    ///< interpreted so far
+  double next_attempt = 0.0;  ///< to find or compile native code, in operations
+  std::string source;         ///< C source, once it was needed
+  std::optional<NativeLibrary> library;
+
+  explicit Implementation(const model::System& system);
+  casadi::SX phi_row(int j) const { return phi(j); }
+  ModelSymbols symbols() const { return {t, x, p, alpha}; }
+  casadi::SX lie_expression(int j, int order);
+  void compile_field(Motion& target, const std::string& name) const;
+  void find_structure();
+  [[nodiscard]] std::vector<std::vector<bool>> normal_dependencies(const casadi::SX& f) const;
+  [[nodiscard]] Expected<Motion> compile_held(const std::vector<int>& functions) const;
+  void compile_conditions(const model::System& system);
+
+  /// Functions that native code replaces.
+  [[nodiscard]] std::array<ModelFunction*, 6> native_functions() {
+    return {&free.field, &free.constants, &functions, &scales, &output_function, &input_function};
+  }
+  [[nodiscard]] Expected<void> start_native(NativeCode wanted);
+  void write_source();
+  void use(NativeLibrary loaded);
+  void look_for_native();
+  /// An interpreted call is about to be made.
+  void count(const ModelFunction& function) {
+    if (native != NativeCode::automatic) return;
+    operations += static_cast<double>(function.operations());
+    if (operations >= next_attempt) look_for_native();
+  }
+};
+
+}  // namespace saltus::evaluation

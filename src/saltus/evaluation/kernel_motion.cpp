@@ -1,0 +1,82 @@
+// The right-hand side: free, or with guards of jumps held at zero.
+#include <array>
+#include <utility>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/evaluation/kernel_internal.hpp"
+
+namespace saltus::evaluation {
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+void ModelKernel::field(double t, const double* x, const double* alpha, double* xdot) const {
+  auto& self = *implementation_;
+  prepare_field(alpha, self.constants);
+  prepared_field(t, x, self.constants, xdot);
+}
+
+void ModelKernel::prepare_field(const double* alpha, FieldConstants& constants) const {
+  auto& self = *implementation_;
+  auto& function = self.motion->constants;
+  constants.values.resize(index(static_cast<int>(function.function().numel_out(0))));
+  constants.alpha.assign(alpha, alpha + self.n_psi);
+  constants.motion = self.motion;
+  self.count(function);
+  function(std::array<const double*, 2>{self.parameters.data(), alpha},
+           std::array<double*, 1>{constants.values.data()});
+}
+
+void ModelKernel::prepared_field(double t, const double* x, const FieldConstants& constants, double* xdot) const {
+  auto& self = *implementation_;
+  if (constants.motion != self.motion) return field(t, x, constants.alpha.data(), xdot);
+  ++self.field_evaluations;
+  if (self.motion->direct != nullptr) return self.motion->direct(t, x, constants.values.data(), xdot);
+  self.count(self.motion->field);
+  self.motion->field(std::array<const double*, 3>{&t, x, constants.values.data()}, std::array<double*, 1>{xdot});
+}
+
+Expected<Motion> ModelKernel::Implementation::compile_held(const std::vector<int>& functions_held) const {
+  std::vector<HeldGuard> guards;
+  for (const int function : functions_held) {
+    SALTUS_ASSERT(first_jump_guard <= function && function < static_cast<int>(phi.numel()));
+    guards.push_back(jump_guards[index(function - first_jump_guard)]);
+  }
+  auto expressions = held_motion(t, x, free.f, guards);
+  if (!expressions) return tl::unexpected(expressions.error());
+  Motion result;
+  result.f = expressions->f;
+  compile_field(result, "held_field");
+  result.pressure = ModelFunction("hold_pressure", {t, x, p, alpha}, {expressions->pressure});
+  result.depends = normal_dependencies(result.f);
+  return result;
+}
+
+Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
+  auto& self = *implementation_;
+  if (holds.empty()) {
+    self.motion = &self.free;
+    return {};
+  }
+  std::vector<int> functions;
+  for (const auto& hold : holds) functions.push_back(hold.function);
+  auto known = self.held.find(functions);
+  if (known == self.held.end()) {
+    auto motion = self.compile_held(functions);
+    if (!motion) return tl::unexpected(motion.error());
+    known = self.held.emplace(functions, std::move(*motion)).first;
+  }
+  self.motion = &known->second;
+  return {};
+}
+
+void ModelKernel::hold_pressure(double t, const double* x, const double* alpha, double* pressure) const {
+  auto& self = *implementation_;
+  SALTUS_ASSERT(!self.motion->pressure.is_null());
+  self.motion->pressure(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+                        std::array<double*, 1>{pressure});
+}
+
+}  // namespace saltus::evaluation

@@ -1,0 +1,51 @@
+// What a Stepper calls of an explicit Runge-Kutta method: functions made for its number of states, chosen once.
+#pragma once
+
+#include <cstddef>
+
+#include "saltus/ode/stepper.hpp"
+
+namespace saltus::ode {
+
+/// An attempt, made or under way. All vectors have n doubles.
+struct ExplicitStep {
+  double t;
+  double h;
+  std::size_t n;
+  const double* start;   ///< x(t)
+  const double* x_new;   ///< x(t + h)
+  const double* stages;  ///< k_1 = f(t, start), k_2, ..., one after the other
+};
+
+/// What evaluating its stages needs besides.
+struct StageWork {
+  RightHandSide f;
+  long& evaluations;  ///< counted up
+  double* x_new;
+  double* stages;
+  double* argument;  ///< n doubles, of nobody else
+};
+
+/// The operations of Stepper, which says what they mean. Their results do not depend on the n they are made for.
+struct ExplicitMethod {
+  /// The stages behind the first one up to that at x_new, and the error norm (NaN where it overflows); false at the
+  /// first stage that is not finite.
+  bool (*take)(const ExplicitStep& step, const StageWork& work, const Tolerances& tolerances, double& error_norm);
+  void (*bounds)(const ExplicitStep& step, double* low, double* high);
+  /// Coefficients of the dense output; false if a further stage is not finite.
+  bool (*dense)(const ExplicitStep& step, const StageWork& work, double* coefficients);
+  double (*stability_ratio)(const ExplicitStep& step);
+  std::size_t last_stage;  ///< f(t + h, x_new) is k_last, counted from 0
+  std::size_t stages;      ///< of the dense output
+};
+
+/// For 1 to few_states states: n is known to the compiler.
+inline constexpr std::size_t few_states = 8;
+[[nodiscard]] const ExplicitMethod& dopri5_for_few(std::size_t n);
+[[nodiscard]] const ExplicitMethod& dop853_for_few(std::size_t n);
+
+/// For any number.
+[[nodiscard]] const ExplicitMethod& dopri5_for_any();
+[[nodiscard]] const ExplicitMethod& dop853_for_any();
+
+}  // namespace saltus::ode

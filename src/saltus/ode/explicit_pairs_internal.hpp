@@ -1,0 +1,81 @@
+// The embedded pairs: their error norms, and the bounds of their steps.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "saltus/ode/dop853_tableau.hpp"
+#include "saltus/ode/dopri5_tableau.hpp"
+#include "saltus/ode/explicit_kernel_internal.hpp"
+
+namespace saltus::ode {
+
+struct Dopri5 {
+  using Tableau = Dopri5Tableau;
+  static constexpr double stability_limit = 3.25;  ///< of code DOPRI5
+
+  template <class Size>
+  static double error_norm(const ExplicitStep& step, const ErrorScale& scale, double* ratio) {
+    return largest_error<Tableau::error, 0, Size>(step, scale, ratio);
+  }
+
+  /// The chord, widened by the largest values of the other terms of the nested form of the dense output.
+  template <class Size>
+  static void bounds(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
+    const std::size_t n = size_of<Size>(step);
+    const double* stages = step.stages;
+    const double h = step.h;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double begin = step.start[i];
+      const double end = step.x_new[i];
+      const double difference = end - begin;
+      const double bend = h * stages[i] - difference;
+      const double twist = difference - h * stages[(Tableau::stages - 1) * n + i] - bend;
+      const double width = std::abs(bend) / 4.0 + std::abs(twist) * (4.0 / 27.0) +
+                           std::abs(h * stage_sum<Tableau::dense, 0>(stages, n, i)) / 16.0;
+      low[i] = std::min(begin, end) - width;
+      high[i] = std::max(begin, end) + width;
+    }
+  }
+};
+
+struct Dop853 {
+  using Tableau = Dop853Tableau;
+  static constexpr double stability_limit = 6.1;  ///< of code DOP853
+
+  /// The estimate of order 5, damped where it is small against a tenth of the one of order 3: Hairer, Norsett & Wanner,
+  /// (10.17) of chapter II, with the largest component in place of their mean.
+  template <class Size>
+  static double error_norm(const ExplicitStep& step, const ErrorScale& scale, double* ratio) {
+    const double fifth = largest_error<Tableau::error, 0, Size>(step, scale, ratio);
+    const double third = largest_error<Tableau::error, 1, Size>(step, scale, ratio);
+    if (fifth == 0.0) return 0.0;
+    const double ratio_of_both = 0.1 * (third / fifth);
+    return fifth / std::sqrt(1.0 + ratio_of_both * ratio_of_both);
+  }
+
+  // With the chord's slope d = (x_new - x) / h, R = h max |k_i - d| over the stages and p the dense output, p' - d is a
+  // polynomial of degree 6 and mean 0 on the step. What it is at most at the nodes of stages 1, 4, 8 to 12 (0, 0.118,
+  // 0.308, 0.651, 0.6, 0.857, 1) bounds |p - chord| by 0.4903 times as much, by interpolation there; the stages' slopes
+  // are those of p up to terms of higher order in h, and the bound used is R itself, twice that, over stages 1 and 4
+  // to 12.
+  template <class Size>
+  static void bounds(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
+    const std::size_t n = size_of<Size>(step);
+    const double h = step.h;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double begin = step.start[i];
+      const double end = step.x_new[i];
+      const double difference = end - begin;
+      double width = std::abs(h * step.stages[i] - difference);
+      for (std::size_t stage = 3; stage < Tableau::stages; ++stage) {
+        width = std::max(width, std::abs(h * step.stages[stage * n + i] - difference));
+      }
+      low[i] = std::min(begin, end) - width;
+      high[i] = std::max(begin, end) + width;
+    }
+  }
+};
+
+}  // namespace saltus::ode
