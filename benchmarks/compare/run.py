@@ -8,6 +8,7 @@ Needs nothing but Python; the competitors that cannot be installed become rows "
 """
 
 import argparse
+import os
 import pathlib
 import platform
 import shutil
@@ -94,12 +95,13 @@ def machine():
     revision = subprocess.run(["git", "-C", contenders.ROOT, "describe", "--always", "--dirty=, changed"],
                               capture_output=True, text=True, check=False).stdout.strip()
     compiler = compiler.splitlines()[0] if compiler else "no compiler"
-    return f"{model}, {platform.system()}, {compiler}, revision {revision}"
+    return f"{model}, {os.cpu_count()} processors, {platform.system()}, {compiler}, revision {revision}"
 
 
-def page(options, results, counts):
+def page(options, results, counts, loads):
     parts = ["# Comparison: time at equal achieved error\n",
              f"Made by `benchmarks/compare/run.py --rounds {options.rounds} --seconds {options.seconds}` on {machine()}. "
+             f"Processes that wanted to run meanwhile (load average before and behind): {loads[0]:.1f}, {loads[1]:.1f}. "
              "How to read it: "
              "[benchmarks/README.md](../README.md).\n",
              table.markdown(table.main_table(results)),
@@ -123,10 +125,11 @@ def main():
     lineup = contenders.line_up(programs)
     if options.contenders:
         lineup = [c for c in lineup if c.name in options.contenders]
+    load_before = os.getloadavg()[2]
     results = compare(options, lineup)
     counts = count_events(options, lineup) if "relay-feedback" in options.problems else []
     options.output.mkdir(parents=True, exist_ok=True)
-    text = page(options, results, counts)
+    text = page(options, results, counts, (load_before, os.getloadavg()[2]))
     (options.output / "compare.md").write_text(text)
     table.write_csv(options.output / "compare.csv", results)
     print(text)

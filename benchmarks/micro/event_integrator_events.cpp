@@ -1,13 +1,8 @@
 // What do a crossing, an entry into sliding with its exit, and a step while sliding cost?
 #include <string>
 #include <utility>
-#include <vector>
 
-#include <benchmark/benchmark.h>
-
-#include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/event_integrator/integrate.hpp"
-#include "saltus/model/builder.hpp"
+#include "integrate_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -50,33 +45,9 @@ model::System slides(double slope) {
 }
 
 void run(benchmark::State& state, const model::System& system, ode::Method method) {
-  auto kernel = evaluation::ModelKernel::compile(system, evaluation::NativeCode::on);
-  if (!kernel) {
-    state.SkipWithError(kernel.error().message.c_str());
-    return;
-  }
-  IntegrationOptions options;
-  options.method = method;
-  options.tolerances = {1e-8, 1e-10};
-  options.until = 1000.0;
-  options.output.rows = OutputTimes::Rows::at_times;
-  Integration result;
-  for (auto _ : state) {
-    result = integrate(*kernel, system, options);
-    benchmark::DoNotOptimize(result);
-  }
-  if (result.status.termination != result::Termination::completed) state.SkipWithError(result.status.message.c_str());
-  const auto runs = static_cast<double>(state.iterations());
-  const auto each = [&](double count) {
-    return benchmark::Counter(count * runs, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  };
-  const auto steps = static_cast<double>(result.statistics.steps);
-  const auto events = static_cast<double>(result.events.size());
-  state.counters["steps"] = steps;
-  state.counters["events"] = events;
+  const Integration result = integrate_repeatedly(state, system, method);
+  state.counters["events"] = static_cast<double>(result.events.size());
   state.counters["evaluations"] = static_cast<double>(result.statistics.rhs_evaluations);
-  state.counters["per_step"] = each(steps);
-  if (events > 0.0) state.counters["per_event"] = each(events);
 }
 
 void no_event(benchmark::State& state, ode::Method method) { run(state, oscillator(2.0), method); }

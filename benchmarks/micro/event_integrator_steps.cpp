@@ -2,11 +2,7 @@
 #include <string>
 #include <utility>
 
-#include <benchmark/benchmark.h>
-
-#include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/event_integrator/integrate.hpp"
-#include "saltus/model/builder.hpp"
+#include "integrate_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -35,28 +31,8 @@ model::System oscillators(int thresholds) {
 
 void inactive(benchmark::State& state, ode::Method method) {
   const auto thresholds = static_cast<int>(state.range(0));
-  const model::System system = oscillators(thresholds);
-  auto kernel = evaluation::ModelKernel::compile(system, evaluation::NativeCode::on);
-  if (!kernel) {
-    state.SkipWithError(kernel.error().message.c_str());
-    return;
-  }
-  IntegrationOptions options;
-  options.method = method;
-  options.tolerances = {1e-8, 1e-10};
-  options.until = 1000.0;
-  options.output.rows = OutputTimes::Rows::at_times;
-  Integration result;
-  for (auto _ : state) {
-    result = integrate(*kernel, system, options);
-    benchmark::DoNotOptimize(result);
-  }
-  if (result.status.termination != result::Termination::completed) state.SkipWithError(result.status.message.c_str());
+  const Integration result = integrate_repeatedly(state, oscillators(thresholds), method);
   if (!result.events.empty()) state.SkipWithError("a threshold was met");
-  const auto steps = static_cast<double>(result.statistics.steps);
-  state.counters["steps"] = steps;
-  state.counters["per_step"] = benchmark::Counter(steps * static_cast<double>(state.iterations()),
-                                                  benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK_CAPTURE(inactive, dopri5, ode::Method::dopri5)
     ->Arg(0)

@@ -116,6 +116,8 @@ class Run {
   bool stopped_by_singularity();
   bool shorten(double factor);
   void rows_until(double t_end);
+  void rows_by_steps(double t_new);
+  void row_inside(double t);
   void rows_at_event();
   [[nodiscard]] bool reaches_cell_end(const Located& located) const;
   void row(double t, const std::vector<double>& x);

@@ -27,10 +27,35 @@ void Run::rows_until(double t_end) {
       continue;
     }
     dense_.evaluate((t - dense_.t) / dense_.h, row_x_.data());
-    field_.project(t, row_x_.data());
-    static_cast<void>(holding_.project(t, state_.alpha, row_x_));
-    row(t, row_x_);
+    row_inside(t);
   }
+}
+
+/// The row of row_x_, not yet on the surfaces of the mode.
+void Run::row_inside(double t) {
+  field_.project(t, row_x_.data());
+  static_cast<void>(holding_.project(t, state_.alpha, row_x_));
+  row(t, row_x_);
+}
+
+/// The same for a step whose dense output is undefined (dop853 evaluates three more stages for it), by steps that end
+/// at the times; the step itself is then taken once more, so that it does not depend on the rows.
+void Run::rows_by_steps(double t_new) {
+  const auto& times = options_.output.times;
+  const auto take = [&](double t) {
+    return stepper_.attempt(right_hand_side(), t_, x_.data(), slope_.data(), t - t_, tolerances_);
+  };
+  for (; next_output_ < times.size() && times[next_output_] < t_new; ++next_output_) {
+    const double t = times[next_output_];
+    if (t <= t_) continue;
+    if (take(t) == ode::Attempt::finite) {
+      std::copy_n(stepper_.x_new(), row_x_.size(), row_x_.begin());
+    } else {
+      dense_.evaluate((t - dense_.t) / dense_.h, row_x_.data());
+    }
+    row_inside(t);
+  }
+  static_cast<void>(take(t_new));
 }
 
 bool Run::shorten(double factor) {
@@ -154,7 +179,8 @@ Run::Step Run::attempt() {
   const bool may_vanish = search_.may_vanish(stepper_);
   if (may_vanish || rows_inside) {
     if (stepper_.dense(right_hand_side(), dense_) == ode::Attempt::undefined) {
-      return shorten(0.5) ? Step::shortened : undefined_step();
+      if (may_vanish) return shorten(0.5) ? Step::shortened : undefined_step();
+      rows_by_steps(t_new);
     }
     Hit hit;
     switch (may_vanish ? search_.search(dense_, hit) : SearchOutcome::none) {

@@ -123,9 +123,12 @@ struct ExplicitKernel {
   static bool dense(const ExplicitStep& step, const StageWork& work, double* coefficients) {
     constexpr auto further = std::make_index_sequence<Tableau::dense_stages - Tableau::stages>{};
     hermite_coefficients<last, Size>(step, coefficients);
-    if (!evaluate_stages<Tableau, Tableau::stages, Size>(step, work, further)) return false;
-    dense_rows<Tableau, Size>(step, coefficients + hermite_count * size_of<Size>(step),
-                              std::make_index_sequence<Tableau::dense.size()>{});
+    double* upper = coefficients + hermite_count * size_of<Size>(step);
+    if (!evaluate_stages<Tableau, Tableau::stages, Size>(step, work, further)) {
+      std::fill_n(upper, Tableau::dense.size() * size_of<Size>(step), 0.0);
+      return false;
+    }
+    dense_rows<Tableau, Size>(step, upper, std::make_index_sequence<Tableau::dense.size()>{});
     return true;
   }
 

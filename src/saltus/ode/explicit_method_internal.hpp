@@ -32,7 +32,7 @@ struct ExplicitMethod {
   /// first stage that is not finite.
   bool (*take)(const ExplicitStep& step, const StageWork& work, const Tolerances& tolerances, double& error_norm);
   void (*bounds)(const ExplicitStep& step, double* low, double* high);
-  /// Coefficients of the dense output; false if a further stage is not finite.
+  /// Coefficients of the dense output; false if a further stage is not finite, and then those of the cubic.
   bool (*dense)(const ExplicitStep& step, const StageWork& work, double* coefficients);
   double (*stability_ratio)(const ExplicitStep& step);
   std::size_t last_stage;  ///< f(t + h, x_new) is k_last, counted from 0

@@ -91,7 +91,7 @@ class Stepper {
   [[nodiscard]] double length() const { return h_; }      ///< of the last attempt
 
   /// Dense output of the last attempt, which was finite (dop853: three more evaluations of f; `undefined` if one is not
-  /// finite, and `output` is then not to be used).
+  /// finite, and `output` is then no more than the cubic through both ends with their slopes).
   Attempt dense(RightHandSide f, DenseStep& output);
 
   /// The right-hand side has changed: radau5 keeps nothing of the steps before. No effect on the explicit methods.

@@ -125,6 +125,41 @@ TEST(Integrate, FieldUndefinedBeyondItsOwnSurfaceIsApproachedFromItsSide) {
   EXPECT_NEAR(result.events[0].t, 2.0, 1e-7);
 }
 
+TEST(Integrate, RowsDoNotChangeStepsThatHaveNoDenseOutput) {
+  // dop853 evaluates f for its dense output at 7/9 of the step, too. Around there f is undefined in one of the steps.
+  const auto decay = [](double undefined_at, double reach) {
+    auto system = testing::blank(1, 0);
+    const SX distance = (system.t - undefined_at) / reach;
+    testing::set_field(system, {-system.x(0) + 1e-30 * sqrt(distance * distance - 1)}, {1.0});
+    return system;
+  };
+  const auto steps = run(decay(-1.0, 0.1), 3.0).trajectory.t;
+  ASSERT_GT(steps.size(), 4U);
+  const std::size_t k = steps.size() / 2;
+  const double h = steps[k + 1] - steps[k];
+  const auto system = decay(steps[k] + 7.0 / 9.0 * h, 1e-3 * h);
+  const auto kernel = evaluation::ModelKernel::compile(system);
+  ASSERT_TRUE(kernel.has_value());
+  IntegrationOptions options;
+  options.method = ode::Method::dop853;
+  options.tolerances = {1e-10, 1e-12};
+  options.until = 3.0;
+  options.output.rows = OutputTimes::Rows::at_times;
+  const auto without = integrate(*kernel, system, options);
+  const double wanted = steps[k] + 0.5 * h;
+  options.output.times = {wanted};
+  const auto with = integrate(*kernel, system, options);
+  ASSERT_EQ(with.status.termination, Termination::completed) << with.status.message;
+  EXPECT_EQ(without.final.x, with.final.x);
+  EXPECT_EQ(without.statistics.steps, with.statistics.steps);
+  EXPECT_EQ(without.statistics.rejected, with.statistics.rejected);
+  // The dense output was tried: otherwise it would have cost three evaluations.
+  EXPECT_GT(with.statistics.rhs_evaluations, without.statistics.rhs_evaluations + 20);
+  ASSERT_EQ(with.trajectory.t.size(), 3U);
+  EXPECT_EQ(with.trajectory.t[1], wanted);
+  EXPECT_NEAR(with.trajectory.x[1][0], std::exp(-wanted), 1e-10);
+}
+
 TEST(Integrate, SpiralStopsWithAStatusAndEverythingComputed) {
   auto system = testing::blank(2, 2);
   testing::add_surface(system, "x1", system.x(0));

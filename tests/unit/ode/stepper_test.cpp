@@ -115,6 +115,30 @@ TEST_P(EachMethod, continues_from_its_own_result) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(stepper.x_new()[i], expected[i]);
 }
 
+// Of n uncoupled equations: everything a step says of the first one.
+std::vector<double> first_of(Method method, std::size_t n) {
+  const auto f = [n](double t, const double* x, double* xdot) {
+    for (std::size_t i = 0; i < n; ++i) xdot[i] = std::cos(t + static_cast<double>(i)) * (1.0 + x[i] * x[i]);
+  };
+  std::vector<double> x(n);
+  for (std::size_t i = 0; i < n; ++i) x[i] = 0.1 / (1.0 + static_cast<double>(i));
+  std::vector<double> slope(n), low(n), high(n), inside(n);
+  f(0.2, x.data(), slope.data());
+  Stepper stepper(method, static_cast<int>(n));
+  DenseStep dense;
+  EXPECT_EQ(stepper.attempt(f, 0.2, x.data(), slope.data(), 0.3, {}), Attempt::finite);
+  EXPECT_TRUE(stepper.bounds(low.data(), high.data()));
+  EXPECT_EQ(stepper.dense(f, dense), Attempt::finite);
+  dense.evaluate(0.3, inside.data());
+  return {stepper.x_new()[0], stepper.slope_new()[0], low[0], high[0], inside[0]};
+}
+
+TEST_P(ExplicitMethod, a_component_has_the_same_bits_among_any_number_of_others) {
+  // 1 to 8 states have functions of their own.
+  const auto alone = first_of(GetParam(), 1);
+  for (std::size_t n = 2; n <= 10; ++n) EXPECT_EQ(first_of(GetParam(), n), alone) << n;
+}
+
 TEST_P(ExplicitMethod, stops_at_the_first_undefined_stage) {
   const int all = GetParam() == Method::dopri5 ? 6 : 12;
   for (int undefined_at = 1; undefined_at <= all; ++undefined_at) {
