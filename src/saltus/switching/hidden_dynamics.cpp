@@ -235,6 +235,7 @@ HiddenDecision decide_by_hidden_dynamics(const CornerTable& table, const HiddenS
 HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rate, const HiddenSituation& situation,
                               double eta, const HiddenOptions& options) {
   constexpr double tolerance = 1e-11;  // far below eta, which is all that the solution gets away from the root by
+  constexpr double tolerance_nudged = 1e-9;
   constexpr std::array nudges{1e-4, -1e-4, 6e-5, -6e-5};  // on different turns of a spiral
   std::vector<double> velocity(at(surfaces));
   double after = eta;
@@ -258,12 +259,17 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
           decision.structurally_unstable = decision.structurally_unstable || end.nudged;
           continue;
         }
+        if (fraction < 1.0) continue;
         // The root is still there, but no longer stable: which way it is left is not the event's to say.
-        for (std::size_t j = 0; fraction == 1.0 && j < start.size(); ++j) {
+        TrajectoryOptions fewer = trajectory_options(own_options, tolerance_nudged);
+        fewer.budget /= 10;
+        HiddenTrajectory nudged(face, fewer);
+        for (std::size_t j = 0; j < start.size(); ++j) {
           for (const double nudge : nudges) {
             auto moved = start;
             moved[j] += nudge;
-            add(trajectory.follow(moved), decision);
+            const TrajectoryEnd other = nudged.follow(moved);
+            if (other.limit != HiddenLimit::undecided) add(other, decision);
           }
         }
       }

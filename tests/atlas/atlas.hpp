@@ -1,0 +1,52 @@
+// The decision trees of two surfaces against the hidden dynamics, leaf by leaf.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "atlas_instances.hpp"
+
+namespace saltus::switching {
+
+/// What was found for one leaf under one scaling.
+struct AtlasCell {
+  long instances = 0;
+  long agree = 0;      ///< the resolver's mode is the tree's
+  long other = 0;      ///< it is the other one that the leaf, being ambiguous, admits
+  long undecided = 0;  ///< the resolver ran out of its budget, or says that it cannot tell
+  long cycles = 0;     ///< of those that agree: the regularised solution oscillates
+  /// Everything else, by the resolver's mode in the frame of the figure.
+  std::map<std::string, long> differ;
+  long simulated = 0;  ///< a part of them, by plain integration of the regularised system, too
+  long simulated_differ = 0;
+  long simulated_open = 0;  ///< too slow for it
+
+  [[nodiscard]] long differing() const {
+    long sum = 0;
+    for (const auto& [mode, count] : differ) sum += count;
+    return sum;
+  }
+};
+
+using Scaling = std::array<double, 2>;
+/// Leaf, and index of the scaling.
+using AtlasTable = std::map<std::pair<std::string, std::size_t>, AtlasCell>;
+
+struct AtlasOptions {
+  long instances = 1000;
+  unsigned seed = 1;
+  long simulate_every = 0;     ///< 0: never
+  std::size_t scalings = 100;  ///< at most so many of atlas_scalings()
+  double eta = 1e-5;           ///< how long after an exit the fields are looked at
+};
+
+/// Scalings kappa in the frame of the figures: (surface slid on or left, the other) for entries and exits (a), (c).
+[[nodiscard]] const std::vector<Scaling>& atlas_scalings(Tree tree);
+
+/// Makes random instances, decides each by its tree and by the hidden dynamics under every scaling (exits (a) and (b):
+/// those under which the sliding was stable), and counts.
+[[nodiscard]] AtlasTable compare_tree(Tree tree, const AtlasOptions& options);
+
+}  // namespace saltus::switching
