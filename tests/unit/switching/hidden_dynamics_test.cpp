@@ -82,6 +82,21 @@ TEST(HiddenDynamics, VerifiedCasesOfTwoSurfacesUnderEveryScaling) {
   EXPECT_GT(decisions, 1000);
 }
 
+TEST(HiddenDynamics, EntriesUnderStiffScalings) {
+  int decisions = 0;
+  for (const auto& one : plane_cases()) {
+    if (one.situation != "enter_codim2_from_codim1" || one.expected.size() > 1) continue;
+    for (const std::array<double, 2> kappa : {std::array{1e6, 1.0}, std::array{1.0, 1e6}}) {
+      const auto decision = decide_case(one, kappa);
+      ASSERT_LE(decision.limit, HiddenLimit::oscillating) << one.id;
+      EXPECT_TRUE(std::equal(decision.mode.begin(), decision.mode.end(), one.expected[0].mode.begin())) << one.id;
+      EXPECT_LT(decision.evaluations, 100000) << one.id;
+      ++decisions;
+    }
+  }
+  EXPECT_EQ(decisions, 200);
+}
+
 TEST(HiddenDynamics, AmbiguousExitsNameTheOtherMode) {
   int cases = 0;
   int named = 0;
