@@ -107,7 +107,7 @@ bool Decider::check() {
     }
     double velocity = fields_.velocities(state.alpha, {j}).front();
     const auto& tangent = mode > 0 ? occasion_.exit_above : occasion_.exit_below;
-    if (contains(tangent, j)) velocity = 0.0;
+    if (contains(tangent, j) && keeps_selections()) velocity = 0.0;
     const double scale = std::max(std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
                                   std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front()));
     Motion motion = fields_.motion(state.alpha, j, velocity, scale);
@@ -125,6 +125,17 @@ bool Decider::check() {
                       mode > 0 ? "the positive side" : "the negative side", s_.system.switching[at(j)].name));
     }
     transition_.zero_order[at(j)] = std::min(motion.order, 2);
+  }
+  return true;
+}
+
+/// Whether the new field is the sliding one of before at this point: selections were lost at their bounds only. Then
+/// the surfaces that are left through a bound are tangent to it. Coupled surfaces may be left with any selection.
+bool Decider::keeps_selections() const {
+  for (std::size_t j = 0; j < before_.mode.size(); ++j) {
+    if (before_.mode[j] != 0 || transition_.state.mode[j] == 0) continue;
+    const int surface = static_cast<int>(j);
+    if (!contains(occasion_.exit_below, surface) && !contains(occasion_.exit_above, surface)) return false;
   }
   return true;
 }

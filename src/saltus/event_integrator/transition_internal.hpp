@@ -61,6 +61,7 @@ class Decider {
   bool read_nested_anew();
   bool set_corners();
   bool check();
+  bool keeps_selections() const;
   bool fail(result::Termination termination, std::string message);
 
   const Surroundings& s_;
