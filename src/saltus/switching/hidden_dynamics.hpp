@@ -28,7 +28,7 @@ enum class HiddenLimit {
   settled,      ///< every surface is left for good, or its selection has a stable limit
   oscillating,  ///< recurrent: the solution slides, the regularised solution oscillates about it
   spirals_out,  ///< all of space is visited with growing amplitude
-  undecided,    ///< none of it within the budget
+  undecided,    ///< none of it within the budget, velocities that are not finite, or rest everywhere
 };
 
 struct HiddenDecision {

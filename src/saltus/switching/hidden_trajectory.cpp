@@ -12,6 +12,8 @@ namespace {
 
 /// Relative to the largest velocity of a surface: below this it says nothing (switching.md's sign tests have 1e-10).
 constexpr double vanishing = 1e-12;
+/// Unstable states of rest one after the other; more are a continuum of them.
+constexpr int most_nudges = 20;
 
 std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
@@ -42,10 +44,20 @@ TrajectoryEnd HiddenTrajectory::follow(const std::vector<double>& u) {
   stiff_ = false;
   recurrence_.reset();
   enter_zones();
+  nudges_ = 0;
+  std::string_view stopped = "the hidden dynamics has no limit within its budget";
   while (used_ < options_.budget) {
     ++used_;
     face_.enter(zone_);
     face_.velocity(u_.data(), v_.data());
+    if (!std::all_of(v_.begin(), v_.end(), [](double v) { return std::isfinite(v); })) {
+      stopped = "the velocities are not finite";
+      break;
+    }
+    if (nudges_ > most_nudges) {
+      stopped = "the hidden dynamics rests wherever it is put";
+      break;
+    }
     const std::size_t free = face_.free().size();
     const bool closed_form = free == 0 || (free == 1 && options_.closed_forms);
     recurrence_.visit(zone_, closed_form);
@@ -56,7 +68,7 @@ TrajectoryEnd HiddenTrajectory::follow(const std::vector<double>& u) {
   end_.mode = zone_;
   end_.alpha.resize(at(m_));
   for (int j = 0; j < m_; ++j) end_.alpha[at(j)] = std::clamp(u_[at(j)], 0.0, 1.0);
-  end_.reason = "the hidden dynamics has no limit within its budget";
+  end_.reason = stopped;
   return end_;
 }
 
@@ -189,6 +201,7 @@ HiddenTrajectory::Status HiddenTrajectory::cross_strip() {
 void HiddenTrajectory::perturb() {
   constexpr double nudge = 1e-6;
   end_.nudged = true;
+  ++nudges_;
   double size = nudge;
   for (const int j : face_.free()) {
     u_[at(j)] += u_[at(j)] < 0.5 ? size : u_[at(j)] > 1.0 - size ? -size : size;

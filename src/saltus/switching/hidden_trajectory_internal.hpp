@@ -73,6 +73,7 @@ class HiddenTrajectory {
   TrajectoryOptions options_;
   int m_;
   int used_ = 0;
+  int nudges_ = 0;
   std::vector<double> u_, v_;
   std::vector<int> zone_;
   Recurrence recurrence_;

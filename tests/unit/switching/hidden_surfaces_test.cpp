@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -322,6 +323,38 @@ TEST(HiddenSurfaces, TwoSurfacesReachedAtOnceAreUnfolded) {
   const std::vector<int> second{-1, 1};
   EXPECT_EQ(std::min(decision.mode, decision.other_modes[0]), second);
   EXPECT_EQ(std::max(decision.mode, decision.other_modes[0]), first);
+}
+
+/// Velocities -1, 0, 1: rest on boundaries, continua of roots, ties of everything.
+TEST(HiddenSurfaces, DegenerateTablesEndWithAnAnswerOrADoubt) {
+  std::mt19937 random(1);
+  HiddenOptions options;
+  options.budget = 2000;
+  int decided = 0;
+  for (int i = 0; i < 300; ++i) {
+    const int m = 1 + i % 2;
+    HiddenInstance one{MultiAffine(m, m), {}};
+    for (int j = 0; j < m; ++j) {
+      for (std::size_t k = 0; k < one.g.corners(); ++k) one.g.set_value(j, k, static_cast<int>(random() % 3) - 1);
+      one.situation.arrival.push_back(i % 3 == 0   ? Arrival::along
+                                      : i % 3 == 1 ? Arrival::at_start
+                                                   : Arrival::from_below);
+      one.situation.alpha.push_back(static_cast<double>(random() % 5) / 4.0);
+    }
+    const auto decision = one.decide(options);
+    for (const double alpha : decision.alpha) EXPECT_TRUE(alpha >= 0.0 && alpha <= 1.0);
+    decided += decision.limit == HiddenLimit::undecided ? 0 : 1;
+  }
+  EXPECT_GT(decided, 200);
+}
+
+TEST(HiddenSurfaces, VelocitiesThatAreNotFiniteAreNotDecided) {
+  for (auto& one : random_entries(2, 10, 1)) {
+    one.g.set_value(0, 1, NAN);
+    const auto decision = one.decide();
+    EXPECT_EQ(decision.limit, HiddenLimit::undecided);
+    EXPECT_EQ(decision.reason, "the velocities are not finite");
+  }
 }
 
 }  // namespace
