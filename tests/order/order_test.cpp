@@ -131,7 +131,13 @@ INSTANTIATE_TEST_SUITE_P(
                     OrderCase{"circle", Integrator::radau5, 5, 0.2, 1.06},
                     OrderCase{"sweeping-disc", Integrator::dopri5, 5, 0.3, 1.06},
                     OrderCase{"sweeping-disc", Integrator::dop853, 8, 0.5, 1.04},
-                    OrderCase{"sweeping-disc", Integrator::radau5, 5, 0.3, 1.06}),
+                    OrderCase{"sweeping-disc", Integrator::radau5, 5, 0.3, 1.06},
+                    // Jumps of the field's parameters and of the state itself.
+                    OrderCase{"hiskens-pai", Integrator::dopri5, 5, 0.01, 1.06},
+                    OrderCase{"hiskens-pai", Integrator::radau5, 5, 0.01, 1.06},
+                    OrderCase{"simple-jump", Integrator::dopri5, 5, 0.4, 1.06},
+                    OrderCase{"simple-jump", Integrator::dop853, 8, 0.27, 1.02},
+                    OrderCase{"simple-jump", Integrator::radau5, 5, 0.4, 1.06}),
     [](const auto& instance) { return test_name(instance.param); });
 
 }  // namespace

@@ -95,6 +95,53 @@ TEST_P(Smoothed, ConvergesToTheEventEngineWithOrderOne) {
   EXPECT_NEAR(slope, GetParam().order, 0.1) << table;
 }
 
+// Tolerances that do not see the layer are tightened in it. Without that the relay ended at errors from 0.06 to 1000
+// for epsilon below 30 to 1000 times atol, and nothing said so.
+TEST(SmoothedTolerances, LooseOnesLeaveTheErrorOfTheLayer) {
+  const ReferenceProblem& problem = reference("relay-feedback");
+  const Simulator model = Simulator::from_reference(problem);
+  for (const double epsilon : {1e-5, 1e-6, 1e-7, 1e-8}) {
+    for (const double rtol : {1e-5, 1e-6, 1e-7, 1e-8}) {
+      SimulateOptions options = smoothed(model.options(), epsilon);
+      options.rtol = rtol;
+      options.atol = rtol / 100;
+      const Result result = model.run(options);
+      ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+      // 330 to 370 epsilon are the layer's; rtol acts where the solution is outside.
+      EXPECT_LT(distance(result.final.x, problem.final_x), 400 * epsilon + 10 * rtol)
+          << "epsilon = " << epsilon << ", rtol = " << rtol;
+    }
+  }
+}
+
+// A surface away from 0, so that it is rtol that does not see the layer. x slides on 3 with x' = 0, y' = alpha.
+TEST(SmoothedTolerances, SurfacesAwayFromZeroAreSeen) {
+  const Simulator model = Simulator::from_text(R"toml(
+[model]
+name = "away"
+[states]
+x = 3.5
+y = 0
+[dynamics]
+x = "cos(5*t) - 2*sign(x - 3)"
+y = "step(x - 3)"
+[simulate]
+until = 10
+)toml");
+  for (const double epsilon : {1e-5, 1e-6, 1e-7}) {
+    for (const double rtol : {1e-4, 1e-6, 1e-8}) {
+      SimulateOptions options = smoothed(model.options(), epsilon);
+      options.rtol = rtol;
+      options.atol = rtol / 100;
+      const Result result = model.run(options);
+      ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+      const double alpha = 0.5 + std::cos(50.0) / 4;
+      EXPECT_NEAR(result.final.alpha[0], alpha, 5 * epsilon + 1e-3) << "epsilon = " << epsilon << ", rtol = " << rtol;
+      EXPECT_NEAR(result.final.x[0], 3 + epsilon * (2 * alpha - 1), 1e-3 * epsilon) << epsilon;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Models, Smoothed,
     testing::Values(SmoothedCase{"crossing", 1, 1e-3, 1e-6, 40}, SmoothedCase{"asymmetric-sliding", 1, 1e-3, 1e-6, 60},

@@ -9,6 +9,7 @@
 
 #include "saltus/event_integrator/run_internal.hpp"
 #include "saltus/event_integrator/start.hpp"
+#include "saltus/event_integrator/thin_layers.hpp"
 #include "saltus/event_integrator/undefined.hpp"
 
 namespace saltus::event_integrator {
@@ -83,6 +84,10 @@ void Run::fail(Termination termination, std::string message) {
 
 bool Run::enter(const Transition& transition) {
   state_ = transition.state;
+  if (!options_.layers.corners.empty()) {
+    const auto wanted = local_tolerances(options_.tolerances);
+    tolerances_ = within_layers(kernel_, options_.layers, wanted, state_, t_, x_.data());
+  }
   field_.enter(state_);
   stepper_.restart();
   stiffness_.reset();

@@ -22,6 +22,15 @@ struct OutputTimes {
   std::vector<double> times;  ///< ascending, inside [from, until]; for at_times
 };
 
+/// Layers of a regularised system: inside one, psi + half_width > 0 > psi - half_width.
+struct ThinLayers {
+  struct Corners {
+    int lower = 0, upper = 0;  ///< switching functions psi + half_width and psi - half_width
+  };
+  std::vector<Corners> corners;
+  double half_width = 0.0;
+};
+
 /// Checked by the pipeline: from < until, rtol > 0, atol >= 0, max_step > 0.
 struct IntegrationOptions {
   ode::Method method = ode::Method::dopri5;
@@ -38,6 +47,7 @@ struct IntegrationOptions {
   std::vector<double> scaling;  ///< for SelectionPolicy::scaled: a factor per switching function; empty = ones
   /// Ascending: what to go on with instead of what is decided. The result begins at the last of these decisions.
   std::vector<Choice> choices;
+  ThinLayers layers;  ///< inside them tolerances are tightened to what they bear
 };
 
 struct Progress {

@@ -142,6 +142,18 @@ class Integrand {
   explicit Integrand(smoothed::Regularisation regularisation) : regularisation_(std::move(regularisation)) {}
 
   [[nodiscard]] const model::System& system() const { return regularisation_ ? regularisation_->system : *system_; }
+  [[nodiscard]] event_integrator::ThinLayers layers() const {
+    event_integrator::ThinLayers layers;
+    if (!regularisation_) return layers;
+    layers.half_width = regularisation_->epsilon;
+    const auto function = [&](std::size_t column) { return regularisation_->system.columns[column].function; };
+    for (const auto& layer : regularisation_->layers) {
+      for (const auto& side : layer.sides) {
+        if (side.lower != side.upper) layers.corners.push_back({function(side.lower), function(side.upper)});
+      }
+    }
+    return layers;
+  }
   /// What was computed, over the columns of the original system.
   [[nodiscard]] event_integrator::Integration restated(event_integrator::Integration run) const {
     if (!regularisation_) return run;
@@ -193,11 +205,12 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
                                 {},
                                 {}});
   }
-  const auto integration_or = integration_options(system, options);
+  auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   auto begin = std::chrono::steady_clock::now();
   const auto integrand_or = integrand(system, options);
   if (!integrand_or) return tl::unexpected(integrand_or.error());
+  integration_or->layers = integrand_or->layers();
   auto kernel = evaluation::ModelKernel::compile(integrand_or->system(), native_code(options.native));
   if (!kernel) return tl::unexpected(kernel.error());
 
