@@ -205,7 +205,7 @@ TEST(SmoothedRun, ALayerOfRoundingsIsSaidToBeTooThin) {
   options.method = pipeline::Method::smoothed;
   options.smoothed.epsilon = 1e-15;
   const Result result = model.run(options);
-  EXPECT_EQ(result.status.termination, Termination::outside_class);
+  EXPECT_EQ(result.status.termination, Termination::step_size_too_small);
   EXPECT_NE(result.status.message.find("choose a larger simulate.smoothed.epsilon"), std::string::npos)
       << result.status.message;
 }

@@ -122,8 +122,11 @@ void restate(const Regularisation& regularisation, std::vector<Event>& events, r
     restated.push_back(std::move(event));
   }
   events = std::move(restated);
-  // Corners have one continuation, unless rounding hides it.
-  if (status.termination == Termination::outside_class || status.termination == Termination::no_admissible_mode) {
+  // Corners have one continuation, unless rounding hides it; and what a layer bears may be less than rounding.
+  const bool lost = status.termination == Termination::outside_class ||
+                    status.termination == Termination::no_admissible_mode ||
+                    status.termination == Termination::step_size_too_small;
+  if (lost) {
     status.message += fmt::format(
         "; with method \"smoothed\" the layer of width epsilon = {} may be too thin for doubles: choose a larger "
         "simulate.smoothed.epsilon",
