@@ -111,6 +111,21 @@ std::string switching_text(const model::System& system) {
   return text;
 }
 
+std::string cell_text(const model::Cell& cell) {
+  if (cell.table->kind == model::CellTable::Breaks::integers) return "jumps at whole numbers of its argument";
+  const auto breaks = cell.table->breaks.size();
+  return fmt::format("{} at {} break{}", cell.table->change == model::CellTable::Change::jump ? "jumps" : "kinks",
+                     breaks, breaks == 1 ? "" : "s");
+}
+
+/// Tables, floor and mod, samples of inputs.
+std::string cells_text(const model::System& system) {
+  if (system.cells.empty()) return "";
+  std::string text = heading("piecewise functions", system.cells.size());
+  for (const auto& cell : system.cells) text += fmt::format("  {}: {}\n", cell.name, cell_text(cell));
+  return text + "  the integrator restarts where an argument leaves its piece\n";
+}
+
 std::string modes_text(const model::System& system) {
   if (system.mode_groups.empty()) return "";
   std::string text = heading("groups of modes", system.mode_groups.size());
@@ -183,7 +198,8 @@ std::string description_of(const model::System& system, const std::string& path)
   const std::string_view colon = system.description.empty() ? "" : ": ";
   std::string text = fmt::format("{}{}{}\n{}\n", system.name, colon, system.description, path);
   text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
-  text += modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system) + methods_text(system);
+  text += cells_text(system) + modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system) +
+          methods_text(system);
   text += heading("warnings", system.warnings.size());
   for (const auto& warning : system.warnings) text += fmt::format("  {}\n", warning);
   return text;

@@ -5,6 +5,7 @@
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json_reader_internal.hpp"
 #include "saltus/io/json_result.hpp"
+#include "saltus/io/json_shapes_internal.hpp"
 
 namespace saltus::io {
 namespace {
@@ -39,18 +40,23 @@ void read_status(JsonReader& reader, const Json& json, const std::string& path, 
   reader.read_member(json, path, "time_reached", status.time_reached);
 }
 
-void read_alternatives(JsonReader& reader, const Json& json, const std::string& path, result::Event& event) {
+/// Reads every entry of a list by read_one(reader, json, path).
+template <class Part, class Read>
+void read_list(JsonReader& reader, const Json& json, const std::string& path, std::vector<Part>& parts, Read read_one) {
   if (!json.is_array()) {
     reader.mismatch(path, "a list", json);
     return;
   }
   for (std::size_t i = 0; i < json.size(); ++i) {
-    result::Alternative alternative;
-    const auto here = fmt::format("{}/{}", path, i);
-    reader.read_member(json[i], here, "mode", alternative.mode);
-    reader.read_member(json[i], here, "alpha", alternative.alpha);
-    event.alternatives.push_back(std::move(alternative));
+    parts.push_back(read_one(reader, json[i], fmt::format("{}/{}", path, i)));
   }
+}
+
+result::Alternative read_alternative(JsonReader& reader, const Json& json, const std::string& path) {
+  result::Alternative alternative;
+  reader.read_member(json, path, "mode", alternative.mode);
+  reader.read_member(json, path, "alpha", alternative.alpha);
+  return alternative;
 }
 
 result::Event read_event(JsonReader& reader, const Json& json, const std::string& path) {
@@ -71,19 +77,14 @@ result::Event read_event(JsonReader& reader, const Json& json, const std::string
   reader.read_member(json, path, "x_after", event.x_after);
   reader.read_member(json, path, "unique", event.unique);
   if (const auto* others = reader.member(json, path, "alternatives")) {
-    read_alternatives(reader, *others, path + "/alternatives", event);
+    read_list(reader, *others, path + "/alternatives", event.alternatives, read_alternative);
   }
   reader.read_member(json, path, "reason", event.reason);
   return event;
 }
 
 void read_events(JsonReader& reader, const Json& json, const std::string& path, std::vector<result::Event>& events) {
-  if (!json.is_array()) {
-    reader.mismatch(path, "a list", json);
-    return;
-  }
-  for (std::size_t i = 0; i < json.size(); ++i)
-    events.push_back(read_event(reader, json[i], fmt::format("{}/{}", path, i)));
+  read_list(reader, json, path, events, read_event);
 }
 
 void read_trajectory(JsonReader& reader, const Json& json, const std::string& path, result::Trajectory& trajectory) {
@@ -103,18 +104,11 @@ void read_affine(JsonReader& reader, const Json& json, const std::string& path, 
   reader.read_member(json, path, "constant", surface.affine->constant);
 }
 
-void read_curves(JsonReader& reader, const Json& json, const std::string& path, result::Surface& surface) {
-  if (!json.is_array()) {
-    reader.mismatch(path, "a list", json);
-    return;
-  }
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    result::SurfaceCurve curve;
-    const auto here = fmt::format("{}/{}", path, i);
-    reader.read_member(json[i], here, "t", curve.t);
-    reader.read_member(json[i], here, "coordinates", curve.coordinates);
-    surface.curves.push_back(std::move(curve));
-  }
+result::SurfaceCurve read_curve(JsonReader& reader, const Json& json, const std::string& path) {
+  result::SurfaceCurve curve;
+  reader.read_member(json, path, "t", curve.t);
+  reader.read_member(json, path, "coordinates", curve.coordinates);
+  return curve;
 }
 
 result::Surface read_surface(JsonReader& reader, const Json& json, const std::string& path) {
@@ -130,18 +124,15 @@ result::Surface read_surface(JsonReader& reader, const Json& json, const std::st
   if (const auto* affine = reader.member(json, path, "affine")) {
     read_affine(reader, *affine, path + "/affine", surface);
   }
-  if (const auto* curves = reader.member(json, path, "curves")) read_curves(reader, *curves, path + "/curves", surface);
+  if (const auto* curves = reader.member(json, path, "curves")) {
+    read_list(reader, *curves, path + "/curves", surface.curves, read_curve);
+  }
   return surface;
 }
 
 void read_surfaces(JsonReader& reader, const Json& json, const std::string& path,
                    std::vector<result::Surface>& surfaces) {
-  if (!json.is_array()) {
-    reader.mismatch(path, "a list", json);
-    return;
-  }
-  for (std::size_t i = 0; i < json.size(); ++i)
-    surfaces.push_back(read_surface(reader, json[i], fmt::format("{}/{}", path, i)));
+  read_list(reader, json, path, surfaces, read_surface);
 }
 
 void read_final(JsonReader& reader, const Json& json, const std::string& path, result::Final& final) {
@@ -182,89 +173,6 @@ void read_options(JsonReader& reader, const Json& json, const std::string& path,
       add(double{});
     }
   }
-}
-
-/// Every row of a table must have as many entries as there are names, and every table as many rows as times.
-template <class Rows>
-void check_rows(JsonReader& reader, const std::string& path, const Rows& rows, std::size_t times, std::size_t names) {
-  if (rows.size() != times) {
-    reader.fail(path, fmt::format("expected as many rows as times, {}, found {}", times, rows.size()));
-  }
-  const auto wrong = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.size() != names; });
-  if (wrong == rows.end()) return;
-  reader.fail(fmt::format("{}/{}", path, wrong - rows.begin()),
-              fmt::format("expected {} entries, found {}", names, wrong->size()));
-}
-
-template <class Vector>
-void check_length(JsonReader& reader, const std::string& path, const Vector& vector, std::size_t expected) {
-  if (vector.size() == expected) return;
-  reader.fail(path, fmt::format("expected {} entries, found {}", expected, vector.size()));
-}
-
-void check_event_lengths(JsonReader& reader, const result::Event& event, const std::string& path, std::size_t states,
-                         std::size_t columns) {
-  check_length(reader, path + "/x", event.x, states);
-  check_length(reader, path + "/x_after", event.x_after, states);
-  if (event.mode_before) check_length(reader, path + "/mode_before", *event.mode_before, columns);
-  if (event.mode_after) check_length(reader, path + "/mode_after", *event.mode_after, columns);
-  if (event.alpha_before) check_length(reader, path + "/alpha_before", *event.alpha_before, columns);
-  if (event.alpha_after) check_length(reader, path + "/alpha_after", *event.alpha_after, columns);
-}
-
-void check_surface(JsonReader& reader, const result::Surface& surface, const std::string& path,
-                   const std::vector<std::string>& states) {
-  for (const auto& name : surface.states) {
-    if (std::find(states.begin(), states.end(), name) != states.end()) continue;
-    reader.fail(path + "/states", fmt::format("'{}' is no state", name));
-  }
-  if (surface.affine) check_length(reader, path + "/affine/gradient", surface.affine->gradient, surface.states.size());
-  for (std::size_t i = 0; i < surface.curves.size(); ++i) {
-    const auto& coordinates = surface.curves[i].coordinates;
-    const auto here = fmt::format("{}/curves/{}/coordinates", path, i);
-    check_length(reader, here, coordinates, surface.states.size());
-    for (const auto& column : coordinates) check_length(reader, here, column, coordinates.front().size());
-  }
-}
-
-/// What tables and reports rely on when they index.
-void check_shapes(JsonReader& reader, const std::string& path, const result::Result& result) {
-  const auto& trajectory = result.trajectory;
-  const std::size_t times = trajectory.t.size();
-  const std::size_t columns = result.switching_functions.size();
-  check_rows(reader, path + "/trajectory/x", trajectory.x, times, result.states.size());
-  check_rows(reader, path + "/trajectory/u", trajectory.u, times, result.controls.size());
-  check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, columns);
-  check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, columns);
-  check_rows(reader, path + "/trajectory/outputs", trajectory.outputs, times, result.outputs.size());
-  check_length(reader, path + "/final/x", result.final.x, result.states.size());
-  check_length(reader, path + "/final/mode", result.final.mode, columns);
-  check_length(reader, path + "/final/alpha", result.final.alpha, columns);
-  check_length(reader, path + "/final/outputs", result.final.outputs, result.outputs.size());
-  for (std::size_t i = 0; i < result.events.size(); ++i) {
-    check_event_lengths(reader, result.events[i], fmt::format("{}/events/{}", path, i), result.states.size(), columns);
-  }
-  for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
-    check_surface(reader, result.surfaces[i], fmt::format("{}/surfaces/{}", path, i), result.states);
-  }
-}
-
-/// A branch has the columns of its parent, and leaves it at an alternative of an event that it lists.
-void check_branch(JsonReader& reader, const std::string& path, const result::Result& parent,
-                  const result::Result& branch) {
-  const bool same = branch.states == parent.states && branch.controls == parent.controls &&
-                    branch.switching_functions == parent.switching_functions && branch.outputs == parent.outputs;
-  if (!same) reader.fail(path, "expected the states, controls, switching functions and outputs of what it leaves");
-  if (!branch.left_at) {
-    reader.fail(path, "'left_at' is missing");
-    return;
-  }
-  const auto& [event, alternative] = *branch.left_at;
-  if (event >= parent.events.size() || alternative >= parent.events[event].alternatives.size()) {
-    reader.fail(path + "/left_at",
-                fmt::format("what it leaves has no alternative {} of an event {}", alternative, event));
-  }
-  if (branch.events.empty()) reader.fail(path + "/events", "expected the event at which it leaves, found none");
 }
 
 void read_format(JsonReader& reader, const Json& json) {
@@ -317,6 +225,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   read_part(reader, json, path, "final", read_final, result.final);
   read_part(reader, json, path, "events", read_events, result.events);
   read_part(reader, json, path, "trajectory", read_trajectory, result.trajectory);
+  if (json.is_object() && json.contains("u")) reader.read_member(json, path, "u", result.interval_controls);
   // Results of versions before surfaces were recorded have none.
   if (json.is_object() && json.contains("surfaces")) {
     read_part(reader, json, path, "surfaces", read_surfaces, result.surfaces);

@@ -125,6 +125,7 @@ Json whole_json(const result::Result& result) {
   json["final"] = final_json(result.final);
   json["events"] = std::move(events);
   json["trajectory"] = trajectory_json(result.trajectory);
+  if (!result.interval_controls.empty()) json["u"] = result.interval_controls;
   json["surfaces"] = std::move(surfaces);
   json["statistics"] = {{"steps", result.statistics.steps},
                         {"rejected", result.statistics.rejected},

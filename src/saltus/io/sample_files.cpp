@@ -155,6 +155,16 @@ Expected<Columns> read_control(const std::filesystem::path& file, const std::str
   const auto index = static_cast<std::size_t>(found - result->controls.begin());
   Columns columns;
   columns.file = file.string();
+  const auto& intervals = result->interval_controls;
+  if (!intervals.empty()) {
+    const double from = result->trajectory.t.empty() ? 0.0 : result->trajectory.t.front();
+    const double length = (result->final.t - from) / static_cast<double>(intervals.size());
+    for (std::size_t k = 0; k < intervals.size(); ++k) {
+      columns.first.push_back(from + static_cast<double>(k) * length);
+      columns.second.push_back(intervals[k][index]);
+    }
+    return columns;
+  }
   for (std::size_t i = 0; i < result->trajectory.t.size(); ++i) {
     const double t = result->trajectory.t[i], u = result->trajectory.u[i][index];
     if (!columns.first.empty() && columns.first.back() == t) {

@@ -28,8 +28,8 @@ struct Columns {
 /// The mistake that was found in the columns, with the line of its row.
 [[nodiscard]] Error located(const model::PointMistake& mistake, const Columns& columns);
 
-/// The piecewise constant control of a stored result: one sample per row of its trajectory, of rows at one time the
-/// last. Fails if there is no such control.
+/// The piecewise constant control of a stored result: of an optimisation one sample per control interval, else one per
+/// row of its trajectory, of rows at one time the last. Fails if there is no such control.
 [[nodiscard]] Expected<Columns> read_control(const std::filesystem::path& result, const std::string& control);
 
 }  // namespace saltus::io

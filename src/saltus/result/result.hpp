@@ -127,6 +127,8 @@ struct Result {
   Final final;
   std::vector<Event> events;
   Trajectory trajectory;
+  /// Of an optimisation: the controls in each interval, n_u; the intervals divide the time of the trajectory evenly.
+  std::vector<std::vector<double>> interval_controls;
   Statistics statistics;
   OptionRecord options;
   std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)

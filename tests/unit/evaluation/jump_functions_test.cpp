@@ -1,6 +1,7 @@
 // The kernel's functions of [[jumps]].
 #include <gtest/gtest.h>
 
+#include "blank_system.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/model/build.hpp"
 
@@ -11,15 +12,7 @@ using casadi::SX;
 
 /// One switching function, an event with one guard and three jumps: a condition of two comparisons, times, a guard.
 model::System example() {
-  model::System s;
-  s.t = SX::sym("t");
-  s.x = SX::sym("x", 2);
-  s.u = SX::sym("u", 1);
-  s.p = SX::sym("p", 1);
-  s.alpha = SX::sym("alpha", 1);
-  s.parameter_values = {3.0};
-  s.initial_state = {0.0, 0.0};
-  s.input = s.p * s.t;
+  model::System s = blank_system(3.0, 1);
   model::SwitchingFunction surface;
   surface.psi = s.x(0);
   s.switching = {surface};

@@ -6,7 +6,7 @@
 #include <casadi/core/function.hpp>
 #include <gtest/gtest.h>
 
-#include "saltus/model/system.hpp"
+#include "blank_system.hpp"
 
 namespace saltus::evaluation {
 namespace {
@@ -22,18 +22,7 @@ model::SwitchingFunction surface(const std::string& name, const SX& psi) {
 
 /// Two states, an input u = p t, a curved, a nested and a time surface, one event expression and one condition.
 model::System example() {
-  model::System s;
-  s.t = SX::sym("t");
-  s.x = SX::sym("x", 2);
-  s.u = SX::sym("u", 1);
-  s.p = SX::sym("p", 1);
-  s.alpha = SX::sym("alpha", 3);
-  s.parameter_names = {"rate"};
-  s.parameter_values = {0.75};
-  s.state_names = {"a", "b"};
-  s.control_names = {"u"};
-  s.initial_state = {0.1, 0.2};
-  s.input = s.p * s.t;
+  model::System s = blank_system(0.75, 3);
   const SX a = s.x(0);
   const SX b = s.x(1);
   s.switching = {surface("circle", a * a + b * b - 1.0), surface("nested", b + a * s.alpha(0) - s.u),

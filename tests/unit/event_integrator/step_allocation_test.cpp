@@ -1,27 +1,14 @@
 // No memory is allocated from step to step between events.
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
+#include "../counted_allocations.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "systems.hpp"
 
-namespace {
-long allocations = 0;
-}
-
-// Every allocation of this executable is counted.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-
 namespace saltus::event_integrator {
 namespace {
+
+using saltus::testing::allocations;
 
 struct Count {
   long steps = 0;            ///< from one step without event to the next

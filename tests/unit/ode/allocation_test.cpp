@@ -1,26 +1,13 @@
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
+#include "../counted_allocations.hpp"
 #include "ode_tools.hpp"
 #include "saltus/ode/bernstein.hpp"
 
-namespace {
-long allocations = 0;
-}
-
-// Every allocation of this executable is counted.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-
 namespace saltus::ode {
 namespace {
+
+using saltus::testing::allocations;
 
 using namespace trial;
 

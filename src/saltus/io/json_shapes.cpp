@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cstddef>
+
+#include "saltus/io/json_shapes_internal.hpp"
+
+namespace saltus::io {
+namespace {
+
+/// Every row of a table must have as many entries as there are names, and every table as many rows as times.
+template <class Rows>
+void check_rows(JsonReader& reader, const std::string& path, const Rows& rows, std::size_t times, std::size_t names) {
+  if (rows.size() != times) {
+    reader.fail(path, fmt::format("expected as many rows as times, {}, found {}", times, rows.size()));
+  }
+  const auto wrong = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.size() != names; });
+  if (wrong == rows.end()) return;
+  reader.fail(fmt::format("{}/{}", path, wrong - rows.begin()),
+              fmt::format("expected {} entries, found {}", names, wrong->size()));
+}
+
+template <class Vector>
+void check_length(JsonReader& reader, const std::string& path, const Vector& vector, std::size_t expected) {
+  if (vector.size() == expected) return;
+  reader.fail(path, fmt::format("expected {} entries, found {}", expected, vector.size()));
+}
+
+void check_event_lengths(JsonReader& reader, const result::Event& event, const std::string& path, std::size_t states,
+                         std::size_t columns) {
+  check_length(reader, path + "/x", event.x, states);
+  check_length(reader, path + "/x_after", event.x_after, states);
+  if (event.mode_before) check_length(reader, path + "/mode_before", *event.mode_before, columns);
+  if (event.mode_after) check_length(reader, path + "/mode_after", *event.mode_after, columns);
+  if (event.alpha_before) check_length(reader, path + "/alpha_before", *event.alpha_before, columns);
+  if (event.alpha_after) check_length(reader, path + "/alpha_after", *event.alpha_after, columns);
+}
+
+void check_surface(JsonReader& reader, const result::Surface& surface, const std::string& path,
+                   const std::vector<std::string>& states) {
+  for (const auto& name : surface.states) {
+    if (std::find(states.begin(), states.end(), name) != states.end()) continue;
+    reader.fail(path + "/states", fmt::format("'{}' is no state", name));
+  }
+  if (surface.affine) check_length(reader, path + "/affine/gradient", surface.affine->gradient, surface.states.size());
+  for (std::size_t i = 0; i < surface.curves.size(); ++i) {
+    const auto& coordinates = surface.curves[i].coordinates;
+    const auto here = fmt::format("{}/curves/{}/coordinates", path, i);
+    check_length(reader, here, coordinates, surface.states.size());
+    for (const auto& column : coordinates) check_length(reader, here, column, coordinates.front().size());
+  }
+}
+
+}  // namespace
+
+void check_shapes(JsonReader& reader, const std::string& path, const result::Result& result) {
+  const auto& trajectory = result.trajectory;
+  const std::size_t times = trajectory.t.size();
+  const std::size_t columns = result.switching_functions.size();
+  check_rows(reader, path + "/trajectory/x", trajectory.x, times, result.states.size());
+  check_rows(reader, path + "/trajectory/u", trajectory.u, times, result.controls.size());
+  check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, columns);
+  check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, columns);
+  check_rows(reader, path + "/trajectory/outputs", trajectory.outputs, times, result.outputs.size());
+  check_rows(reader, path + "/u", result.interval_controls, result.interval_controls.size(), result.controls.size());
+  check_length(reader, path + "/final/x", result.final.x, result.states.size());
+  check_length(reader, path + "/final/mode", result.final.mode, columns);
+  check_length(reader, path + "/final/alpha", result.final.alpha, columns);
+  check_length(reader, path + "/final/outputs", result.final.outputs, result.outputs.size());
+  for (std::size_t i = 0; i < result.events.size(); ++i) {
+    check_event_lengths(reader, result.events[i], fmt::format("{}/events/{}", path, i), result.states.size(), columns);
+  }
+  for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
+    check_surface(reader, result.surfaces[i], fmt::format("{}/surfaces/{}", path, i), result.states);
+  }
+}
+
+void check_branch(JsonReader& reader, const std::string& path, const result::Result& parent,
+                  const result::Result& branch) {
+  const bool same = branch.states == parent.states && branch.controls == parent.controls &&
+                    branch.switching_functions == parent.switching_functions && branch.outputs == parent.outputs;
+  if (!same) reader.fail(path, "expected the states, controls, switching functions and outputs of what it leaves");
+  if (!branch.left_at) {
+    reader.fail(path, "'left_at' is missing");
+    return;
+  }
+  const auto& [event, alternative] = *branch.left_at;
+  if (event >= parent.events.size() || alternative >= parent.events[event].alternatives.size()) {
+    reader.fail(path + "/left_at",
+                fmt::format("what it leaves has no alternative {} of an event {}", alternative, event));
+  }
+  if (branch.events.empty()) reader.fail(path + "/events", "expected the event at which it leaves, found none");
+}
+
+}  // namespace saltus::io

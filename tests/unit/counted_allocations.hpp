@@ -1,0 +1,17 @@
+// Counts every allocation of the executable. It replaces operator new: one source of a test program may include this.
+#pragma once
+
+#include <cstdlib>
+#include <new>
+
+namespace saltus::testing {
+inline long allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++saltus::testing::allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
