@@ -159,10 +159,17 @@ test("a surface that moves is drawn at its times within the window", () => {
 });
 
 test("drawings begin with the states of the first surface", () => {
-  assert.deepEqual(saltus.firstChoice({surfaces: []}, 2), [0, 1]);
-  assert.deepEqual(saltus.firstChoice({surfaces: [affine([3], [1], 0)]}, 2), [0, 3]);
-  assert.deepEqual(saltus.firstChoice({surfaces: [affine([1, 2, 4], [1, 1, 1], 0)]}, 2), [1, 2]);
-  assert.deepEqual(saltus.firstChoice({surfaces: [affine([3], [1], 0)]}, 3), [0, 1, 3]);
+  const moving = [0, 1, 2, 1.5, 0.5], stepping = [1, 1, 1, 2, 2];
+  const choice = (surfaces, size, x = [moving, moving, moving, moving, moving]) =>
+      saltus.firstChoice({surfaces, trajectory: {t: [0, 1, 2, 2, 3], x}}, size);
+  assert.deepEqual(choice([], 2), [0, 1]);
+  assert.deepEqual(choice([affine([3], [1], 0)], 2), [0, 3]);
+  assert.deepEqual(choice([affine([1, 2, 4], [1, 1, 1], 0)], 2), [1, 2]);
+  assert.deepEqual(choice([affine([3], [1], 0)], 3), [0, 1, 3]);
+  // What only jumps comes last, and so do the conditions on it.
+  const phase = affine([0], [1], -1), line = affine([1, 2], [1, 1], 0);
+  assert.deepEqual(choice([phase, line], 2, [stepping, moving, moving]), [1, 2]);
+  assert.deepEqual(choice([phase], 2, [stepping, moving]), [0, 1]);
 });
 
 test("a plane cuts a cube in a triangle to a hexagon", () => {

@@ -93,11 +93,17 @@ saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
   return notes.join(" ");
 };
 
-/** States to begin with: those of the first surface, filled up with the first ones, in their order. */
+/**
+ * States to begin with: those of the first surface of moving states, filled up with the first ones that move, then with
+ * any; in their order. A counter or a phase of a cycle shows little on an axis.
+ */
 saltus.firstChoice = (result, size) => {
-  const chosen = new Set((result.surfaces[0]?.states ?? []).slice(0, size));
-  for (let i = 0; chosen.size < size; i += 1) chosen.add(i);
-  return [...chosen].sort((a, b) => a - b);
+  const {t, x} = result.trajectory;
+  const moves = (state) => !saltus.isDiscrete(t, x[state]);
+  const first = result.surfaces.find((surface) => surface.states.every(moves));
+  const states = x.map((_, i) => i);
+  const ranked = [...(first?.states ?? []), ...states.filter(moves), ...states];
+  return [...new Set(ranked)].slice(0, size).sort((a, b) => a - b);
 };
 
 /** A choice of one state per axis; `changed` is called after every change of `choice`. */
