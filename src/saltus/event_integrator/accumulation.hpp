@@ -1,4 +1,4 @@
-// Jump sequences with a limit: infinitely many jumps in finite time (Zeno).
+// Sequences of jumps, or of switches, with a limit: infinitely many in finite time (Zeno, spirals).
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct JumpLimit {
   bool rattling = false;   ///< no laps: jumps in any order, faster than their guards are resolved
 };
 
-/// Watches the times and states of jumps for laps whose durations shrink geometrically. A lap is a cycle of jumps that
-/// repeats, of up to eight times.
+/// Watches the times and states of jumps (or of switches, which are numbered likewise) for laps whose durations shrink
+/// geometrically. A lap is a cycle of jumps that repeats, of up to eight times.
 ///
 /// With the duration T of the last lap and the ratio r < 1 of successive durations, T r / (1 - r) is what remains. The
 /// limit is announced once that is below 1e-8 of the time that the sequence has taken, or can no longer be told apart
@@ -37,6 +37,7 @@ class JumpSeries {
   /// Behind a limit, or where guards came to rest: laps start anew. Rattling is followed through such rests.
   void clear_laps();
   void clear();
+  [[nodiscard]] bool empty() const { return entries_.empty(); }
 
  private:
   struct Entry {

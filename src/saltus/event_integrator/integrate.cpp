@@ -49,6 +49,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       user_events_(kernel, system),
       jumps_(kernel, system, options.from),
       holding_(kernel, system),
+      shortest_switch_lap_(3 * system.switching.size(), 0.0),
       last_guard_(system.jumps.size(), {{-1, -1}, -1}),
       last_rate_(system.jumps.size(), 0.0),
       shortest_lap_(system.jumps.size(), 0.0),

@@ -174,4 +174,21 @@ void Recorder::accumulated(double t, const std::vector<int>& jumps, const Passag
   events_.push_back(std::move(entry));
 }
 
+void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passage& passage,
+                         const Transition& transition) {
+  result::Event entry;
+  entry.t = t;
+  entry.kind = result::EventKind::accumulation;
+  for (const auto& column : system_.columns) {
+    const bool takes_part = std::find(surfaces.begin(), surfaces.end(), column.function) != surfaces.end();
+    if (takes_part) entry.surfaces.push_back(column.name);
+  }
+  entry.x = passage.x;
+  entry.x_after = passage.x_after;
+  entry.mode_before = mode_columns(passage.before.mode, passage.before.alpha);
+  entry.alpha_before = alpha_columns(passage.before.alpha);
+  entry.reason = "the intervals of these switches shrink geometrically: the state is their limit";
+  add_transition(std::move(entry), transition);
+}
+
 }  // namespace saltus::event_integrator

@@ -46,6 +46,8 @@ class Recorder {
               const Transition& transition);
   /// The limit of a sequence of jumps, from the last computed state.
   void accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string reason);
+  /// The limit of a sequence of switches of these surfaces, from the last computed state; `transition` leads on.
+  void spiralled(double t, const std::vector<int>& surfaces, const Passage& passage, const Transition& transition);
 
   [[nodiscard]] std::vector<result::Event> take_events() { return std::move(events_); }
   [[nodiscard]] result::Trajectory take_trajectory() { return std::move(trajectory_); }

@@ -36,11 +36,12 @@ bool Run::too_many_events() {
 
 void Run::accumulates() {
   if (stopped_by_two_fold()) return;
-  fail(Termination::outside_class,
-       fmt::format(
-           "switches accumulate at t = {:.17g} (spiral into an intersection of surfaces, or chattering): passing "
-           "the limit needs the codimension-2 switching of a later version",
-           t_));
+  fail(
+      Termination::outside_class,
+      fmt::format(
+          "switches accumulate at t = {:.17g} (spiral into an intersection of surfaces, or chattering), and the fields "
+          "there do not say what follows their limit; end the simulation before, or perturb a parameter",
+          t_));
 }
 
 bool Run::change_mode(const Located& located) {
@@ -208,7 +209,10 @@ Run::Step Run::depart(const Arrival& arrival) {
     ++next_output_;
   }
   if (event) last_event_time_ = t_;
-  if (running_ && !too_many_events()) accumulate_jumps();
+  if (running_ && !too_many_events()) {
+    if (event) accumulate_switches();
+    accumulate_jumps();
+  }
   return running_ ? Step::taken : Step::failed;
 }
 

@@ -1,5 +1,6 @@
 // A run in progress: the state of the engine between its sources. integrate.cpp begins and ends it, run_steps.cpp takes
-// the steps, run_events.cpp handles what they meet, run_jumps.cpp and run_limits.cpp jumps and their accumulation.
+// the steps, run_events.cpp handles what they meet, run_jumps.cpp and run_limits.cpp jumps and their accumulation,
+// run_spirals.cpp that of switches.
 #pragma once
 
 #include <algorithm>
@@ -82,6 +83,11 @@ class Run {
   bool go_on();
   bool enter(const Transition& transition);
   void begin_spiral();
+  void note_tightening_switch();
+  void accumulate_switches();
+  bool follow_spiral(const JumpLimit& limit);
+  void pass_to(double t, std::vector<double> x);
+  void go_on_from_limit();
   bool fire_user_events(const std::vector<double>& x_before, const ModeState& before);
   void flip_user_functions(const Located& located);
 
@@ -154,9 +160,11 @@ class Run {
   Jumps jumps_;
   Holding holding_;
   JumpSeries jump_series_;
-  std::vector<HeldGuard> last_guard_;  ///< by jump: the guard that was at zero when it was executed last
-  std::vector<double> last_rate_;      ///< by jump: |dg/dt| then
-  std::vector<double> shortest_lap_;   ///< by jump: shorter ones drown in the rounding of the guard
+  JumpSeries switch_laps_;                   ///< of switches, by surface and mode behind, while they tighten
+  std::vector<double> shortest_switch_lap_;  ///< by the same: shorter laps drown in the rounding of psi
+  std::vector<HeldGuard> last_guard_;        ///< by jump: the guard that was at zero when it was executed last
+  std::vector<double> last_rate_;            ///< by jump: |dg/dt| then
+  std::vector<double> shortest_lap_;         ///< by jump: shorter ones drown in the rounding of the guard
   Recorder recorder_;
 
   double t_;

@@ -84,20 +84,12 @@ void Run::follow_limit(const JumpLimit& limit) {
     jumps.push_back(jump);
     rate = std::max(rate, last_rate_[at(jump)]);
   }
-  const auto& times = options_.output.times;
-  for (; next_output_ < times.size() && times[next_output_] < limit.t; ++next_output_) {
-    if (times[next_output_] > t_) row(times[next_output_], x_);
-  }
-  while (next_output_ < times.size() && times[next_output_] <= limit.t) ++next_output_;
-  const bool time_passes = limit.t > t_;
-  t_ = limit.t;
-  x_ = limit.x;
   if (limit.rattling) {
     jump_series_.clear();
   } else {
     jump_series_.clear_laps();
   }
-  if (time_passes) row(t_, x_last);
+  pass_to(limit.t, limit.x);
   Landing landing = landing_here();
   const auto accumulated = [&] {
     recorder_.accumulated(t_, limit.jumps, {x_last, x_, before, state_},
@@ -123,6 +115,24 @@ void Run::follow_limit(const JumpLimit& limit) {
   if (!decide_behind_jumps(landing)) return accumulated();
   give_directions(landing);
   accumulated();
+  go_on_from_limit();
+}
+
+/// Skips to the limit of a sequence that is too fine to be followed; rows on the way have the last state.
+void Run::pass_to(double t, std::vector<double> x) {
+  const auto& times = options_.output.times;
+  for (; next_output_ < times.size() && times[next_output_] < t; ++next_output_) {
+    if (times[next_output_] > t_) row(times[next_output_], x_);
+  }
+  while (next_output_ < times.size() && times[next_output_] <= t) ++next_output_;
+  const bool time_passes = t > t_;
+  t_ = t;
+  if (time_passes) row(t_, x_);
+  x_ = std::move(x);
+}
+
+/// Events and jumps behind the limit of a sequence, and a step to start with.
+void Run::go_on_from_limit() {
   static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
   jumps_.update(jump_point());
   start_step();

@@ -23,6 +23,8 @@ class SwitchSeries {
   /// Whether the switches before t have followed each other ever faster, down to a scale on which no model lives: a run
   /// that cannot go on there has come to their limit.
   [[nodiscard]] bool shrinks(double t) const;
+  /// Whether the last switches have followed each other faster than those before, over laps of one to four.
+  [[nodiscard]] bool tightens() const;
 
  private:
   using Change = std::pair<std::vector<int>, std::vector<int>>;

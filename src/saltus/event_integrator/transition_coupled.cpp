@@ -133,14 +133,16 @@ bool Decider::spiral_out(const std::vector<int>& group, const PlaneTable& table,
   return accept(group, decision);
 }
 
-/// A start on the intersection of two surfaces.
+/// A start on the intersection of two surfaces, or the limit of a spiral there.
 bool Decider::accept_start(const std::vector<int>& group, const switching::CornerTable& table) {
   const PlaneTable plane = switching::plane_table(table);
+  if (occasion_.limit) {
+    const PlaneDecision limit = switching::decide_spiral_in(plane);
+    if (limit.undecided.empty()) return accept(group, limit);
+  }
   const PlaneDecision decision = switching::decide_intersection_start(plane);
   if (!decision.undecided.empty()) return false;
-  // Nothing attracts, but the fields turn outward.
-  if (!decision.chosen.attracts && spiral_out(group, plane, decision)) return true;
-  return accept(group, decision);
+  return decision.spirals_out ? spiral_out(group, plane, decision) : accept(group, decision);
 }
 
 /// The hidden dynamics of the group, started where the solution comes from.

@@ -1,0 +1,82 @@
+// Switches that accumulate: spirals into the intersection of surfaces, and what follows behind their limit.
+#include <algorithm>
+#include <utility>
+
+#include "saltus/event_integrator/continuations.hpp"
+#include "saltus/event_integrator/run_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// A surface with the mode that it changes to, as one number: what has to repeat from lap to lap.
+int label_of(int surface, int mode) { return 3 * surface + mode + 1; }
+int surface_of(int label) { return label / 3; }
+
+}  // namespace
+
+/// Notes the switch in hand as part of a sequence that tightens; empty if there is none.
+void Run::note_tightening_switch() {
+  if (before_.mode == state_.mode) return;
+  if (jumped_ || !series_.tightens()) return switch_laps_.clear();
+  std::vector<double> magnitude(at(kernel_.event_functions())), slope(magnitude.size());
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
+  std::vector<int> labels;
+  for (int j = 0; j < kernel_.switching_functions(); ++j) {
+    const int mode = state_.mode[at(j)];
+    if (before_.mode[at(j)] == mode) continue;
+    // Kinks do not hold a solution, and times pass.
+    if (surroundings_.system.switching[at(j)].role != model::SwitchingRole::listed) return switch_laps_.clear();
+    labels.push_back(label_of(j, mode));
+    const double rate = std::abs(rate_along_field(j, t_, x_.data(), slope_.data()).value);
+    // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the lap.
+    shortest_switch_lap_[at(labels.back())] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(j)] / rate : 0.0;
+  }
+  switch_laps_.add(t_, std::move(labels), x_);
+}
+
+/// If the switches up to here have a limit that nothing else precedes, the run goes on from there.
+void Run::accumulate_switches() {
+  note_tightening_switch();
+  if (switch_laps_.empty()) return;
+  const auto limit = switch_laps_.limit(shortest_switch_lap_);
+  if (!limit || limit->rattling || limit->t > std::min(options_.until, jumps_.next_time())) return;
+  switch_laps_.clear();
+  if (!follow_spiral(*limit)) accumulates();
+}
+
+bool Run::follow_spiral(const JumpLimit& limit) {
+  ModeState on = state_;
+  for (const int label : limit.jumps) set_surface(on, surface_of(label), 0, 0.5);
+  std::vector<double> x = limit.x;
+  ModeField field(kernel_, surroundings_.affine_in_alpha);
+  field.enter(on);
+  field.project(limit.t, x.data());
+  Occasion occasion;
+  occasion.t = limit.t;
+  occasion.x = x.data();
+  occasion.at_zero = occasion.touched = on.sliding;
+  occasion.start = occasion.limit = true;  // no side is the one it comes from
+  occasion.time_scale = h_scale_;
+  Transition transition = decide_mode(surroundings_, on, occasion);
+  if (transition.termination != result::Termination::completed) return false;
+  other_continuations(surroundings_, on, occasion, transition);
+
+  field_(t_, x_.data(), slope_.data());
+  if (!state_.sliding.empty()) state_.alpha = field_.alpha();
+  const ModeState before = state_;
+  const std::vector<double> x_last = x_;
+  pass_to(limit.t, std::move(x));
+  if (!enter(transition)) return true;
+  std::vector<int> surfaces;
+  for (const int label : limit.jumps) surfaces.push_back(surface_of(label));
+  recorder_.spiralled(t_, surfaces, {x_last, x_, before, state_}, transition);
+  row(t_, x_);
+  last_event_time_ = t_;
+  control_.reset();
+  static_cast<void>(step_memory_.change(state_.mode, t_, h_));
+  go_on_from_limit();
+  h_scale_ = h_;
+  return true;
+}
+
+}  // namespace saltus::event_integrator
