@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/LU>
-
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/switching/surface_decision.hpp"
 
@@ -240,6 +238,7 @@ void ModeField::exits(double t, const double* x, ExitValues* values) {
     evaluate_corners(t, x);
   } else {
     select(t, x);
+    find_stability();
   }
   std::copy(exits_.begin(), exits_.end(), values);
 }

@@ -10,6 +10,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/switching/bilinear_root.hpp"
+#include "saltus/switching/selection_newton.hpp"
 
 namespace saltus::event_integrator {
 
@@ -60,6 +61,9 @@ class ModeField {
   /// Whether `loss` and `stability` of a sliding surface mean something.
   [[nodiscard]] bool has_loss(std::size_t row) const;
   [[nodiscard]] bool has_stability(std::size_t row) const;
+  /// Behind an accepted step to (t, x): where more than two coupled surfaces are slid on, the selections from which the
+  /// next ones are found.
+  void follow(double t, const double* x);
   /// Newton steps onto psi_I(t, x) = 0 along the normals; returns whether x changed.
   bool project(double t, double* x);
 
@@ -74,7 +78,7 @@ class ModeField {
   void evaluate_groups(double t, const double* x);
   void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
-  void find_jacobian(double t, const double* x, const std::vector<std::size_t>& rows);
+  void find_stability();
   void evaluate_nonaffine(double t, const double* x);
   double selected_velocity(double t, const double* x, std::size_t row, double selection);
   void remove_normal_part(double* xdot);
@@ -96,15 +100,16 @@ class ModeField {
   std::vector<std::vector<std::size_t>> groups_;  ///< rows that influence each other, connected and ascending
   std::vector<std::size_t> group_size_;           ///< by row, 0 behind the first of a group
   std::vector<std::optional<switching::RootKind>>
-      kind_;                          ///< by row, for the first of a pair: known once it was evaluated
-  std::vector<double> condition_;     ///< by row: of a coupled selection
-  std::vector<bool> constant_row_;    ///< gradient known once and for all in this mode
-  std::vector<int> coordinate_;       ///< the only nonzero column of a row, or -1
-  Eigen::MatrixXd rows_;              ///< J, m x n_x
-  double row_square_ = 0.0;           ///< |J|^2 of one sliding surface
-  Eigen::VectorXd rates_, residual_;  ///< d psi_I/dt, m
-  Eigen::MatrixXd normal_matrix_;     ///< J J^T
-  Eigen::MatrixXd jacobian_;          ///< G of a group of more than two
+      kind_;  ///< by row, for the first of a pair: known once it was evaluated
+  std::vector<std::optional<switching::SelectionNewton>> newton_;  ///< by row, for the first of a larger group
+  std::vector<double> selections_;                                 ///< of the group at hand
+  std::vector<double> condition_;                                  ///< by row: of a coupled selection
+  std::vector<bool> constant_row_;                                 ///< gradient known once and for all in this mode
+  std::vector<int> coordinate_;                                    ///< the only nonzero column of a row, or -1
+  Eigen::MatrixXd rows_;                                           ///< J, m x n_x
+  double row_square_ = 0.0;                                        ///< |J|^2 of one sliding surface
+  Eigen::VectorXd rates_, residual_;                               ///< d psi_I/dt, m
+  Eigen::MatrixXd normal_matrix_;                                  ///< J J^T
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/LU>
-
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/switching/bilinear_root.hpp"
@@ -14,34 +12,6 @@ namespace saltus::event_integrator {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-/// Whether a multi-affine root is stable under some scaling of the rows, as a number: the largest s such that an
-/// ordering of the surfaces exists in which every leading principal minor of -G, over the sizes of its rows, is at
-/// least s (the theorem of Fisher and Fuller; for two surfaces condition (4.12)). By nested minors, 2^m of them.
-double fisher_fuller(const Eigen::MatrixXd& jacobian) {
-  const auto m = jacobian.rows();
-  std::vector<double> best(std::size_t{1} << m, std::numeric_limits<double>::max());
-  std::vector<Eigen::Index> members;
-  Eigen::MatrixXd minor(m, m);
-  for (std::size_t subset = 1; subset < best.size(); ++subset) {
-    members.clear();
-    double through = -std::numeric_limits<double>::max();
-    for (Eigen::Index i = 0; i < m; ++i) {
-      if ((subset >> i & 1U) == 0) continue;
-      members.push_back(i);
-      through = std::max(through, best[subset & ~(std::size_t{1} << i)]);
-    }
-    const auto k = static_cast<Eigen::Index>(members.size());
-    double rows = 1.0;
-    for (Eigen::Index r = 0; r < k; ++r) {
-      const auto row = jacobian.row(members[static_cast<std::size_t>(r)]);
-      rows *= row.norm();
-      for (Eigen::Index c = 0; c < k; ++c) minor(r, c) = -row[members[static_cast<std::size_t>(c)]];
-    }
-    best[subset] = std::min(through, minor.topLeftCorner(k, k).partialPivLu().determinant() / rows);
-  }
-  return best.back();
-}
 
 /// Which of both roots a mode slides on, from the fields where it begins: the one whose selections it has; where these
 /// say nothing (a forced mode) the one with det G > 0 if it is in the square, else the other one if that is.
@@ -90,9 +60,11 @@ void ModeField::find_groups() {
   solve_ = !affine_in_alpha_     ? SlidingSolve::nonaffine
            : groups_.size() == m ? SlidingSolve::decoupled
                                  : SlidingSolve::coupled;
-  std::size_t largest = 0;
-  for (const auto& group : groups_) largest = std::max(largest, group.size());
-  jacobian_.resize(static_cast<Eigen::Index>(largest), static_cast<Eigen::Index>(largest));
+  newton_.assign(m, std::nullopt);
+  selections_.resize(m);
+  for (const auto& group : groups_) {
+    if (group.size() > 2) newton_[group[0]].emplace(static_cast<int>(group.size()));
+  }
 }
 
 bool ModeField::has_loss(std::size_t row) const {
@@ -148,55 +120,45 @@ void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::
   exits_[rows[0]].stability = root.stability;
 }
 
-/// G of the group at the selections of trial_, into jacobian_.
-void ModeField::find_jacobian(double t, const double* x, const std::vector<std::size_t>& rows) {
-  for (std::size_t column = 0; column < rows.size(); ++column) {
-    // g is multi-affine: the difference of its values at 1 and 0 is the exact partial derivative.
-    const auto j = at(sliding_[rows[column]]);
-    const double kept = trial_[j];
-    trial_[j] = 0.0;
-    kernel_.field(t, x, trial_.data(), f_[0].data());
-    trial_[j] = 1.0;
+/// More than two surfaces: Newton from the selections of the mode.
+void ModeField::evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows) {
+  for (std::size_t k = 0; k < rows.size(); ++k) selections_[k] = start_alpha_[at(sliding_[rows[k]])];
+  const auto velocities = [&](const double* alpha, double* g) {
+    for (std::size_t k = 0; k < rows.size(); ++k) trial_[at(sliding_[rows[k]])] = alpha[k];
     kernel_.field(t, x, trial_.data(), f_[1].data());
-    trial_[j] = kept;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      jacobian_(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
-          normal_velocity(rows[row], f_[1]) - normal_velocity(rows[row], f_[0]);
-    }
+    for (std::size_t k = 0; k < rows.size(); ++k) g[k] = normal_velocity(rows[k], f_[1]);
+  };
+  const bool found = newton_[rows[0]]->solve(velocities, selections_.data());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto j = at(sliding_[rows[k]]);
+    alpha_[j] = found ? selections_[k] : not_a_number;
+    exits_[rows[k]] = {alpha_[j], alpha_[j] - 1.0, 0.0, 0.0};
+    trial_[j] = 0.0;
   }
 }
 
-/// More than two surfaces: Newton from the mode's selections.
-void ModeField::evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows) {
-  const auto m = static_cast<Eigen::Index>(rows.size());
-  for (const std::size_t row : rows) trial_[at(sliding_[row])] = start_alpha_[at(sliding_[row])];
-  auto jacobian = jacobian_.topLeftCorner(m, m);
-  auto residual = residual_.head(m);
-  bool converged = false;
-  for (int iteration = 0; iteration < 20 && !converged; ++iteration) {
-    find_jacobian(t, x, rows);
-    kernel_.field(t, x, trial_.data(), f_[0].data());
-    for (Eigen::Index row = 0; row < m; ++row)
-      residual[row] = normal_velocity(rows[static_cast<std::size_t>(row)], f_[0]);
-    const Eigen::VectorXd step = jacobian.partialPivLu().solve(residual);
-    if (!step.allFinite()) break;
-    converged = step.cwiseAbs().maxCoeff() <= 4.0 * rounding_unit;
-    for (Eigen::Index row = 0; row < m; ++row) trial_[at(sliding_[rows[static_cast<std::size_t>(row)]])] -= step[row];
-    // A step at rounding level twice in a row is as good as it gets.
-    converged = converged || (iteration > 8 && step.cwiseAbs().maxCoeff() <= 1e-13);
+/// Behind evaluate_groups(): what only the event functions need of groups of more than two.
+void ModeField::find_stability() {
+  for (const auto& rows : groups_) {
+    if (rows.size() <= 2) continue;
+    const auto& newton = *newton_[rows[0]];
+    const auto jacobian = newton.jacobian();
+    double size = 1.0;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      double square = 0.0;
+      for (const double entry : jacobian.subspan(r * rows.size(), rows.size())) square += entry * entry;
+      size *= std::sqrt(square);
+    }
+    exits_[rows[0]].loss = newton.determinant() / size;
+    exits_[rows[0]].stability = newton.margin();
   }
-  for (const std::size_t row : rows) {
-    const auto j = at(sliding_[row]);
-    alpha_[j] = converged ? trial_[j] : not_a_number;
-    exits_[row] = {alpha_[j], alpha_[j] - 1.0, 0.0, 0.0};
-    condition_[row] = 1.0;
-    trial_[j] = 0.0;
-  }
-  const double stability = fisher_fuller(jacobian);
-  double size = 1.0;
-  for (Eigen::Index row = 0; row < m; ++row) size *= jacobian.row(row).norm();
-  exits_[rows[0]].loss = jacobian.partialPivLu().determinant() / size;
-  exits_[rows[0]].stability = stability;
+}
+
+void ModeField::follow(double t, const double* x) {
+  const auto is_large = [](const auto& rows) { return rows.size() > 2; };
+  if (solve_ != SlidingSolve::coupled || std::none_of(groups_.begin(), groups_.end(), is_large)) return;
+  select(t, x);
+  if (is_finite(alpha_)) start_alpha_ = alpha_;
 }
 
 }  // namespace saltus::event_integrator

@@ -111,7 +111,7 @@ FILES = {
     "smoothed": (after("[simulate.smoothed]\nepsilon = -1\n"), "14:11", "epsilon", "expected a finite number > 0"),
     "smoothed key": (after("[simulate.smoothed]\nepsilom = 1\n"), "14:1", "did you mean 'simulate.smoothed.epsilon'?"),
     "method": (after("method = 'fesd'\n"), 13, "error: method \"fesd\" is not available", "a later one brings it"),
-    "selection": (after("event.selection = 'scaled'\n"), 13, "selection", "a later one brings it"),
+    "selection": (after("event.selection = 'dominant'\n"), 13, "selection", "active_dominant"),
     "branches": (after("event.branches = 'some'\n"), 13, "branches", 'expected "report", "all" or a whole number >= 1'),
     "free state": (with_line(6, "x = { initial = 1, free = true }"), 6, "free = true", "a later one brings it"),
     "free parameter": (with_line(4, "mu = { initial = 1, free = true }"), 4, "free = true", "a later one brings it"),
