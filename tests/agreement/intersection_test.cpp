@@ -164,8 +164,10 @@ TEST(Intersection, ASpiralLeavesSelfSimilar) {
 
 std::string plane(const std::string& x1, const std::string& x2, const std::string& f1, const std::string& f2,
                   const std::string& until) {
-  return fmt::format("[states]\nx1 = {}\nx2 = {}\n[dynamics]\nx1 = \"{}\"\nx2 = \"{}\"\n[simulate]\nuntil = {}\n", x1,
-                     x2, f1, f2, until);
+  return fmt::format(
+      "[model]\nname = \"plane\"\n[states]\nx1 = {}\nx2 = {}\n[dynamics]\nx1 = \"{}\"\nx2 = \"{}\"\n[simulate]\nuntil "
+      "= {}\n",
+      x1, x2, f1, f2, until);
 }
 
 const Event* accumulation_of(const Result& result) {
@@ -201,7 +203,9 @@ TEST(Intersection, SpiralsArriveAtTheirExactTime) {
 
 /// Two belts (Dieci and Guglielmi): below and above each of two velocities; `first` and `second` name the blocks.
 std::string two_belts(const std::string& first, const std::string& second, const std::string& until){return fmt::format(
-    R"([states]
+    R"([model]
+name = "two-belts"
+[states]
 x1 = 0.04
 x2 = -0.01
 x3 = -0.02
@@ -273,7 +277,7 @@ TEST(Intersection, TwoGenesSettleOnBothThresholds) {
 //   y1' = t/4 - s1 + s2/2,  y2' = -t/8 - s2 - s1/2:  s1 = (t/4 - t/16)/(5/4), s2 = -(t/8 + t/8)/(5/4)
 TEST(Intersection, SelectionsFollowTheFieldsAtEveryTime) {
   const std::string text =
-      "[states]\ny1 = 0\ny2 = 0\ny3 = 0\n[dynamics]\ny1 = \"t/4 - sign(y1) + sign(y2)/2\"\n"
+      "[model]\nname = \"drift\"\n[states]\ny1 = 0\ny2 = 0\ny3 = 0\n[dynamics]\ny1 = \"t/4 - sign(y1) + sign(y2)/2\"\n"
       "y2 = \"-t/8 - sign(y2) - sign(y1)/2\"\ny3 = \"sign(y1)*sign(y2)\"\n[simulate]\nuntil = 4\n";
   for (const auto& accuracy : {fine, standard, implicit}) {
     const Result result = simulated(text, accuracy);
@@ -292,9 +296,10 @@ TEST(Intersection, ThreeCoupledSurfacesAreSlidOnAndOneIsLeft) {
   const auto drag = [](int own, int a, int b) {
     return fmt::format(" - sign(y{}) + (sign(y{}) + sign(y{}))/4", own, a, b);
   };
-  const std::string text = "[states]\ny1 = 0\ny2 = 0\ny3 = 0\ny4 = 0\n[dynamics]\ny1 = \"t/2" + drag(1, 2, 3) +
-                           "\"\ny2 = \"0" + drag(2, 1, 3) + "\"\ny3 = \"0" + drag(3, 1, 2) +
-                           "\"\ny4 = \"sign(y1)*sign(y2)*sign(y3)\"\n[simulate]\nuntil = 3\n";
+  const std::string text =
+      "[model]\nname = \"drift\"\n[states]\ny1 = 0\ny2 = 0\ny3 = 0\ny4 = 0\n[dynamics]\ny1 = \"t/2" + drag(1, 2, 3) +
+      "\"\ny2 = \"0" + drag(2, 1, 3) + "\"\ny3 = \"0" + drag(3, 1, 2) +
+      "\"\ny4 = \"sign(y1)*sign(y2)*sign(y3)\"\n[simulate]\nuntil = 3\n";
   for (const auto& accuracy : {fine, standard, implicit}) {
     const Result result = simulated(text, accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;

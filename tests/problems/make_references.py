@@ -18,6 +18,7 @@ import sys
 
 import catalogue_problems
 import classic_problems
+import intersection_problems
 import jump_problems
 import mpmath
 import phased_problems
@@ -139,6 +140,8 @@ def main():
     entries += jump_entries()
     for problem in phased_problems.problems():
         phased_problems.compare_with_literature(problem, report_on(problem, entries))
+    for problem in intersection_problems.problems():
+        intersection_problems.compare_with_literature(problem, report_on(problem, entries))
     text = dump(entries)
     json.loads(text)
     if "--check" in sys.argv:

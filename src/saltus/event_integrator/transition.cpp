@@ -102,16 +102,17 @@ bool Decider::decide(const std::vector<int>& group) {
   }
   if (group.size() > largest_group || (!s_.affine_in_alpha && group.size() > 1)) {
     return fail(result::Termination::outside_class,
-                fmt::format("{} surfaces that influence each other meet at t = {}: {}; sliding there needs the general "
-                            "codimension-{} switching of a later version",
-                            group.size(), occasion_.t, names(s_.system, group), group.size()));
+                fmt::format("{} surfaces that influence each other meet at t = {}: {}; covered are up to {} with every "
+                            "selection entering affinely",
+                            group.size(), occasion_.t, names(s_.system, group), largest_group));
   }
   const auto table = fields_.table(base_, group);
   const auto tree = ask_tree(group, table);
   if (tree && tree->undecided.empty()) {
     const bool by_scaling = tree->by_scaling && s_.policy == switching::SelectionPolicy::scaled;
     if (by_scaling) return resolve(group, table);
-    return tree->spirals_out ? spiral_out(group, switching::plane_table(table), *tree) : accept(group, *tree);
+    if (!tree->spirals_out) return accept(group, *tree);
+    if (spiral_out(group, switching::plane_table(table), *tree)) return true;
   }
   const auto decision = ask(group, table);
   const auto culprit = [&] { return s_.system.switching[at(group[at(std::max(decision.culprit, 0))])].name; };
