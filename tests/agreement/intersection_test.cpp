@@ -36,7 +36,8 @@ std::string affine(const json& row, double constant) {
 std::string weight_of(const std::string& region) {
   std::string text = "1";
   for (std::size_t j = 0; j < region.size(); ++j) {
-    text += fmt::format(region[j] == '+' ? "*step(s{})" : "*(1 - step(s{}))", j + 1);
+    const std::string step = fmt::format("step(s{})", j + 1);
+    text += region[j] == '+' ? "*" + step : "*(1 - " + step + ")";
   }
   return text;
 }
@@ -91,10 +92,13 @@ void expect_closed_form(const Result& result, const json& problem) {
   const auto switches = switches_of(result);
   const json& expected = problem.at("events");
   // The spiral's list ends with its limit, the crossings between are left out.
-  ASSERT_GE(switches.size(), expected.size()) << id;
+  if (id == "P14") {
+    ASSERT_GE(switches.size(), expected.size());
+  } else {
+    ASSERT_EQ(switches.size(), expected.size()) << id;
+  }
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const bool limit = expected[i].at("from_mode").is_string();
-    if (!limit && id != "P14") EXPECT_EQ(switches.size(), expected.size()) << id;
     const Event& event = limit ? switches.back() : switches[i];
     const std::string what = id + ", event " + std::to_string(i + 1);
     EXPECT_NEAR(event.t, expected[i].at("t").get<double>(), 1e-10) << what;
@@ -155,8 +159,9 @@ TEST(Intersection, ASpiralLeavesSelfSimilar) {
   std::vector<double> laps;
   for (const Event& event : switches_of(result)) {
     const bool ray = event.surfaces == std::vector<std::string>{"s2"} && event.x[0] > 0.0;
-    if (ray) laps.push_back(event.x[0]);
-    if (ray) EXPECT_NEAR(event.x[0] / event.t, rate, 1e-9);
+    if (!ray) continue;
+    laps.push_back(event.x[0]);
+    EXPECT_NEAR(event.x[0] / event.t, rate, 1e-9);
   }
   ASSERT_GE(laps.size(), 3U);
   for (std::size_t k = 1; k < laps.size(); ++k) EXPECT_NEAR(laps[k] / laps[k - 1], ratio, 1e-9);
@@ -201,9 +206,9 @@ TEST(Intersection, SpiralsArriveAtTheirExactTime) {
   }
 }
 
-/// Two belts (Dieci and Guglielmi): below and above each of two velocities; `first` and `second` name the blocks.
-std::string two_belts(const std::string& first, const std::string& second, const std::string& until){return fmt::format(
-    R"([model]
+/// The two belts of the catalogue; `first` and `second` name the surfaces, which are numbered by name.
+std::string two_belts(const std::string& first, const std::string& second, const std::string& until) {
+  return fmt::format(R"toml([model]
 name = "two-belts"
 [states]
 x1 = 0.04
@@ -213,9 +218,13 @@ x3 = -0.02
 {0} = "x2 - 0.2"
 {1} = "x3 - 0.4"
 [dynamics]
-x1 = "(x2 + x3)/2 + x1*(x2 + 0.8)*(x3 + 0.6)*step({0})*step({1})" x2 =
-        "-x1 + (1 - step({0}))/(1.2 - x2) - step({0})/(0.8 + x2)" x3 =
-            "-x1 + (1 - step({1}))/(1.4 - x3) - step({1})/(0.6 + x3)"[simulate] until = {2}) ", first, second, until);
+x1 = "(x2 + x3)/2 + x1*(x2 + 0.8)*(x3 + 0.6)*step({0})*step({1})"
+x2 = "-x1 + (1 - step({0}))/(1.2 - x2) - step({0})/(0.8 + x2)"
+x3 = "-x1 + (1 - step({1}))/(1.4 - x3) - step({1})/(0.6 + x3)"
+[simulate]
+until = {2}
+)toml",
+                     first, second, until);
 }
 
 // Both selections reach 0 together at x1 = 1; later both surfaces are reached together. Dwell: the integral of
@@ -268,7 +277,7 @@ TEST(Intersection, TwoGenesSettleOnBothThresholds) {
       const bool rests = result.final.x == std::vector<double>{8.0, 8.0};
       const bool dies = result.final.x[0] < 0.01;
       EXPECT_TRUE(rests || dies) << x1 << ", " << x2;
-      if (x1 == 3.0 && x2 == 3.0) EXPECT_TRUE(dies);
+      EXPECT_TRUE(dies || x1 != 3.0 || x2 != 3.0);
     }
   }
 }
