@@ -180,8 +180,9 @@ void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passa
   entry.t = t;
   entry.kind = result::EventKind::accumulation;
   for (const auto& column : system_.columns) {
+    const auto j = at(column.function);
     const bool takes_part = std::find(surfaces.begin(), surfaces.end(), column.function) != surfaces.end();
-    if (takes_part) entry.surfaces.push_back(column.name);
+    if (takes_part && passage.before.mode[j] != transition.state.mode[j]) entry.surfaces.push_back(column.name);
   }
   entry.x = passage.x;
   entry.x_after = passage.x_after;
