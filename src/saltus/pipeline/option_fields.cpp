@@ -309,11 +309,9 @@ constexpr std::array fields{
                 "Explicit Runge-Kutta method of order 5 or 8, or implicit one of order 5 for stiff models.",
                 set_choice<integrator, integrators>, record_choice<integrator, integrators>},
     OptionField{"event.max_step", "none, or a number > 0", "Longest step.", set_max_step, record_max_step},
-    OptionField{
-        "event.selection", "active_dominant, passive_dominant, scaled, report",
-        "Which motion, where it depends on the scaling of coupled surfaces: weight on the surface that was slid "
-        "on, on the one that is reached, by event.scaling, or the first, reported as not unique.",
-        set_choice<selection, selections>, record_choice<selection, selections>},
+    OptionField{"event.selection", "active_dominant, passive_dominant, scaled, report",
+                "Which motion, where that depends on how surfaces are scaled.", set_choice<selection, selections>,
+                record_choice<selection, selections>},
     OptionField{"event.scaling.*", "a finite number > 0", "Scale of a surface for selection = \"scaled\".", set_scaling,
                 record_scaling},
     OptionField{
