@@ -100,13 +100,15 @@ def machine():
 
 def page(options, results, counts, loads):
     parts = ["# Comparison: time at equal achieved error\n",
-             f"Made by `benchmarks/compare/run.py --rounds {options.rounds} --seconds {options.seconds}` on {machine()}. "
+             f"Made by `benchmarks/compare/run.py --rounds {options.rounds} --seconds {options.seconds} "
+             f"--timeout {options.timeout:g}` on {machine()}. "
              f"Processes that wanted to run meanwhile (load average before and behind): {loads[0]:.1f}, {loads[1]:.1f}. "
              "How to read it: "
              "[benchmarks/README.md](../README.md).\n",
              table.markdown(table.main_table(results)),
              "`<`: the loosest setting is already more accurate; `~`: extrapolated by at most two decades; `≈`: from the "
-             "finest step by the order seen last, at least 1; –: not reached.\n",
+             "finest step by the order seen last, at least 1; –: not reached. What the timeout "
+             "cut short has fewer points (of 9, or 4 for time stepping).\n",
              "## Events of relay feedback at 41 tolerances between 1e-3 and 1e-12 (34 each)\n",
              table.markdown(table.event_table(counts)) if counts else "Not measured.\n",
              "## What an inactive threshold costs\n", table.markdown(table.threshold_table(results)),
