@@ -123,6 +123,73 @@ class TwoStates(Page):
         self.assertEqual(self.value("document.querySelector('h1').textContent"), bad)
 
 
+ROTATING = """
+[model]
+name = "entry"
+[states]
+x = 0
+y = -1
+[switching]
+first = "x"
+second = "y"
+[[modes]]
+when = "first < 0 and second < 0"
+dynamics = { x = "0.5223", y = "0.609" }
+[[modes]]
+when = "first < 0 and second > 0"
+dynamics = { x = "-0.194", y = "0.3146" }
+[[modes]]
+when = "first > 0 and second < 0"
+dynamics = { x = "-1.7734", y = "-0.9416" }
+[[modes]]
+when = "first > 0 and second > 0"
+dynamics = { x = "1.011", y = "0.115" }
+[simulate]
+until = 6
+[simulate.event]
+branches = "all"
+"""
+
+
+class Branches(Page):
+    def show_tree(self):
+        (self.folder / "m.toml").write_text(ROTATING, encoding="utf-8")
+        self.show("m.toml")
+
+    def test_are_listed_and_drawn_dashed_and_the_chosen_one_solid(self):
+        self.show_tree()
+        rows = "document.querySelectorAll('.branches tbody tr')"
+        self.assertGreater(self.value(rows + ".length"), 0)
+        drawn = ("document.querySelector('.timeline').data.filter((trace) => trace.meta === 'branches')"
+                 ".map((trace) => trace.line.dash)")
+        self.assertEqual(set(self.value(drawn)), {"dash"})
+        self.assertIn("branches", self.value(NAMES))
+        self.value(rows + "[0].click()")
+        self.becomes(drawn + ".includes('solid')", True)
+        self.becomes(NAMES + ".includes('branch 1')", True)
+        self.value(rows + "[0].click()")
+        self.becomes(drawn + ".includes('solid')", False)
+        self.value("document.querySelector('.branches tbody button').click()")
+        self.becomes("document.querySelector('.inspector').hidden", False)
+
+    def test_the_square_of_a_decision_has_zeros_path_and_points(self):
+        self.show_tree()
+        square = "document.querySelector('.phase-plot.square')"
+        names = self.value(square + ".data.map((trace) => trace.name)")
+        self.assertIn("hidden dynamics", names)
+        self.assertEqual(names[-2:], ["comes from", "goes on with"])
+        for name in ("g₁ = 0 (first)", "g₂ = 0 (second)"):
+            self.assertIn(name, names)
+        # Comes along x = 0 from below y = 0, and rests where both components vanish.
+        come = self.value(square + ".data.at(-2).x[0]"), self.value(square + ".data.at(-2).y[0]")
+        self.assertAlmostEqual(come[0], 0.5223 / (0.5223 + 1.7734), 9)
+        self.assertEqual(come[1], 0)
+        size = self.value("(() => { const data = " + square + ".data, p = data.at(-1);"
+                          " return saltus.normalComponents(JSON.parse(document.getElementById('result').textContent)"
+                          ".events.find((e) => e.intersection).intersection, [p.x[0], p.y[0]]).map(Math.abs); })()")
+        self.assertLess(max(size), 1e-9)
+
+
 class ThreeStates(Page):
     def test_the_portrait_has_curve_and_plane(self):
         self.show("relay-feedback")

@@ -5,9 +5,12 @@ import test from "node:test";
 import vm from "node:vm";
 
 const page = new URL("../../src/saltus/report/page/", import.meta.url);
-const source = ["format.js", "series.js", "panels.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js"]
-                   .map((file) => fs.readFileSync(new URL(file, page), "utf8"))
-                   .join("\n");
+const source =
+    [
+      "format.js", "series.js", "panels.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
+      "branches.js", "intersection.js"
+    ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
+        .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
 
 test("rows of a window reach over both of its ends and take both rows of an event there", () => {
@@ -205,4 +208,51 @@ test("the search finds numbers, kinds, names, surfaces and reasons, all words to
   assert.deepEqual(saltus.matchingEvents(events, "#1"), [0]);
   assert.deepEqual(saltus.matchingEvents(events, "crossing #12"), [11]);
   assert.deepEqual(saltus.matchingEvents(events, "slip crossing"), []);
+});
+
+const meetingOf = (velocities, before = [0, 0]) =>
+    ({surfaces: ["a", "b"], velocities, alpha_before: before, alpha_after: [0.5, 0.5]});
+
+test("where a normal component is zero is a line or both branches of a hyperbola inside the square", () => {
+  for (const [a] of [saltus.zeroCurve([1, -1, 1, -1])[0]]) {
+    assert.ok(a.length > 100);
+    for (const value of a) assert.ok(Math.abs(value - 0.5) < 1e-12, String(value));
+  }
+  // (a - 1/2)(b - 1/2) = 1/16 has a branch on either side of its pole.
+  const velocity = (a, b) => (a - 0.5) * (b - 0.5) - 1 / 16;
+  const corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(([a, b]) => velocity(a, b));
+  const pieces = saltus.zeroCurve(corners);
+  const sides = new Set();
+  for (const [a, b] of pieces) {
+    a.forEach((value, k) => assert.ok(Math.abs(velocity(value, b[k])) < 1e-12));
+    assert.equal(new Set(a.map((value) => value > 0.5)).size, 1);
+    sides.add(a[0] > 0.5);
+  }
+  assert.equal(sides.size, 2);
+  assert.deepEqual(saltus.zeroCurve([1, 1, 1, 1]), []);
+});
+
+test("hidden dynamics rests at a stable root, leaves the square, or turns", () => {
+  const end = ([x, y]) => [x.at(-1), y.at(-1)];
+  const rest = end(saltus.hiddenPath(meetingOf([[3, -1, 3, -1], [1, 1, -4, -4]]), [0, 0]));
+  assert.ok(Math.hypot(rest[0] - 0.75, rest[1] - 0.2) < 1e-5, String(rest));
+  const [, up] = end(saltus.hiddenPath(meetingOf([[3, -1, 3, -1], [1, 1, 1, 1]]), [0.75, 0]));
+  assert.ok(up > 1.25 && up < 1.26, String(up));
+  // g1 = 1 - 2 b, g2 = 2 a - 1 turns around the middle.
+  const turning = meetingOf([[1, 1, -1, -1], [-1, 1, -1, 1]]);
+  const [x, y] = saltus.hiddenPath(turning, [0.75, 0.5]);
+  x.forEach((value, k) => assert.ok(Math.abs(Math.hypot(value - 0.5, y[k] - 0.5) - 0.25) < 1e-6));
+});
+
+test("where nothing comes before, hidden dynamics starts from the corners", () => {
+  assert.equal(saltus.hiddenStarts(meetingOf([[0, 0, 0, 0], [0, 0, 0, 0]], null)).length, 4);
+  assert.deepEqual(saltus.hiddenStarts(meetingOf([[0, 0, 0, 0], [0, 0, 0, 0]], [0.25, 1])), [[0.25, 1]]);
+});
+
+test("branches are one path with a gap behind each, without those outside the window", () => {
+  const branch = (t, x) => ({trajectory: {t, x: [x]}});
+  const branches = [branch([1, 2, 3], [5, 6, 7]), branch([8, 9], [0, 1]), branch([2, 4], [8, 9])];
+  const path = saltus.branchPath(branches, ({trajectory}) => [trajectory.t, trajectory.x[0]], [0, 5], 100);
+  assert.deepEqual(path, [[1, 2, 3, null, 2, 4, null], [5, 6, 7, null, 8, 9, null]]);
+  assert.deepEqual(saltus.branchPath([], () => [], [0, 5], 100), []);
 });

@@ -51,6 +51,7 @@ void other_continuations(const Surroundings& surroundings, const ModeState& befo
 
 Transition alternative_of(Transition decided, std::size_t alternative) {
   std::vector<Transition> others = std::move(decided.alternatives);
+  others[alternative].meeting = decided.meeting;
   decided.alternatives.clear();
   Transition taken = std::move(others[alternative]);
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(alternative));

@@ -65,6 +65,31 @@ void Recorder::row(double t, const std::vector<double>& x, const std::vector<int
   trajectory_.outputs.push_back(std::move(outputs));
 }
 
+/// Two columns of the result with their orientations; nullopt if one of the surfaces is in none.
+std::optional<result::Intersection> Recorder::intersection(const Meeting& meeting, const ModeState& after) const {
+  result::Intersection shown;
+  std::array<int, 2> orientation{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto column = std::find_if(system_.columns.begin(), system_.columns.end(),
+                                     [&](const auto& c) { return c.function == meeting.surfaces[k]; });
+    if (column == system_.columns.end()) return std::nullopt;
+    shown.surfaces[k] = column->name;
+    orientation[k] = column->orientation;
+  }
+  const auto oriented = [&](std::size_t k, double alpha) { return orientation[k] > 0 ? alpha : 1.0 - alpha; };
+  // The corner of the columns where a surface is turned around is the one across.
+  const std::size_t turned = (orientation[0] < 0 ? 1U : 0U) | (orientation[1] < 0 ? 2U : 0U);
+  if (meeting.alpha) shown.alpha_before.emplace();
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      shown.velocities[k][corner] = orientation[k] * meeting.velocities[k][corner ^ turned];
+    }
+    if (meeting.alpha) (*shown.alpha_before)[k] = oriented(k, (*meeting.alpha)[k]);
+    shown.alpha_after[k] = oriented(k, after.alpha[at(meeting.surfaces[k])]);
+  }
+  return shown;
+}
+
 void Recorder::add_transition(result::Event event, const Transition& transition) {
   event.mode_after = mode_columns(transition.state.mode, transition.state.alpha);
   event.alpha_after = alpha_columns(transition.state.alpha);
@@ -73,6 +98,7 @@ void Recorder::add_transition(result::Event event, const Transition& transition)
   for (const auto& other : transition.alternatives) {
     event.alternatives.push_back({mode_columns(other.state.mode, other.state.alpha), alpha_columns(other.state.alpha)});
   }
+  if (transition.meeting) event.intersection = intersection(*transition.meeting, transition.state);
   if (!event.alternatives.empty()) branch_points_.push_back({events_.size(), transition.decision});
   events_.push_back(std::move(event));
 }

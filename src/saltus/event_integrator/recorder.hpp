@@ -59,6 +59,7 @@ class Recorder {
  private:
   [[nodiscard]] result::Mode mode_columns(const std::vector<int>& mode, const std::vector<double>& alpha) const;
   [[nodiscard]] std::vector<double> alpha_columns(const std::vector<double>& alpha) const;
+  [[nodiscard]] std::optional<result::Intersection> intersection(const Meeting& meeting, const ModeState& after) const;
   void add_transition(result::Event event, const Transition& transition);
 
   const evaluation::ModelKernel& kernel_;

@@ -107,6 +107,7 @@ bool Decider::decide(const std::vector<int>& group) {
                             group.size(), occasion_.t, names(s_.system, group), largest_group));
   }
   const auto table = fields_.table(base_, group);
+  note_meeting(group, table);
   const auto tree = ask_tree(group, table);
   if (tree && tree->undecided.empty()) {
     const bool by_scaling = tree->by_scaling && s_.policy == switching::SelectionPolicy::scaled;
@@ -175,6 +176,7 @@ Transition Decider::run() {
     transition_.unique = true;
     transition_.other_choices.clear();
     transition_.beyond_spiral.reset();
+    transition_.meeting.reset();
     for (const auto& group : groups) {
       // Sliding that nothing has touched goes on, also where it was forced on a repelling surface.
       const bool touched =

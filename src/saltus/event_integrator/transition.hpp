@@ -2,6 +2,7 @@
 // answer.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -45,6 +46,13 @@ struct SpiralStart {
   int surface = 0;  ///< on which x is
 };
 
+/// Two surfaces that influence each other, at zero together.
+struct Meeting {
+  std::array<int, 2> surfaces{};
+  std::array<std::array<double, 4>, 2> velocities{};  ///< normal components of the corner fields, bit i: alpha_i
+  std::optional<std::array<double, 2>> alpha;         ///< of the mode before; nullopt at a start
+};
+
 struct Transition {
   result::Termination termination = result::Termination::completed;  ///< completed = a mode was found
   std::string message;
@@ -59,6 +67,7 @@ struct Transition {
   std::vector<Transition> alternatives;      ///< to the other admissible modes; these have no alternatives of their own
   long decision = -1;                        ///< its number in the run, of those with alternatives
   std::string reason;
+  std::optional<Meeting> meeting;  ///< the first one decided here
 };
 
 /// What the switching needs to know of the system besides its functions.

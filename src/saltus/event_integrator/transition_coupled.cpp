@@ -80,6 +80,22 @@ std::optional<PlaneDecision> Decider::ask_tree(const std::vector<int>& group,
   return switching::decide_corner_arrival(plane, incoming);
 }
 
+/// What the picture of a decision about two surfaces shows.
+void Decider::note_meeting(const std::vector<int>& group, const switching::CornerTable& table) {
+  if (group.size() != 2 || transition_.meeting) return;
+  Meeting meeting;
+  std::array<double, 2> alpha{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    meeting.surfaces[k] = group[k];
+    alpha[k] = std::clamp(before_.alpha[at(group[k])], 0.0, 1.0);
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      meeting.velocities[k][corner] = table.side(static_cast<int>(k), corner).velocity;
+    }
+  }
+  if (!occasion_.start) meeting.alpha = alpha;
+  transition_.meeting = meeting;
+}
+
 /// Notes a decision about a group as a whole.
 void Decider::take(const std::vector<int>& group, const std::vector<int>& mode, const std::vector<double>& alpha) {
   for (std::size_t k = 0; k < group.size(); ++k) {

@@ -53,6 +53,7 @@ class Decider {
   bool accept_start(const std::vector<int>& group, const switching::CornerTable& table);
   bool resolve(const std::vector<int>& group, const switching::CornerTable& table);
   switching::HiddenDecision follow_hidden(const std::vector<int>& group, const switching::CornerTable& table);
+  void note_meeting(const std::vector<int>& group, const switching::CornerTable& table);
   void take(const std::vector<int>& group, const std::vector<int>& mode, const std::vector<double>& alpha);
   void note_others(const std::vector<int>& group, const switching::PlaneModes& others);
   bool spiral_out(const std::vector<int>& group, const switching::PlaneTable& table, switching::PlaneDecision decision);

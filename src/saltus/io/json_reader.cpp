@@ -59,6 +59,14 @@ result::Alternative read_alternative(JsonReader& reader, const Json& json, const
   return alternative;
 }
 
+void read_intersection(JsonReader& reader, const Json& json, const std::string& path, result::Event& event) {
+  auto& intersection = event.intersection.emplace();
+  reader.read_member(json, path, "surfaces", intersection.surfaces);
+  reader.read_member(json, path, "velocities", intersection.velocities);
+  reader.read_member(json, path, "alpha_before", intersection.alpha_before);
+  reader.read_member(json, path, "alpha_after", intersection.alpha_after);
+}
+
 result::Event read_event(JsonReader& reader, const Json& json, const std::string& path) {
   result::Event event;
   std::string word;
@@ -80,6 +88,9 @@ result::Event read_event(JsonReader& reader, const Json& json, const std::string
     read_list(reader, *others, path + "/alternatives", event.alternatives, read_alternative);
   }
   reader.read_member(json, path, "reason", event.reason);
+  if (json.is_object() && json.contains("intersection")) {
+    read_intersection(reader, json["intersection"], path + "/intersection", event);
+  }
   return event;
 }
 

@@ -1,7 +1,10 @@
 // Reads checked values out of a JSON document; the first mismatch is kept, with its path ("/events/3/kind").
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -90,6 +93,17 @@ class JsonReader {
       if (error_) return;
       target.push_back(std::move(value));
     }
+  }
+  template <class Element, std::size_t size>
+  void read(const Json& json, const std::string& path, std::array<Element, size>& target) {
+    std::vector<Element> values;
+    read(json, path, values);
+    if (error_) return;
+    if (values.size() != size) {
+      fail(path, fmt::format("expected {} entries, found {}", size, values.size()));
+      return;
+    }
+    std::move(values.begin(), values.end(), target.begin());
   }
   template <class Value>
   void read(const Json& json, const std::string& path, std::optional<Value>& target) {

@@ -26,6 +26,15 @@ Json model_json(const result::ModelRecord& model) {
           {"description", model.description}};
 }
 
+Json intersection_json(const result::Intersection& intersection) {
+  Json json = Json::object();
+  json["surfaces"] = intersection.surfaces;
+  json["velocities"] = intersection.velocities;
+  json["alpha_before"] = or_null(intersection.alpha_before);
+  json["alpha_after"] = intersection.alpha_after;
+  return json;
+}
+
 Json event_json(const result::Event& event) {
   Json alternatives = Json::array();
   for (const auto& other : event.alternatives) {
@@ -48,6 +57,7 @@ Json event_json(const result::Event& event) {
   json["unique"] = or_null(event.unique);
   json["alternatives"] = std::move(alternatives);
   json["reason"] = event.reason;
+  if (event.intersection) json["intersection"] = intersection_json(*event.intersection);
   return json;
 }
 

@@ -64,6 +64,14 @@ json mode_intervals(const result::Trajectory& trajectory, std::size_t surface) {
   return {{"edges", edges}, {"values", values}};
 }
 
+json intersection_data(const std::optional<result::Intersection>& intersection) {
+  if (!intersection) return nullptr;
+  return {{"surfaces", intersection->surfaces},
+          {"velocities", intersection->velocities},
+          {"alpha_before", or_null(intersection->alpha_before)},
+          {"alpha_after", intersection->alpha_after}};
+}
+
 json event_data(const result::Event& event, std::size_t most) {
   json alternatives = json::array();
   for (const auto& other : event.alternatives) {
@@ -81,7 +89,8 @@ json event_data(const result::Event& event, std::size_t most) {
           {"x_after", head(event.x_after, most)},
           {"unique", or_null(event.unique)},
           {"alternatives", std::move(alternatives)},
-          {"reason", event.reason}};
+          {"reason", event.reason},
+          {"intersection", intersection_data(event.intersection)}};
 }
 
 /// States as numbers of columns: names are for people.
@@ -121,6 +130,13 @@ json pairs(const Pairs& list) {
   return result;
 }
 
+json status_data(const result::Status& status) {
+  return {{"termination", result::name(status.termination)},
+          {"done", result::is_done(status.termination)},
+          {"message", status.message},
+          {"time_reached", status.time_reached}};
+}
+
 json trajectory_data(const result::Result& result, std::size_t limit) {
   const auto& trajectory = result.trajectory;
   const std::size_t columns_drawn = 1 + number_of_columns(trajectory, columns_in_page);
@@ -139,6 +155,26 @@ json trajectory_data(const result::Result& result, std::size_t limit) {
           {"modes", std::move(modes)}};
 }
 
+/// The branches of a tree, parents first; branch i of the list is entry i + 1 of the tree, entry 0 the root.
+json branches_data(const std::vector<result::TreeEntry>& tree, std::size_t limit) {
+  json branches = json::array();
+  for (std::size_t i = 1; i < tree.size(); ++i) {
+    const auto& [branch, label, parent] = tree[i];
+    const result::Event left = branch->events.empty() ? result::Event{} : branch->events.front();
+    branches.push_back({{"label", label},
+                        {"parent", parent},
+                        {"left_at",
+                         {{"event", branch->left_at ? branch->left_at->event : 0},
+                          {"t", left.t},
+                          {"mode", head_or_null(left.mode_after, columns_in_page)}}},
+                        {"status", status_data(branch->status)},
+                        {"events", branch->events.size()},
+                        {"final", {{"t", branch->final.t}, {"x", head(branch->final.x, columns_in_page)}}},
+                        {"trajectory", trajectory_data(*branch, limit)}});
+  }
+  return branches;
+}
+
 }  // namespace
 
 json page_data(const result::Result& result, std::size_t limit) {
@@ -148,6 +184,10 @@ json page_data(const result::Result& result, std::size_t limit) {
   const std::size_t values_of_event = std::clamp(share, least_values_of_event, columns_in_page);
   for (const auto& event : result.events) events.push_back(event_data(event, values_of_event));
   const auto shown = [](const auto& list) { return head(list, columns_in_page); };
+  const auto tree = result::tree(result);
+  const std::size_t share_of_trajectory = limit / tree.size();
+  std::size_t not_followed = 0;
+  for (const auto& entry : tree) not_followed += result::not_followed(*entry.result);
   json surfaces = json::array();
   const auto states = shown(result.states);
   for (const auto& surface : result.surfaces) {
@@ -164,11 +204,7 @@ json page_data(const result::Result& result, std::size_t limit) {
             {"parameters", pairs(result.model.parameters)}}},
           {"command", result.command},
           {"method", result.method},
-          {"status",
-           {{"termination", result::name(result.status.termination)},
-            {"done", result::is_done(result.status.termination)},
-            {"message", result.status.message},
-            {"time_reached", result.status.time_reached}}},
+          {"status", status_data(result.status)},
           {"states", states},
           {"controls", shown(result.controls)},
           {"switching_functions", shown(result.switching_functions)},
@@ -185,7 +221,9 @@ json page_data(const result::Result& result, std::size_t limit) {
             {"alpha", shown(result.final.alpha)},
             {"outputs", shown(result.final.outputs)}}},
           {"events", std::move(events)},
-          {"trajectory", trajectory_data(result, limit)},
+          {"trajectory", trajectory_data(result, share_of_trajectory)},
+          {"branches", branches_data(tree, share_of_trajectory)},
+          {"not_followed", not_followed},
           {"surfaces", std::move(surfaces)},
           {"statistics",
            {{"steps", result.statistics.steps},

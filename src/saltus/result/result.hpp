@@ -1,6 +1,7 @@
 // One result for every method: plain data, everything a report needs.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -30,6 +31,15 @@ struct Alternative {
   std::vector<double> alpha;  ///< one per switching function; NaN where not determined
 };
 
+/// The fields where two surfaces that influence each other were met: what a picture of the decision needs.
+struct Intersection {
+  std::array<std::string, 2> surfaces;  ///< names of switching functions
+  /// velocities[j][corner] is d psi_j / dt along the field of `corner`, whose bit i is the selection of surface i.
+  std::array<std::array<double, 4>, 2> velocities{};
+  std::optional<std::array<double, 2>> alpha_before;  ///< where the solution comes from; nullopt at a start
+  std::array<double, 2> alpha_after{};                ///< of the mode that goes on
+};
+
 /// One change of mode, jump or user event. Vectors over switching functions follow Result::switching_functions.
 struct Event {
   double t = 0.0;
@@ -42,6 +52,7 @@ struct Event {
   std::optional<bool> unique = true;  ///< nullopt: not decided
   std::vector<Alternative> alternatives;
   std::string reason;
+  std::optional<Intersection> intersection;
 };
 
 /// Rows; every event has two rows with the same time, before and behind it.

@@ -35,6 +35,8 @@ result::Result sample() {
   event.unique = false;
   event.alternatives = {{{1, -1}, {1.0, 0.0}}, {{0, -1}, {nan, 0.0}}};
   event.reason = "both fields point to the surface";
+  event.intersection = result::Intersection{
+      {"slip", "q-max(v,0.2)"}, {{{1.0 / 3.0, -1, 2, 1e-300}, {4, 5, nan, 7}}}, {{0.25, 1.0}}, {0.5, 1.0 / 3.0}};
   r.events.push_back(event);
   event = {};
   event.kind = result::EventKind::user;
@@ -182,6 +184,8 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"gradient", "\"gradient\": [", "\"gradient\": [1.0,",
                "at /surfaces/0/affine/gradient: expected 1 entries, found 2"},
         Damage{"curve", "[7.0],", "[7.0,5.0],", "at /surfaces/1/curves/1/coordinates: expected 2 entries, found 1"},
+        Damage{"velocities", "\"velocities\": [\n        [0.3333333333333333,", "\"velocities\": [\n        [",
+               "at /events/0/intersection/velocities: expected 4 entries, found 3"},
         Damage{"branches", "\"branches\": [", "\"branches\": [7,", "at /branches/0: expected an object, found 7"},
         Damage{"departure", "\"left_at\"", "\"left\"", "at /branches/0: 'left_at' is missing"},
         Damage{"alternative", "\"alternative\":1", "\"alternative\":2",

@@ -4,7 +4,8 @@
 saltus.fullWindow = (result) => {
   const {t} = result.trajectory;
   if (t.length === 0) return [0, 1];
-  const [from, to] = [t[0], t[t.length - 1]];
+  const ends = result.branches.map((branch) => branch.trajectory.t.at(-1) ?? t[0]);
+  const [from, to] = [t[0], ends.reduce((latest, end) => Math.max(latest, end), t[t.length - 1])];
   return from < to ? [from, to] : [from - 0.5, from + 0.5];
 };
 
@@ -94,7 +95,8 @@ saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve,
     // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
     line: {simplify: false, color, width: 1.6, shape: curve.stepwise ? "hv" : "linear"},
   };
-  return jumps.x.length === 0 ? [line] : [line, saltus.jumpTrace(curve, jumps, axis, color)];
+  const jumpTraces = jumps.x.length === 0 ? [] : [saltus.jumpTrace(curve, jumps, axis, color)];
+  return [...saltus.branchCurves(result, curve, axis, color, view), line, ...jumpTraces];
 });
 
 saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) => {

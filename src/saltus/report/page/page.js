@@ -10,6 +10,7 @@ saltus.legend = (result, holder, timeline) => {
   return saltus.element(
       "div", {class: "toolbar"}, ...modes,
       ...(result.events.some(saltus.isAlarming) ? [swatch("alarm-line", "not unique")] : []),
+      ...(result.branches.length > 0 ? [swatch("branch-line", "branches")] : []),
       saltus.element(
           "span", {class: "quiet help", title: "A click on the line of an event shows the event."},
           "drag: zoom · double click: all"),
@@ -86,10 +87,22 @@ saltus.start = () => {
   });
   saltus.cursor(result, frame, holder, timeline, select);
   const cards = saltus.element("div", {class: "cards"});
-  main.append(cards, saltus.notes(result));
+  const branches = saltus.branchCard(result, {
+    select,
+    chosen: () => timeline.branch(),
+    choose: (i) => {
+      timeline.chooseBranch(i);
+      drawPhases();
+    },
+  });
+  main.append(...(branches === null ? [] : [branches]), cards, saltus.notes(result));
   if (result.states.length > 1 && result.trajectory.t.length > 0) {
     phases.push(saltus.phasePlane(result, timeline, select));
     if (result.states.length > 2) phases.push(saltus.phasePortrait(result, timeline, select));
+  }
+  const intersection = saltus.intersectionPicture(result, timeline, select);
+  if (intersection !== null) phases.push(intersection);
+  if (phases.length > 0) {
     cards.classList.toggle("two", phases.length > 1);
     cards.append(...phases.map((phase) => phase.element));
   }

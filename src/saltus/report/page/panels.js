@@ -49,6 +49,7 @@ saltus.curvePanels = (result) => {
       names.map((name, i) => ({
                   name,
                   sort,
+                  index: i,
                   values: columns[i],
                   stepwise: sort === "input" && saltus.isStepwise(columns[i]),
                   discrete: sort === "state" && saltus.isDiscrete(trajectory.t, columns[i]),

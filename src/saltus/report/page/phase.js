@@ -64,10 +64,16 @@ saltus.phaseView = (result, timeline, choice, sliding, buckets) => {
     rows,
     columns,
     selected,
+    branch: timeline.branch(),
     window: window_,
+    pixels: buckets,
     events: saltus.visibleMarks(result, timeline.shown(), window_),
     parts: saltus.phaseParts(result, columns, rows, sliding),
-    box: columns.map((column) => saltus.roomyRange(rows.map((i) => column[i]))),
+    box: columns.map((column, axis) => saltus.roomyRange([
+      ...rows.map((i) => column[i]),
+      ...(saltus.branchPath(result.branches, (branch) => [branch.trajectory.x[choice[axis]]], window_, buckets)[0] ??
+          [])
+    ])),
     at: saltus.slicePlace(result, selected, rows),
   };
 };

@@ -91,6 +91,7 @@ saltus.planeTraces = (result, choice, view, palette) => {
     marker: {symbol: "circle-open", size: 17, color: palette.select, line: {width: 2.5}},
   }];
   return [
+    ...saltus.branchOrbits(result, choice, view, palette, "scatter"),
     line(parts.free, "not sliding", {color: palette.curves[0], width: 1.4}),
     line(parts.sliding, "sliding", {color: palette.sliding, width: 3.2}),
     line(parts.jumps, "jump", {color: palette.jump, width: 1.4, dash: "dot"}),

@@ -11,6 +11,7 @@ saltus.timeline = (result, holder, listeners) => {
   const sliding = result.switching_functions.length <= 3 ? saltus.slidingIntervals(result.trajectory.modes) : [];
   let shown = result.events.map((_, i) => i);
   let selected = null;
+  let branch = null;
   let window_ = full;
   let ranges = {};
   let stack = null;
@@ -18,7 +19,7 @@ saltus.timeline = (result, holder, listeners) => {
   const view = () => {
     const marks = saltus.visibleMarks(result, shown, window_);
     const pixels = Math.max(200, holder.clientWidth);
-    return {window: window_, ranges, selected, sliding, marks, pixels, palette: saltus.palette()};
+    return {window: window_, ranges, selected, branch, sliding, marks, pixels, palette: saltus.palette()};
   };
 
   const draw = () => {
@@ -84,6 +85,11 @@ saltus.timeline = (result, holder, listeners) => {
       shown = indices;
       draw();
     },
+    chooseBranch: (i) => {
+      branch = i;
+      draw();
+    },
+    branch: () => branch,
     window: () => window_,
     shown: () => shown,
     selected: () => selected,

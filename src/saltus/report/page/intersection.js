@@ -1,0 +1,170 @@
+// Decisions where two surfaces meet: the square of the selections with g1 = 0, g2 = 0 and the hidden dynamics in it
+// (Figs. 11 and 12 of Guglielmi & Hairer 2022).
+"use strict";
+
+/** The normal components at selections (a, b): bilinear in them. */
+saltus.normalComponents = ({velocities}, [a, b]) =>
+    velocities.map((v) => (1 - a) * (1 - b) * v[0] + a * (1 - b) * v[1] + (1 - a) * b * v[2] + a * b * v[3]);
+
+saltus.clampUnit = (value) => Math.min(1, Math.max(0, value));
+
+/** Where g_j = 0 in the closed unit square: pieces [[a, …], [b, …]], one for each branch of the hyperbola. */
+saltus.zeroCurve = (v, points = 400) => {
+  const [c, ca, cb] = [v[0], v[1] - v[0], v[2] - v[0]];
+  const cab = v[0] - v[1] - v[2] + v[3];
+  const inside = (value) => value >= 0 && value <= 1;
+  const pieces = [];
+  // Solved for one selection over the other, both ways: steep parts of one are flat parts of the other.
+  for (const swapped of [false, true]) {
+    const [c1, c2] = swapped ? [cb, ca] : [ca, cb];
+    let piece = null;
+    for (let k = 0; k <= points; k += 1) {
+      const b = k / points;
+      const slope = c1 + cab * b;
+      const a = slope === 0 ? NaN : -(c + c2 * b) / slope;
+      if (!inside(a)) {
+        piece = null;
+        continue;
+      }
+      const point = swapped ? [b, a] : [a, b];
+      const last = piece === null ? null : [piece[0].at(-1), piece[1].at(-1)];
+      // Two branches are not joined across their pole.
+      if (last === null || Math.hypot(point[0] - last[0], point[1] - last[1]) > 0.5) {
+        piece = [[], []];
+        pieces.push(piece);
+      }
+      piece[0].push(point[0]);
+      piece[1].push(point[1]);
+    }
+  }
+  return pieces.filter((piece) => piece[0].length > 1);
+};
+
+/**
+ * The hidden dynamics u_j' = g_j(pi(u)) / max |g_j|, pi(u) = min(max(u, 0), 1), from a start until it leaves `reach`
+ * around the square or stands still: Runge-Kutta steps of at most 1/200 of the square.
+ */
+saltus.hiddenPath = (meeting, start, reach = 0.25, steps = 6000) => {
+  const scale = meeting.velocities.map((v) => Math.max(...v.map(Math.abs)) || 1);
+  const slope = (u) => saltus.normalComponents(meeting, u.map(saltus.clampUnit)).map((value, j) => value / scale[j]);
+  const h = 5e-3;
+  const path = [[start[0]], [start[1]]];
+  let u = start;
+  for (let n = 0; n < steps; n += 1) {
+    const move = (k, s) => u.map((value, j) => value + s * k[j]);
+    const k1 = slope(u);
+    if (Math.hypot(...k1) < 1e-7) break;
+    const k2 = slope(move(k1, h / 2));
+    const k3 = slope(move(k2, h / 2));
+    const k4 = slope(move(k3, h));
+    u = u.map((value, j) => value + (h / 6) * (k1[j] + 2 * k2[j] + 2 * k3[j] + k4[j]));
+    path[0].push(u[0]);
+    path[1].push(u[1]);
+    if (u.some((value) => value < -reach || value > 1 + reach)) break;
+  }
+  return path;
+};
+
+/** Starts of the hidden dynamics: where the solution comes from; at a start the corners of the square. */
+saltus.hiddenStarts = ({alpha_before: before}) => (before === null ? [[0, 0], [1, 0], [0, 1], [1, 1]] : [before]);
+
+saltus.intersectionTraces = (meeting, palette) => {
+  const line = ([x, y], name, style, more = {}) => ({
+    type: "scatter",
+    mode: "lines",
+    x,
+    y,
+    name,
+    hoverinfo: "skip",
+    line: {simplify: false, ...style},
+    ...more,
+  });
+  const point = ([x, y], name, marker) =>
+      ({type: "scatter", mode: "markers", x: [x], y: [y], name, marker, cliponaxis: false});
+  const zeros = meeting.velocities.flatMap(
+      (v, j) => saltus.zeroCurve(v).map(
+          (piece, n) => line(
+              piece, saltus.plain(`${j === 0 ? "g₁" : "g₂"} = 0 (${saltus.shorten(meeting.surfaces[j], 18)})`),
+              {color: palette.surfaces[j], width: 2}, {legendgroup: `g${j}`, showlegend: n === 0})));
+  const paths = saltus.hiddenStarts(meeting).map(
+      (start, n) => line(
+          saltus.hiddenPath(meeting, start), "hidden dynamics", {color: palette.curves[0], width: 1.8},
+          {legendgroup: "path", showlegend: n === 0}));
+  const before = meeting.alpha_before === null ? [] : [
+    point(meeting.alpha_before, "comes from", {symbol: "circle-open", size: 11, color: palette.text, line: {width: 2}})
+  ];
+  return [
+    ...zeros, ...paths, ...before,
+    point(meeting.alpha_after, "goes on with", {symbol: "circle", size: 11, color: palette.select})
+  ];
+};
+
+saltus.intersectionLayout = (meeting, holder, palette) => {
+  const axis = (j) => ({
+    title: {text: `u${"₁₂"[j]}: ${saltus.plain(saltus.shorten(meeting.surfaces[j], 24))}`, standoff: 6},
+    range: [-0.27, 1.27],
+    tickvals: [0, 0.5, 1],
+    fixedrange: true,
+    showgrid: false,
+    zeroline: false,
+    automargin: true,
+  });
+  return {
+    width: holder.clientWidth,
+    height: holder.clientHeight,
+    margin: {l: 54, r: 12, t: 30, b: 44},
+    hovermode: "closest",
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: palette.panel,
+    font: {family: "system-ui, sans-serif", size: 12, color: palette.text},
+    xaxis: axis(0),
+    yaxis: {...axis(1), scaleanchor: "x"},
+    legend: {orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: {size: 11}},
+    shapes: [{
+      type: "rect",
+      x0: 0,
+      x1: 1,
+      y0: 0,
+      y1: 1,
+      layer: "below",
+      line: {color: palette.axis, width: 1.5},
+      fillcolor: palette.slidingShade,
+    }],
+  };
+};
+
+/** The event whose decision is shown: the flagged one, else the first that has a picture. */
+saltus.intersectionShown = (result, selected) => {
+  if (selected !== null && result.events[selected].intersection !== null) return selected;
+  const first = result.events.findIndex((event) => event.intersection !== null);
+  return first < 0 ? null : first;
+};
+
+/** The card with the picture; null if no event has one. */
+saltus.intersectionPicture = (result, timeline, select) => {
+  if (saltus.intersectionShown(result, null) === null) return null;
+  const holder = saltus.element("div", {class: "phase-plot square"});
+  const note = saltus.element("p", {class: "quiet note"});
+  const title = saltus.element("button", {title: "show this event", onclick: () => select(shown())}, "");
+  const shown = () => saltus.intersectionShown(result, timeline.selected());
+  const draw = () => {
+    const i = shown();
+    const event = result.events[i];
+    const palette = saltus.palette();
+    title.textContent = `event ${i + 1}, t = ${saltus.brief(event.t, 8)}`;
+    const from = event.intersection.alpha_before === null ? " from the four corners" : "";
+    note.textContent = `The square of the selections; the hidden dynamics u′ = g(π(u)) is drawn${
+        from} with equal weight on both surfaces. ${event.reason}`;
+    return Plotly.react(
+        holder, saltus.intersectionTraces(event.intersection, palette),
+        saltus.intersectionLayout(event.intersection, holder, palette), saltus.plotConfig);
+  };
+  const element = saltus.element(
+      "section", {class: "card phase"},
+      saltus.element(
+          "header", {}, saltus.element("h2", {}, "Intersection of surfaces"),
+          saltus.element("span", {class: "controls grow"}, title),
+          ...saltus.saveButtons(result, holder, "intersection")),
+      holder, note);
+  return {element, draw, start: draw};
+};
