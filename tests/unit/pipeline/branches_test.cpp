@@ -1,7 +1,9 @@
 // Trees of trajectories where the solution is not unique: closed forms, caps, stops, and what a branch takes along.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -193,6 +195,58 @@ TEST(Branches, AreTheFreshRunsFromTheirEvents) {
     for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(fresh.final.x[i], branch.final.x[i], 1e-8);
     EXPECT_LT(branch.statistics.steps, root.statistics.steps + fresh.statistics.steps);
     EXPECT_GT(branch.statistics.rhs_evaluations, 0);
+  }
+}
+
+TEST(Branches, OfAnIntersectionAreAllModesThatLeadOn) {
+  // Piecewise constant fields; case E10-010 of the decision trees: sliding along x = 0 into y = 0 goes on there, or
+  // leaves into every mode whose own field points to where it says.
+  Builder b("entry");
+  const SX x = b.state("x", {0});
+  const SX y = b.state("y", {-1});
+  const SX alpha = b.step(x, "first");
+  const SX beta = b.step(y, "second");
+  const std::array<std::array<double, 4>, 2> f{{{0.5223, -1.7734, -0.194, 1.011}, {0.609, -0.9416, 0.3146, 0.115}}};
+  const auto field = [&](const std::array<double, 4>& v) {
+    return (1 - alpha) * (1 - beta) * v[0] + alpha * (1 - beta) * v[1] + (1 - alpha) * beta * v[2] +
+           alpha * beta * v[3];
+  };
+  b.dynamics("x", field(f[0]));
+  b.dynamics("y", field(f[1]));
+  const Result root = run(b, until(6, 64));
+  ASSERT_EQ(root.status.termination, Termination::completed) << root.status.message;
+  const double slid = f[0][0] / (f[0][0] - f[0][1]);
+  const double arrival = 1 / ((1 - slid) * f[1][0] + slid * f[1][1]);
+  const auto& event = root.events.at(1);
+  EXPECT_NEAR(event.t, arrival, 1e-12);
+  EXPECT_EQ(*event.mode_after, (Mode{0, 0}));
+  ASSERT_TRUE(event.intersection.has_value());
+  EXPECT_EQ(event.intersection->surfaces, (std::array<std::string, 2>{"first", "second"}));
+  EXPECT_EQ(event.intersection->velocities, f);
+  ASSERT_TRUE(event.intersection->alpha_before.has_value());
+  EXPECT_NEAR((*event.intersection->alpha_before)[0], slid, 1e-12);
+  EXPECT_EQ((*event.intersection->alpha_before)[1], 0.0);
+  EXPECT_NEAR(event.intersection->alpha_after[0], 0.5 * (1 + 0.19265383597429087), 1e-12);
+  EXPECT_NEAR(event.intersection->alpha_after[1], 0.5 * (1 + 0.23490321586354418), 1e-12);
+
+  // Where they end: along the corner fields, and along x = 0 and y = 0 between them.
+  const double left = 6 - arrival;
+  const double up = f[0][2] / (f[0][2] - f[0][3]);
+  const double right = f[1][1] / (f[1][1] - f[1][3]);
+  const std::map<Mode, std::array<double, 2>> ends{
+      {{1, 1}, {left * f[0][3], left * f[1][3]}},
+      {{-1, 1}, {left * f[0][2], left * f[1][2]}},
+      {{0, 1}, {0, left * ((1 - up) * f[1][2] + up * f[1][3])}},
+      {{1, 0}, {left * ((1 - right) * f[0][1] + right * f[0][3]), 0}},
+  };
+  ASSERT_EQ(root.branches.size(), ends.size());
+  for (const Result& branch : root.branches) {
+    const auto end = ends.find(*branch.events[0].mode_after);
+    ASSERT_NE(end, ends.end());
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(branch.final.x[i], end->second[i], 1e-12);
+    ASSERT_TRUE(branch.events[0].intersection.has_value());
+    EXPECT_EQ(branch.events[0].intersection->alpha_after[0], (*branch.events[0].alpha_after)[0]);
+    EXPECT_EQ(branch.events[0].alternatives.size(), 4U);
   }
 }
 

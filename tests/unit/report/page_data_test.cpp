@@ -157,5 +157,34 @@ TEST(PageData, AnEmptyResultIsNoError) {
   EXPECT_EQ(data["events"].size(), 0U);
 }
 
+TEST(PageData, BranchesAreAListWithTheirParents) {
+  auto root = report_samples::failed();
+  auto branch = report_samples::failed();
+  branch.events.erase(branch.events.begin());
+  branch.left_at = {1, 0};
+  auto inner = branch;
+  inner.left_at = {2, 1};
+  branch.branches = {inner};
+  root.branches = {branch, inner};
+  constexpr std::size_t limit = 4000;
+  const auto data = page_data(root, limit);
+  const auto& branches = data["branches"];
+  ASSERT_EQ(branches.size(), 3U);
+  std::size_t numbers = 0;
+  for (const auto& entry : branches) numbers += 7 * entry["trajectory"]["t"].size();
+  EXPECT_LT(numbers, 2 * limit);
+  EXPECT_EQ(branches[0]["label"], "1");
+  EXPECT_EQ(branches[1]["label"], "1.1");
+  EXPECT_EQ(branches[1]["parent"], 1);
+  EXPECT_EQ(branches[2]["label"], "2");
+  EXPECT_EQ(branches[2]["parent"], 0);
+  EXPECT_EQ(branches[1]["left_at"]["event"], 2);
+  EXPECT_EQ(branches[0]["left_at"]["t"], branch.events[0].t);
+  EXPECT_EQ(branches[0]["status"]["termination"], "evaluation_failed");
+  std::size_t open = 0;
+  for (const auto& entry : result::tree(root)) open += result::not_followed(*entry.result);
+  EXPECT_EQ(data["not_followed"], open);
+}
+
 }  // namespace
 }  // namespace saltus::report

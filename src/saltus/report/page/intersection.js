@@ -41,13 +41,14 @@ saltus.zeroCurve = (v, points = 400) => {
 };
 
 /**
- * The hidden dynamics u_j' = g_j(pi(u)) / max |g_j|, pi(u) = min(max(u, 0), 1), from a start until it leaves `reach`
- * around the square or stands still: Runge-Kutta steps of at most 1/200 of the square.
+ * The hidden dynamics u_j' = w_j g_j(pi(u)) / max |g_j|, pi(u) = min(max(u, 0), 1), from a start until it leaves
+ * `reach` around the square or stands still: Runge-Kutta steps of at most 1/200 of the square, points as far apart.
  */
-saltus.hiddenPath = (meeting, start, reach = 0.25, steps = 6000) => {
-  const scale = meeting.velocities.map((v) => Math.max(...v.map(Math.abs)) || 1);
-  const slope = (u) => saltus.normalComponents(meeting, u.map(saltus.clampUnit)).map((value, j) => value / scale[j]);
+saltus.hiddenPath = (meeting, start, weights = [1, 1], reach = 0.25) => {
   const h = 5e-3;
+  const steps = 6000 / Math.min(...weights);
+  const speed = meeting.velocities.map((v, j) => weights[j] / (Math.max(...v.map(Math.abs)) || 1));
+  const slope = (u) => saltus.normalComponents(meeting, u.map(saltus.clampUnit)).map((value, j) => value * speed[j]);
   const path = [[start[0]], [start[1]]];
   let u = start;
   for (let n = 0; n < steps; n += 1) {
@@ -58,11 +59,29 @@ saltus.hiddenPath = (meeting, start, reach = 0.25, steps = 6000) => {
     const k3 = slope(move(k2, h / 2));
     const k4 = slope(move(k3, h));
     u = u.map((value, j) => value + (h / 6) * (k1[j] + 2 * k2[j] + 2 * k3[j] + k4[j]));
-    path[0].push(u[0]);
-    path[1].push(u[1]);
-    if (u.some((value) => value < -reach || value > 1 + reach)) break;
+    const left = u.some((value) => value < -reach || value > 1 + reach);
+    if (left || Math.hypot(u[0] - path[0].at(-1), u[1] - path[1].at(-1)) > h / 2) {
+      path[0].push(u[0]);
+      path[1].push(u[1]);
+    }
+    if (left) break;
   }
   return path;
+};
+
+/** How much faster the surface that was slid on is made in the second path. */
+saltus.dominance = 30;
+
+/** Weights to draw hidden dynamics with: equal ones; and where one surface was slid on, one that it dominates. */
+saltus.hiddenWeights = ({alpha_before: before, surfaces}) => {
+  const equal = {weights: [1, 1], name: "hidden dynamics", dash: "solid"};
+  if (before === null) return [equal];
+  const slid = before.map((alpha) => alpha > 0 && alpha < 1);
+  if (slid[0] === slid[1]) return [equal];
+  const active = slid[0] ? 0 : 1;
+  const weights = [0, 1].map((j) => (j === active ? 1 : 1 / saltus.dominance));
+  const name = `${saltus.dominance} times faster for ${saltus.shorten(surfaces[active], 18)}`;
+  return [equal, {weights, name: saltus.plain(name), dash: "dash"}];
 };
 
 /** Starts of the hidden dynamics: where the solution comes from; at a start the corners of the square. */
@@ -86,10 +105,11 @@ saltus.intersectionTraces = (meeting, palette) => {
           (piece, n) => line(
               piece, saltus.plain(`${j === 0 ? "g₁" : "g₂"} = 0 (${saltus.shorten(meeting.surfaces[j], 18)})`),
               {color: palette.surfaces[j], width: 2}, {legendgroup: `g${j}`, showlegend: n === 0})));
-  const paths = saltus.hiddenStarts(meeting).map(
-      (start, n) => line(
-          saltus.hiddenPath(meeting, start), "hidden dynamics", {color: palette.curves[0], width: 1.8},
-          {legendgroup: "path", showlegend: n === 0}));
+  const paths = saltus.hiddenWeights(meeting).flatMap(
+      ({weights, name, dash}) => saltus.hiddenStarts(meeting).map(
+          (start, n) => line(
+              saltus.hiddenPath(meeting, start, weights), name, {color: palette.curves[0], width: 1.8, dash},
+              {legendgroup: name, showlegend: n === 0})));
   const before = meeting.alpha_before === null ? [] : [
     point(meeting.alpha_before, "comes from", {symbol: "circle-open", size: 11, color: palette.text, line: {width: 2}})
   ];
@@ -153,8 +173,7 @@ saltus.intersectionPicture = (result, timeline, select) => {
     const palette = saltus.palette();
     title.textContent = `event ${i + 1}, t = ${saltus.brief(event.t, 8)}`;
     const from = event.intersection.alpha_before === null ? " from the four corners" : "";
-    note.textContent = `The square of the selections; the hidden dynamics u′ = g(π(u)) is drawn${
-        from} with equal weight on both surfaces. ${event.reason}`;
+    note.textContent = `The square of the selections, and the hidden dynamics u′ = g(π(u))${from}. ${event.reason}`;
     return Plotly.react(
         holder, saltus.intersectionTraces(event.intersection, palette),
         saltus.intersectionLayout(event.intersection, holder, palette), saltus.plotConfig);
