@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"gradient", "\"gradient\": [", "\"gradient\": [1.0,",
                "at /surfaces/0/affine/gradient: expected 1 entries, found 2"},
         Damage{"curve", "[7.0],", "[7.0,5.0],", "at /surfaces/1/curves/1/coordinates: expected 2 entries, found 1"},
-        Damage{"velocities", "\"velocities\": [\n        [0.3333333333333333,", "\"velocities\": [\n        [",
+        Damage{"velocities", "[0.3333333333333333,-1.0,", "[-1.0,",
                "at /events/0/intersection/velocities: expected 4 entries, found 3"},
         Damage{"branches", "\"branches\": [", "\"branches\": [7,", "at /branches/0: expected an object, found 7"},
         Damage{"departure", "\"left_at\"", "\"left\"", "at /branches/0: 'left_at' is missing"},
