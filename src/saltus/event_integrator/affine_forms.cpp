@@ -14,7 +14,8 @@ constexpr double margin = 64.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-AffineForms::AffineForms(std::size_t states) : lower_(states, -infinity), upper_(states, infinity) {}
+AffineForms::AffineForms(std::size_t states)
+    : first_(states + 1, 0), lower_(states, -infinity), upper_(states, infinity) {}
 
 void AffineForms::load(const evaluation::AffineRows& rows) {
   terms_.clear();
@@ -26,6 +27,8 @@ void AffineForms::load(const evaluation::AffineRows& rows) {
 void AffineForms::reset(std::size_t functions) {
   forms_.assign(functions, Form{});
   terms_.resize(loaded_terms_);
+  thresholds_.clear();
+  first_.assign(first_.size(), 0);
   watch_none();
 }
 
@@ -75,11 +78,38 @@ double AffineForms::terms(const Form& form, const StepBounds& bounds) const {
 
 double AffineForms::terms(std::size_t i, const StepBounds& bounds) const { return terms(forms_[i], bounds); }
 
+void AffineForms::append_states(std::size_t i, std::vector<std::size_t>& states) const {
+  const Form& form = forms_[i];
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) states.push_back(terms_[k].column);
+}
+
+void AffineForms::group() {
+  first_.assign(lower_.size() + 1, 0);
+  for (const Form& form : forms_) {
+    if (is_threshold(form)) ++first_[terms_[form.first].column + 1];
+  }
+  for (std::size_t state = 0; state < lower_.size(); ++state) first_[state + 1] += first_[state];
+  thresholds_.resize(first_.back());
+  place_.resize(forms_.size());
+  for (std::size_t i = forms_.size(); i-- > 0;) {
+    const Form& form = forms_[i];
+    if (!is_threshold(form)) continue;
+    const Term& term = terms_[form.first];
+    place_[i] = --first_[term.column + 1];
+    thresholds_[place_[i]] = {-form.offset / term.coefficient, i, 0};
+  }
+  // Filled from their ends: each is where the next one was to begin.
+  std::rotate(first_.begin(), first_.begin() + 1, first_.end());
+  first_.back() = thresholds_.size();
+  watch_none();
+}
+
 void AffineForms::watch_none() {
   std::fill(lower_.begin(), lower_.end(), -infinity);
   std::fill(upper_.begin(), upper_.end(), infinity);
   several_.clear();
   for (Form& form : forms_) form.sign = 0;
+  for (Threshold& threshold : thresholds_) threshold.side = 0;
 }
 
 void AffineForms::watch(std::size_t i, int sign) {
@@ -89,14 +119,35 @@ void AffineForms::watch(std::size_t i, int sign) {
     several_.push_back(i);
     return;
   }
-  const Term& term = terms_[form.first];
-  const double threshold = -form.offset / term.coefficient;
-  const bool above = sign * term.coefficient > 0.0;
-  if (above) {
-    lower_[term.column] = std::max(lower_[term.column], threshold);
+  const std::size_t state = terms_[form.first].column;
+  Threshold& threshold = thresholds_[place_[i]];
+  threshold.side = sign * factor(i) > 0.0 ? 1 : -1;
+  if (threshold.side > 0) {
+    lower_[state] = std::max(lower_[state], threshold.value);
   } else {
-    upper_[term.column] = std::min(upper_[term.column], threshold);
+    upper_[state] = std::min(upper_[state], threshold.value);
   }
+}
+
+void AffineForms::ignore(std::size_t i) {
+  Form& form = forms_[i];
+  if (form.sign == 0) return;
+  form.sign = 0;
+  if (!is_threshold(form)) {
+    std::erase(several_, i);
+    return;
+  }
+  const std::size_t state = terms_[form.first].column;
+  thresholds_[place_[i]].side = 0;
+  double lower = -infinity;
+  double upper = infinity;
+  for (std::size_t k = first_[state]; k < first_[state + 1]; ++k) {
+    const auto& [value, function, side] = thresholds_[k];
+    lower = side > 0 ? std::max(lower, value) : lower;
+    upper = side < 0 ? std::min(upper, value) : upper;
+  }
+  lower_[state] = lower;
+  upper_[state] = upper;
 }
 
 bool AffineForms::reaches_zero(const Form& form, const StepBounds& bounds) const {
@@ -126,12 +177,13 @@ bool AffineForms::may_vanish(const StepBounds& bounds) const {
 }
 
 void AffineForms::append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const {
-  bool thresholds = false;
-  for (std::size_t state = 0; state < lower_.size(); ++state) thresholds |= reaches_threshold(state, bounds);
-  if (thresholds) {
-    for (std::size_t i = 0; i < forms_.size(); ++i) {
-      const Form& form = forms_[i];
-      if (form.sign != 0 && is_threshold(form) && reaches_zero(form, bounds)) suspects.push_back(i);
+  for (std::size_t state = 0; state < lower_.size(); ++state) {
+    if (!reaches_threshold(state, bounds)) continue;
+    for (std::size_t k = first_[state]; k < first_[state + 1]; ++k) {
+      const auto& threshold = thresholds_[k];
+      if (threshold.side != 0 && reaches_zero(forms_[threshold.function], bounds)) {
+        suspects.push_back(threshold.function);
+      }
     }
   }
   for (const std::size_t i : several_) {

@@ -26,7 +26,7 @@ class AffineForms {
   explicit AffineForms(std::size_t states);
   /// Rows for use_row, which stay the same from mode to mode.
   void load(const evaluation::AffineRows& rows);
-  /// No forms, for `functions` functions.
+  /// No forms, for `functions` functions; then use_row and set, then group.
   void reset(std::size_t functions);
   /// The form of function i is loaded row j; nothing if that row is not affine.
   void use_row(std::size_t i, std::size_t j) { forms_[i] = table_[j]; }
@@ -34,7 +34,17 @@ class AffineForms {
   void set(std::size_t i, const evaluation::AffineRows& rows, std::size_t j);
   void set(std::size_t i, const evaluation::AffineRow& row);
 
+  /// All forms are set: puts the thresholds of each state together. None is watched.
+  void group();
+
   [[nodiscard]] bool has(std::size_t i) const { return forms_[i].known; }
+  /// Whether the form is one of one state: its value has the roundings of the function itself, up to its factor's.
+  [[nodiscard]] bool is_threshold(std::size_t i) const { return is_threshold(forms_[i]); }
+  /// Of a threshold: the state, and its factor.
+  [[nodiscard]] std::size_t state(std::size_t i) const { return terms_[forms_[i].first].column; }
+  [[nodiscard]] double factor(std::size_t i) const { return terms_[forms_[i].first].coefficient; }
+  /// The states of a form, appended.
+  void append_states(std::size_t i, std::vector<std::size_t>& states) const;
   [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
   /// Sum of the sizes of the terms that a value is the sum of, at most this over the step: what its rounding follows
   /// from.
@@ -44,6 +54,8 @@ class AffineForms {
   void watch_none();
   /// From now on function i, whose sign is `sign` (+1, -1), is among those that may_vanish and append_suspects look at.
   void watch(std::size_t i, int sign);
+  /// No longer. Cost: the thresholds of the same state.
+  void ignore(std::size_t i);
   /// Whether any watched function may vanish within the bounds; true where a bound is not finite. Cost: O(n_x), and the
   /// terms of the forms of several states.
   [[nodiscard]] bool may_vanish(const StepBounds& bounds) const;
@@ -63,7 +75,12 @@ class AffineForms {
     std::size_t column = 0;
     double coefficient = 0.0;
   };
-  [[nodiscard]] bool is_threshold(const Form& form) const { return form.count == 1 && form.rate == 0.0; }
+  struct Threshold {
+    double value = 0.0;
+    std::size_t function = 0;
+    int side = 0;  ///< of the state while watched: +1 above it, -1 below; 0 = not watched
+  };
+  [[nodiscard]] static bool is_threshold(const Form& form) { return form.count == 1 && form.rate == 0.0; }
   [[nodiscard]] bool reaches_zero(const Form& form, const StepBounds& bounds) const;
   [[nodiscard]] double terms(const Form& form, const StepBounds& bounds) const;
   [[nodiscard]] bool reaches_threshold(std::size_t state, const StepBounds& bounds) const;
@@ -74,6 +91,9 @@ class AffineForms {
   std::size_t loaded_terms_ = 0;
   std::vector<Form> forms_;  ///< one per function
   std::vector<Term> terms_;
+  std::vector<Threshold> thresholds_;  ///< state by state
+  std::vector<std::size_t> first_;     ///< of every state among them, and their number
+  std::vector<std::size_t> place_;     ///< by function: among them
   std::vector<double> lower_, upper_;  ///< nearest watched thresholds of every state
   std::vector<std::size_t> several_;   ///< watched functions that are not thresholds
 };

@@ -76,9 +76,11 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
       tolerances_(tolerances),
       forms_(at(kernel.states())) {
   for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
+  any_nesting_ = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
   const auto n_phi = at(kernel.event_functions());
   for (auto* vector : {&phi_, &phi_below_, &phi_above_, &magnitude_, &slope_}) vector->resize(n_phi);
-  for (auto* vector : {&x_, &low_, &high_}) vector->resize(at(kernel.states()));
+  for (auto* vector : {&x_, &low_, &high_, &wide_low_, &wide_high_}) vector->resize(at(kernel.states()));
+  of_surface_.resize(at(kernel.switching_functions()));
   entered_.assign(at(kernel.cells()), -1);
   user_sign_.assign(n_phi - at(kernel.switching_functions()) - 2 * entered_.size(), 0);
   user_vanishes_.assign(user_sign_.size(), false);
@@ -89,20 +91,60 @@ void EventSearch::find_pressure(double t, const double* x) {
   kernel_.hold_pressure(t, x, field_.alpha().data(), pressure_.data());
 }
 
-void EventSearch::rescale(double t, const double* x) {
-  kernel_.scales(t, x, state_.alpha.data(), magnitude_.data(), slope_.data());
-  if (!exits_.empty()) field_.exits(t, x, exits_.data());
-  find_pressure(t, x);
-  for (std::size_t i = 0; i < functions_.size(); ++i) set_noise(i);
+/// Whether a form of one state stands for function i wherever it is evaluated.
+bool EventSearch::is_threshold(std::size_t i) const {
+  const auto kind = functions_[i].kind;
+  return (kind == FunctionKind::surface || kind == FunctionKind::user) && forms_.is_threshold(i);
 }
 
-void EventSearch::set_noise(std::size_t i) {
+EventSearch::Parts EventSearch::parts_of(const std::vector<std::size_t>& which) const {
+  Parts parts;
+  for (const std::size_t i : which) {
+    if (is_threshold(i)) continue;
+    switch (functions_[i].kind) {
+      case FunctionKind::surface:
+      case FunctionKind::user:
+      case FunctionKind::cell_upper:
+      case FunctionKind::cell_lower:
+        parts.phi = true;
+        break;
+      case FunctionKind::nested_below:
+      case FunctionKind::nested_above:
+        parts.nested = true;
+        break;
+      case FunctionKind::exit_below:
+      case FunctionKind::exit_above:
+      case FunctionKind::loss:
+      case FunctionKind::instability:
+        parts.exits = true;
+        break;
+      case FunctionKind::release:
+        parts.pressure = true;
+        break;
+    }
+  }
+  return parts;
+}
+
+/// Rounding and tolerance levels of some functions for the step that starts at (t, x).
+void EventSearch::rescale(double t, const double* x, const std::vector<std::size_t>& which) {
+  const Parts parts = parts_of(which);
+  if (parts.phi || parts.nested) kernel_.scales(t, x, state_.alpha.data(), magnitude_.data(), slope_.data());
+  if (parts.exits) field_.exits(t, x, exits_.data());
+  if (parts.pressure) find_pressure(t, x);
+  for (const std::size_t i : which) set_noise(i, x);
+}
+
+void EventSearch::set_noise(std::size_t i, const double* x) {
   const auto& function = functions_[i];
   if (uses_phi(function)) {
+    const bool by_form = is_threshold(i);
     const auto j = at(function.index);
+    const double magnitude = by_form ? std::abs(forms_.factor(i) * x[forms_.state(i)]) : magnitude_[j];
+    const double slope = by_form ? std::abs(forms_.factor(i)) : slope_[j];
     // A handful of roundings of terms as large as the magnitude.
-    noise_[i] = 8.0 * epsilon * magnitude_[j];
-    accuracy_[i] = 0.1 * (tolerances_.atol * slope_[j] + tolerances_.rtol * magnitude_[j]);
+    noise_[i] = 8.0 * epsilon * magnitude;
+    accuracy_[i] = 0.1 * (tolerances_.atol * slope + tolerances_.rtol * magnitude);
   } else if (function.kind == FunctionKind::release) {
     const double size = std::abs(pressure_[at(function.row)]);
     noise_[i] = 32.0 * epsilon * size;
@@ -124,22 +166,20 @@ void EventSearch::set_noise(std::size_t i) {
   accuracy_[i] = std::isfinite(accuracy_[i]) ? std::max(accuracy_[i], noise_[i]) : 0.0;
 }
 
-void EventSearch::evaluate_parts(double t, const double* x, Needed needed) {
-  const bool phi = needed == Needed::all || curved_phi_;
-  if (phi) kernel_.functions(t, x, state_.alpha.data(), phi_.data());
-  if (phi && nested_) {
+void EventSearch::evaluate_parts(double t, const double* x, const Parts& parts) {
+  if (parts.phi) kernel_.functions(t, x, state_.alpha.data(), phi_.data());
+  if (parts.nested) {
     kernel_.functions(t, x, state_.corner_alpha[0].data(), phi_below_.data());
     kernel_.functions(t, x, state_.corner_alpha[1].data(), phi_above_.data());
   }
-  if (needed == Needed::all || curved_exits_) {
-    if (!exits_.empty()) field_.exits(t, x, exits_.data());
-    find_pressure(t, x);
-  }
+  if (parts.exits) field_.exits(t, x, exits_.data());
+  if (parts.pressure) find_pressure(t, x);
 }
 
 /// Value of function i at the point that evaluate_parts was last called with.
-double EventSearch::part(std::size_t i) const {
+double EventSearch::value(std::size_t i, double t, const double* x) const {
   const auto& function = functions_[i];
+  if (is_threshold(i)) return forms_.value(i, t, x) - function.offset;
   switch (function.kind) {
     case FunctionKind::surface:
     case FunctionKind::user:
@@ -164,19 +204,34 @@ double EventSearch::part(std::size_t i) const {
   __builtin_unreachable();
 }
 
-void EventSearch::evaluate(double t, const double* x, std::vector<double>& values) {
-  evaluate_parts(t, x, Needed::all);
-  for (std::size_t i = 0; i < functions_.size(); ++i) values[i] = part(i);
+void EventSearch::evaluate(double t, const double* x, const std::vector<std::size_t>& which,
+                           std::vector<double>& values) {
+  evaluate_parts(t, x, parts_of(which));
+  values.resize(which.size());
+  for (std::size_t k = 0; k < which.size(); ++k) values[k] = value(which[k], t, x);
 }
 
-void EventSearch::sample_node(const ode::DenseStep& step, double theta, std::size_t node,
-                              const std::vector<std::size_t>& which) {
-  const double t = step.t + theta * step.h;
-  step.evaluate(theta, x_.data());
-  if (!curved_.empty()) evaluate_parts(t, x_.data(), Needed::curved);
-  double* samples = samples_.data() + node * functions_.size();
-  for (const std::size_t i : which) {
-    samples[i] = forms_.has(i) ? forms_.value(i, t, x_.data()) - functions_[i].offset : part(i);
+/// Samples of some functions at the nodes of [from, to], or at every stride-th of them.
+void EventSearch::sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which,
+                         std::size_t stride) {
+  const bool by_forms = std::all_of(which.begin(), which.end(), [&](std::size_t i) { return forms_.has(i); });
+  columns_.clear();
+  if (by_forms) {
+    for (const std::size_t i : which) forms_.append_states(i, columns_);
+  }
+  for (std::size_t node = 0; node < ode::event_nodes; node += stride) {
+    const double theta = node_theta(from, to, node);
+    const double t = step.t + theta * step.h;
+    if (by_forms) {
+      step.evaluate(theta, columns_, x_.data());
+    } else {
+      step.evaluate(theta, x_.data());
+      evaluate_parts(t, x_.data(), curved_parts_);
+    }
+    double* samples = samples_.data() + node * functions_.size();
+    for (const std::size_t i : which) {
+      samples[i] = forms_.has(i) ? forms_.value(i, t, x_.data()) - functions_[i].offset : value(i, t, x_.data());
+    }
   }
 }
 
@@ -210,11 +265,7 @@ void EventSearch::find_suspects(const ode::DenseStep& step) {
     if (forms_.has(i)) suspects_.push_back(i);
   }
   if (!curved_.empty()) {
-    if (five_nodes_suffice_) {
-      for (std::size_t node = 0; node < ode::event_nodes; node += 2) {
-        sample_node(step, node_theta(0.0, 1.0, node), node, curved_);
-      }
-    }
+    if (five_nodes_suffice_) sample(step, 0.0, 1.0, curved_, 2);
     for (const std::size_t i : curved_) {
       if (!is_far(i)) suspects_.push_back(i);
     }
@@ -222,23 +273,37 @@ void EventSearch::find_suspects(const ode::DenseStep& step) {
   std::sort(suspects_.begin(), suspects_.end());
 }
 
+/// The functions that the location of a hit has to look at: it retakes the step, whose end differs from the dense
+/// output by the tolerance; bounds as wide again as the step moves, or a thousand tolerances, are on the safe side.
+void EventSearch::find_candidates() {
+  for (std::size_t i = 0; i < low_.size(); ++i) {
+    const double size = std::max(std::abs(low_[i]), std::abs(high_[i]));
+    const double room = high_[i] - low_[i] + 1e3 * (tolerances_.atol + tolerances_.rtol * size);
+    wide_low_[i] = low_[i] - room;
+    wide_high_[i] = high_[i] + room;
+  }
+  const double length = bounds_.end - bounds_.begin;
+  const StepBounds wide{bounds_.begin - length, bounds_.end + length, wide_low_.data(), wide_high_.data()};
+  candidates_ = curved_;
+  forms_.append_suspects(wide, candidates_);
+  for (const std::size_t i : special_) {
+    if (forms_.has(i)) candidates_.push_back(i);
+  }
+  std::sort(candidates_.begin(), candidates_.end());
+}
+
 SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
   if (functions_.empty()) return SearchOutcome::none;
   find_suspects(step);
   if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
-  kernel_.scales(step.t, x_.data(), state_.alpha.data(), magnitude_.data(), slope_.data());
-  const bool exits = std::any_of(suspects_.begin(), suspects_.end(), [&](auto i) { return !uses_phi(functions_[i]); });
-  if (exits && !exits_.empty()) field_.exits(step.t, x_.data(), exits_.data());
-  if (exits) find_pressure(step.t, x_.data());
-  for (const std::size_t i : suspects_) set_noise(i);
-  for (std::size_t node = 0; node < ode::event_nodes; ++node) {
-    sample_node(step, node_theta(0.0, 1.0, node), node, suspects_);
-  }
+  rescale(step.t, x_.data(), suspects_);
+  sample(step, 0.0, 1.0, suspects_);
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
-  if (outcome == SearchOutcome::hit) {  // its location asks for the noise of every function
+  if (outcome == SearchOutcome::hit) {
+    find_candidates();
     step.evaluate(0.0, x_.data());
-    rescale(step.t, x_.data());
+    rescale(step.t, x_.data(), candidates_);
   }
   return outcome;
 }
@@ -251,8 +316,9 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
     const double local = ode::check_nodes()[place];
     const double theta = from + (to - from) * local;
     step.evaluate(theta, x_.data());
-    evaluate_parts(step.t + theta * step.h, x_.data(), Needed::curved);
-    if (!(std::abs(part(i) - ode::evaluate(coefficients, local)) <= accuracy)) return true;
+    const double t = step.t + theta * step.h;
+    evaluate_parts(t, x_.data(), curved_parts_);
+    if (!(std::abs(value(i, t, x_.data()) - ode::evaluate(coefficients, local)) <= accuracy)) return true;
   }
   return false;
 }
@@ -320,9 +386,7 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
   if (depth >= deepest) return SearchOutcome::unresolved;
   const double middle = 0.5 * (from + to);
   for (const auto& [begin, end] : {std::pair{from, middle}, std::pair{middle, to}}) {
-    for (std::size_t node = 0; node < ode::event_nodes; ++node) {
-      sample_node(step, node_theta(begin, end, node), node, suspects_);
-    }
+    sample(step, begin, end, suspects_);
     const SearchOutcome half = search_interval(step, begin, end, depth + 1, hit);
     if (half != SearchOutcome::none) return half;
   }

@@ -64,17 +64,18 @@ class EventSearch {
 
   /// Sets up the functions of a mode at (t, x). `zero_order` (n_psi): zeros that surfaces have at this point.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
-  /// Rounding and tolerance levels for the step that starts at (t, x).
-  void rescale(double t, const double* x);
-
   /// Whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
   [[nodiscard]] bool may_vanish(const ode::Stepper& stepper);
   /// The first sign change in (0, 1] of any function.
   SearchOutcome search(const ode::DenseStep& step, Hit& hit);
-  /// Values of all functions at one point, less their offsets.
-  void evaluate(double t, const double* x, std::vector<double>& values);
+  /// Behind a hit: the functions that may vanish within the step, or close by; ascending.
+  [[nodiscard]] const std::vector<std::size_t>& candidates() const { return candidates_; }
+  /// Values of some functions at one point, less their offsets.
+  void evaluate(double t, const double* x, const std::vector<std::size_t>& which, std::vector<double>& values);
 
   [[nodiscard]] const std::vector<EventFunction>& functions() const { return functions_; }
+  /// Rounding of a candidate: at the start of the step, or where rescale() was called last.
+  void rescale(double t, const double* x) { rescale(t, x, candidates_); }
   [[nodiscard]] double noise(std::size_t function) const { return noise_[function]; }
   /// Signs of the user functions in force, 0 where not known yet.
   [[nodiscard]] const std::vector<int>& user_signs() const { return user_sign_; }
@@ -103,21 +104,37 @@ class EventSearch {
     bool resolved = true;
     std::optional<Hit> hit;
   };
-  enum class Needed { all, curved };  ///< values of all functions, or of the suspects without an affine form
+  /// What values of some functions are made of: event functions of the kernel, in the regions of nested ones, exits,
+  /// and what presses held guards. The others are thresholds.
+  struct Parts {
+    bool phi = false;
+    bool nested = false;
+    bool exits = false;
+    bool pressure = false;
+  };
 
   void start_at(double t);
   void set_forms(const double* x);
   void sort_functions();
-  void set_noise(std::size_t i);
-  void evaluate_parts(double t, const double* x, Needed needed);
-  [[nodiscard]] double part(std::size_t i) const;
+  void rescale(double t, const double* x, const std::vector<std::size_t>& which);
+  void set_noise(std::size_t i, const double* x);
+  [[nodiscard]] bool is_threshold(std::size_t i) const;
+  [[nodiscard]] Parts parts_of(const std::vector<std::size_t>& which) const;
+  void evaluate_parts(double t, const double* x, const Parts& parts);
+  [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
+  bool flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
+  void read_start(double t, const double* x);
+  void read_values(double t, const double* x, const std::vector<std::size_t>& which);
+  void sort(std::size_t i);
+  void find_candidates();
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
               const ode::BernsteinCoefficients& coefficients, double accuracy);
   [[nodiscard]] bool is_far(std::size_t i) const;
   void find_suspects(const ode::DenseStep& step);
-  void sample_node(const ode::DenseStep& step, double theta, std::size_t node, const std::vector<std::size_t>& which);
+  void sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which,
+              std::size_t stride = 1);
   [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;
   void read_user_signs();
   void find_pressure(double t, const double* x);
@@ -140,19 +157,27 @@ class EventSearch {
   std::vector<double> x_, point_;
   std::vector<double> samples_;  ///< node by node
   std::vector<double> noise_, accuracy_;
-  std::vector<double> low_, high_;  ///< of the states over the step
+  std::vector<double> low_, high_;            ///< of the states over the step
+  std::vector<double> wide_low_, wide_high_;  ///< around it
   StepBounds bounds_;
   AffineForms forms_;
   std::vector<bool> nesting_;                   ///< functions of the kernel that hold selections
   std::array<evaluation::AffineRows, 3> rows_;  ///< at the selections of the mode, of the lower and the upper region
   evaluation::AffineRow row_;
-  std::vector<std::size_t> special_;   ///< functions with an unknown sign, or a zero at the start of the next step
-  std::vector<std::size_t> curved_;    ///< functions without an affine form
-  std::vector<std::size_t> suspects_;  ///< of this step, ascending
-  bool nested_ = false;                ///< there are functions nested around the sliding surface
-  bool curved_phi_ = false;            ///< there are curved functions of the kernel
-  bool curved_exits_ = false;          ///< there are curved exits
-  std::vector<bool> prefilter_;        ///< five samples may show that the function stays away from zero
+  std::vector<std::size_t> special_;  ///< functions with an unknown sign, or a zero at the start of the next step
+  std::vector<std::size_t> curved_;   ///< functions without an affine form
+  Parts curved_parts_;
+  std::vector<std::size_t> suspects_;    ///< of this step, ascending
+  std::vector<std::size_t> candidates_;  ///< of this step, ascending
+  std::vector<std::size_t> inspected_;   ///< at the start of a mode: those whose values matter there
+  std::vector<std::size_t> columns_;     ///< states to sample
+  std::size_t users_ = 0;                ///< the user functions among functions_, and their end
+  std::size_t users_end_ = 0;
+  std::vector<std::size_t> of_surface_;  ///< n_psi: function of a surface outside the mode
+  bool any_nesting_ = false;             ///< some functions of the kernel hold selections
+  bool nested_ = false;                  ///< there are functions nested around the sliding surface
+  bool flips_ = false;                   ///< the functions of the mode are surfaces only: crossings change signs only
+  std::vector<bool> prefilter_;          ///< five samples may show that the function stays away from zero
 };
 
 }  // namespace saltus::event_integrator

@@ -11,15 +11,71 @@ namespace saltus::event_integrator {
 /// A step that led from one event to the next was not settled: the zeros at its start are history.
 void EventSearch::start_at(double t) {
   if (zeros_at_ && *zeros_at_ != t) {
-    for (auto& function : functions_) function.zero_order = 0;
+    for (const std::size_t i : special_) functions_[i].zero_order = 0;
     user_vanishes_.assign(user_vanishes_.size(), false);
   }
   zeros_at_ = t;
 }
 
+/// A crossing, of surfaces that nothing else of the mode depends on: only signs change. Returns false, with nothing
+/// done, if the mode is another one than that. Cost: O(1) for each surface crossed, but for the comparison of the
+/// modes.
+bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
+  if (!flips_ || !state.sliding.empty() || !held_.empty() || !followers_.empty()) return false;
+  inspected_.clear();
+  for (std::size_t j = 0; j < state.mode.size(); ++j) {
+    if (state.mode[j] == state_.mode[j] && zero_order[j] == 0) continue;
+    if (state.mode[j] == 0 || state_.mode[j] == 0) return false;
+    inspected_.push_back(j);
+  }
+  for (const std::size_t i : special_) {
+    functions_[i].zero_order = 0;
+    functions_[i].offset = 0.0;
+    if (forms_.has(i)) forms_.watch(i, functions_[i].sign);
+  }
+  for (std::size_t& entry : inspected_) {
+    const std::size_t j = entry;
+    entry = of_surface_[j];
+    state_.mode[j] = state.mode[j];
+    state_.alpha[j] = state.alpha[j];
+    functions_[entry].sign = state.mode[j];
+    functions_[entry].zero_order = zero_order[j];
+    forms_.ignore(entry);
+  }
+  read_start(t, x);
+  special_.clear();
+  for (const std::size_t i : inspected_) sort(i);
+  return true;
+}
+
+/// Values of the functions that are looked at where a mode starts, and what follows for those at zero.
+void EventSearch::read_start(double t, const double* x) {
+  rescale(t, x, inspected_);
+  read_values(t, x, inspected_);
+  read_user_signs();
+  for (const std::size_t i : inspected_) {
+    auto& function = functions_[i];
+    const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
+                         function.kind == FunctionKind::instability || function.kind == FunctionKind::release;
+    const bool is_cell = function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower;
+    // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
+    if ((is_exit || is_cell) && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
+    // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
+    // zero of this start.
+    if (function.zero_order > 0) function.offset = point_[i];
+  }
+}
+
+/// Values of some functions into point_.
+void EventSearch::read_values(double t, const double* x, const std::vector<std::size_t>& which) {
+  evaluate_parts(t, x, parts_of(which));
+  for (const std::size_t i : which) point_[i] = value(i, t, x);
+}
+
 void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
-  state_ = state;
   start_at(t);
+  if (flip(state, zero_order, t, x)) return;
+  state_ = state;
   functions_.clear();
   nested_ = false;
   const int n_psi = kernel_.switching_functions();
@@ -35,6 +91,7 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
       functions_.push_back({FunctionKind::nested_below, j, 0, below, zero_order[at(j)]});
       functions_.push_back({FunctionKind::nested_above, j, 0, above, zero_order[at(j)]});
     } else {
+      of_surface_[at(j)] = functions_.size();
       functions_.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
     }
   }
@@ -60,10 +117,12 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
     const auto is_it = [u](const HeldGuard& guard) { return guard.hold.function == u; };
     return std::any_of(held_.begin(), held_.end(), is_it) || std::any_of(followers_.begin(), followers_.end(), is_it);
   };
+  users_ = functions_.size();
   const int user_end = n_psi + static_cast<int>(user_sign_.size());
   for (int u = n_psi; u < user_end; ++u) {
     if (!is_held(u)) functions_.push_back({FunctionKind::user, u, 0, 0});
   }
+  users_end_ = functions_.size();
   pressure_.resize(held_.size());
   for (std::size_t row = 0; row < held_.size(); ++row) {
     functions_.push_back({FunctionKind::release, held_[row].hold.function, static_cast<int>(row), held_[row].inward});
@@ -74,22 +133,17 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   accuracy_.assign(functions_.size(), 0.0);
   point_.resize(functions_.size());
   samples_.resize(functions_.size() * ode::event_nodes);
-  for (auto* list : {&suspects_, &special_, &curved_}) list->reserve(functions_.size());
-  rescale(t, x);
-  evaluate(t, x, point_);
-  read_user_signs();
+  for (auto* list : {&suspects_, &candidates_, &special_, &curved_, &inspected_}) list->reserve(functions_.size());
+  inspected_.clear();
   for (std::size_t i = 0; i < functions_.size(); ++i) {
-    auto& function = functions_[i];
-    const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
-                         function.kind == FunctionKind::instability || function.kind == FunctionKind::release;
-    const bool is_cell = function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower;
-    // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
-    if ((is_exit || is_cell) && std::abs(point_[i]) <= noise_[i]) function.zero_order = 1;
-    // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
-    // zero of this start.
-    if (function.zero_order > 0) function.offset = point_[i];
+    const auto kind = functions_[i].kind;
+    const bool plain = kind == FunctionKind::surface || kind == FunctionKind::nested_below ||
+                       kind == FunctionKind::nested_above || kind == FunctionKind::loss;
+    if (!plain || functions_[i].zero_order > 0) inspected_.push_back(i);
   }
+  read_start(t, x);
   sort_functions();
+  flips_ = !any_nesting_ && state.sliding.empty() && users_ == functions_.size() && followers_.empty();
 }
 
 void EventSearch::entered_cell(const EventFunction& reached) {
@@ -114,8 +168,7 @@ void EventSearch::enter_cells() {
 /// The affine functions of the mode as forms. Selections of a mode are constants, so a function that holds some is
 /// affine if it is for each value of theirs.
 void EventSearch::set_forms(const double* x) {
-  const bool selections = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
-  if (rows_[0].start.empty() || selections || kernel_.cells() > 0) {
+  if (rows_[0].start.empty() || any_nesting_ || kernel_.cells() > 0) {
     kernel_.affine_rows(state_.alpha.data(), rows_[0]);
     forms_.load(rows_[0]);
   }
@@ -125,7 +178,6 @@ void EventSearch::set_forms(const double* x) {
   }
   forms_.reset(functions_.size());
   curved_.clear();
-  curved_phi_ = curved_exits_ = false;
   prefilter_.assign(functions_.size(), false);
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const auto& function = functions_[i];
@@ -155,31 +207,33 @@ void EventSearch::set_forms(const double* x) {
     }
     if (forms_.has(i)) continue;
     curved_.push_back(i);
-    (uses_phi(function) ? curved_phi_ : curved_exits_) = true;
     // Functions that are not affine in the state may oscillate within a step: five nodes do not speak for them.
     prefilter_[i] = five_nodes_suffice_ && !uses_phi(function);
   }
+  forms_.group();
+  curved_parts_ = parts_of(curved_);
 }
 
 /// What is watched by its form, and what is looked at in every step because its start is special.
 void EventSearch::sort_functions() {
   forms_.watch_none();
   special_.clear();
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    const auto& function = functions_[i];
-    if (function.sign == 0 || function.zero_order != 0 || function.offset != 0.0) {
-      special_.push_back(i);
-    } else if (forms_.has(i)) {
-      forms_.watch(i, function.sign);
-    }
+  for (std::size_t i = 0; i < functions_.size(); ++i) sort(i);
+}
+
+void EventSearch::sort(std::size_t i) {
+  const auto& function = functions_[i];
+  if (function.sign == 0 || function.zero_order != 0 || function.offset != 0.0) {
+    special_.push_back(i);
+  } else if (forms_.has(i)) {
+    forms_.watch(i, function.sign);
   }
 }
 
 /// From the values in point_.
 void EventSearch::read_user_signs() {
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
+  for (std::size_t i = users_; i < users_end_; ++i) {
     auto& function = functions_[i];
-    if (function.kind != FunctionKind::user) continue;
     const auto user = at(function.index - kernel_.switching_functions());
     auto& sign = user_sign_[user];
     const bool at_zero = user_vanishes_[user] || std::abs(point_[i]) <= noise_[i];
@@ -196,7 +250,7 @@ bool EventSearch::settle(double t, const double* x) {
   bool unknown = false;
   const bool offset =
       std::any_of(special_.begin(), special_.end(), [&](auto i) { return functions_[i].offset != 0.0; });
-  if (offset) evaluate(t, x, point_);
+  if (offset) read_values(t, x, special_);
   std::size_t kept = 0;
   for (const std::size_t i : special_) {
     auto& function = functions_[i];
@@ -212,8 +266,10 @@ bool EventSearch::settle(double t, const double* x) {
   }
   special_.resize(kept);
   if (!unknown) return false;
-  rescale(t, x);
-  evaluate(t, x, point_);
+  inspected_.clear();
+  for (std::size_t i = users_; i < users_end_; ++i) inspected_.push_back(i);
+  rescale(t, x, inspected_);
+  read_values(t, x, inspected_);
   read_user_signs();
   sort_functions();
   return true;
@@ -231,8 +287,10 @@ void EventSearch::set_user_sign(std::size_t function, int sign, double t, const 
   const auto user = at(entry.index - kernel_.switching_functions());
   entry.sign = sign;
   entry.zero_order = 1;
-  kernel_.functions(t, x, state_.alpha.data(), phi_.data());
-  entry.offset = phi_[at(entry.index)];
+  entry.offset = 0.0;
+  inspected_.assign(1, function);
+  read_values(t, x, inspected_);
+  entry.offset = point_[function];
   user_sign_[user] = sign;
   user_vanishes_[user] = true;
   sort_functions();

@@ -51,8 +51,8 @@ bool Locator::take(double h) {
     // The event is where the step starts: time cannot resolve the difference.
     trial_.h = 0.0;
     trial_.x.assign(start_.x, start_.x + n_);
-    search_.evaluate(start_.t, start_.x, trial_.values);
-    return std::isfinite(trial_.values[hit_.function]);
+    search_.evaluate(start_.t, start_.x, search_.candidates(), trial_.values);
+    return is_finite_at(trial_);
   }
   const auto f = [this](double t, const double* x, double* xdot) { field_(t, x, xdot); };
   trial_.h = h;
@@ -64,8 +64,8 @@ bool Locator::take(double h) {
   } else {
     std::copy_n(stepper_.slope_new(), n_, slope_.begin());
   }
-  search_.evaluate(start_.t + h, trial_.x.data(), trial_.values);
-  return std::isfinite(trial_.values[hit_.function]);
+  search_.evaluate(start_.t + h, trial_.x.data(), search_.candidates(), trial_.values);
+  return is_finite_at(trial_);
 }
 
 /// The point that lies dt ahead of the trial, into `moved_`; false where the field is undefined.
@@ -79,19 +79,19 @@ bool Locator::move(double dt) {
   }
   moved_.h = trial_.h + dt;
   field_.project(t, moved_.x.data());
-  search_.evaluate(t, moved_.x.data(), moved_.values);
-  return std::isfinite(moved_.values[hit_.function]) && is_finite(moved_.x);
+  search_.evaluate(t, moved_.x.data(), search_.candidates(), moved_.values);
+  return is_finite_at(moved_) && is_finite(moved_.x);
 }
 
 /// Moves the trial to the event if it is close enough for that; otherwise leaves it where it is.
 bool Locator::finish(double slope) {
   if (!explicit_) return false;
-  double value = trial_.values[hit_.function];
+  double value = trial_.values[place_];
   double dt = -value / slope;
   if (!(std::abs(dt) <= two_stages_suffice * trial_.h)) return false;
   for (int iteration = 0; iteration < 4; ++iteration) {
     if (!(trial_.h + dt > 0.0 && trial_.h + dt <= dense_->h) || !move(dt)) return false;
-    const double next = moved_.values[hit_.function];
+    const double next = moved_.values[place_];
     const bool small = std::abs(next) <= search_.noise(hit_.function);
     const bool converges = std::abs(next) <= 0.1 * std::abs(value);
     if (!converges && !small) return false;
@@ -105,9 +105,16 @@ bool Locator::finish(double slope) {
   return false;
 }
 
+void Locator::set_hit(const Hit& hit) {
+  hit_ = hit;
+  const auto& candidates = search_.candidates();
+  place_ = static_cast<std::size_t>(std::lower_bound(candidates.begin(), candidates.end(), hit.function) -
+                                    candidates.begin());
+}
+
 /// Newton for the function of `hit`; the last trial is the result.
 bool Locator::correct(const Hit& hit) {
-  hit_ = hit;
+  set_hit(hit);
   double before = 0.0;        // longest step seen that ends before the event
   double beyond = dense_->h;  // shortest one that ends behind it
   double slope = hit.slope;
@@ -123,7 +130,7 @@ bool Locator::correct(const Hit& hit) {
       if (beyond - before <= time_resolution()) return take(before);
       continue;
     }
-    const double value = trial_.values[hit.function];
+    const double value = trial_.values[place_];
     sharpen();
     if (vanishes(value) || trial_.h == 0.0 || (!flat_ && finish(slope))) return true;
     (value * hit.sign > 0.0 ? before : beyond) = h;
@@ -149,8 +156,10 @@ bool Locator::correct(const Hit& hit) {
 
 /// A function whose sign has changed beyond rounding at the located time: its zero lies earlier.
 std::optional<std::size_t> Locator::earlier_function(std::size_t located) const {
-  for (std::size_t i = 0; i < trial_.values.size(); ++i) {
-    if (i != located && sign(i) != 0 && trial_.values[i] * sign(i) < -search_.noise(i)) return i;
+  const auto& candidates = search_.candidates();
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const std::size_t i = candidates[k];
+    if (i != located && sign(i) != 0 && trial_.values[k] * sign(i) < -search_.noise(i)) return k;
   }
   return std::nullopt;
 }
@@ -158,17 +167,19 @@ std::optional<std::size_t> Locator::earlier_function(std::size_t located) const 
 /// Functions that reach zero together with the located one: at zero to rounding of their values or of time, and away
 /// from it shortly before (a surface just left is still near zero, but moving away).
 void Locator::find_vanishing_with(std::size_t located) {
+  const auto& candidates = search_.candidates();
   located_.functions.assign(1, located);
   const double back = 1e-3 * trial_.h;
-  if (back == 0.0 || trial_.values.size() == 1) return;
+  if (back == 0.0 || candidates.size() == 1) return;
   dense_->evaluate((trial_.h - back) / dense_->h, x_.data());
-  search_.evaluate(start_.t + trial_.h - back, x_.data(), earlier_);
-  for (std::size_t i = 0; i < trial_.values.size(); ++i) {
+  search_.evaluate(start_.t + trial_.h - back, x_.data(), candidates, earlier_);
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const std::size_t i = candidates[k];
     if (i == located || sign(i) == 0) continue;
-    const double ahead = earlier_[i] * sign(i);
-    const double rate = (ahead - trial_.values[i] * sign(i)) / back;
+    const double ahead = earlier_[k] * sign(i);
+    const double rate = (ahead - trial_.values[k] * sign(i)) / back;
     const double resolution = std::max(search_.noise(i), 2.0 * rate * time_resolution());
-    if (ahead > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[i]) <= resolution) {
+    if (ahead > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[k]) <= resolution) {
       located_.functions.push_back(i);
     }
   }
@@ -177,14 +188,14 @@ void Locator::find_vanishing_with(std::size_t located) {
 const Located* Locator::locate(const StepStart& start, const ode::DenseStep& dense, Hit hit) {
   start_ = start;
   dense_ = &dense;
-  for (auto* values : {&trial_.values, &moved_.values, &earlier_}) values->resize(search_.functions().size());
   if (!correct(hit)) return nullptr;
-  for (std::size_t round = 0; round < search_.functions().size(); ++round) {
+  for (std::size_t round = 0; round < search_.candidates().size(); ++round) {
     const auto earlier = earlier_function(hit.function);
     if (!earlier) break;
     const double h = trial_.h;
     const double value = trial_.values[*earlier];
-    hit = {*earlier, h / dense.h, value, search_.functions()[*earlier].sign};
+    const std::size_t function = search_.candidates()[*earlier];
+    hit = {function, h / dense.h, value, search_.functions()[function].sign};
     // A slope from the sign change itself: the value falls from noise to `value` somewhere before h.
     hit.slope = value / h;
     if (!correct(hit)) return nullptr;

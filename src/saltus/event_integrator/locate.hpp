@@ -1,6 +1,7 @@
 // The exact time of an event: the step is retaken until the event function is at rounding level.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -42,7 +43,7 @@ class Locator {
   [[nodiscard]] const Located* locate(const StepStart& start, const ode::DenseStep& dense, Hit hit);
 
  private:
-  /// One event under correction: the state at the end of the retaken step, and the values of all functions there.
+  /// One event under correction: the state at the end of the retaken step, and the values of all candidates there.
   struct Trial {
     double h = 0.0;
     std::vector<double> x;
@@ -53,8 +54,11 @@ class Locator {
   bool correct(const Hit& hit);
   bool finish(double slope);
   bool move(double dt);
+  void set_hit(const Hit& hit);
+  [[nodiscard]] bool is_finite_at(const Trial& trial) const { return std::isfinite(trial.values[place_]); }
   void find_vanishing_with(std::size_t located);
   [[nodiscard]] bool vanishes(double value) const;
+  /// Its place among the candidates.
   [[nodiscard]] std::optional<std::size_t> earlier_function(std::size_t located) const;
   [[nodiscard]] int sign(std::size_t function) const {
     return function == hit_.function ? hit_.sign : search_.functions()[function].sign;
@@ -70,7 +74,8 @@ class Locator {
   StepStart start_;
   const ode::DenseStep* dense_ = nullptr;
   Hit hit_;
-  bool flat_ = false;  ///< a multiple zero
+  bool flat_ = false;      ///< a multiple zero
+  std::size_t place_ = 0;  ///< of its function among the candidates
   Trial trial_, moved_;
   std::vector<double> slope_, slope_ahead_;  ///< f at the end of the trial, and just ahead of it
   std::vector<double> x_, earlier_;

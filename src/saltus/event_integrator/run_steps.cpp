@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -92,8 +93,10 @@ std::string Run::undefined_beyond() {
 
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
-  std::vector<double> values(search_.functions().size());
-  search_.evaluate(t_, x_.data(), values);
+  std::vector<double> values;
+  std::vector<std::size_t> all(search_.functions().size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  search_.evaluate(t_, x_.data(), all, values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& function = search_.functions()[i];
     const bool surface = function.kind == FunctionKind::surface;

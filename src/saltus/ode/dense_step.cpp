@@ -43,20 +43,18 @@ inline Jet nested_jet(const double* coefficients, std::size_t n, std::size_t i, 
 }
 
 template <std::size_t degree>
-void evaluate_from_start(const double* coefficients, std::size_t n, double theta, double* __restrict x) {
-  for (std::size_t i = 0; i < n; ++i) x[i] = nested<0, degree>(coefficients, n, i, theta, 1.0 - theta);
+inline double value_from_start(const double* coefficients, std::size_t n, std::size_t i, double theta) {
+  return nested<0, degree>(coefficients, n, i, theta, 1.0 - theta);
 }
 
 /// The same polynomial written from its other end, x(t + h) - r (c1 - s (c2 + ...)): rounding vanishes towards that
 /// end.
 template <std::size_t degree>
-void evaluate_from_end(const double* coefficients, const double* end, std::size_t n, double theta,
-                       double* __restrict x) {
+inline double value_from_end(const double* coefficients, const double* end, std::size_t n, std::size_t i,
+                             double theta) {
   const double s = theta;
   const double r = 1.0 - theta;
-  for (std::size_t i = 0; i < n; ++i) {
-    x[i] = end[i] - r * (coefficients[n + i] - s * nested<2, degree>(coefficients, n, i, s, r));
-  }
+  return end[i] - r * (coefficients[n + i] - s * nested<2, degree>(coefficients, n, i, s, r));
 }
 
 template <std::size_t degree>
@@ -66,12 +64,37 @@ void evaluate_slope(const double* coefficients, std::size_t n, double theta, dou
   }
 }
 
-template <std::size_t degree>
-void evaluate_nearer(const double* coefficients, const double* end, std::size_t n, double theta, double* x) {
+/// `component(k)` is the k-th of the `count` components wanted.
+template <std::size_t degree, class Component>
+void evaluate_nearer(const double* coefficients, const double* end, std::size_t n, double theta, std::size_t count,
+                     Component component, double* __restrict x) {
   if (theta <= 0.5) {
-    evaluate_from_start<degree>(coefficients, n, theta, x);
+    for (std::size_t k = 0; k < count; ++k) {
+      x[component(k)] = value_from_start<degree>(coefficients, n, component(k), theta);
+    }
   } else {
-    evaluate_from_end<degree>(coefficients, end, n, theta, x);
+    for (std::size_t k = 0; k < count; ++k) {
+      x[component(k)] = value_from_end<degree>(coefficients, end, n, component(k), theta);
+    }
+  }
+}
+
+template <class Component>
+void evaluate_components(Method method, const std::vector<double>& coefficients, const std::vector<double>& end,
+                         double theta, std::size_t count, Component component, double* x) {
+  const std::size_t n = end.size();
+  if (theta == 0.0 || theta == 1.0) {  // bit for bit, the sign of a zero included
+    const double* values = theta == 0.0 ? coefficients.data() : end.data();
+    for (std::size_t k = 0; k < count; ++k) x[component(k)] = values[component(k)];
+    return;
+  }
+  switch (method) {
+    case Method::dopri5:
+      return evaluate_nearer<4>(coefficients.data(), end.data(), n, theta, count, component, x);
+    case Method::dop853:
+      return evaluate_nearer<7>(coefficients.data(), end.data(), n, theta, count, component, x);
+    case Method::radau5:
+      return evaluate_nearer<3>(coefficients.data(), end.data(), n, theta, count, component, x);
   }
 }
 
@@ -106,20 +129,13 @@ void DenseStep::bounds(double* low, double* high) const {
 }
 
 void DenseStep::evaluate(double theta, double* x) const {
-  const auto n = static_cast<std::size_t>(n_);
-  const double* coefficients = coefficients_.data();
-  if (theta == 0.0 || theta == 1.0) {  // bit for bit, the sign of a zero included
-    std::copy_n(theta == 0.0 ? coefficients : end_.data(), n, x);
-    return;
-  }
-  switch (method_) {
-    case Method::dopri5:
-      return evaluate_nearer<4>(coefficients, end_.data(), n, theta, x);
-    case Method::dop853:
-      return evaluate_nearer<7>(coefficients, end_.data(), n, theta, x);
-    case Method::radau5:
-      return evaluate_nearer<3>(coefficients, end_.data(), n, theta, x);
-  }
+  evaluate_components(
+      method_, coefficients_, end_, theta, end_.size(), [](std::size_t k) { return k; }, x);
+}
+
+void DenseStep::evaluate(double theta, std::span<const std::size_t> components, double* x) const {
+  evaluate_components(
+      method_, coefficients_, end_, theta, components.size(), [&](std::size_t k) { return components[k]; }, x);
 }
 
 void DenseStep::derivative(double theta, double* xdot) const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "saltus/base/function_ref.hpp"
@@ -34,7 +35,9 @@ class DenseStep {
  public:
   double t = 0.0;
   double h = 0.0;
-  void evaluate(double theta, double* x) const;       ///< n doubles
+  void evaluate(double theta, double* x) const;  ///< n doubles
+  /// Only those components of x, bit for bit.
+  void evaluate(double theta, std::span<const std::size_t> components, double* x) const;
   void derivative(double theta, double* xdot) const;  ///< dx/dt of the polynomial, n doubles
   /// Bounds low_i <= x_i(t + theta h) <= high_i for all theta in [0, 1], n doubles each, up to rounding: the chord
   /// widened by the largest values of the other terms of the polynomial. Cost: a few operations per component.

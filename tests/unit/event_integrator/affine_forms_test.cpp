@@ -25,6 +25,7 @@ class Forms : public ::testing::Test {
     forms.load(rows());
     forms.reset(6);
     for (std::size_t i = 0; i < 6; ++i) forms.use_row(i, i);
+    forms.group();
   }
 
   std::vector<std::size_t> suspects(double begin, double end, std::vector<double> low, std::vector<double> high) {
@@ -66,6 +67,35 @@ TEST_F(Forms, OnlyWhatIsWatchedAndReachedIsSuspect) {
   EXPECT_EQ(suspects(4.5, 5.0, {1.2, 3.5}, {1.8, 3.6}), (Indices{4}));
   forms.watch_none();
   EXPECT_EQ(suspects(0, 10, {-9, -9}, {9, 9}), Indices{});
+}
+
+TEST_F(Forms, WhatIsIgnoredHidesNothing) {
+  forms.watch(0, +1);
+  forms.watch(1, -1);
+  forms.watch(2, +1);
+  forms.watch(3, +1);
+  EXPECT_EQ(suspects(0, 1, {1.2, 3.5}, {2.0, 3.6}), (Indices{2}));
+  forms.ignore(2);
+  EXPECT_EQ(suspects(0, 1, {1.2, 3.5}, {2.0, 3.6}), Indices{});
+  EXPECT_EQ(suspects(0, 1, {0.9, 3.5}, {3.1, 3.6}), (Indices{0, 1}));
+  forms.ignore(0);
+  EXPECT_EQ(suspects(0, 1, {-9.0, 3.5}, {2.9, 3.6}), Indices{});
+  forms.watch(2, -1);  // the other side now
+  EXPECT_EQ(suspects(0, 1, {1.9, 3.5}, {2.9, 3.6}), (Indices{2}));
+  EXPECT_EQ(suspects(0, 1, {2.2, 1.0}, {2.9, 3.6}), (Indices{3}));
+  forms.ignore(3);
+  forms.ignore(3);
+  EXPECT_EQ(suspects(0, 1, {2.2, 1.0}, {2.9, 3.6}), Indices{});
+}
+
+TEST_F(Forms, ThresholdsKnowTheirState) {
+  EXPECT_TRUE(forms.is_threshold(2));
+  EXPECT_EQ(forms.state(2), 0U);
+  EXPECT_EQ(forms.factor(2), -1.0);
+  for (const std::size_t i : {3U, 4U, 5U}) EXPECT_FALSE(forms.is_threshold(i));
+  std::vector<std::size_t> states;
+  for (const std::size_t i : {0U, 3U, 4U, 5U}) forms.append_states(i, states);
+  EXPECT_EQ(states, (Indices{0, 0, 1}));
 }
 
 TEST_F(Forms, ANeighbourhoodOfRoundingSizeIsReached) {
