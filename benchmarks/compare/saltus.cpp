@@ -89,8 +89,13 @@ void sweep(Request request) {
     const long before = kernel.field_evaluations();
     Run run = run_of(event_integrator::integrate(kernel, system, options));
     run.evaluations = kernel.field_evaluations() - before;
-    const Timing timing =
-        median_time(request.seconds, [&] { static_cast<void>(event_integrator::integrate(kernel, system, options)); });
+    const Timing timing = median_time(request.seconds, [&] {
+      if (request.variant == "trajectory") {
+        static_cast<void>(event_integrator::integrate(kernel, system, options));
+      } else {
+        static_cast<void>(event_integrator::integrate_compact(kernel, system, options));
+      }
+    });
     print(request, tolerance, timing, run, parts);
   }
 }

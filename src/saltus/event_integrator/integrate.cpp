@@ -190,7 +190,7 @@ bool Run::begin() {
   return true;
 }
 
-Integration Run::to_end() {
+CompactIntegration Run::to_end() {
   if (begin()) {
     while (running_ && t_ < options_.until) {
       if (result_.statistics.steps + result_.statistics.rejected >= options_.max_steps) {
@@ -215,18 +215,27 @@ Integration Run::to_end() {
   }
   result_.status.time_reached = t_;
   result_.statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
-  result_.events = recorder_.take_events();
-  result_.trajectory = recorder_.take_trajectory();
-  result_.branch_points = recorder_.take_branch_points();
+  result_.recording = recorder_.take();
   begin_at_choice();
-  const auto& rows = result_.trajectory;
-  result_.final = {t_, rows.x.back(), rows.mode.back(), rows.alpha.back(), rows.outputs.back()};
   return std::move(result_);
+}
+
+CompactIntegration integrate_compact(const evaluation::ModelKernel& kernel, const model::System& system,
+                                     const IntegrationOptions& options, const StepObserver& observer) {
+  return Run(kernel, system, options, observer).to_end();
 }
 
 Integration integrate(const evaluation::ModelKernel& kernel, const model::System& system,
                       const IntegrationOptions& options, const StepObserver& observer) {
-  return Run(kernel, system, options, observer).to_end();
+  CompactIntegration run = integrate_compact(kernel, system, options, observer);
+  auto& recording = run.recording;
+  return {std::move(run.status),
+          recording.last(system),
+          recording.events(system),
+          recording.trajectory(system),
+          run.statistics,
+          std::move(recording.branch_points),
+          run.chosen};
 }
 
 }  // namespace saltus::event_integrator

@@ -8,6 +8,7 @@
 
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/choices.hpp"
+#include "saltus/event_integrator/recording.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/ode/stepper.hpp"
 #include "saltus/result/result.hpp"
@@ -69,6 +70,14 @@ struct Integration {
   bool chosen = true;                      ///< false: it stopped before the last choice, and begins at its own start
 };
 
+/// The same before events and rows are expanded into columns.
+struct CompactIntegration {
+  result::Status status;
+  Recording recording;
+  result::Statistics statistics;
+  bool chosen = true;
+};
+
 /// Integrates xdot in F(t, x) by classical and sliding motion, mode by mode ([guglielmi2022], sections 3, 4.1, 4.2).
 ///
 /// Between events the order is that of the method: a switch is found on the dense output, then the step is retaken to
@@ -80,5 +89,11 @@ struct Integration {
 /// Cost: evaluations of f (m + 1 or m + 2 per evaluation while sliding on m surfaces), 9 of the event functions a step.
 [[nodiscard]] Integration integrate(const evaluation::ModelKernel& kernel, const model::System& system,
                                     const IntegrationOptions& options, const StepObserver& observer = {});
+
+/// What integrate() does before it expands events and rows, which costs O(n_psi) for each of them: an event here costs
+/// what it changes.
+[[nodiscard]] CompactIntegration integrate_compact(const evaluation::ModelKernel& kernel, const model::System& system,
+                                                   const IntegrationOptions& options,
+                                                   const StepObserver& observer = {});
 
 }  // namespace saltus::event_integrator

@@ -1,7 +1,7 @@
 #include "saltus/event_integrator/recorder.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <string_view>
 #include <utility>
 
 #include "saltus/event_integrator/small_internal.hpp"
@@ -9,7 +9,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-std::string why_executed(const model::Jump& jump) {
+std::string_view why_executed(const model::Jump& jump) {
   switch (jump.trigger) {
     case model::JumpTrigger::times:
       return "a given time";
@@ -26,196 +26,170 @@ std::string why_executed(const model::Jump& jump) {
 }  // namespace
 
 Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& system)
-    : kernel_(kernel), system_(system) {}
-
-result::Mode Recorder::mode_columns(const std::vector<int>& mode, const std::vector<double>& alpha) const {
-  result::Mode columns;
-  columns.reserve(system_.columns.size());
-  for (const auto& column : system_.columns) {
-    const auto j = at(column.function);
-    // Functions of discrete states are in no mode: their sign is that of their selection.
-    const bool discrete = system_.switching[j].role == model::SwitchingRole::discrete;
-    const int sign = discrete ? (alpha[j] > 0.5 ? 1 : alpha[j] < 0.5 ? -1 : 0) : mode[j];
-    columns.push_back(column.orientation * sign);
+    : kernel_(kernel), system_(system), listed_columns_(system.switching.size()) {
+  recording_.n_x = at(kernel.states());
+  recording_.n_u = at(kernel.controls());
+  recording_.n_y = at(kernel.outputs());
+  for (std::size_t c = 0; c < system.columns.size(); ++c) {
+    const auto j = at(system.columns[c].function);
+    if (system.switching[j].role == model::SwitchingRole::listed) listed_columns_[j].push_back(c);
   }
-  return columns;
-}
-
-std::vector<double> Recorder::alpha_columns(const std::vector<double>& alpha) const {
-  std::vector<double> columns;
-  columns.reserve(system_.columns.size());
-  for (const auto& column : system_.columns) {
-    const double value = alpha[at(column.function)];
-    columns.push_back(column.orientation > 0 ? value : 1.0 - value);
-  }
-  return columns;
 }
 
 void Recorder::row(double t, const std::vector<double>& x, const std::vector<int>& mode,
                    const std::vector<double>& alpha) {
-  trajectory_.t.push_back(t);
-  trajectory_.x.push_back(x);
-  std::vector<double> u(at(kernel_.controls()));
-  kernel_.inputs(t, alpha.data(), u.data());
-  trajectory_.u.push_back(std::move(u));
-  trajectory_.alpha.push_back(alpha_columns(alpha));
-  trajectory_.mode.push_back(mode_columns(mode, alpha));
-  std::vector<double> outputs(at(kernel_.outputs()));
-  kernel_.outputs(t, x.data(), alpha.data(), outputs.data());
-  trajectory_.outputs.push_back(std::move(outputs));
+  recording_.row_times.push_back(t);
+  recording_.row_states.insert(recording_.row_states.end(), x.begin(), x.end());
+  const auto appended = [](std::vector<double>& list, std::size_t count) {
+    list.resize(list.size() + count);
+    return list.data() + list.size() - count;
+  };
+  if (recording_.n_u > 0) kernel_.inputs(t, alpha.data(), appended(recording_.row_inputs, recording_.n_u));
+  if (recording_.n_y > 0) {
+    kernel_.outputs(t, x.data(), alpha.data(), appended(recording_.row_outputs, recording_.n_y));
+  }
+  recording_.row_modes.push_back(recording_.modes.append(mode, alpha));
 }
 
-/// Two columns of the result with their orientations; nullopt if one of the surfaces is in none.
-std::optional<result::Intersection> Recorder::intersection(const Meeting& meeting, const ModeState& after) const {
-  result::Intersection shown;
-  std::array<int, 2> orientation{};
-  for (std::size_t k = 0; k < 2; ++k) {
-    const auto column = std::find_if(system_.columns.begin(), system_.columns.end(),
-                                     [&](const auto& c) { return c.function == meeting.surfaces[k]; });
-    if (column == system_.columns.end()) return std::nullopt;
-    shown.surfaces[k] = column->name;
-    orientation[k] = column->orientation;
-  }
-  const auto oriented = [&](std::size_t k, double alpha) { return orientation[k] > 0 ? alpha : 1.0 - alpha; };
-  // The corner of the columns where a surface is turned around is the one across.
-  const std::size_t turned = (orientation[0] < 0 ? 1U : 0U) | (orientation[1] < 0 ? 2U : 0U);
-  if (meeting.alpha) shown.alpha_before.emplace();
-  for (std::size_t k = 0; k < 2; ++k) {
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      shown.velocities[k][corner] = orientation[k] * meeting.velocities[k][corner ^ turned];
-    }
-    if (meeting.alpha) (*shown.alpha_before)[k] = oriented(k, (*meeting.alpha)[k]);
-    shown.alpha_after[k] = oriented(k, after.alpha[at(meeting.surfaces[k])]);
-  }
-  return shown;
+Recording::Event& Recorder::begin(double t, result::EventKind kind) {
+  auto& event = recording_.event_list.emplace_back();
+  event.t = t;
+  event.kind = kind;
+  const auto empty_at = [](std::size_t place) { return Recording::Range{place, place}; };
+  event.surfaces = empty_at(recording_.surfaces.size());
+  event.alternatives = empty_at(recording_.alternatives.size());
+  event.reason = empty_at(recording_.text.size());
+  return event;
 }
 
-void Recorder::add_transition(result::Event event, const Transition& transition) {
-  event.mode_after = mode_columns(transition.state.mode, transition.state.alpha);
-  event.alpha_after = alpha_columns(transition.state.alpha);
+std::size_t Recorder::keep(const std::vector<double>& x) {
+  recording_.states.insert(recording_.states.end(), x.begin(), x.end());
+  return recording_.states.size() - x.size();
+}
+
+void Recorder::set_states(Recording::Event& event, const std::vector<double>& x, const std::vector<double>& x_after) {
+  event.x = keep(x);
+  event.x_after = &x == &x_after ? event.x : keep(x_after);
+}
+
+void Recorder::add_surface(Recording::Event& event, std::size_t surface) {
+  recording_.surfaces.push_back(surface);
+  event.surfaces.end = recording_.surfaces.size();
+}
+
+void Recorder::add_reason(Recording::Event& event, std::string_view reason) {
+  const bool first = event.reason.begin == recording_.text.size();
+  if (!first && !reason.empty()) recording_.text += "; ";
+  recording_.text += reason;
+  event.reason.end = recording_.text.size();
+}
+
+void Recorder::set_passage(Recording::Event& event, const Passage& passage) {
+  set_states(event, passage.x, passage.x_after);
+  event.mode = number(passage.before);
+  event.mode_after = number(passage.after);
+}
+
+void Recorder::add_transition(Recording::Event& event, const Transition& transition) {
+  event.mode_after = number(transition.state);
   event.unique = transition.unique;
-  event.reason += (event.reason.empty() || transition.reason.empty() ? "" : "; ") + transition.reason;
-  for (const auto& other : transition.alternatives) {
-    event.alternatives.push_back({mode_columns(other.state.mode, other.state.alpha), alpha_columns(other.state.alpha)});
+  add_reason(event, transition.reason);
+  if (transition.meeting) {
+    event.meeting = recording_.meetings.size();
+    recording_.meetings.push_back(*transition.meeting);
   }
-  if (transition.meeting) event.intersection = intersection(*transition.meeting, transition.state);
-  if (!event.alternatives.empty()) branch_points_.push_back({events_.size(), transition.decision});
-  events_.push_back(std::move(event));
+  if (transition.alternatives.empty()) return;
+  for (const auto& other : transition.alternatives) {
+    recording_.alternatives.push_back({other.state.mode, other.state.alpha});
+  }
+  event.alternatives.end = recording_.alternatives.size();
+  recording_.branch_points.push_back({recording_.event_list.size() - 1, transition.decision});
 }
 
 bool Recorder::switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition) {
-  result::Event event;
-  result::Mode changed_before;
-  result::Mode changed_after;
-  for (const auto& column : system_.columns) {
-    const auto j = at(column.function);
-    if (system_.switching[j].role != model::SwitchingRole::listed) continue;
-    if (before.mode[j] == transition.state.mode[j]) continue;
-    changed_before.push_back(before.mode[j]);
-    changed_after.push_back(transition.state.mode[j]);
-    event.surfaces.push_back(column.name);
+  const std::size_t number_before = number(before);
+  changed_.clear();
+  if (number(transition.state) != number_before) recording_.modes.append_changed(changed_);
+  listed_before_.clear();
+  listed_after_.clear();
+  columns_.clear();
+  for (const std::size_t j : changed_) {
+    for (const std::size_t column : listed_columns_[j]) {
+      columns_.push_back(column);
+      listed_before_.push_back(before.mode[j]);
+      listed_after_.push_back(transition.state.mode[j]);
+    }
   }
-  if (event.surfaces.empty()) return false;
-  event.t = t;
-  event.kind = result::kind_of_switch(changed_before, changed_after);
-  event.x = x;
-  event.x_after = x;
-  event.mode_before = mode_columns(before.mode, before.alpha);
-  event.alpha_before = alpha_columns(before.alpha);
-  add_transition(std::move(event), transition);
+  if (columns_.empty()) return false;
+  auto& event = begin(t, result::kind_of_switch(listed_before_, listed_after_));
+  std::sort(columns_.begin(), columns_.end());
+  for (const std::size_t column : columns_) add_surface(event, column);
+  set_states(event, x, x);
+  event.mode = number_before;
+  add_transition(event, transition);
   return true;
 }
 
 bool Recorder::started(double t, const std::vector<double>& x, const Transition& transition,
                        const std::vector<int>& surfaces) {
-  result::Event event;
-  for (const auto& column : system_.columns) {
-    const bool at_zero = std::find(surfaces.begin(), surfaces.end(), column.function) != surfaces.end();
-    if (at_zero && system_.switching[at(column.function)].role == model::SwitchingRole::listed) {
-      event.surfaces.push_back(column.name);
-    }
+  columns_.clear();
+  for (std::size_t c = 0; c < system_.columns.size(); ++c) {
+    const int function = system_.columns[c].function;
+    const bool at_zero = std::find(surfaces.begin(), surfaces.end(), function) != surfaces.end();
+    if (at_zero && system_.switching[at(function)].role == model::SwitchingRole::listed) columns_.push_back(c);
   }
-  if (event.surfaces.empty()) return false;
-  event.t = t;
-  event.kind = result::EventKind::start;
-  event.x = x;
-  event.x_after = x;
-  add_transition(std::move(event), transition);
+  if (columns_.empty()) return false;
+  auto& event = begin(t, result::EventKind::start);
+  for (const std::size_t column : columns_) add_surface(event, column);
+  set_states(event, x, x);
+  add_transition(event, transition);
   return true;
 }
 
 void Recorder::user(double t, const Passage& passage, int event) {
-  result::Event entry;
-  entry.t = t;
-  entry.kind = result::EventKind::user;
-  entry.name = system_.events[at(event)].name;
-  entry.x = passage.x;
-  entry.x_after = passage.x_after;
-  entry.mode_before = mode_columns(passage.before.mode, passage.before.alpha);
-  entry.mode_after = mode_columns(passage.after.mode, passage.after.alpha);
-  entry.alpha_before = alpha_columns(passage.before.alpha);
-  entry.alpha_after = alpha_columns(passage.after.alpha);
-  entry.reason = "zero of an expression of [[events]]";
-  if (system_.events[at(event)].guards.numel() > 0) entry.reason = "edge of a condition of [[events]]";
-  if (passage.x != passage.x_after) entry.reason += ", by a jump";
-  events_.push_back(std::move(entry));
+  auto& entry = begin(t, result::EventKind::user);
+  entry.entry = at(event);
+  set_passage(entry, passage);
+  const bool condition = system_.events[at(event)].guards.numel() > 0;
+  std::string reason = condition ? "edge of a condition of [[events]]" : "zero of an expression of [[events]]";
+  if (passage.x != passage.x_after) reason += ", by a jump";
+  add_reason(entry, reason);
 }
 
 void Recorder::jumped(double t, const std::vector<ExecutedJump>& jumps, const std::optional<ModeState>& before,
                       const Transition& transition) {
   for (std::size_t k = 0; k < jumps.size(); ++k) {
-    const auto& name = system_.jumps[at(jumps[k].jump)].name;
-    result::Event entry;
-    entry.t = t;
-    entry.kind = result::EventKind::jump;
-    entry.name = name;
-    entry.surfaces = {name};
-    entry.x = jumps[k].x;
-    entry.x_after = jumps[k].x_after;
-    entry.reason = why_executed(system_.jumps[at(jumps[k].jump)]);
-    if (k == 0 && before) {
-      entry.mode_before = mode_columns(before->mode, before->alpha);
-      entry.alpha_before = alpha_columns(before->alpha);
-    }
-    if (k + 1 == jumps.size()) {
-      add_transition(std::move(entry), transition);
-    } else {
-      events_.push_back(std::move(entry));
-    }
+    auto& entry = begin(t, result::EventKind::jump);
+    entry.entry = at(jumps[k].jump);
+    entry.of_jumps = true;
+    add_surface(entry, entry.entry);
+    set_states(entry, jumps[k].x, jumps[k].x_after);
+    add_reason(entry, why_executed(system_.jumps[entry.entry]));
+    if (k == 0 && before) entry.mode = number(*before);
+    if (k + 1 == jumps.size()) add_transition(entry, transition);
   }
 }
 
-void Recorder::accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string reason) {
-  result::Event entry;
-  entry.t = t;
-  entry.kind = result::EventKind::accumulation;
-  for (const int jump : jumps) entry.surfaces.push_back(system_.jumps[at(jump)].name);
-  entry.x = passage.x;
-  entry.x_after = passage.x_after;
-  entry.mode_before = mode_columns(passage.before.mode, passage.before.alpha);
-  entry.mode_after = mode_columns(passage.after.mode, passage.after.alpha);
-  entry.alpha_before = alpha_columns(passage.before.alpha);
-  entry.alpha_after = alpha_columns(passage.after.alpha);
-  entry.reason = std::move(reason);
-  events_.push_back(std::move(entry));
+void Recorder::accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string_view reason) {
+  auto& entry = begin(t, result::EventKind::accumulation);
+  entry.of_jumps = true;
+  for (const int jump : jumps) add_surface(entry, at(jump));
+  set_passage(entry, passage);
+  add_reason(entry, reason);
 }
 
 void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passage& passage,
                          const Transition& transition) {
-  result::Event entry;
-  entry.t = t;
-  entry.kind = result::EventKind::accumulation;
-  for (const auto& column : system_.columns) {
-    const auto j = at(column.function);
-    const bool takes_part = std::find(surfaces.begin(), surfaces.end(), column.function) != surfaces.end();
-    if (takes_part && passage.before.mode[j] != transition.state.mode[j]) entry.surfaces.push_back(column.name);
+  auto& entry = begin(t, result::EventKind::accumulation);
+  for (std::size_t c = 0; c < system_.columns.size(); ++c) {
+    const int function = system_.columns[c].function;
+    const bool takes_part = std::find(surfaces.begin(), surfaces.end(), function) != surfaces.end();
+    if (takes_part && passage.before.mode[at(function)] != transition.state.mode[at(function)]) add_surface(entry, c);
   }
-  entry.x = passage.x;
-  entry.x_after = passage.x_after;
-  entry.mode_before = mode_columns(passage.before.mode, passage.before.alpha);
-  entry.alpha_before = alpha_columns(passage.before.alpha);
-  entry.reason = "the intervals of these switches shrink geometrically: the state is their limit";
-  add_transition(std::move(entry), transition);
+  set_states(entry, passage.x, passage.x_after);
+  entry.mode = number(passage.before);
+  add_reason(entry, "the intervals of these switches shrink geometrically: the state is their limit");
+  add_transition(entry, transition);
 }
 
 }  // namespace saltus::event_integrator

@@ -1,17 +1,17 @@
-// Rows and events of a run, in the columns of the result.
+// Rows and events of a run, as they come.
 #pragma once
 
 #include <cstddef>
 #include <optional>
-#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/event_integrator/choices.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/event_integrator/recording.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/model/system.hpp"
-#include "saltus/result/result.hpp"
 
 namespace saltus::event_integrator {
 
@@ -45,28 +45,34 @@ class Recorder {
   void jumped(double t, const std::vector<ExecutedJump>& jumps, const std::optional<ModeState>& before,
               const Transition& transition);
   /// The limit of a sequence of jumps, from the last computed state.
-  void accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string reason);
+  void accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string_view reason);
   /// The limit of a sequence of switches of these surfaces, from the last computed state; `transition` leads on.
   void spiralled(double t, const std::vector<int>& surfaces, const Passage& passage, const Transition& transition);
 
-  [[nodiscard]] std::vector<result::Event> take_events() { return std::move(events_); }
-  [[nodiscard]] result::Trajectory take_trajectory() { return std::move(trajectory_); }
-  [[nodiscard]] std::vector<BranchPoint> take_branch_points() { return std::move(branch_points_); }
-  [[nodiscard]] bool ends_at(double t) const { return !trajectory_.t.empty() && trajectory_.t.back() == t; }
-  [[nodiscard]] long events() const { return static_cast<long>(events_.size()); }
-  [[nodiscard]] std::size_t rows() const { return trajectory_.t.size(); }
+  [[nodiscard]] Recording take() { return std::move(recording_); }
+  [[nodiscard]] bool ends_at(double t) const {
+    return !recording_.row_times.empty() && recording_.row_times.back() == t;
+  }
+  [[nodiscard]] long events() const { return static_cast<long>(recording_.event_list.size()); }
+  [[nodiscard]] std::size_t rows() const { return recording_.row_times.size(); }
 
  private:
-  [[nodiscard]] result::Mode mode_columns(const std::vector<int>& mode, const std::vector<double>& alpha) const;
-  [[nodiscard]] std::vector<double> alpha_columns(const std::vector<double>& alpha) const;
-  [[nodiscard]] std::optional<result::Intersection> intersection(const Meeting& meeting, const ModeState& after) const;
-  void add_transition(result::Event event, const Transition& transition);
+  /// A new event; the reference is valid until the next one.
+  Recording::Event& begin(double t, result::EventKind kind);
+  [[nodiscard]] std::size_t keep(const std::vector<double>& x);
+  [[nodiscard]] std::size_t number(const ModeState& state) { return recording_.modes.append(state.mode, state.alpha); }
+  void set_states(Recording::Event& event, const std::vector<double>& x, const std::vector<double>& x_after);
+  void set_passage(Recording::Event& event, const Passage& passage);
+  void add_surface(Recording::Event& event, std::size_t surface);
+  void add_reason(Recording::Event& event, std::string_view reason);
+  void add_transition(Recording::Event& event, const Transition& transition);
 
   const evaluation::ModelKernel& kernel_;
   const model::System& system_;
-  result::Trajectory trajectory_;
-  std::vector<result::Event> events_;
-  std::vector<BranchPoint> branch_points_;
+  Recording recording_;
+  std::vector<std::vector<std::size_t>> listed_columns_;  ///< by switching function: of the result, if it is listed
+  std::vector<std::size_t> changed_, columns_;            ///< of one event
+  std::vector<int> listed_before_, listed_after_;
 };
 
 }  // namespace saltus::event_integrator

@@ -27,24 +27,18 @@ void Run::choose(Transition& transition) {
 void Run::begin_at_choice() {
   if (options_.choices.empty()) return;
   const long decision = options_.choices.back().decision;
-  auto& points = result_.branch_points;
+  auto& recording = result_.recording;
+  auto& points = recording.branch_points;
   const auto chosen =
       std::find_if(points.begin(), points.end(), [&](const BranchPoint& point) { return point.decision == decision; });
   result_.chosen = next_choice_ == options_.choices.size() && chosen != points.end();
   if (!result_.chosen) return;
   const std::size_t events_before = chosen->event;
   // Requested times that are the event but for their rounding have rows of their own.
-  auto& rows = result_.trajectory;
-  while (rows.t[choice_row_] < result_.events[events_before].t) ++choice_row_;
-  const auto drop = [](auto& list, std::size_t count) {
-    list.erase(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(count));
-  };
-  drop(result_.events, events_before);
+  while (recording.row_times[choice_row_] < recording.event_list[events_before].t) ++choice_row_;
   points.erase(points.begin(), chosen + 1);
   for (auto& point : points) point.event -= events_before;
-  drop(rows.t, choice_row_);
-  for (auto* table : {&rows.x, &rows.u, &rows.alpha, &rows.outputs}) drop(*table, choice_row_);
-  drop(rows.mode, choice_row_);
+  recording.drop(events_before, choice_row_);
   auto& statistics = result_.statistics;
   statistics.steps -= before_choice_.steps;
   statistics.rejected -= before_choice_.rejected;

@@ -40,7 +40,7 @@ class Run {
   Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
       const StepObserver& observer);
 
-  Integration to_end();
+  CompactIntegration to_end();
 
  private:
   enum class Step { taken, shortened, failed };
@@ -194,7 +194,7 @@ class Run {
   long evaluations_before_;  ///< the kernel may have been used before
   SwitchSeries series_;
   StepMemory step_memory_;
-  Integration result_;
+  CompactIntegration result_;
   bool running_ = true;
 };
 

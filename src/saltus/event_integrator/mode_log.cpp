@@ -1,0 +1,68 @@
+#include "saltus/event_integrator/mode_log.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "saltus/base/contracts.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// Functions that are compared at once: a loop without a branch.
+constexpr std::size_t block = 32;
+
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+}  // namespace
+
+std::size_t ModeLog::append(const std::vector<int>& mode, const std::vector<double>& alpha) {
+  SALTUS_ASSERT(mode.size() == alpha.size() && (ends_.empty() || mode.size() == last_mode_.size()));
+  if (ends_.empty()) {
+    first_mode_ = last_mode_ = mode;
+    first_alpha_ = last_alpha_ = alpha;
+    ends_.push_back(0);
+    return 0;
+  }
+  const std::size_t known = changes_.size();
+  for (std::size_t begin = 0; begin < mode.size(); begin += block) {
+    const std::size_t end = std::min(begin + block, mode.size());
+    std::uint32_t modes = 0;
+    std::uint64_t alphas = 0;
+    for (std::size_t j = begin; j < end; ++j) modes |= static_cast<std::uint32_t>(mode[j] ^ last_mode_[j]);
+    for (std::size_t j = begin; j < end; ++j) alphas |= bits(alpha[j]) ^ bits(last_alpha_[j]);
+    if (modes == 0 && alphas == 0) continue;
+    for (std::size_t j = begin; j < end; ++j) {
+      if (mode[j] == last_mode_[j] && bits(alpha[j]) == bits(last_alpha_[j])) continue;
+      changes_.push_back({j, last_mode_[j], mode[j], alpha[j]});
+      last_mode_[j] = mode[j];
+      last_alpha_[j] = alpha[j];
+    }
+  }
+  if (changes_.size() > known) ends_.push_back(changes_.size());
+  return ends_.size() - 1;
+}
+
+void ModeLog::append_changed(std::vector<std::size_t>& functions) const {
+  if (ends_.size() < 2) return;
+  for (std::size_t k = ends_[ends_.size() - 2]; k < ends_.back(); ++k) {
+    if (changes_[k].mode != changes_[k].mode_before) functions.push_back(changes_[k].function);
+  }
+}
+
+void ModeLog::Reader::seek(std::size_t number) {
+  SALTUS_ASSERT(number < log_->ends_.size());
+  if (next_ == 0 || number + 1 < next_) {
+    mode_ = log_->first_mode_;
+    alpha_ = log_->first_alpha_;
+    next_ = 1;
+  }
+  for (std::size_t k = log_->ends_[next_ - 1]; k < log_->ends_[number]; ++k) {
+    const auto& change = log_->changes_[k];
+    mode_[change.function] = change.mode;
+    alpha_[change.function] = change.alpha;
+  }
+  next_ = number + 1;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,50 @@
+// The modes of a run, one after the other, as what changes from each to the next.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace saltus::event_integrator {
+
+/// Modes with their selections in the order of time. Two that follow each other differ in a surface or two, however
+/// many there are: kept is the first one and the differences.
+class ModeLog {
+ public:
+  /// Appends a mode (n_psi) with its selections (n_psi), unless it is the last one, bit for bit.
+  /// @return its number
+  /// Cost: one comparison of all, memory for the differences only.
+  std::size_t append(const std::vector<int>& mode, const std::vector<double>& alpha);
+  [[nodiscard]] std::size_t size() const { return ends_.size(); }
+  /// Appends to `functions` those whose mode differs between the last two, ascending.
+  void append_changed(std::vector<std::size_t>& functions) const;
+
+  /// Expands one mode after the other.
+  class Reader {
+   public:
+    explicit Reader(const ModeLog& log) : log_(&log) {}
+    /// Cost: the differences on the way from the last one; from the beginning if it lies before that.
+    void seek(std::size_t number);
+    [[nodiscard]] const std::vector<int>& mode() const { return mode_; }
+    [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
+
+   private:
+    const ModeLog* log_;
+    std::size_t next_ = 0;  ///< the number behind the one expanded; 0 = none yet
+    std::vector<int> mode_;
+    std::vector<double> alpha_;
+  };
+
+ private:
+  struct Change {
+    std::size_t function;
+    int mode_before;
+    int mode;
+    double alpha;
+  };
+  std::vector<int> first_mode_, last_mode_;
+  std::vector<double> first_alpha_, last_alpha_;
+  std::vector<Change> changes_;
+  std::vector<std::size_t> ends_;  ///< by number: end of its changes
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,139 @@
+#include "saltus/event_integrator/recording.hpp"
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+result::Mode mode_columns(const model::System& system, const std::vector<int>& mode, const std::vector<double>& alpha) {
+  result::Mode columns;
+  columns.reserve(system.columns.size());
+  for (const auto& column : system.columns) {
+    const auto j = at(column.function);
+    // Functions of discrete states are in no mode: their sign is that of their selection.
+    const bool discrete = system.switching[j].role == model::SwitchingRole::discrete;
+    const int sign = discrete ? (alpha[j] > 0.5 ? 1 : alpha[j] < 0.5 ? -1 : 0) : mode[j];
+    columns.push_back(column.orientation * sign);
+  }
+  return columns;
+}
+
+std::vector<double> alpha_columns(const model::System& system, const std::vector<double>& alpha) {
+  std::vector<double> columns;
+  columns.reserve(system.columns.size());
+  for (const auto& column : system.columns) {
+    const double value = alpha[at(column.function)];
+    columns.push_back(column.orientation > 0 ? value : 1.0 - value);
+  }
+  return columns;
+}
+
+/// `count` numbers of a list from `begin` on.
+std::vector<double> part(const std::vector<double>& list, std::size_t begin, std::size_t count) {
+  const auto first = list.begin() + static_cast<std::ptrdiff_t>(begin);
+  return {first, first + static_cast<std::ptrdiff_t>(count)};
+}
+
+/// Two columns of the result with their orientations; nullopt if one of the surfaces is in none.
+std::optional<result::Intersection> intersection(const model::System& system, const Meeting& meeting,
+                                                 const std::vector<double>& alpha_after) {
+  result::Intersection shown;
+  std::array<int, 2> orientation{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto column = std::find_if(system.columns.begin(), system.columns.end(),
+                                     [&](const auto& c) { return c.function == meeting.surfaces[k]; });
+    if (column == system.columns.end()) return std::nullopt;
+    shown.surfaces[k] = column->name;
+    orientation[k] = column->orientation;
+  }
+  const auto oriented = [&](std::size_t k, double alpha) { return orientation[k] > 0 ? alpha : 1.0 - alpha; };
+  // The corner of the columns where a surface is turned around is the one across.
+  const std::size_t turned = (orientation[0] < 0 ? 1U : 0U) | (orientation[1] < 0 ? 2U : 0U);
+  if (meeting.alpha) shown.alpha_before.emplace();
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      shown.velocities[k][corner] = orientation[k] * meeting.velocities[k][corner ^ turned];
+    }
+    if (meeting.alpha) (*shown.alpha_before)[k] = oriented(k, (*meeting.alpha)[k]);
+    shown.alpha_after[k] = oriented(k, alpha_after[at(meeting.surfaces[k])]);
+  }
+  return shown;
+}
+
+}  // namespace
+
+void Recording::drop(std::size_t events, std::size_t rows) {
+  const auto drop_from = [](auto& list, std::size_t count) {
+    list.erase(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  drop_from(event_list, events);  // what they refer to stays
+  drop_from(row_times, rows);
+  drop_from(row_states, rows * n_x);
+  drop_from(row_inputs, rows * n_u);
+  drop_from(row_outputs, rows * n_y);
+  drop_from(row_modes, rows);
+}
+
+std::vector<result::Event> Recording::events(const model::System& system) const {
+  ModeLog::Reader reader(modes);
+  std::vector<result::Event> expanded;
+  expanded.reserve(event_list.size());
+  for (const Event& event : event_list) {
+    auto& entry = expanded.emplace_back();
+    entry.t = event.t;
+    entry.kind = event.kind;
+    if (event.kind == result::EventKind::jump) entry.name = system.jumps[event.entry].name;
+    if (event.kind == result::EventKind::user) entry.name = system.events[event.entry].name;
+    for (std::size_t k = event.surfaces.begin; k < event.surfaces.end; ++k) {
+      entry.surfaces.push_back(event.of_jumps ? system.jumps[surfaces[k]].name : system.columns[surfaces[k]].name);
+    }
+    entry.x = part(states, event.x, n_x);
+    entry.x_after = part(states, event.x_after, n_x);
+    const auto expand = [&](std::size_t number, auto& mode, auto& alpha) {
+      if (number == none) return;
+      reader.seek(number);
+      mode = mode_columns(system, reader.mode(), reader.alpha());
+      alpha = alpha_columns(system, reader.alpha());
+    };
+    expand(event.mode, entry.mode_before, entry.alpha_before);
+    expand(event.mode_after, entry.mode_after, entry.alpha_after);
+    if (event.meeting != none) entry.intersection = intersection(system, meetings[event.meeting], reader.alpha());
+    entry.unique = event.unique;
+    for (std::size_t k = event.alternatives.begin; k < event.alternatives.end; ++k) {
+      const auto& other = alternatives[k];
+      entry.alternatives.push_back({mode_columns(system, other.mode, other.alpha), alpha_columns(system, other.alpha)});
+    }
+    entry.reason = text.substr(event.reason.begin, event.reason.end - event.reason.begin);
+  }
+  return expanded;
+}
+
+result::Trajectory Recording::trajectory(const model::System& system) const {
+  ModeLog::Reader reader(modes);
+  result::Trajectory rows;
+  const std::size_t count = row_times.size();
+  rows.t = row_times;
+  for (auto* column : {&rows.x, &rows.u, &rows.alpha, &rows.outputs}) column->reserve(count);
+  rows.mode.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    rows.x.push_back(part(row_states, k * n_x, n_x));
+    rows.u.push_back(part(row_inputs, k * n_u, n_u));
+    rows.outputs.push_back(part(row_outputs, k * n_y, n_y));
+    reader.seek(row_modes[k]);
+    rows.alpha.push_back(alpha_columns(system, reader.alpha()));
+    rows.mode.push_back(mode_columns(system, reader.mode(), reader.alpha()));
+  }
+  return rows;
+}
+
+result::Final Recording::last(const model::System& system) const {
+  SALTUS_ASSERT(!row_times.empty());
+  ModeLog::Reader reader(modes);
+  reader.seek(row_modes.back());
+  return {row_times.back(), part(row_states, row_states.size() - n_x, n_x),
+          mode_columns(system, reader.mode(), reader.alpha()), alpha_columns(system, reader.alpha()),
+          part(row_outputs, row_outputs.size() - n_y, n_y)};
+}
+
+}  // namespace saltus::event_integrator
