@@ -154,6 +154,14 @@ bool Locator::correct(const Hit& hit) {
   return true;
 }
 
+/// Values of the candidates shortly before the trial's end, into `earlier_`; returns how long before.
+double Locator::look_back() {
+  const double back = 1e-3 * trial_.h;
+  dense_->evaluate((trial_.h - back) / dense_->h, x_.data());
+  search_.evaluate(start_.t + trial_.h - back, x_.data(), search_.candidates(), earlier_);
+  return back;
+}
+
 /// A function whose sign has changed beyond rounding at the located time: its zero lies earlier.
 std::optional<std::size_t> Locator::earlier_function(std::size_t located) const {
   const auto& candidates = search_.candidates();
@@ -169,10 +177,8 @@ std::optional<std::size_t> Locator::earlier_function(std::size_t located) const 
 void Locator::find_vanishing_with(std::size_t located) {
   const auto& candidates = search_.candidates();
   located_.functions.assign(1, located);
-  const double back = 1e-3 * trial_.h;
-  if (back == 0.0 || candidates.size() == 1) return;
-  dense_->evaluate((trial_.h - back) / dense_->h, x_.data());
-  search_.evaluate(start_.t + trial_.h - back, x_.data(), candidates, earlier_);
+  if (trial_.h == 0.0 || candidates.size() == 1) return;
+  const double back = look_back();
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const std::size_t i = candidates[k];
     if (i == located || sign(i) == 0) continue;
@@ -195,9 +201,11 @@ const Located* Locator::locate(const StepStart& start, const ode::DenseStep& den
     const double h = trial_.h;
     const double value = trial_.values[*earlier];
     const std::size_t function = search_.candidates()[*earlier];
-    hit = {function, h / dense.h, value, search_.functions()[function].sign};
-    // A slope from the sign change itself: the value falls from noise to `value` somewhere before h.
-    hit.slope = value / h;
+    hit = {function, h / dense.h, 0.0, search_.functions()[function].sign};
+    // NOTE: not value / h, which leads Newton to h - h: 0, or a rounding beside it, where the step starts.
+    const double back = look_back();
+    hit.slope = (value - earlier_[*earlier]) / back;
+    if (!(hit.slope * hit.sign < 0.0)) hit.slope = 2.0 * value / h;
     if (!correct(hit)) return nullptr;
   }
   // A shorter step than the accepted one can only be worse where the field is singular (a selection that is 0/0).

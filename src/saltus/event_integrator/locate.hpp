@@ -56,6 +56,7 @@ class Locator {
   bool move(double dt);
   void set_hit(const Hit& hit);
   [[nodiscard]] bool is_finite_at(const Trial& trial) const { return std::isfinite(trial.values[place_]); }
+  double look_back();
   void find_vanishing_with(std::size_t located);
   [[nodiscard]] bool vanishes(double value) const;
   /// Its place among the candidates.
