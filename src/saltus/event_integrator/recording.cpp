@@ -1,5 +1,8 @@
 #include "saltus/event_integrator/recording.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "saltus/event_integrator/choices.hpp"
 #include "saltus/event_integrator/mode_log.hpp"
+#include "saltus/event_integrator/transition.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
 
