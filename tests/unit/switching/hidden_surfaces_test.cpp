@@ -196,7 +196,9 @@ TEST(HiddenSurfaces, DoNotDependOnTheUnitsOfSurfaces) {
     EXPECT_EQ(other.limit, decision.limit);
     if (decision.limit > HiddenLimit::oscillating) continue;
     EXPECT_EQ(other.mode, decision.mode);
-    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(other.alpha[j], decision.alpha[j], 1e-9);
+    // What is oscillated about is found to the accuracy to which laps repeat.
+    const double tolerance = decision.limit == HiddenLimit::oscillating ? 1e-3 : 1e-9;
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(other.alpha[j], decision.alpha[j], tolerance);
   }
 }
 
