@@ -96,24 +96,36 @@ bool finite_at_start(const Surroundings& s, double t, const double* x, const Mod
   return true;
 }
 
-}  // namespace
-
-Start decide_start(const Surroundings& s, double t, const double* x, double time_scale,
-                   const std::vector<std::pair<int, int>>& forced) {
-  Start start;
+struct Point {
   Occasion occasion;
+  ModeState state;
+};
+
+/// A point as one at which the solution starts: the surfaces through it, and the sides of the others that it is on.
+/// `held` are taken to pass through it.
+Point read_point(const Surroundings& s, double t, const double* x, double time_scale, const std::vector<int>& held) {
+  Point point;
+  auto& [occasion, state] = point;
   occasion.t = t;
   occasion.x = x;
   occasion.start = true;
   occasion.time_scale = time_scale;
   const ProjectedFields fields(s.kernel, occasion);
-  ModeState state;
   const auto n_psi = at(s.kernel.switching_functions());
   state.mode.assign(n_psi, 1);
   state.alpha.assign(n_psi, 1.0);
-  read_signs(s, t, x, fields, {}, state, start.at_zero);
+  read_signs(s, t, x, fields, held, state, occasion.at_zero);
+  return point;
+}
+
+}  // namespace
+
+Start decide_start(const Surroundings& s, double t, const double* x, double time_scale,
+                   const std::vector<std::pair<int, int>>& forced) {
+  Start start;
+  const auto [occasion, state] = read_point(s, t, x, time_scale, {});
+  start.at_zero = occasion.at_zero;
   if (!finite_at_start(s, t, x, state, start.transition)) return start;
-  occasion.at_zero = start.at_zero;
   start.transition = decide_mode(s, state, occasion);
   other_continuations(s, state, occasion, start.transition);
   if (forced.empty()) return start;
@@ -154,16 +166,7 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
 
 Transition decide_behind_jump(const Surroundings& s, const ModeState& before, double t, const double* x,
                               double time_scale, const std::vector<int>& held) {
-  Occasion occasion;
-  occasion.t = t;
-  occasion.x = x;
-  occasion.start = true;
-  occasion.time_scale = time_scale;
-  const ProjectedFields fields(s.kernel, occasion);
-  ModeState state;
-  state.mode.assign(before.mode.size(), 1);
-  state.alpha.assign(before.mode.size(), 1.0);
-  read_signs(s, t, x, fields, held, state, occasion.at_zero);
+  auto [occasion, state] = read_point(s, t, x, time_scale, held);
   // Selections of the sliding motion before are where a search for the new ones starts.
   for (const int j : held) state.alpha[at(j)] = before.alpha[at(j)];
   Transition transition;
