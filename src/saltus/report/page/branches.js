@@ -64,17 +64,7 @@ saltus.branchCurves = (result, curve, axis, color, view) =>
     saltus
         .branchTraces(
             result, view.branch, (branch) => [branch.trajectory.t, saltus.branchColumn(branch, curve)], view,
-            ([x, y]) => ({
-              type: "scatter",
-              mode: "lines",
-              xaxis: "x",
-              yaxis: axis,
-              hoverinfo: "none",
-              connectgaps: false,
-              x,
-              y,
-              meta: "branches",
-            }))
+            ([x, y]) => ({...saltus.lineOverTime(axis, x, y), meta: "branches"}))
         .map((trace) => ({...trace, line: {...trace.line, color}}));
 
 saltus.branchEnd = (branch) => {

@@ -80,18 +80,22 @@ saltus.jumpTrace = (curve, jumps, axis, color) => {
   };
 };
 
+saltus.lineOverTime = (axis, x, y) => ({
+  type: "scatter",
+  mode: "lines",
+  xaxis: "x",
+  yaxis: axis,
+  hoverinfo: "none",
+  connectgaps: false,
+  x,
+  y,
+});
+
 saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve, i) => {
   const color = saltus.curveColour(panel, i, view.palette);
   const {x, y, jumps} = saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
   const line = {
-    type: "scatter",
-    mode: "lines",
-    xaxis: "x",
-    yaxis: axis,
-    hoverinfo: "none",
-    connectgaps: false,
-    x,
-    y,
+    ...saltus.lineOverTime(axis, x, y),
     // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
     line: {simplify: false, color, width: 1.6, shape: curve.stepwise ? "hv" : "linear"},
   };
