@@ -13,6 +13,7 @@ namespace saltus::switching {
 namespace {
 
 using Mode = std::array<int, 2>;
+using Point = HiddenSimulation::Point;
 
 /// The answer of a tree: a mode, and another one if the leaf leaves a choice.
 struct TreeAnswer {
@@ -52,8 +53,7 @@ TreeAnswer ask_tree(Tree tree, const AtlasInstance& one) {
     case Tree::spiral:
       break;
   }
-  const auto lap = spiral_lap(table, 0);
-  const bool in = lap->lap_ratio < 1.0;
+  const bool in = one.inwards();
   return {in ? "spiral in" : "spiral out", true, !in, {{0, 0}}};
 }
 
@@ -78,78 +78,116 @@ struct Derivatives {
   [[nodiscard]] double trace(const Scaling& kappa) const { return kappa[0] * g[0][0] + kappa[1] * g[1][1]; }
 };
 
+std::string text(const Mode& mode) { return "R(" + std::to_string(mode[0]) + "," + std::to_string(mode[1]) + ")"; }
+
+/// What the resolver or a simulation says.
+struct Finding {
+  bool decided = false;
+  bool spirals_out = false;
+  Mode mode{};
+
+  bool operator==(const Finding&) const = default;
+};
+
+void count(const TreeAnswer& answer, const Finding& finding, const AtlasInstance& one, AtlasTally& tally) {
+  if (!finding.decided) {
+    ++tally.open;
+  } else if (answer.spirals_out || finding.spirals_out) {
+    if (answer.spirals_out && finding.spirals_out) {
+      ++tally.agree;
+    } else {
+      ++tally.differ[finding.spirals_out ? "spiral out" : text(one.made(finding.mode))];
+    }
+  } else {
+    const auto found = std::find(answer.modes.begin(), answer.modes.end(), finding.mode);
+    if (found == answer.modes.begin()) {
+      ++tally.agree;
+    } else if (found != answer.modes.end()) {
+      ++tally.other;
+    } else {
+      ++tally.differ[text(one.made(finding.mode))];
+    }
+  }
+}
+
 HiddenDecision ask_resolver(Tree tree, const AtlasInstance& one, const Scaling& kappa, double eta) {
   const PlaneField field{one.f};
   const HiddenOptions options = plain_scaling(one.f, kappa);
   if (tree == Tree::entering) {
     return decide_by_hidden_dynamics(2, field, entering_situation(one.f, one.incoming), options);
   }
-  return decide_leaving(2, field, PlaneField{one.rates},
-                        sliding_situation({2.0 * one.alpha[0] - 1.0, 2.0 * one.alpha[1] - 1.0}), eta, options);
-}
-
-std::string text(const Mode& mode) { return "R(" + std::to_string(mode[0]) + "," + std::to_string(mode[1]) + ")"; }
-
-void count(const TreeAnswer& answer, const HiddenDecision& decision, const AtlasInstance& one, AtlasCell& cell) {
-  ++cell.instances;
-  if (decision.limit == HiddenLimit::undecided) {
-    ++cell.undecided;
-  } else if (answer.spirals_out || decision.limit == HiddenLimit::spirals_out) {
-    if (answer.spirals_out && decision.limit == HiddenLimit::spirals_out) {
-      ++cell.agree;
-    } else {
-      ++cell.differ[decision.limit == HiddenLimit::spirals_out ? "spiral out"
-                                                               : text(one.made({decision.mode[0], decision.mode[1]}))];
-    }
-  } else {
-    const Mode mode{decision.mode[0], decision.mode[1]};
-    const auto found = std::find(answer.modes.begin(), answer.modes.end(), mode);
-    if (found == answer.modes.begin()) {
-      ++cell.agree;
-      cell.cycles += decision.limit == HiddenLimit::oscillating ? 1 : 0;
-    } else if (found != answer.modes.end()) {
-      ++cell.other;
-    } else {
-      ++cell.differ[text(one.made(mode))];
-    }
-  }
-}
-
-/// The regularised system from the same start; a limit cycle is sliding.
-void simulate(Tree tree, const AtlasInstance& one, const Scaling& kappa, double eta, const HiddenDecision& decision,
-              AtlasCell& cell) {
-  if (decision.limit > HiddenLimit::oscillating) return;
-  Velocities f = one.f;
-  auto start = one.alpha;
-  if (tree == Tree::entering) {
-    for (std::size_t j = 0; j < 2; ++j) {
-      if (one.incoming[j] == 0) start[j] = entering_situation(one.f, one.incoming).alpha[j];
-      if (one.incoming[j] != 0) start[j] = one.incoming[j] > 0 ? 1.0 : 0.0;
-    }
-  }
-  for (std::size_t j = 0; j < 2; ++j) {
-    for (std::size_t k = 0; k < 4; ++k) f[j][k] += eta * one.rates[j][k];
-  }
-  const auto outcome = HiddenSimulation(f, kappa).outcome(start, 400000);
-  const Mode mode{decision.mode[0], decision.mode[1]};
-  if (!outcome && mode != Mode{0, 0}) {
-    ++cell.simulated_open;
-  } else {
-    ++cell.simulated;
-    if (outcome.value_or(mode) != mode) ++cell.simulated_differ;
-  }
-}
-
-/// Spirals inwards from outside, whatever the scaling; outwards from the root where that is unstable.
-HiddenDecision follow_spiral(const AtlasInstance& one, const Scaling& kappa, const SlidingRoot& root, bool inwards) {
-  const PlaneField field{one.f};
-  const HiddenOptions options = plain_scaling(one.f, kappa);
-  if (inwards) {
+  if (tree == Tree::spiral && one.inwards()) {
     return decide_by_hidden_dynamics(2, field, {{Arrival::from_below, Arrival::from_below}, {}}, options);
   }
-  const Velocities constant{};
-  return decide_leaving(2, field, PlaneField{constant},
-                        {{Arrival::along, Arrival::along}, {root.alpha[0], root.alpha[1]}}, 1e-5, options);
+  return decide_leaving(2, field, PlaneField{one.rates},
+                        {{Arrival::along, Arrival::along}, {one.alpha[0], one.alpha[1]}}, eta, options);
+}
+
+Finding finding_of(const HiddenDecision& decision) {
+  if (decision.limit == HiddenLimit::undecided) return {};
+  if (decision.limit == HiddenLimit::spirals_out) return {true, true, {}};
+  return {true, false, {decision.mode[0], decision.mode[1]}};
+}
+
+/// A solution that has not left after all steps slides, its regularised form oscillating, if a cycle is possible at
+/// all.
+Finding finding_of(const HiddenSimulation::Outcome& outcome, bool may_oscillate) {
+  if (outcome.kind == HiddenSimulation::Outcome::Kind::moving) return {may_oscillate, false, {}};
+  return {true, outcome.kind == HiddenSimulation::Outcome::Kind::spirals_out, outcome.mode};
+}
+
+Velocities later(Velocities f, double time, const Velocities& rates) {
+  for (std::size_t j = 0; j < 2; ++j) {
+    for (std::size_t k = 0; k < 4; ++k) f[j][k] += time * rates[j][k];
+  }
+  return f;
+}
+
+/// At most so many steps; exits are integrated from so long before their event to so long behind it, with so small an
+/// eps.
+struct Effort {
+  int steps;
+  double before;
+  double eps;
+};
+constexpr Effort usual{30000, 1e-3, 1e-6};
+/// Decides where the usual effort ends open, or an exit differs from the tree: other events, or the delay eps^(2/3),
+/// may be as near as 1e-3.
+constexpr Effort closer{600000, 1e-5, 1e-9};
+
+/// The regularised system. Entries and spirals: from where the solution comes. Exits (a) and (b): through the event,
+/// from the root shortly before it. Exit (c), where no scaling gives a stable root: from four places beside the root,
+/// `turn` of them, with the fields eta later.
+Finding simulate(Tree tree, const AtlasInstance& one, const Scaling& kappa, double eta, bool oscillates,
+                 std::size_t turn, const Effort& effort) {
+  constexpr double beside = 1e-4;
+  switch (tree) {
+    case Tree::entering: {
+      const auto start = entering_situation(one.f, one.incoming).alpha;
+      Point u{};
+      for (std::size_t j = 0; j < 2; ++j) u[j] = one.incoming[j] == 0 ? start[j] : one.incoming[j] > 0 ? 1.0 : 0.0;
+      return finding_of(HiddenSimulation(one.f, kappa).follow(u, effort.steps), oscillates);
+    }
+    case Tree::edge:
+    case Tree::fold: {
+      const auto root = intersection_roots(plane_table(later(one.f, -effort.before, one.rates))).rising;
+      if (!root) return {};
+      return finding_of(
+          HiddenSimulation(one.f, one.rates, kappa, effort.eps, effort.before).follow(root->alpha, effort.steps),
+          false);
+    }
+    case Tree::unstable: {
+      const Point u{one.alpha[0] + (turn % 2 == 0 ? beside : -beside), one.alpha[1] + (turn < 2 ? beside : -beside)};
+      return finding_of(HiddenSimulation(later(one.f, eta, one.rates), kappa).follow(u, effort.steps), false);
+    }
+    case Tree::spiral: {
+      const Point outside{-1000.0, -1000.0};
+      const Point inside{one.alpha[0] + beside, one.alpha[1]};
+      return finding_of(HiddenSimulation(one.f, kappa).follow(one.inwards() ? outside : inside, effort.steps),
+                        oscillates || one.inwards());
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -166,8 +204,8 @@ AtlasTable compare_tree(Tree tree, const AtlasOptions& options) {
   AtlasInstances instances(options.seed);
   const auto& scalings = atlas_scalings(tree);
   for (long i = 0; i < options.instances; ++i) {
-    const AtlasInstance one = instances.next(tree);
-    TreeAnswer answer = ask_tree(tree, one);
+    AtlasInstance one = instances.next(tree);
+    const TreeAnswer answer = ask_tree(tree, one);
     if (!answer.decided) {
       // DU: both diagonals positive, so that no scaling stabilised the sliding that is said to end.
       const Derivatives at(one);
@@ -177,23 +215,34 @@ AtlasTable compare_tree(Tree tree, const AtlasOptions& options) {
     }
     for (std::size_t s = 0; s < std::min(scalings.size(), options.scalings); ++s) {
       const Scaling kappa = one.kappa(scalings[s]);
-      if (tree == Tree::spiral) {
-        const auto root = intersection_roots(plane_table(one.f)).rising;
-        const bool stable = root->stable(kappa);
-        auto expected = answer;
-        // A stable root keeps the sliding, also where the fields spiral out.
-        expected.spirals_out = answer.spirals_out && !stable;
-        const std::string leaf = answer.leaf + (answer.spirals_out ? stable ? ", root stable" : ", root unstable" : "");
-        count(expected, follow_spiral(one, kappa, *root, !answer.spirals_out), one, table[{leaf, s}]);
-        continue;
-      }
       if ((tree == Tree::edge || tree == Tree::fold) && !(Derivatives(one).trace(kappa) < 0.0)) continue;
-      AtlasCell& cell = table[{answer.leaf, s}];
+      auto expected = answer;
+      std::string leaf = answer.leaf;
+      if (tree == Tree::spiral && answer.spirals_out) {
+        // A stable root keeps the sliding, also where the fields spiral out.
+        expected.spirals_out = !(Derivatives(one).trace(kappa) < 0.0);
+        leaf += expected.spirals_out ? ", root unstable" : ", root stable";
+      }
+      AtlasCell& cell = table[{leaf, s}];
+      ++cell.instances;
       const HiddenDecision decision = ask_resolver(tree, one, kappa, options.eta);
-      count(answer, decision, one, cell);
-      const bool comparable = tree != Tree::unstable;  // which way an unstable root is left depends on the nudge
-      if (comparable && options.simulate_every > 0 && i % options.simulate_every == 0) {
-        simulate(tree, one, kappa, options.eta, decision, cell);
+      const Finding resolved = finding_of(decision);
+      count(expected, resolved, one, cell.resolver);
+      const bool oscillates = decision.limit == HiddenLimit::oscillating;
+      cell.cycles += oscillates && !answer.modes.empty() && resolved.mode == answer.modes.front() ? 1 : 0;
+      // Through an event slower than the slow one of very different speeds: too long for explicit steps.
+      const bool passes = tree == Tree::edge || tree == Tree::fold;
+      const bool stiff = std::max(kappa[0], kappa[1]) > 10.0;
+      if (options.simulate_every == 0 || i % options.simulate_every != 0 || (passes && stiff)) continue;
+      for (std::size_t turn = 0; turn < (tree == Tree::unstable ? 4 : 1); ++turn) {
+        auto simulated = simulate(tree, one, kappa, options.eta, oscillates, turn, usual);
+        if (!simulated.decided || (passes && simulated != Finding{true, false, answer.modes.front()})) {
+          simulated = simulate(tree, one, kappa, options.eta, oscillates, turn, closer);
+          ++cell.closer;
+        }
+        count(expected, simulated, one, cell.simulated);
+        // Which way an unstable root is left depends on the nudge: nothing to compare.
+        if (tree != Tree::unstable && resolved.decided && simulated.decided && resolved != simulated) ++cell.apart;
       }
     }
   }

@@ -11,6 +11,8 @@
 #include "../unit/switching/random_fields.hpp"
 #include "../unit/switching/switching_cases.hpp"
 #include "saltus/switching/intersection.hpp"
+#include "saltus/switching/intersection_roots.hpp"
+#include "saltus/switching/spiral.hpp"
 
 namespace saltus::switching {
 
@@ -21,11 +23,13 @@ enum class Tree { entering, edge, fold, unstable, spiral };
 struct AtlasInstance {
   Velocities f{};
   Velocities rates{};             ///< d f / dt along the old mode (exits)
-  std::array<double, 2> alpha{};  ///< entering: of the surface that is slid on; exits: the root at the event
+  std::array<double, 2> alpha{};  ///< entering: of the surface that is slid on; else the root (at the event)
   std::array<int, 2> incoming{};  ///< entering
   SquareEdge edge;                ///< edge
   Relabelling frame{0};           ///< from the frame in which the instance was made to its own
 
+  /// Of fields that turn around the intersection.
+  [[nodiscard]] bool inwards() const { return spiral_lap(plane_table(f), 0)->lap_ratio < 1.0; }
   [[nodiscard]] std::array<double, 2> kappa(std::array<double, 2> made) const {
     if (frame.exchange) std::swap(made[0], made[1]);
     return made;
@@ -80,6 +84,7 @@ class AtlasInstances {
         return make_unstable(one);
       case Tree::spiral:
         one.f = random_.spiral();
+        one.alpha = intersection_roots(plane_table(one.f)).rising->alpha;  // there is one, (4.14)
         return true;
     }
     return false;

@@ -19,26 +19,33 @@ std::string percentage(long part, long whole) {
   return text;
 }
 
+/// Percentages of the tree's mode and of the other one it admits, how many are open, and what else there was.
+void print(const AtlasTally& tally) {
+  std::string differ;
+  for (const auto& [mode, count] : tally.differ) differ += " " + mode + " " + std::to_string(count);
+  std::printf(" %ld | %s | %s | %ld |%s |", tally.runs(), percentage(tally.agree, tally.runs()).c_str(),
+              percentage(tally.other, tally.runs()).c_str(), tally.open, differ.empty() ? " -" : differ.c_str());
+}
+
 void print(const AtlasTable& table, Tree tree) {
   std::set<std::string> leaves;
   for (const auto& [key, cell] : table) leaves.insert(key.first);
   std::printf(
-      "| leaf | kappa | n | tree's mode, %% | other admitted, %% | cycles, %% | undecided | differ | simulated | "
-      "differ |\n");
-  std::printf("|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| leaf | kappa | resolver: n | tree's mode, %% | other admitted, %% | open | differ | cycles, %% | regularised: "
+      "n "
+      "| tree's mode, %% | other admitted, %% | open | differ | smaller eps | resolver and regularised apart |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& leaf : leaves) {
     for (std::size_t s = 0; s < atlas_scalings(tree).size(); ++s) {
       const auto found = table.find({leaf, s});
       if (found == table.end()) continue;
       const AtlasCell& cell = found->second;
       const auto& kappa = atlas_scalings(tree)[s];
-      std::string differ;
-      for (const auto& [mode, count] : cell.differ) differ += " " + mode + " " + std::to_string(count);
-      std::printf("| %s | %g:%g | %ld | %s | %s | %s | %ld |%s | %ld | %ld | %ld |\n", leaf.c_str(), kappa[0], kappa[1],
-                  cell.instances, percentage(cell.agree, cell.instances).c_str(),
-                  percentage(cell.other, cell.instances).c_str(), percentage(cell.cycles, cell.instances).c_str(),
-                  cell.undecided, differ.empty() ? " -" : differ.c_str(), cell.simulated, cell.simulated_differ,
-                  cell.simulated_open);
+      std::printf("| %s | %g:%g |", leaf.c_str(), kappa[0], kappa[1]);
+      print(cell.resolver);
+      std::printf(" %s |", percentage(cell.cycles, cell.instances).c_str());
+      print(cell.simulated);
+      std::printf(" %ld | %ld |\n", cell.closer, cell.apart);
     }
   }
 }

@@ -14,12 +14,11 @@ namespace {
 void expect_agreement(const AtlasTable& table, const std::set<std::string>& ambiguous) {
   for (const auto& [key, cell] : table) {
     SCOPED_TRACE(key.first + ", scaling " + std::to_string(key.second));
-    EXPECT_EQ(cell.differing(), 0);
-    EXPECT_EQ(cell.undecided, 0);
-    EXPECT_EQ(cell.agree + cell.other, cell.instances);
-    EXPECT_EQ(cell.simulated_differ, 0);
+    EXPECT_EQ(cell.resolver.agree + cell.resolver.other, cell.instances);
+    EXPECT_EQ(cell.simulated.agree + cell.simulated.other, cell.simulated.runs());
+    EXPECT_EQ(cell.apart, 0);
     if (!ambiguous.contains(key.first)) {
-      EXPECT_EQ(cell.other, 0);
+      EXPECT_EQ(cell.resolver.other + cell.simulated.other, 0);
     }
   }
 }
