@@ -6,27 +6,49 @@
 
 #include <benchmark/benchmark.h>
 
+#include "../../tests/atlas/atlas_instances.hpp"
+#include "../../tests/unit/switching/hidden_cases.hpp"
 #include "../../tests/unit/switching/hidden_instances.hpp"
 
 namespace saltus::switching {
 namespace {
 
-/// Random entries, one after the other: per decision the mean, and the median of the CPU times of single decisions.
-void entering(benchmark::State& state) {
-  const auto surfaces = static_cast<int>(state.range(0));
-  const auto instances = random_entries(surfaces, 1000, 20 + static_cast<unsigned>(surfaces));
+/// Decisions one after the other: the mean, and the median of the CPU times of single ones.
+template <class Decide>
+void measure(benchmark::State& state, std::size_t instances, Decide&& decide) {
   std::size_t next = 0;
   std::vector<double> microseconds;
   for (auto _ : state) {
     const std::clock_t begin = std::clock();
-    benchmark::DoNotOptimize(instances[next++ % instances.size()].decide());
+    benchmark::DoNotOptimize(decide(next++ % instances));
     microseconds.push_back(1e6 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
   const auto middle = microseconds.begin() + static_cast<std::ptrdiff_t>(microseconds.size() / 2);
   std::nth_element(microseconds.begin(), middle, microseconds.end());
   state.counters["median_us"] = *middle;
 }
+
+void entering(benchmark::State& state) {
+  const auto surfaces = static_cast<int>(state.range(0));
+  const auto instances = random_entries(surfaces, 1000, 20 + static_cast<unsigned>(surfaces));
+  measure(state, instances.size(), [&](std::size_t i) { return instances[i].decide(); });
+}
 BENCHMARK(entering)->Arg(2)->Arg(3)->Arg(4)->Arg(6)->Unit(benchmark::kMicrosecond);
+
+/// Ends of sliding on two surfaces: a selection leaves the square, the roots vanish, the root loses its stability.
+void leaving(benchmark::State& state, Tree tree) {
+  AtlasInstances random(30);
+  std::vector<AtlasInstance> instances;
+  while (instances.size() < 1000) instances.push_back(random.next(tree));
+  measure(state, instances.size(), [&](std::size_t i) {
+    const AtlasInstance& one = instances[i];
+    return decide_leaving(2, PlaneField{one.f}, PlaneField{one.rates},
+                          {{Arrival::along, Arrival::along}, {one.alpha[0], one.alpha[1]}}, 1e-5);
+  });
+}
+BENCHMARK_CAPTURE(leaving, edge, Tree::edge)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(leaving, fold, Tree::fold)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(leaving, unstable, Tree::unstable)->Unit(benchmark::kMicrosecond);
 
 /// Dry friction of each of m bodies by itself.
 void additive(benchmark::State& state) {

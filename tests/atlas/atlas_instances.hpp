@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../unit/switching/random_fields.hpp"
-#include "../unit/switching/switching_cases.hpp"
+#include "../unit/switching/plane_frames.hpp"
 #include "saltus/switching/intersection.hpp"
 #include "saltus/switching/intersection_roots.hpp"
 #include "saltus/switching/spiral.hpp"

@@ -199,8 +199,8 @@ void add(const TrajectoryEnd& end, HiddenDecision& decision) {
   if (std::find(others.begin(), others.end(), end.mode) == others.end()) others.push_back(end.mode);
 }
 
-TrajectoryOptions trajectory_options(const HiddenOptions& options, double tolerance) {
-  return {options.budget, tolerance, options.interpolation == Interpolation::multi_affine};
+TrajectoryOptions trajectory_options(const HiddenOptions& options, double tolerance, double tolerance_away) {
+  return {options.budget, tolerance, tolerance_away, options.interpolation == Interpolation::multi_affine};
 }
 
 }  // namespace
@@ -208,11 +208,12 @@ TrajectoryOptions trajectory_options(const HiddenOptions& options, double tolera
 HiddenDecision decide_by_hidden_dynamics(int surfaces, ProjectedField g, const HiddenSituation& situation,
                                          const HiddenOptions& options) {
   constexpr double tolerance = 1e-9;
+  constexpr double tolerance_away = tolerance;
   const auto decide_group = [&](const auto& group, const HiddenSituation& own, const HiddenOptions& own_options) {
     GroupField field(surfaces, g, group);
     HiddenFace face(static_cast<int>(group.size()), field, options.interpolation);
     face.set_scaling(own_options.scaling);
-    HiddenTrajectory trajectory(face, trajectory_options(own_options, tolerance));
+    HiddenTrajectory trajectory(face, trajectory_options(own_options, tolerance, tolerance_away));
     HiddenDecision decision;
     for (const auto& start : starts_of(own)) {
       const TrajectoryEnd end = trajectory.follow(start);
@@ -236,6 +237,7 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
                               double eta, const HiddenOptions& options) {
   constexpr double tolerance = 1e-11;  // far below eta, which is all that the solution gets away from the root by
   constexpr double tolerance_nudged = 1e-9;
+  constexpr double tolerance_away = 1e-7;
   constexpr std::array nudges{1e-4, -1e-4, 6e-5, -6e-5};  // on different turns of a spiral
   std::vector<double> velocity(at(surfaces));
   double after = eta;
@@ -251,7 +253,7 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
       GroupField field(surfaces, later, group);
       HiddenFace face(static_cast<int>(group.size()), field, options.interpolation);
       face.set_scaling(own_options.scaling);
-      HiddenTrajectory trajectory(face, trajectory_options(own_options, tolerance));
+      HiddenTrajectory trajectory(face, trajectory_options(own_options, tolerance, tolerance_away));
       for (const auto& start : starts_of(own)) {
         const TrajectoryEnd end = trajectory.follow(start);
         add(end, decision);
@@ -261,7 +263,7 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
         }
         if (fraction < 1.0) continue;
         // The root is still there, but no longer stable: which way it is left is not the event's to say.
-        TrajectoryOptions fewer = trajectory_options(own_options, tolerance_nudged);
+        TrajectoryOptions fewer = trajectory_options(own_options, tolerance_nudged, tolerance_away);
         fewer.budget /= 10;
         HiddenTrajectory nudged(face, fewer);
         for (std::size_t j = 0; j < start.size(); ++j) {

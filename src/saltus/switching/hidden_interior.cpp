@@ -12,8 +12,9 @@
 namespace saltus::switching {
 namespace {
 
-/// Steps between two looks for a state of rest.
-constexpr int pause = 4;
+/// Steps between two looks for a state of rest: each costs some of them, and says nothing on a long way.
+constexpr int shortest_pause = 4;
+constexpr int longest_pause = 32;
 /// Relative to the largest velocity of a surface: below this a velocity is rounding.
 constexpr double rounding = 1e-13;
 
@@ -23,7 +24,6 @@ std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
 HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
   const auto f = [this](double /*t*/, const double* u, double* v) { face_.velocity(u, v); };
-  const ode::Tolerances tolerances{options_.tolerance, options_.tolerance};
   double fastest = 0.0;
   for (int j = 0; j < m_; ++j) fastest = std::max(fastest, face_.speed(j));
   if (!(fastest > 0.0)) return settle("no velocity depends on the selections", v_.data());
@@ -31,15 +31,21 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
   ode::StiffnessWatch watch;
   ode::StepControl control(stiff_ ? ode::Method::radau5 : ode::Method::dopri5);
   if (stiff_stepper_) stiff_stepper_->restart();
+  int next_look = 0;
+  int pause = shortest_pause;
   for (int steps = 0; used_ < options_.budget; ++steps, ++used_) {
-    if (steps % pause == 0) {
+    if (steps == next_look) {
       const Rest rest = look_for_rest();
+      next_look += pause;
+      pause = std::min(2 * pause, longest_pause);
       if (rest == Rest::settled) return settle("the hidden dynamics comes to rest: sliding", point_velocity_.data());
       if (rest == Rest::moved) return Status::goes_on;
     }
     auto& made = stiff_ ? stiff_stepper_ : stepper_;
     if (!made) made.emplace(stiff_ ? ode::Method::radau5 : ode::Method::dopri5, m_);
     ode::Stepper& stepper = *made;
+    const double tolerance = tolerance_here();
+    const ode::Tolerances tolerances{tolerance, tolerance};
     if (stepper.attempt(f, 0.0, u_.data(), v_.data(), h, tolerances) != ode::Attempt::finite) {
       h *= 0.25;
       continue;
@@ -69,6 +75,12 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
     }
   }
   return Status::goes_on;
+}
+
+double HiddenTrajectory::tolerance_here() const {
+  double distance = 0.0;
+  for (int j = 0; j < m_; ++j) distance = std::max(distance, std::abs(u_[at(j)] - start_[at(j)]));
+  return std::clamp(distance * options_.tolerance_away, options_.tolerance, options_.tolerance_away);
 }
 
 /// The first boundary or maximum within an accepted step, with point_ there.

@@ -38,6 +38,7 @@ HiddenTrajectory::HiddenTrajectory(HiddenFace& face, const TrajectoryOptions& op
       samples_(at(m_ * ode::event_nodes)) {}
 
 TrajectoryEnd HiddenTrajectory::follow(const std::vector<double>& u) {
+  start_ = u;
   u_ = u;
   end_ = {};
   used_ = 0;

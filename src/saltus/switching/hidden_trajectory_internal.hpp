@@ -28,8 +28,9 @@ struct TrajectoryEnd {
 
 struct TrajectoryOptions {
   int budget = 100000;
-  double tolerance = 1e-9;   ///< of u, absolute and relative
-  bool closed_forms = true;  ///< g is multi-affine
+  double tolerance = 1e-9;       ///< of u, absolute and relative
+  double tolerance_away = 1e-9;  ///< a layer's width away from the start; in between in proportion to the distance
+  bool closed_forms = true;      ///< g is multi-affine
 };
 
 class HiddenTrajectory {
@@ -55,6 +56,7 @@ class HiddenTrajectory {
   Status cross_corner();
   Status cross_strip();
   Status cross_interior();
+  [[nodiscard]] double tolerance_here() const;
   StepEvent first_event(ode::Stepper& stepper);
   void look_for_boundary(int j, StepEvent& event);
   void look_for_maximum(int j, StepEvent& event);
@@ -74,7 +76,7 @@ class HiddenTrajectory {
   int m_;
   int used_ = 0;
   int nudges_ = 0;
-  std::vector<double> u_, v_;
+  std::vector<double> start_, u_, v_;
   std::vector<int> zone_;
   Recurrence recurrence_;
   std::optional<ode::Stepper> stepper_, stiff_stepper_;  ///< made when they are first needed

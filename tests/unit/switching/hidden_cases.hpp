@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "plane_frames.hpp"
 #include "saltus/switching/hidden_dynamics.hpp"
 #include "saltus/switching/multi_affine.hpp"
-#include "switching_cases.hpp"
 
 namespace saltus::switching {
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "hidden_cases.hpp"
+#include "switching_cases.hpp"
 
 namespace saltus::switching {
 namespace {

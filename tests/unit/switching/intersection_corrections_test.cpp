@@ -7,6 +7,7 @@
 
 #include "random_fields.hpp"
 #include "saltus/switching/intersection.hpp"
+#include "switching_cases.hpp"
 
 namespace saltus::switching {
 namespace {

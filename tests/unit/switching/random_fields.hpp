@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "switching_cases.hpp"
+#include "plane_frames.hpp"
 
 namespace saltus::switching {
 

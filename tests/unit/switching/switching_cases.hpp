@@ -1,18 +1,17 @@
-// tests/data/switching_cases.json: projected fields with known outcomes; and the symmetries of the square, written out.
+// tests/data/switching_cases.json: projected fields with known outcomes.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <fstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-namespace saltus::switching {
+#include "plane_frames.hpp"
 
-using Velocities = std::array<std::array<double, 4>, 2>;
+namespace saltus::switching {
 
 struct CaseOutcome {
   std::array<int, 2> mode{};
@@ -58,34 +57,5 @@ inline std::vector<SwitchingCase> plane_cases() {
   }
   return cases;
 }
-
-/// Reflects psi_1, psi_2, and exchanges them, in this order.
-struct Relabelling {
-  bool reflect_1, reflect_2, exchange;
-
-  explicit Relabelling(unsigned i) : reflect_1((i & 1U) != 0), reflect_2((i & 2U) != 0), exchange((i & 4U) != 0) {}
-
-  template <class T>
-  [[nodiscard]] std::array<T, 2> signs(std::array<T, 2> k) const {
-    if (reflect_1) k[0] = -k[0];
-    if (reflect_2) k[1] = -k[1];
-    if (exchange) std::swap(k[0], k[1]);
-    return k;
-  }
-
-  [[nodiscard]] Velocities fields(const Velocities& f) const {
-    Velocities image{};
-    for (const int k1 : {-1, 1}) {
-      for (const int k2 : {-1, 1}) {
-        const auto corner = [](std::array<int, 2> k) { return (k[0] > 0 ? 1U : 0U) + (k[1] > 0 ? 2U : 0U); };
-        const std::size_t from = corner({k1, k2});
-        const auto vector = signs(std::array<double, 2>{f[0][from], f[1][from]});
-        const std::size_t to = corner(signs(std::array<int, 2>{k1, k2}));
-        for (std::size_t j = 0; j < 2; ++j) image[j][to] = vector[j];
-      }
-    }
-    return image;
-  }
-};
 
 }  // namespace saltus::switching
