@@ -17,8 +17,7 @@ struct Tally {
   long not_unique = 0;     ///< completed, but with an event that Filippov's theory leaves open: not compared
   long sensitive = 0;      ///< completed, but neighbours part: not compared
   long events = 0;
-  std::vector<std::string> failures;      ///< "family seed integrator: what is wrong"
-  std::vector<std::string> open_defects;  ///< those of systems that are known to fail
+  std::vector<std::string> failures;  ///< "family seed integrator: what is wrong"
 };
 
 /// Systems first, first + 1, … of a family.

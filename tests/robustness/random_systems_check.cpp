@@ -52,11 +52,9 @@ class ModeCheck {
       if (mode_[j] != 0 && !field_.is_read_anew(j) && alpha[j] != (mode_[j] > 0 ? 1.0 : 0.0)) {
         return fmt::format("selection {} of s{} in mode {}", alpha[j], j, mode_[j]);
       }
-      const double conditioning = field_.sliding().size() == 1 ? value.below - value.above : value.pivot;
-      if (mode_[j] == 0 && std::abs(conditioning) > 1e-3 && !at_kink &&
-          !(std::abs(alpha[j] - value.alpha[j]) <= 1e-9)) {
-        return fmt::format("selection {} of s{}, should be {}", alpha[j], j, value.alpha[j]);
-      }
+    }
+    if (!at_kink && !(value.imbalance <= 1e-9)) {
+      return fmt::format("the selections leave d psi/dt = {} of the fields", value.imbalance);
     }
     return at_kink ? "" : inequalities(x, value, 1e-12);
   }
@@ -142,6 +140,8 @@ class ModeCheck {
                            value.above);
       }
     } else {
+      // Where two roots meet det G is 0 to the square root of rounding.
+      if (!(value.determinant >= -1e-6)) return fmt::format("slides where det(-G) is {}", value.determinant);
       for (const auto j : field_.sliding()) {
         const double slack = std::max(bound, 1e-9) / std::max(1e-12, value.pivot);
         if (!(value.alpha[j] >= -slack && value.alpha[j] <= 1.0 + slack)) {

@@ -89,6 +89,7 @@ std::vector<double> OwnField::psi_rates(double t, const std::vector<double>& x, 
 
 FieldValue OwnField::slide_on_one(double t, const std::vector<double>& x, std::vector<double> alpha) const {
   const std::size_t j = sliding_.front();
+  const double guess = alpha[j];
   alpha[j] = 0.0;
   const FieldValue lower = at_selections(t, x, alpha);
   alpha[j] = 1.0;
@@ -97,6 +98,8 @@ FieldValue OwnField::slide_on_one(double t, const std::vector<double>& x, std::v
   value.kink_distance = std::min(lower.kink_distance, upper.kink_distance);
   value.below = psi_rates(t, x, lower)[j];
   value.above = psi_rates(t, x, upper)[j];
+  value.imbalance = std::abs((1.0 - guess) * value.below + guess * value.above) /
+                    (1e-6 + std::abs(value.below) + std::abs(value.above));
   const double selection = value.below / (value.below - value.above);
   value.alpha[j] = selection;
   for (std::size_t i = 0; i < x.size(); ++i) value.xdot[i] += selection * (upper.xdot[i] - lower.xdot[i]);
@@ -111,34 +114,39 @@ FieldValue OwnField::slide_on_several(double t, const std::vector<double>& x, st
     for (Eigen::Index i = 0; i < m; ++i) own[i] = all[sliding_[static_cast<std::size_t>(i)]];
     return own;
   };
-  double pivot = 0.0;
-  for (int iteration = 0; iteration < 4; ++iteration) {
+  // d psi_I/dt at selections, and its derivatives: differences between the faces of the cube.
+  const auto linearise = [&](const std::vector<double>& selections) {
     Eigen::MatrixXd matrix(m, m);
     for (Eigen::Index column = 0; column < m; ++column) {
-      auto corner = alpha;
+      auto corner = selections;
       double& selection = corner[sliding_[static_cast<std::size_t>(column)]];
       selection = 1.0;
       const Eigen::VectorXd upper = velocities(corner);
       selection = 0.0;
       matrix.col(column) = upper - velocities(corner);
     }
-    const Eigen::FullPivLU<Eigen::MatrixXd> factors(matrix);
-    pivot = std::abs(factors.matrixLU()(m - 1, m - 1));
-    const Eigen::VectorXd change = factors.solve(velocities(alpha));
+    return matrix;
+  };
+  const Eigen::MatrixXd guessed = linearise(alpha);
+  const double imbalance =
+      (velocities(alpha).array().abs() / (1e-6 + guessed.array().abs().rowwise().sum())).maxCoeff();
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    const Eigen::VectorXd change = linearise(alpha).fullPivLu().solve(velocities(alpha));
     for (Eigen::Index i = 0; i < m; ++i) alpha[sliding_[static_cast<std::size_t>(i)]] -= change[i];
     if (change.cwiseAbs().maxCoeff() < 1e-13) break;
   }
   FieldValue value = at_selections(t, x, alpha);
-  value.residual = velocities(alpha).cwiseAbs().maxCoeff();
-  value.pivot = pivot;
+  value.imbalance = imbalance;
+  value.pivot = std::abs(guessed.fullPivLu().matrixLU()(m - 1, m - 1));
+  value.determinant = (-guessed.rowwise().normalized()).determinant();
   return value;
 }
 
 FieldValue OwnField::operator()(double t, const std::vector<double>& x, const std::vector<double>& guess) const {
   std::vector<double> alpha = selections_;
   if (sliding_.empty()) return at_selections(t, x, alpha);
-  if (sliding_.size() == 1) return slide_on_one(t, x, std::move(alpha));
   for (const auto j : sliding_) alpha[j] = guess[j];
+  if (sliding_.size() == 1) return slide_on_one(t, x, std::move(alpha));
   return slide_on_several(t, x, std::move(alpha));
 }
 

@@ -15,8 +15,11 @@ struct FieldValue {
   std::vector<double> psi;    ///< per switching function, with the selections above
   /// One sliding surface: d psi/dt along the fields below and above. Several: zero.
   double below = 0.0, above = 0.0;
-  /// Several sliding surfaces: largest |d psi/dt| that is left, and the smallest pivot of the linear system.
-  double residual = 0.0, pivot = 0.0;
+  /// Several sliding surfaces: smallest pivot of the linear system, and det(-G) with rows of length 1: positive where
+  /// the selections can attract.
+  double pivot = 0.0, determinant = 1.0;
+  /// Largest |d psi/dt| on a sliding surface with the selections that were guessed, over that along the fields.
+  double imbalance = 0.0;
   /// Smallest distance of the argument of an abs or max from its kink, and of a sign read anew from its change.
   double kink_distance = 0.0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "saltus/event_integrator/small_internal.hpp"
 
@@ -152,6 +153,29 @@ bool ProjectedFields::gradient_vanishes(const std::vector<double>& alpha, int su
   kernel_.field(occasion_.t, occasion_.x, alpha.data(), f.data());
   for (std::size_t i = 0; i < n; ++i) x[i] += 1e-3 * (std::abs(x[i]) + occasion_.time_scale * std::abs(f[i]));
   return here <= 1e-4 * size();
+}
+
+bool ProjectedFields::gradients_depend(const std::vector<double>& alpha, const std::vector<int>& surfaces) const {
+  const auto n = at(kernel_.states());
+  const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
+  std::vector<std::vector<double>> basis;
+  std::vector<double> row(n);
+  double rate = 0.0;
+  for (const int j : surfaces) {
+    kernel_.gradient(j, occasion_.t, occasion_.x, alpha.data(), row.data(), &rate);
+    const double length = std::sqrt(dot(row, row));
+    for (const auto& direction : basis) {
+      const double part = dot(row, direction);
+      for (std::size_t i = 0; i < n; ++i) row[i] -= part * direction[i];
+    }
+    const double rest = std::sqrt(dot(row, row));
+    if (rest <= 1e-6 * length) return true;
+    for (double& entry : row) entry /= rest;
+    basis.push_back(row);
+  }
+  return false;
 }
 
 switching::CornerTable ProjectedFields::table(const ModeState& before, const std::vector<int>& group) const {

@@ -42,6 +42,8 @@ class ProjectedFields {
   /// Whether the gradient of a surface vanishes here, but not close by (a power of another function), so that normal
   /// components say nothing. To choose between reasons to stop.
   [[nodiscard]] bool gradient_vanishes(const std::vector<double>& alpha, int surface) const;
+  /// Whether the gradients of several surfaces depend on each other, to 1e-6 of their lengths: the surfaces touch.
+  [[nodiscard]] bool gradients_depend(const std::vector<double>& alpha, const std::vector<int>& surfaces) const;
 
   /// The table of all 2^m corners of a group.
   [[nodiscard]] switching::CornerTable table(const ModeState& before, const std::vector<int>& group) const;

@@ -19,6 +19,8 @@ void Run::note_tightening_switch() {
   if (before_.mode == state_.mode) return;
   if (jumped_ || !series_.tightens()) return switch_laps_.clear();
   std::vector<double> magnitude(at(kernel_.event_functions())), slope(magnitude.size());
+  std::vector<double> arriving(x_.size());
+  kernel_.field(t_, x_.data(), before_.alpha.data(), arriving.data());
   kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
   std::vector<int> labels;
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
@@ -27,7 +29,9 @@ void Run::note_tightening_switch() {
     // Kinks do not hold a solution, and times pass.
     if (surroundings_.system.switching[at(j)].role != model::SwitchingRole::listed) return switch_laps_.clear();
     labels.push_back(label_of(j, mode));
-    const double rate = std::abs(rate_along_field(j, t_, x_.data(), slope_.data()).value);
+    // Where sliding begins or ends psi moves on the other side only.
+    const double rate = std::max(std::abs(rate_along_field(j, t_, x_.data(), arriving.data()).value),
+                                 std::abs(rate_along_field(j, t_, x_.data(), slope_.data()).value));
     // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the lap.
     shortest_switch_lap_[at(labels.back())] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(j)] / rate : 0.0;
   }

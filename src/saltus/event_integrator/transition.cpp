@@ -90,6 +90,17 @@ switching::GroupDecision Decider::ask(const std::vector<int>& group, const switc
   return {decision.verdict, 0, {decision}};
 }
 
+/// Sizes of the normal components in the regions around a point.
+void Decider::note_scales(const std::vector<int>& group, const switching::CornerTable& table) {
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    double& scale = scale_[at(group[k])];
+    scale = 0.0;
+    for (std::size_t corner = 0; corner < table.corners(); ++corner) {
+      scale = std::max(scale, std::abs(table.side(static_cast<int>(k), corner).velocity));
+    }
+  }
+}
+
 bool Decider::decide(const std::vector<int>& group) {
   for (const int j : group) {
     const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
@@ -107,6 +118,7 @@ bool Decider::decide(const std::vector<int>& group) {
                             group.size(), occasion_.t, names(s_.system, group), largest_group));
   }
   const auto table = fields_.table(base_, group);
+  note_scales(group, table);
   note_meeting(group, table);
   const auto tree = ask_tree(group, table);
   if (tree && tree->undecided.empty()) {

@@ -1,4 +1,5 @@
 // The mode behind an event must move to where it says.
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -64,6 +65,9 @@ bool Decider::check() {
     transition_.beside = transition_.beyond_spiral->x;
     return true;
   }
+  if (state.sliding.size() > 1 && fields_.gradients_depend(state.alpha, state.sliding)) {
+    return fail_where_surfaces_touch(state.sliding);
+  }
   ModeField field(s_.kernel, s_.affine_in_alpha);
   field.enter(state);
   std::vector<double> xdot(at(s_.kernel.states()));
@@ -98,6 +102,13 @@ bool Decider::check() {
     }
     state.alpha[at(j)] = std::clamp(selection, 0.0, 1.0);
   }
+  // Functions nested around a sliding surface are between their own selections in the regions beside it.
+  for (int j = 0; j < s_.kernel.switching_functions(); ++j) {
+    const auto& inner = s_.kernel.inner(j);
+    if (std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(state.sliding, i); })) {
+      state.alpha[at(j)] = std::clamp(field.alpha()[at(j)], 0.0, 1.0);
+    }
+  }
   for (const int j : occasion_.at_zero) {
     const int mode = state.mode[at(j)];
     if (mode == 0) continue;
@@ -108,8 +119,10 @@ bool Decider::check() {
     double velocity = fields_.velocities(state.alpha, {j}).front();
     const auto& tangent = mode > 0 ? occasion_.exit_above : occasion_.exit_below;
     if (contains(tangent, j) && keeps_selections()) velocity = 0.0;
-    const double scale = std::max(std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
-                                  std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front()));
+    // The fields of all regions that meet: those on both sides of this surface may be tangent to it together.
+    const double scale =
+        std::max({scale_[at(j)], std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
+                  std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front())});
     Motion motion = fields_.motion(state.alpha, j, velocity, scale);
     const bool follows_selections =
         std::any_of(state.sliding.begin(), state.sliding.end(), [&](int i) { return s_.kernel.depends(j, i); });
@@ -118,15 +131,43 @@ bool Decider::check() {
       const double ahead = velocity_ahead(field, xdot, j);
       motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
     }
-    if (static_cast<int>(motion.side.drift) != mode) {
-      return fail(
-          result::Termination::no_admissible_mode,
-          fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not", occasion_.t,
-                      mode > 0 ? "the positive side" : "the negative side", s_.system.switching[at(j)].name));
-    }
+    if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode);
     transition_.zero_order[at(j)] = std::min(motion.order, 2);
   }
   return true;
+}
+
+bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
+  return fail(
+      result::Termination::outside_class,
+      fmt::format("the surfaces {} touch at t = {}: their gradients depend on each other there, so that sliding "
+                  "on all of them does not determine the selections; state surfaces that coincide by one "
+                  "switching function",
+                  names(s_.system, surfaces), occasion_.t));
+}
+
+/// The field of the new mode does not move psi_j to where the mode says: why not.
+bool Decider::fail_at_tangency(int j, int mode) {
+  const auto& state = transition_.state;
+  std::array<switching::Side, 2> sides;
+  for (const std::size_t corner : {std::size_t{0}, std::size_t{1}}) {
+    const auto alpha = fields_.corner_alpha(state.alpha, {j}, corner);
+    sides[corner] = fields_.motion(alpha, j, fields_.velocities(alpha, {j}).front(), scale_[at(j)]).side;
+  }
+  const auto& name = s_.system.switching[at(j)].name;
+  const bool tangent =
+      std::max(std::abs(sides[0].velocity), std::abs(sides[1].velocity)) <= sign_tolerance * scale_[at(j)];
+  if (tangent && sides[0].drift == switching::Drift::up && sides[1].drift == switching::Drift::down) {
+    return fail(result::Termination::outside_class,
+                fmt::format("from t = {} on the fields on both sides of '{}' are tangent to it and turn towards it: "
+                            "sliding on which the derivative of '{}' is 0 for every selection (of second order)",
+                            occasion_.t, name, name));
+  }
+  if (tangent) return fail(result::Termination::outside_class, two_fold_at(name, occasion_.t));
+  if (fields_.gradients_depend(state.alpha, occasion_.at_zero)) return fail_where_surfaces_touch(occasion_.at_zero);
+  return fail(result::Termination::no_admissible_mode,
+              fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not", occasion_.t,
+                          mode > 0 ? "the positive side" : "the negative side", name));
 }
 
 /// Whether the new field is the sliding one of before at this point: selections were lost at their bounds only. Then

@@ -37,6 +37,7 @@ class Decider {
       : s_(surroundings), before_(before), occasion_(occasion), fields_(surroundings.kernel, occasion) {
     transition_.state = before;
     transition_.zero_order.assign(before.mode.size(), 0);
+    scale_.assign(before.mode.size(), 0.0);
   }
 
   Transition run();
@@ -53,6 +54,7 @@ class Decider {
   bool accept_start(const std::vector<int>& group, const switching::CornerTable& table);
   bool resolve(const std::vector<int>& group, const switching::CornerTable& table);
   switching::HiddenDecision follow_hidden(const std::vector<int>& group, const switching::CornerTable& table);
+  void note_scales(const std::vector<int>& group, const switching::CornerTable& table);
   void note_meeting(const std::vector<int>& group, const switching::CornerTable& table);
   void take(const std::vector<int>& group, const std::vector<int>& mode, const std::vector<double>& alpha);
   void note_others(const std::vector<int>& group, const switching::PlaneModes& others);
@@ -62,6 +64,8 @@ class Decider {
   bool read_nested_anew();
   bool set_corners();
   bool check();
+  bool fail_where_surfaces_touch(const std::vector<int>& surfaces);
+  bool fail_at_tangency(int surface, int mode);
   bool keeps_selections() const;
   bool fail(result::Termination termination, std::string message);
 
@@ -73,6 +77,7 @@ class Decider {
   Transition transition_;
   std::vector<std::pair<int, switching::SurfaceDecision>> decisions_;
   std::vector<std::string> group_reasons_;  ///< of coupled groups
+  std::vector<double> scale_;               ///< by surface: largest normal component where its group was decided
   std::vector<int> standing_;               ///< surfaces that psi does not leave, without consequence for the field
 };
 

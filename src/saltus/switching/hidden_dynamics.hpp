@@ -27,13 +27,14 @@ struct HiddenOptions {
 enum class HiddenLimit {
   settled,      ///< every surface is left for good, or its selection has a stable limit
   oscillating,  ///< recurrent: the solution slides, the regularised solution oscillates about it
+  rootless,     ///< recurrent, about no root: the solution slides along a mean of the fields that no selections give
   spirals_out,  ///< all of space is visited with growing amplitude
   undecided,    ///< none of it within the budget, velocities that are not finite, or rest everywhere
 };
 
 struct HiddenDecision {
   HiddenLimit limit = HiddenLimit::undecided;
-  std::vector<int> mode;      ///< m: -1, 0 (sliding), +1; meaningless for spirals_out and undecided
+  std::vector<int> mode;      ///< m: -1, 0 (sliding), +1; meaningless behind `oscillating`
   std::vector<double> alpha;  ///< m: 0, 1, or the sliding selection (oscillating: the root that is enclosed)
   /// The outcome hangs on details that the limit forgets: trajectories started a little differently, or at another time
   /// behind the event, end elsewhere.

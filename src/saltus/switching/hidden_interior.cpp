@@ -263,7 +263,8 @@ bool HiddenTrajectory::rests_near(const std::vector<double>& u) {
 }
 
 /// The root that a cycle surrounds: with a stabilising scaling if there is one, the nearest to the mean over the lap.
-void HiddenTrajectory::enclosed_root(const Lap& lap) {
+/// Returns false if there is none, which needs three surfaces (in the plane a cycle has a root inside).
+bool HiddenTrajectory::enclosed_root(const Lap& lap) {
   face_.enter(lap.side);
   const auto& free = face_.free();
   const std::size_t n = free.size();
@@ -287,7 +288,7 @@ void HiddenTrajectory::enclosed_root(const Lap& lap) {
   };
   end_.alpha = start;
   consider();
-  if (nearest < 1.0) return;
+  if (nearest < 1.0) return true;
   std::size_t grid = 1;
   for (std::size_t i = 0; i < std::min<std::size_t>(n, 4); ++i) grid *= 5;
   for (std::size_t point = 0; point < grid; ++point) {
@@ -298,6 +299,7 @@ void HiddenTrajectory::enclosed_root(const Lap& lap) {
     consider();
   }
   end_.marginal = end_.marginal || !(nearest < 1.0);
+  return std::isfinite(nearest);
 }
 
 }  // namespace saltus::switching

@@ -120,13 +120,18 @@ HiddenTrajectory::Status HiddenTrajectory::pass_section(std::uint64_t event) {
     end_.reason = "the solution spirals out through all regions";
     return Status::ended;
   }
-  enclosed_root(lap);
-  // A cycle is further from the root that it surrounds than from its own limit.
+  const bool enclosed = enclosed_root(lap);
+  // A cycle is further from the root that it surrounds, or from its mean, than from its own limit.
   double distance = 0.0;
   for (std::size_t j = 0; j < u_.size(); ++j) {
     if (lap.side[j] == 0) distance = std::max(distance, std::abs(u_[j] - end_.alpha[j]));
   }
   if (lap.remaining > 0.05 * distance) return Status::goes_on;
+  if (!enclosed) {
+    end_.limit = HiddenLimit::rootless;
+    end_.reason = "the hidden dynamics is periodic about no selections that slide";
+    return Status::ended;
+  }
   end_.limit = HiddenLimit::oscillating;
   end_.reason = "the hidden dynamics is periodic: sliding, about which the regularised solution oscillates";
   return Status::ended;

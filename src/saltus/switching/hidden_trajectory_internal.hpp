@@ -67,7 +67,7 @@ class HiddenTrajectory {
   Status settle(std::string_view reason, const double* limit_velocity);
   Rest look_for_rest();
   bool polish_rest(double* u);
-  void enclosed_root(const Lap& lap);
+  bool enclosed_root(const Lap& lap);
   [[nodiscard]] double boundary(int j) const;
   [[nodiscard]] std::uint64_t zone_number() const;
 

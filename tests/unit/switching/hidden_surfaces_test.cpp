@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "hidden_instances.hpp"
+#include "saltus/switching/selection_newton.hpp"
 #include "saltus/switching/surface_decision.hpp"
 
 namespace saltus::switching {
@@ -348,6 +349,26 @@ TEST(HiddenSurfaces, DegenerateTablesEndWithAnAnswerOrADoubt) {
     decided += decision.limit == HiddenLimit::undecided ? 0 : 1;
   }
   EXPECT_GT(decided, 200);
+}
+
+/// Two roots of three surfaces coalesced a little before: what is left is a cycle around no root.
+TEST(HiddenSurfaces, ACycleOfThreeSurfacesAboutNoRootIsToldApart) {
+  constexpr double velocities[3][8] = {{0.04, -0.93, -0.06, 1.75, 1.97, -0.90, 0.015, -1.30},
+                                       {1.17, 1.05, -1.84, -1.62, -1.17, 2.03, 0.54, 3.02},
+                                       {-0.33, 3.08, 2.01, -0.51, -0.92, -1.50, -2.49, 0.57}};
+  HiddenInstance one{MultiAffine(3, 3), {{Arrival::from_below, Arrival::along, Arrival::along}, {0.0, 0.33, 0.23}}};
+  for (int j = 0; j < 3; ++j) {
+    for (std::size_t k = 0; k < 8; ++k) one.g.set_value(j, k, velocities[j][k]);
+  }
+  EXPECT_EQ(one.decide().limit, HiddenLimit::rootless);
+  // No root anywhere in the cube: Newton's method from a grid finds none.
+  SelectionNewton newton(3);
+  for (int start = 0; start < 1000; ++start) {
+    std::vector<double> alpha{0.05 + 0.1 * (start % 10), 0.05 + 0.1 * (start / 10 % 10), 0.05 + 0.1 * (start / 100)};
+    const bool found = newton.solve([&](const double* a, double* v) { one.g.evaluate(a, v); }, alpha.data());
+    const auto inside = [](double a) { return a >= 0.0 && a <= 1.0; };
+    EXPECT_FALSE(found && std::all_of(alpha.begin(), alpha.end(), inside)) << start;
+  }
 }
 
 TEST(HiddenSurfaces, VelocitiesThatAreNotFiniteAreNotDecided) {

@@ -1,0 +1,96 @@
+// Surfaces that influence each other: modes behind their events, where fields are tangent, nested, or of no help.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/builder.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+using model::Builder;
+using result::Termination;
+
+Integration run(Builder& builder, double until, const std::vector<std::pair<int, int>>& forced = {}) {
+  const auto system = builder.build();
+  EXPECT_TRUE(system.has_value()) << (system ? "" : system.error().message);
+  auto kernel = evaluation::ModelKernel::compile(*system);
+  EXPECT_TRUE(kernel.has_value());
+  IntegrationOptions options;
+  options.tolerances = {1e-10, 1e-12};
+  options.until = until;
+  options.initial_mode = forced;
+  return integrate(*kernel, *system, options);
+}
+
+TEST(Coupled, AnExitOnWhichBothFieldsAreTangentGoesWhereTheyTurn) {
+  // x' does not depend on alpha_x: sliding on both ends at t = c with alpha_y = 1, and x' = t - c for either alpha_x.
+  for (int i = 0; i < 24; ++i) {
+    const double c = 1.0 + 0.01 * i;
+    Builder b("tangent");
+    const SX x = b.state("x", {0});
+    const SX y = b.state("y", {0});
+    const SX alpha_x = b.step(b.switching("sx", x + 0.3 * y));
+    const SX alpha_y = b.step(b.switching("sy", y));
+    const SX y_rate = 0.5 + 2 * alpha_x - 2 * alpha_y;
+    b.dynamics("x", (1 - alpha_y) + alpha_y * (b.time() - c) - 0.3 * y_rate);
+    b.dynamics("y", y_rate);
+    const auto result = run(b, c + 1.0, {{0, 0}, {1, 0}});
+    ASSERT_EQ(result.status.termination, Termination::completed) << c << ": " << result.status.message;
+    EXPECT_EQ(result.final.mode, (result::Mode{1, 1})) << c;
+    EXPECT_NEAR(result.final.x[0] + 0.3 * result.final.x[1], 0.5, 1e-9) << c;
+  }
+}
+
+TEST(Coupled, BehindACrossingNestedFunctionsHaveTheSelectionsOfTheNewSliding) {
+  // Slides on y = 0; sign(z + sign(y)/2) = sign(y) there, which is -0.8 on average for x > 0 and 0.5 for x < 0.
+  Builder b("nested");
+  const SX x = b.state("x", {1});
+  const SX y = b.state("y", {0});
+  const SX z = b.state("z", {0.45});
+  const SX side = b.sign(y);
+  b.dynamics("x", -1 + 1.5 * b.sign(z + 0.5 * side));
+  b.dynamics("y", -0.15 - 0.65 * b.sign(x) - side);
+  b.dynamics("z", 0);
+  const auto result = run(b, 2);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.final.x[0], -0.25 * (2.0 - 1.0 / 2.2), 1e-9);
+}
+
+TEST(Coupled, SurfacesThatCoincideWhereTheyAreSlidOnAreOutsideTheClass) {
+  const double cases[][4] = {{0.3, 0.5, 1.0, -1.0}, {0.3, 0.5, 1.0, 1.0}};
+  for (const auto& [drift, first, second, start] : cases) {
+    Builder b("touch");
+    const SX x = b.state("x", {start});
+    const SX y = b.state("y", {-2});
+    b.dynamics("x", drift - first * b.sign(x * (1 + 0.1 * y)) - second * b.sign(x));
+    b.dynamics("y", 1);
+    const auto result = run(b, 2);
+    EXPECT_EQ(result.status.termination, Termination::outside_class) << drift;
+    EXPECT_NE(result.status.message.find("gradients depend on each other"), std::string::npos) << result.status.message;
+  }
+}
+
+TEST(Coupled, SlidingOfSecondOrderIsNotTakenForACrossing) {
+  // Sliding on both ends with alpha_x = 1, where y' = z for either alpha_y, and z' = 1 - 1.3 alpha_y turns y back.
+  Builder b("second order");
+  const SX x = b.state("x", {0});
+  const SX y = b.state("y", {0});
+  const SX z = b.state("z", {-1});
+  const SX alpha_x = b.step(x);
+  const SX alpha_y = b.step(y);
+  b.dynamics("x", 0.2 + alpha_y - 0.9 * alpha_x);
+  b.dynamics("y", 2 * (1 - alpha_x) + alpha_x * z);
+  b.dynamics("z", 1 - 1.3 * alpha_y);
+  const auto result = run(b, 10, {{0, 0}, {1, 0}});
+  EXPECT_TRUE(result.status.termination == Termination::outside_class ||
+              result.status.termination == Termination::completed)
+      << result.status.message;
+  EXPECT_LT(result.events.size(), 10U);
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
