@@ -73,6 +73,8 @@ std::string_view role_text(model::SwitchingRole role) {
       return "time event: the integrator restarts there";
     case model::SwitchingRole::discrete:
       return "discrete: changed by jumps only, nothing slides";
+    case model::SwitchingRole::region:
+      return "region: where its indicator is the smallest of its group";
   }
   __builtin_unreachable();
 }
@@ -132,6 +134,9 @@ std::string modes_text(const model::System& system) {
   for (const auto& group : system.mode_groups) {
     const std::string name = group.name.empty() ? "(without name)" : group.name;
     text += fmt::format("  {}: {} region{}\n", name, group.regions, group.regions == 1 ? "" : "s");
+    if (group.first >= 0) {
+      text += fmt::format("    by the smallest indicator: {}\n", fmt::join(group.mode_names, ", "));
+    }
   }
   return text;
 }

@@ -63,6 +63,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
       jump_guards.push_back({jump.name, guard, jump.targets, with_inputs(jump.values), discrete});
     }
   }
+  regions = RegionConstants(system, p, parameters);
   cells = CellFunctions(system, p, parameters);
   for (auto& end : cells.rows(system)) rows.push_back(std::move(end));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));

@@ -15,6 +15,7 @@
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
 #include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/evaluation/region_constants_internal.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/evaluation/native_code.hpp"
 
@@ -49,6 +50,7 @@ struct ModelKernel::Implementation {
   std::vector<bool> discrete;      ///< n_x
   int n_psi = 0;
 
+  RegionConstants regions;
   CellFunctions cells;
   std::vector<std::vector<bool>> on_cells;  ///< by event function
 

@@ -81,6 +81,16 @@ double ModelKernel::jump_delay(int jump, double t, const double* x, const double
   return self.jumps.delay(jump, {&t, x, self.parameters.data(), alpha});
 }
 
+const std::vector<RegionRange>& ModelKernel::region_groups() const { return implementation_->regions.groups(); }
+int ModelKernel::reference(std::size_t group) const { return implementation_->regions.reference(group); }
+
+void ModelKernel::set_reference(std::size_t group, int function) const {
+  auto& self = *implementation_;
+  if (!self.regions.set_reference(group, function, self.parameters)) return;
+  const auto& range = self.regions.groups()[group];
+  for (int j = range.first; j < range.first + range.count; ++j) self.gradients[index(j)].constant.clear();
+}
+
 int ModelKernel::cells() const { return implementation_->cells.size(); }
 int ModelKernel::cell_function(int cell) const { return event_functions() - 2 * (cells() - cell); }
 const model::CellTable& ModelKernel::cell_table(int cell) const { return implementation_->cells.table(cell); }

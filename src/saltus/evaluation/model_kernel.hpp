@@ -48,6 +48,13 @@ struct FixedState {
   double value = 0.0;
 };
 
+/// The functions of a group of modes by `indicator` (model::ModeGroup): first, first + 1, …
+struct RegionRange {
+  int first = 0;
+  int count = 0;
+  [[nodiscard]] bool holds(int function) const { return first <= function && function < first + count; }
+};
+
 /// What a right-hand side needs of its parameters and selections; filled by ModelKernel::prepare_field.
 struct FieldConstants {
   std::vector<double> values;
@@ -150,6 +157,13 @@ class ModelKernel {
   [[nodiscard]] double cell_argument(int cell, double t, const double* x, const double* alpha) const;
   /// Whether phi_j holds constants of this cell.
   [[nodiscard]] bool depends_on_cell(int function, int cell) const;
+
+  /// The groups of modes by `indicator`.
+  [[nodiscard]] const std::vector<RegionRange>& region_groups() const;
+  /// The region whose indicator the others of its group are measured against; -1 before it is first set.
+  [[nodiscard]] int reference(std::size_t group) const;
+  /// Part of where a run is, like cells. f does not depend on it if the weights of all regions are in alpha.
+  void set_reference(std::size_t group, int function) const;
 
   [[nodiscard]] long field_evaluations() const;
 

@@ -168,7 +168,7 @@ void EventSearch::enter_cells() {
 /// The affine functions of the mode as forms. Selections of a mode are constants, so a function that holds some is
 /// affine if it is for each value of theirs.
 void EventSearch::set_forms(const double* x) {
-  if (rows_[0].start.empty() || any_nesting_ || kernel_.cells() > 0) {
+  if (rows_[0].start.empty() || any_nesting_ || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
     kernel_.affine_rows(state_.alpha.data(), rows_[0]);
     forms_.load(rows_[0]);
   }

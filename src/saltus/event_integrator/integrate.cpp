@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
 #include "saltus/event_integrator/start.hpp"
 #include "saltus/event_integrator/thin_layers.hpp"
@@ -85,6 +86,7 @@ void Run::fail(Termination termination, std::string message) {
 
 bool Run::enter(const Transition& transition) {
   state_ = transition.state;
+  set_references(kernel_, state_);
   if (!options_.layers.corners.empty()) {
     const auto wanted = local_tolerances(options_.tolerances);
     tolerances_ = within_layers(kernel_, options_.layers, wanted, state_, t_, x_.data());

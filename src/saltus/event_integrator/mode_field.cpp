@@ -53,6 +53,7 @@ void ModeField::enter(const ModeState& state) {
   exits_.assign(sliding_.size(), {});
   coordinate_.assign(sliding_.size(), -1);
   constant_row_.assign(sliding_.size(), false);
+  find_regions(state);
   find_groups();
   if (sliding_.size() != 1) return;
   between_.clear();

@@ -79,6 +79,9 @@ class ModeField {
   void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
   void find_stability();
+  [[nodiscard]] bool several_regions(std::size_t row) const;
+  void find_regions(const ModeState& state);
+  void weigh_references();
   void evaluate_nonaffine(double t, const double* x);
   double selected_velocity(double t, const double* x, std::size_t row, double selection);
   void remove_normal_part(double* xdot);
@@ -101,6 +104,12 @@ class ModeField {
   std::vector<std::size_t> group_size_;           ///< by row, 0 behind the first of a group
   std::vector<std::optional<switching::RootKind>>
       kind_;  ///< by row, for the first of a pair: known once it was evaluated
+  /// Regions of a group by `indicator` that slide, as rows, and the reference they are measured against.
+  struct SlidingRegions {
+    int reference = 0;
+    std::vector<std::size_t> rows;
+  };
+  std::vector<SlidingRegions> regions_;
   std::vector<std::optional<switching::SelectionNewton>> newton_;  ///< by row, for the first of a larger group
   std::vector<double> selections_;                                 ///< of the group at hand
   std::vector<double> condition_;                                  ///< by row: of a coupled selection

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "saltus/event_integrator/mode_field.hpp"
+#include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/switching/bilinear_root.hpp"
 #include "saltus/switching/surface_decision.hpp"
@@ -48,7 +49,7 @@ void ModeField::find_groups() {
       for (std::size_t other = 0; other < m; ++other) {
         const int i = sliding_[group[k]];
         const int j = sliding_[other];
-        if (placed[other] || !(kernel_.depends(i, j) || kernel_.depends(j, i))) continue;
+        if (placed[other] || !(kernel_.depends(i, j) || kernel_.depends(j, i) || same_group(kernel_, i, j))) continue;
         group.push_back(other);
         placed[other] = true;
       }
@@ -63,15 +64,51 @@ void ModeField::find_groups() {
   newton_.assign(m, std::nullopt);
   selections_.resize(m);
   for (const auto& group : groups_) {
-    if (group.size() > 2) newton_[group[0]].emplace(static_cast<int>(group.size()));
+    if (group.size() > 2 || several_regions(group[0])) newton_[group[0]].emplace(static_cast<int>(group.size()));
+  }
+}
+
+/// Whether a row is in a group with several regions of one group by `indicator`: their weights follow from linear
+/// equations, and their exits are the zeros of these.
+bool ModeField::several_regions(std::size_t row) const {
+  const auto group = std::find_if(groups_.begin(), groups_.end(),
+                                  [&](const auto& rows) { return std::binary_search(rows.begin(), rows.end(), row); });
+  return std::any_of(regions_.begin(), regions_.end(), [&](const SlidingRegions& regions) {
+    return regions.rows.size() > 1 && std::binary_search(group->begin(), group->end(), regions.rows.front());
+  });
+}
+
+void ModeField::find_regions(const ModeState& state) {
+  regions_.clear();
+  for (const auto& group : kernel_.region_groups()) {
+    SlidingRegions regions{reference_of(state, group), {}};
+    for (std::size_t row = 0; row < sliding_.size(); ++row) {
+      if (group.holds(sliding_[row])) regions.rows.push_back(row);
+    }
+    if (!regions.rows.empty()) regions_.push_back(std::move(regions));
+  }
+}
+
+/// The reference of a group has the weight that the others leave; where there are several others, that weight ends the
+/// mode at 0, and none of theirs at 1.
+void ModeField::weigh_references() {
+  for (const auto& [reference, rows] : regions_) {
+    double weight = 1.0;
+    for (const std::size_t row : rows) weight -= alpha_[at(sliding_[row])];
+    alpha_[at(reference)] = weight;
+    if (rows.size() == 1) continue;
+    for (const std::size_t row : rows) exits_[row].above = row == rows.front() ? -weight : -1.0;
   }
 }
 
 bool ModeField::has_loss(std::size_t row) const {
+  if (several_regions(row)) return false;
   return solve_ == SlidingSolve::nonaffine || (solve_ == SlidingSolve::coupled && group_size_[row] > 1);
 }
 
-bool ModeField::has_stability(std::size_t row) const { return solve_ == SlidingSolve::coupled && group_size_[row] > 1; }
+bool ModeField::has_stability(std::size_t row) const {
+  return solve_ == SlidingSolve::coupled && group_size_[row] > 1 && !several_regions(row);
+}
 
 void ModeField::evaluate_groups(double t, const double* x) {
   trial_ = start_alpha_;
@@ -79,11 +116,11 @@ void ModeField::evaluate_groups(double t, const double* x) {
   kernel_.field(t, x, trial_.data(), f_[0].data());
   for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {normal_velocity(row, f_[0]), 0.0, 0.0, 0.0};
   for (const auto& rows : groups_) {
-    if (rows.size() == 2) {
+    if (rows.size() == 2 && !several_regions(rows.front())) {
       evaluate_pair(t, x, rows);
       continue;
     }
-    if (rows.size() > 2) {
+    if (rows.size() > 1) {
       evaluate_many(t, x, rows);
       continue;
     }
@@ -95,6 +132,7 @@ void ModeField::evaluate_groups(double t, const double* x) {
     exits_[row].above = normal_velocity(row, f_[1]);
     alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
   }
+  weigh_references();
   kernel_.field(t, x, alpha_.data(), f_[0].data());
 }
 

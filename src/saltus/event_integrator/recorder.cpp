@@ -106,6 +106,30 @@ void Recorder::add_transition(Recording::Event& event, const Transition& transit
   recording_.branch_points.push_back({recording_.event_list.size() - 1, transition.decision});
 }
 
+/// Regions that came or went, as changes of modes: 0 while active.
+void Recorder::note_changed_regions(const ModeState& before, const ModeState& after) {
+  const auto note = [&](int from, int to) {
+    listed_before_.push_back(from);
+    listed_after_.push_back(to);
+  };
+  for (const auto& range : kernel_.region_groups()) {
+    int came = 0, went = 0, active = 0;
+    for (int j = range.first; j < range.first + range.count; ++j) {
+      const bool is_active = after.mode[at(j)] == 0;
+      active += is_active ? 1 : 0;
+      if ((before.mode[at(j)] == 0) == is_active) continue;
+      (is_active ? came : went) += 1;
+      columns_.push_back(surface_of_region(j));
+    }
+    if (came == 1 && went == 1 && active == 1) {
+      note(-1, 1);  // replaced by another one
+      continue;
+    }
+    if (came > 0) note(-1, 0);
+    if (went > 0) note(0, -1);
+  }
+}
+
 bool Recorder::switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition) {
   const std::size_t number_before = number(before);
   changed_.clear();
@@ -120,6 +144,7 @@ bool Recorder::switched(double t, const std::vector<double>& x, const ModeState&
       listed_after_.push_back(transition.state.mode[j]);
     }
   }
+  note_changed_regions(before, transition.state);
   if (columns_.empty()) return false;
   auto& event = begin(t, result::kind_of_switch(listed_before_, listed_after_));
   std::sort(columns_.begin(), columns_.end());
@@ -137,6 +162,13 @@ bool Recorder::started(double t, const std::vector<double>& x, const Transition&
     const int function = system_.columns[c].function;
     const bool at_zero = std::find(surfaces.begin(), surfaces.end(), function) != surfaces.end();
     if (at_zero && system_.switching[at(function)].role == model::SwitchingRole::listed) columns_.push_back(c);
+  }
+  for (const auto& range : kernel_.region_groups()) {
+    if (std::none_of(surfaces.begin(), surfaces.end(), [&](int j) { return range.holds(j); })) continue;
+    for (int j = range.first; j < range.first + range.count; ++j) {
+      const bool here = std::find(surfaces.begin(), surfaces.end(), j) != surfaces.end();
+      if (here || transition.state.mode[at(j)] == 0) columns_.push_back(surface_of_region(j));
+    }
   }
   if (columns_.empty()) return false;
   auto& event = begin(t, result::EventKind::start);

@@ -64,6 +64,11 @@ class Recorder {
   void set_states(Recording::Event& event, const std::vector<double>& x, const std::vector<double>& x_after);
   void set_passage(Recording::Event& event, const Passage& passage);
   void add_surface(Recording::Event& event, std::size_t surface);
+  /// The place of a region of a group by `indicator` in the list of surfaces.
+  [[nodiscard]] std::size_t surface_of_region(int function) const {
+    return system_.columns.size() + static_cast<std::size_t>(function);
+  }
+  void note_changed_regions(const ModeState& before, const ModeState& after);
   void add_reason(Recording::Event& event, std::string_view reason);
   void add_transition(Recording::Event& event, const Transition& transition);
 

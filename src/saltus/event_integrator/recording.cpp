@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
@@ -30,6 +31,19 @@ std::vector<double> alpha_columns(const model::System& system, const std::vector
     columns.push_back(column.orientation > 0 ? value : 1.0 - value);
   }
   return columns;
+}
+
+/// Names of the active modes of every group by `indicator`.
+result::Regions active_regions(const model::System& system, const std::vector<int>& mode) {
+  result::Regions active;
+  for (const auto& group : system.mode_groups) {
+    if (group.first < 0) continue;
+    active.emplace_back();
+    for (int i = 0; i < group.regions; ++i) {
+      if (mode[at(group.first + i)] == 0) active.back().push_back(group.mode_names[at(i)]);
+    }
+  }
+  return active;
 }
 
 /// `count` numbers of a list from `begin` on.
@@ -89,23 +103,29 @@ std::vector<result::Event> Recording::events(const model::System& system) const 
     if (event.kind == result::EventKind::jump) entry.name = system.jumps[event.entry].name;
     if (event.kind == result::EventKind::user) entry.name = system.events[event.entry].name;
     for (std::size_t k = event.surfaces.begin; k < event.surfaces.end; ++k) {
-      entry.surfaces.push_back(event.of_jumps ? system.jumps[surfaces[k]].name : system.columns[surfaces[k]].name);
+      const std::size_t surface = surfaces[k];
+      const bool column = surface < system.columns.size();
+      entry.surfaces.push_back(event.of_jumps ? system.jumps[surface].name
+                               : column       ? system.columns[surface].name
+                                              : system.switching[surface - system.columns.size()].name);
     }
     entry.x = part(states, event.x, n_x);
     entry.x_after = part(states, event.x_after, n_x);
-    const auto expand = [&](std::size_t number, auto& mode, auto& alpha) {
+    const auto expand = [&](std::size_t number, auto& mode, auto& alpha, auto& regions) {
       if (number == none) return;
       reader.seek(number);
       mode = mode_columns(system, reader.mode(), reader.alpha());
       alpha = alpha_columns(system, reader.alpha());
+      if (auto active = active_regions(system, reader.mode()); !active.empty()) regions = std::move(active);
     };
-    expand(event.mode, entry.mode_before, entry.alpha_before);
-    expand(event.mode_after, entry.mode_after, entry.alpha_after);
+    expand(event.mode, entry.mode_before, entry.alpha_before, entry.regions_before);
+    expand(event.mode_after, entry.mode_after, entry.alpha_after, entry.regions_after);
     if (event.meeting != none) entry.intersection = intersection(system, meetings[event.meeting], reader.alpha());
     entry.unique = event.unique;
     for (std::size_t k = event.alternatives.begin; k < event.alternatives.end; ++k) {
       const auto& other = alternatives[k];
-      entry.alternatives.push_back({mode_columns(system, other.mode, other.alpha), alpha_columns(system, other.alpha)});
+      entry.alternatives.push_back({mode_columns(system, other.mode, other.alpha), alpha_columns(system, other.alpha),
+                                    active_regions(system, other.mode)});
     }
     entry.reason = text.substr(event.reason.begin, event.reason.end - event.reason.begin);
   }
@@ -126,6 +146,7 @@ result::Trajectory Recording::trajectory(const model::System& system) const {
     reader.seek(row_modes[k]);
     rows.alpha.push_back(alpha_columns(system, reader.alpha()));
     rows.mode.push_back(mode_columns(system, reader.mode(), reader.alpha()));
+    if (auto active = active_regions(system, reader.mode()); !active.empty()) rows.regions.push_back(std::move(active));
   }
   return rows;
 }
@@ -136,7 +157,7 @@ result::Final Recording::last(const model::System& system) const {
   reader.seek(row_modes.back());
   return {row_times.back(), part(row_states, row_states.size() - n_x, n_x),
           mode_columns(system, reader.mode(), reader.alpha()), alpha_columns(system, reader.alpha()),
-          part(row_outputs, row_outputs.size() - n_y, n_y)};
+          part(row_outputs, row_outputs.size() - n_y, n_y), active_regions(system, reader.mode())};
 }
 
 }  // namespace saltus::event_integrator

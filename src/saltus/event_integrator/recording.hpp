@@ -34,7 +34,7 @@ struct Recording {
     std::size_t mode = none;   ///< number in `modes`
     std::size_t mode_after = none;
     std::optional<bool> unique = true;
-    Range surfaces;  ///< columns of the result in `surfaces`, or jumps
+    Range surfaces;  ///< in `surfaces`: columns of the result, behind them switching functions of regions; or jumps
     bool of_jumps = false;
     Range alternatives;          ///< in `alternatives`
     Range reason;                ///< in `text`

@@ -5,6 +5,7 @@
 
 #include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/continuations.hpp"
+#include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -92,6 +93,7 @@ bool Run::change_mode(const Located& located) {
   }
   std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
   occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
+  note_ties(kernel_, state_, occasion);
   Transition& transition = transition_;
   if (!single_surface_.decide(before_, occasion, transition)) {
     transition = decide_mode(surroundings_, before_, occasion);

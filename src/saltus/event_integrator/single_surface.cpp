@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -30,7 +31,8 @@ bool SingleSurface::applies(const ModeState& before, const Occasion& occasion) c
   if (occasion.at_zero.size() != before.sliding.size() + (arrives ? 1 : 0)) return false;
   for (const int k : before.sliding) {
     const auto& kernel = surroundings_.kernel;
-    if (k != j && (is_inner_[at(k)] || kernel.depends(j, k) || kernel.depends(k, j))) return false;
+    if (k != j && (is_inner_[at(k)] || kernel.depends(j, k) || kernel.depends(k, j) || same_group(kernel, j, k)))
+      return false;
   }
   if (is_inner_[at(j)] || surroundings_.system.switching[at(j)].role == model::SwitchingRole::discrete) return false;
   const auto exits = occasion.exit_below.size() + occasion.exit_above.size();
@@ -122,6 +124,8 @@ void SingleSurface::fill(const ModeState& before, const Occasion& occasion, cons
   transition.beside.assign(occasion.x, occasion.x + f_.size());
   transition.zero_order.assign(state.mode.size(), 0);
   if (decision.mode != 0) transition.zero_order[at(j)] = before.mode[at(j)] == 0 ? 2 : 1;
+  rebase(surroundings_.kernel, state, transition.zero_order);
+  complete_weights(surroundings_.kernel, state);
   transition.unique = true;
   transition.other_choices.clear();
   transition.alternatives.clear();

@@ -7,6 +7,7 @@
 
 #include "saltus/event_integrator/continuations.hpp"
 #include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -54,12 +55,41 @@ bool vanishes_until_a_jump(const Surroundings& s, double t, const double* x, int
   return rate == 0.0 && s.kernel.lie_derivative(j, 2, t, x, state.alpha.data()) == 0.0;
 }
 
+/// The regions of a group by `indicator` at its minimum: the first of them is the reference, the others are at zero.
+/// With `held` ones the reference they are measured against and they are at the minimum.
+void read_regions(const Surroundings& s, double t, const double* x, const ProjectedFields& fields, std::size_t group,
+                  const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
+  const auto& range = s.kernel.region_groups()[group];
+  std::vector<double> values(at(s.kernel.event_functions()));
+  const auto is_held = [&](int j) { return std::find(held.begin(), held.end(), j) != held.end(); };
+  bool holds = false;
+  for (const int j : held) holds = holds || range.holds(j);
+  if (!holds) {
+    if (s.kernel.reference(group) < 0) s.kernel.set_reference(group, range.first);
+    s.kernel.functions(t, x, state.alpha.data(), values.data());
+    const auto first = values.begin() + range.first;
+    const auto smallest = std::max_element(first, first + range.count);  // of psi_i = g_r - g_i
+    s.kernel.set_reference(group, range.first + static_cast<int>(smallest - first));
+  }
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  const int reference = s.kernel.reference(group);
+  std::vector<ActiveRegion> active{{reference, 1.0}};
+  for (int j = range.first; j < range.first + range.count; ++j) {
+    if (j == reference) continue;
+    if (std::abs(values[at(j)]) <= fields.noise(j) || is_held(j)) active.push_back({j, 0.0});
+  }
+  for (auto& region : active) region.weight = 1.0 / static_cast<double>(active.size());
+  set_active(state, range, active);
+  for (std::size_t k = 1; k < active.size(); ++k) at_zero.push_back(active[k].region);
+}
+
 /// Signs of all switching functions, inner ones first; those at zero get 0.
 void read_signs(const Surroundings& s, double t, const double* x, const ProjectedFields& fields,
                 const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    if (s.system.switching[at(j)].role == model::SwitchingRole::region) continue;
     if (s.system.switching[at(j)].role == model::SwitchingRole::discrete) {
       read_discrete(s, t, x, j, state);
       continue;
@@ -77,6 +107,9 @@ void read_signs(const Surroundings& s, double t, const double* x, const Projecte
     } else {
       set_surface(state, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
     }
+  }
+  for (std::size_t g = 0; g < s.kernel.region_groups().size(); ++g) {
+    read_regions(s, t, x, fields, g, held, state, at_zero);
   }
 }
 
@@ -115,6 +148,7 @@ Point read_point(const Surroundings& s, double t, const double* x, double time_s
   state.mode.assign(n_psi, 1);
   state.alpha.assign(n_psi, 1.0);
   read_signs(s, t, x, fields, held, state, occasion.at_zero);
+  note_ties(s.kernel, state, occasion);
   return point;
 }
 
@@ -183,6 +217,7 @@ std::vector<double> selections_at(const Surroundings& s, double t, const double*
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     s.kernel.functions(t, x, alpha.data(), values.data());
     const auto& function = s.system.switching[at(j)];
+    if (function.role == model::SwitchingRole::region) continue;
     const double psi = values[at(j)];
     const bool discrete = function.role == model::SwitchingRole::discrete;
     if (discrete && psi == 0.0) alpha[at(j)] = function.alpha_at_zero;

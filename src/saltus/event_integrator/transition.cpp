@@ -16,7 +16,7 @@ namespace saltus::event_integrator {
 void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
                    const ModeState& before, const Occasion& occasion, std::string& reason) {
   const auto& function = system.switching[at(surface)];
-  if (function.role != model::SwitchingRole::listed) return;
+  if (function.role != model::SwitchingRole::listed && function.role != model::SwitchingRole::region) return;
   if (decision.mode == before.mode[at(surface)] && !occasion.start) return;
   if (!reason.empty()) reason += "; ";
   reason += function.name;
@@ -35,7 +35,7 @@ constexpr std::size_t largest_group = 12;
 /// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
 /// around j.
 bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j) {
-  if (kernel.depends(i, j)) return true;
+  if (kernel.depends(i, j) || same_group(kernel, i, j)) return true;
   for (int nested = 0; nested < kernel.switching_functions(); ++nested) {
     if (!contains(occasion.at_zero, nested) && contains(kernel.inner(nested), j) && kernel.depends(i, nested))
       return true;
@@ -111,6 +111,12 @@ bool Decider::decide(const std::vector<int>& group) {
       return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
     }
   }
+  if (group.size() > 1) {
+    for (const int j : group) {
+      const auto is_other = [&](int i) { return i != j && same_group(s_.kernel, i, j); };
+      if (std::any_of(group.begin(), group.end(), is_other)) return decide_regions(group);
+    }
+  }
   if (group.size() > largest_group || (!s_.affine_in_alpha && group.size() > 1)) {
     return fail(result::Termination::outside_class,
                 fmt::format("{} surfaces that influence each other meet at t = {}: {}; covered are up to {} with every "
@@ -184,6 +190,7 @@ Transition Decider::run() {
   for (int pass = 0; pass < 8; ++pass) {
     decisions_.clear();
     group_reasons_.clear();
+    region_choices_.clear();
     standing_.clear();
     transition_.unique = true;
     transition_.other_choices.clear();
@@ -198,6 +205,7 @@ Transition Decider::run() {
     for (const auto& [surface, decision] : decisions_) {
       set_surface(transition_.state, surface, decision.mode, decision.alpha);
     }
+    apply_regions();
     if (!read_nested_anew()) break;
     base_ = transition_.state;
     for (const int j : occasion_.at_zero) set_surface(base_, j, before_.mode[at(j)], before_.alpha[at(j)]);
@@ -213,13 +221,13 @@ Transition Decider::run() {
     }
   }
   for (const auto& reason : group_reasons_) transition_.reason += (transition_.reason.empty() ? "" : "; ") + reason;
-  if (set_corners()) check();
-  return transition_;
+  if (set_corners() && check()) follow_other_regions();
+  return std::move(transition_);
 }
 
 Transition Decider::run_forced() {
   if (set_corners()) check();
-  return transition_;
+  return std::move(transition_);
 }
 
 /// The mode behind a crossing where function `jumping` gets away from zero: given, only its consequences are looked at.
@@ -300,6 +308,7 @@ std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& be
 }  // namespace
 
 Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion) {
+  const ReferenceScope references(surroundings.kernel, before);
   const ModeState exact = with_exact_selections(before);
   ModeState behind = exact;
   Occasion rest = occasion;
@@ -316,6 +325,7 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   if (jumping >= 0) return Decider(surroundings, behind, rest).run_crossing(jumping);
   Transition transition = Decider(surroundings, exact, occasion).run();
   if (transition.termination == result::Termination::outside_class) {
+    set_references(surroundings.kernel, before);
     // The codimension of a kink and a surface is 2, but the kink itself does not hold the solution.
     if (auto crossed = cross_kinks(surroundings, exact, occasion)) return std::move(*crossed);
   }
@@ -323,6 +333,7 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
 }
 
 Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced, const Occasion& occasion) {
+  const ReferenceScope references(surroundings.kernel, forced);
   return Decider(surroundings, forced, occasion).run_forced();
 }
 

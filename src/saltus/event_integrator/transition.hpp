@@ -27,6 +27,7 @@ struct Occasion {
   std::vector<int> exit_above;    ///< … upper field (alpha = 1)
   std::vector<int> coalesced;     ///< first surfaces of coupled groups whose sliding root ceases to exist here
   std::vector<int> destabilised;  ///< … loses its stability under every scaling
+  std::vector<int> tied;          ///< of groups by `indicator`: all regions with the smallest one here
   bool start = false;             ///< no mode before
   bool limit = false;             ///< infinitely many switches have ended here (with `start`)
   double time_scale = 1.0;        ///< a step of the integrator: derivatives that do not move psi over it vanish

@@ -36,10 +36,16 @@ std::string undetermined_at(const ProjectedFields& fields, const model::System& 
 /// Selections of the regions that meet at the one sliding surface.
 bool Decider::set_corners() {
   auto& state = transition_.state;
-  if (state.sliding.empty()) return true;
+  rebase(s_.kernel, state, transition_.zero_order);
+  set_references(s_.kernel, state);
+  if (state.sliding.empty()) {
+    complete_weights(s_.kernel, state);
+    return true;
+  }
   for (std::size_t corner = 0; corner < 2; ++corner) {
     state.corner_alpha[corner] = fields_.corner_alpha(state.alpha, state.sliding, corner);
   }
+  complete_weights(s_.kernel, state);
   const auto is_nested = [&](int j) { return !s_.kernel.inner(j).empty(); };
   std::vector<int> nested(state.mode.size());
   std::iota(nested.begin(), nested.end(), 0);
@@ -109,7 +115,13 @@ bool Decider::check() {
       state.alpha[at(j)] = std::clamp(field.alpha()[at(j)], 0.0, 1.0);
     }
   }
-  for (const int j : occasion_.at_zero) {
+  complete_weights(s_.kernel, state);
+  // Regions are measured against the reference of the new mode: the one before may be at zero, too.
+  std::vector<int> at_zero = occasion_.at_zero;
+  for (const int j : occasion_.tied) {
+    if (!contains(at_zero, j)) at_zero.push_back(j);
+  }
+  for (const int j : at_zero) {
     const int mode = state.mode[at(j)];
     if (mode == 0) continue;
     if (contains(standing_, j)) {

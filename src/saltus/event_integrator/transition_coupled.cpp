@@ -56,7 +56,8 @@ std::optional<PlaneDecision> Decider::ask_tree(const std::vector<int>& group,
                                                const switching::CornerTable& table) const {
   if (occasion_.start || group.size() != 2 || !s_.affine_in_alpha) return std::nullopt;
   for (const int j : group) {
-    if (s_.system.switching[at(j)].role != model::SwitchingRole::listed) return std::nullopt;
+    const auto role = s_.system.switching[at(j)].role;
+    if (role != model::SwitchingRole::listed && role != model::SwitchingRole::region) return std::nullopt;
   }
   const PlaneTable plane = switching::plane_table(table);
   const PlaneMode incoming{before_.mode[at(group[0])], before_.mode[at(group[1])]};

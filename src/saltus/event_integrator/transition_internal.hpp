@@ -10,10 +10,12 @@
 
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/switching/hidden_dynamics.hpp"
 #include "saltus/switching/intersection.hpp"
+#include "saltus/switching/region_decision.hpp"
 
 namespace saltus::event_integrator {
 
@@ -29,6 +31,13 @@ std::string two_fold_at(const std::string& surface, double t);
 /// Why the motion on a surface is not determined.
 std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
                             const std::vector<double>& alpha, int surface, double t);
+
+/// What was decided where three or more regions of a group by `indicator` meet.
+struct RegionChoice {
+  evaluation::RegionRange group;
+  std::vector<std::vector<ActiveRegion>> sets;  ///< the chosen one first
+  std::string reason;
+};
 
 /// One pass over all groups with the selections of `state` for everything else.
 class Decider {
@@ -46,6 +55,12 @@ class Decider {
 
  private:
   bool decide(const std::vector<int>& group);
+  bool decide_regions(const std::vector<int>& group);
+  void apply_regions();
+  void follow_other_regions();
+  bool goes_on(const std::vector<int>& candidates, switching::RegionSet& set);
+  void step_ahead(const std::vector<int>& candidates, const switching::RegionSet& set, std::vector<double>& x);
+  switching::RegionRates region_rates(const std::vector<int>& candidates, double t, const double* x);
   switching::GroupDecision ask(const std::vector<int>& group, const switching::CornerTable& table);
   bool decide_coupled(const std::vector<int>& group, const switching::CornerTable& table);
   std::optional<switching::PlaneDecision> ask_tree(const std::vector<int>& group,
@@ -77,6 +92,7 @@ class Decider {
   Transition transition_;
   std::vector<std::pair<int, switching::SurfaceDecision>> decisions_;
   std::vector<std::string> group_reasons_;  ///< of coupled groups
+  std::vector<RegionChoice> region_choices_;
   std::vector<double> scale_;               ///< by surface: largest normal component where its group was decided
   std::vector<int> standing_;               ///< surfaces that psi does not leave, without consequence for the field
 };

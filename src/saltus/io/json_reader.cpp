@@ -56,6 +56,7 @@ result::Alternative read_alternative(JsonReader& reader, const Json& json, const
   result::Alternative alternative;
   reader.read_member(json, path, "mode", alternative.mode);
   reader.read_member(json, path, "alpha", alternative.alpha);
+  reader.read_if_there(json, path, "regions", alternative.regions);
   return alternative;
 }
 
@@ -81,6 +82,8 @@ result::Event read_event(JsonReader& reader, const Json& json, const std::string
   reader.read_member(json, path, "mode_after", event.mode_after);
   reader.read_member(json, path, "alpha_before", event.alpha_before);
   reader.read_member(json, path, "alpha_after", event.alpha_after);
+  reader.read_if_there(json, path, "regions_before", event.regions_before);
+  reader.read_if_there(json, path, "regions_after", event.regions_after);
   reader.read_member(json, path, "x", event.x);
   reader.read_member(json, path, "x_after", event.x_after);
   reader.read_member(json, path, "unique", event.unique);
@@ -105,6 +108,7 @@ void read_trajectory(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_member(json, path, "alpha", trajectory.alpha);
   reader.read_member(json, path, "mode", trajectory.mode);
   reader.read_member(json, path, "outputs", trajectory.outputs);
+  reader.read_if_there(json, path, "regions", trajectory.regions);
 }
 
 void read_affine(JsonReader& reader, const Json& json, const std::string& path, result::Surface& surface) {
@@ -152,6 +156,7 @@ void read_final(JsonReader& reader, const Json& json, const std::string& path, r
   reader.read_member(json, path, "mode", final.mode);
   reader.read_member(json, path, "alpha", final.alpha);
   reader.read_member(json, path, "outputs", final.outputs);
+  reader.read_if_there(json, path, "regions", final.regions);
 }
 
 void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics) {

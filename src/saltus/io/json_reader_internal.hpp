@@ -55,6 +55,12 @@ class JsonReader {
     if (const auto* json = member(object, path, key)) read(*json, path + "/" + key, target);
   }
 
+  /// Only models of some kinds have this member.
+  template <class Target>
+  void read_if_there(const Json& object, const std::string& path, const char* key, Target& target) {
+    if (object.is_object() && object.contains(key)) read(object[key], path + "/" + key, target);
+  }
+
   void read(const Json& json, const std::string& path, double& target) {
     if (json.is_number()) {
       target = json.get<double>();

@@ -59,6 +59,7 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   check_rows(reader, path + "/trajectory/u", trajectory.u, times, result.controls.size());
   check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, columns);
   check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, columns);
+  if (!trajectory.regions.empty()) check_length(reader, path + "/trajectory/regions", trajectory.regions, times);
   check_rows(reader, path + "/trajectory/outputs", trajectory.outputs, times, result.outputs.size());
   check_rows(reader, path + "/u", result.interval_controls, result.interval_controls.size(), result.controls.size());
   check_length(reader, path + "/final/x", result.final.x, result.states.size());

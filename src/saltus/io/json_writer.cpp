@@ -41,6 +41,7 @@ Json event_json(const result::Event& event) {
     Json alternative = Json::object();
     alternative["mode"] = other.mode;
     alternative["alpha"] = other.alpha;
+    if (!other.regions.empty()) alternative["regions"] = other.regions;
     alternatives.push_back(std::move(alternative));
   }
   Json json = Json::object();
@@ -52,6 +53,8 @@ Json event_json(const result::Event& event) {
   json["mode_after"] = or_null(event.mode_after);
   json["alpha_before"] = or_null(event.alpha_before);
   json["alpha_after"] = or_null(event.alpha_after);
+  if (event.regions_before) json["regions_before"] = *event.regions_before;
+  if (event.regions_after) json["regions_after"] = *event.regions_after;
   json["x"] = event.x;
   json["x_after"] = event.x_after;
   json["unique"] = or_null(event.unique);
@@ -68,6 +71,7 @@ Json final_json(const result::Final& final) {
   json["mode"] = final.mode;
   json["alpha"] = final.alpha;
   json["outputs"] = final.outputs;
+  if (!final.regions.empty()) json["regions"] = final.regions;
   return json;
 }
 
@@ -79,6 +83,7 @@ Json trajectory_json(const result::Trajectory& trajectory) {
   json["alpha"] = trajectory.alpha;
   json["mode"] = trajectory.mode;
   json["outputs"] = trajectory.outputs;
+  if (!trajectory.regions.empty()) json["regions"] = trajectory.regions;
   return json;
 }
 

@@ -6,6 +6,7 @@
 #include "saltus/model/guards_internal.hpp"
 #include "saltus/model/jumps_internal.hpp"
 #include "saltus/model/reduction_internal.hpp"
+#include "saltus/model/regions_internal.hpp"
 #include "saltus/model/statement_internal.hpp"
 #include "saltus/model/surface_points_internal.hpp"
 #include "saltus/model/surfaces_internal.hpp"
@@ -33,10 +34,12 @@ class Assembly {
     if (auto error = take_expressions()) return tl::unexpected(*error);
     if (auto error = take_events()) return tl::unexpected(*error);
     if (auto error = take_jumps()) return tl::unexpected(*error);
+    if (auto error = take_regions()) return tl::unexpected(*error);
     keep_used_functions();
     classify_functions();
     if (auto error = take_right_hand_side()) return tl::unexpected(*error);
     take_switching();
+    if (auto error = add_regions(graph_, statement_, sliding_, system_)) return tl::unexpected(*error);
     take_cells();
     take_columns();
     system_.warnings = statement_.warnings;
@@ -72,6 +75,7 @@ class Assembly {
     for (const auto& group : statement_.mode_groups) {
       system_.mode_groups.push_back({group.name, static_cast<int>(group.modes.size())});
     }
+    in_regions_ = moved_by_regions(statement_);
     for (const auto& control : statement_.controls) {
       system_.control_names.push_back(control.name);
       system_.control_initial.push_back(control.initial);
@@ -88,7 +92,8 @@ class Assembly {
       x.push_back(state.symbol);
       if (auto error = take_root(*state.dynamics, f_)) return located_error(*error, state.dynamics_location);
       const auto& rate = graph_.tape()[f_.back()];
-      system_.discrete_states.push_back(rate.written == 0 && constant_value(graph_.tape(), f_.back()) == 0.0);
+      system_.discrete_states.push_back(rate.written == 0 && constant_value(graph_.tape(), f_.back()) == 0.0 &&
+                                        !in_regions_[f_.size() - 1]);
     }
     for (const auto& output : statement_.outputs) {
       system_.output_names.push_back(output.name);
@@ -117,6 +122,17 @@ class Assembly {
     }
     system_.u = column(u);
     system_.input = column(input);
+    return std::nullopt;
+  }
+
+  /// Indicators and right-hand sides of modes by `indicator`.
+  std::optional<Error> take_regions() {
+    for (const auto& [indicator, location] : indicators(statement_)) {
+      if (auto error = take_root(indicator, others_)) return located_error(*error, location);
+    }
+    for (const auto& [state, rate, location] : region_rates(statement_)) {
+      if (auto error = take_root(rate, others_)) return located_error(*error, location);
+    }
     return std::nullopt;
   }
 
@@ -249,32 +265,35 @@ class Assembly {
 
   std::optional<Error> take_right_hand_side() {
     // Only the alphas of listed surfaces can stay between 0 and 1 where their value matters.
-    std::set<int> sliding;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-      if (classes_[i].role == SwitchingRole::listed) sliding.insert(surfaces_[i].alpha);
+      if (classes_[i].role == SwitchingRole::listed) sliding_.insert(surfaces_[i].alpha);
     }
     std::vector<SXElem> as_written, reduced;
     for (std::size_t i = 0; i < f_.size(); ++i) {
       const auto& state = statement_.states[i];
       as_written.push_back(*state.dynamics);
-      if (bends(f_[i], sliding)) system_.inclusion_differences.push_back(state.name);
+      if (bends(f_[i])) system_.inclusion_differences.push_back(state.name);
       if (statement_.inclusion == Inclusion::aizerman_pyatnitskii) {
         reduced.push_back(*state.dynamics);
         continue;
       }
-      auto component = interpolate(graph_, f_[i], sliding, state.name);
+      auto component = interpolate(graph_, f_[i], sliding_, state.name);
       if (!component) return located_error(component.error(), state.dynamics_location);
       reduced.push_back(*component);
+    }
+    for (const auto& [state, rate, location] : region_rates(statement_)) {
+      const auto& name = statement_.states[static_cast<std::size_t>(state)].name;
+      if (bends(graph_.node(rate))) system_.inclusion_differences.push_back(name);
     }
     system_.f_as_written = column(as_written);
     system_.f = column(reduced);
     return std::nullopt;
   }
 
-  bool bends(int node, const std::set<int>& sliding) {
+  bool bends(int node) {
     bool found = false;
     for (const int alpha : nonaffine_alphas(graph_.tape(), node)) {
-      if (!sliding.contains(alpha)) continue;
+      if (!sliding_.contains(alpha)) continue;
       system_.multi_affine = false;
       found = found || bends_on_surface(graph_.tape(), {graph_.tape()[alpha].psi, alpha}, discrete_, node);
     }
@@ -365,6 +384,8 @@ class Assembly {
   SxGraph& graph_;
   const Statement& statement_;
   System system_;
+  std::set<int> sliding_;                 ///< alpha nodes of listed functions
+  std::vector<bool> in_regions_;          ///< by state: a mode by `indicator` moves it
   std::vector<int> f_, others_, inputs_;  ///< nodes: right-hand sides; outputs, events, jumps; inputs
   std::vector<bool> used_;                ///< by met function: something but a named psi needs it
   std::vector<int> kept_, new_index_;     ///< met functions that stay, and the new number of every one

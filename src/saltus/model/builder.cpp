@@ -90,8 +90,7 @@ struct Builder::Parts {
     return &jumps.back();
   }
 
-  void add_mode(std::optional<Condition> when, const std::map<std::string, SX>& rates, const std::string& group) {
-    ModeStatement mode{.when = std::move(when)};
+  void add_mode(ModeStatement mode, const std::map<std::string, SX>& rates, const std::string& group) {
     for (const auto& [name, rate] : rates) {
       const auto* state = find(statement.states, name, NameKind::state);
       if (state == nullptr) return;
@@ -101,6 +100,22 @@ struct Builder::Parts {
     auto& groups = statement.mode_groups;
     auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.name == group; });
     if (known == groups.end()) known = groups.insert(groups.end(), {group, {}});
+    if (mode.indicator && mode.name.empty()) mode.name = fmt::format("mode{}", known->modes.size() + 1);
+    for (const auto& other : known->modes) {
+      if (other.indicator.has_value() != mode.indicator.has_value()) {
+        fail({ErrorCode::invalid_model,
+              fmt::format("the group '{}' has modes with conditions and regions by indicator", group),
+              "give all modes of a group the same form, or another group",
+              {},
+              {}});
+      } else if (mode.indicator && other.name == mode.name) {
+        fail({ErrorCode::invalid_model,
+              fmt::format("two modes are named '{}'", mode.name),
+              "rename one of them",
+              {},
+              {}});
+      }
+    }
     known->modes.push_back(std::move(mode));
   }
 
@@ -265,11 +280,17 @@ void Builder::dynamics(const std::string& state, const SX& rate) {
 }
 
 void Builder::mode(const Condition& when, const std::map<std::string, SX>& rates, const std::string& group) {
-  parts_->add_mode(when, rates, group);
+  parts_->add_mode({.when = when}, rates, group);
 }
 
 void Builder::otherwise(const std::map<std::string, SX>& rates, const std::string& group) {
-  parts_->add_mode(std::nullopt, rates, group);
+  parts_->add_mode({}, rates, group);
+}
+
+void Builder::region(const SX& indicator, const std::map<std::string, SX>& rates, const std::string& name,
+                     const std::string& group) {
+  ModeStatement mode{.indicator = parts_->entry(indicator, "an indicator"), .name = name};
+  parts_->add_mode(std::move(mode), rates, group);
 }
 
 void Builder::output(const std::string& name, const SX& expression) {

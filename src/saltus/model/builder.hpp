@@ -106,6 +106,10 @@ class Builder {
   /// other groups; a state that is not among them gets 0. The modes of a group cover every sign pattern of their
   /// switching functions exactly once.
   void mode(const Condition& when, const std::map<std::string, casadi::SX>& rates, const std::string& group = "");
+  /// One mode of a group by indicator: it holds where its indicator is the smallest of the group (Stewart's form); the
+  /// fields of regions with equal indicators mix. Without a name it is mode1, mode2, … by its position.
+  void region(const casadi::SX& indicator, const std::map<std::string, casadi::SX>& rates, const std::string& name = "",
+              const std::string& group = "");
   /// The mode that holds where no other one of the group does.
   void otherwise(const std::map<std::string, casadi::SX>& rates, const std::string& group = "");
   void output(const std::string& name, const casadi::SX& expression);

@@ -45,12 +45,8 @@ class ModeReader {
       if (auto error = check_group(mode)) return error;
       if (auto error = read(mode)) return error;
     }
-    for (const auto& mode : description_.modes) {
-      if (!mode.indicator) continue;
-      Error error = mode_error(mode, "modes with an `indicator` are run by a later version",
-                               "until then state the regions by conditions: when = \"…\"");
-      error.code = ErrorCode::not_available;
-      return error;
+    for (const auto& group : statement_.mode_groups) {
+      if (auto error = check_names(group)) return error;
     }
     return std::nullopt;
   }
@@ -72,12 +68,29 @@ class ModeReader {
     return std::nullopt;
   }
 
+  /// A default name may be that of another mode.
+  static std::optional<Error> check_names(const ModeGroupStatement& group) {
+    std::set<std::string> names;
+    for (const auto& mode : group.modes) {
+      if (!mode.indicator || names.insert(mode.name).second) continue;
+      return Error{
+          ErrorCode::invalid_model,
+          fmt::format("two modes are named '{}' (modes without a name are mode1, mode2, … by position)", mode.name),
+          "rename one of them",
+          mode.location,
+          {"in [[modes]]"}};
+    }
+    return std::nullopt;
+  }
+
   std::optional<Error> read(const ModeDescription& mode) {
     ModeStatement stated;
     stated.location = mode.location;
     if (mode.indicator) {
       const auto indicator = scope_.expression(*mode.indicator);
       if (!indicator) return with_context(indicator.error(), "in [[modes]]");
+      stated.indicator = *indicator;
+      stated.name = mode.name.value_or(fmt::format("mode{}", group(mode.group).modes.size() + 1));
     } else if (!is_otherwise(*mode.when)) {
       auto when = scope_.translation().condition(*mode.when);
       if (!when) return with_context(when.error(), "in [[modes]]");
@@ -130,6 +143,15 @@ std::optional<Error> state_modes(const Description& description, ModelScope& sco
 
 std::optional<Error> add_modes(Recognition& recognition, Statement& statement) {
   for (const auto& group : statement.mode_groups) {
+    if (group.by_indicator()) {
+      // Regions are weighted by selections of their own, which the assembly makes.
+      for (const auto& mode : group.modes) {
+        for (const auto& [state, rate, location] : mode.rates) {
+          add_rate(statement.states[static_cast<std::size_t>(state)], SXElem(0.0), location);
+        }
+      }
+      continue;
+    }
     auto regions = regions_of(recognition, group);
     if (!regions) return with_context(regions.error(), "in [[modes]]");
     std::vector<SXElem> alphas;

@@ -104,7 +104,9 @@ struct ModeRate {
 };
 
 struct ModeStatement {
-  std::optional<Condition> when{};  ///< absent: otherwise
+  std::optional<Condition> when{};  ///< absent: otherwise, or by indicator
+  std::optional<SXElem> indicator{};
+  std::string name{};  ///< with an indicator
   std::vector<ModeRate> rates{};
   SourceLocation location{};
 };
@@ -112,6 +114,7 @@ struct ModeStatement {
 struct ModeGroupStatement {
   std::string name;
   std::vector<ModeStatement> modes;
+  [[nodiscard]] bool by_indicator() const { return modes.front().indicator.has_value(); }
 };
 
 struct Statement {

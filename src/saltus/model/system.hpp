@@ -19,6 +19,7 @@ enum class SwitchingRole {
   kink,        ///< nothing jumps on its surface: restart only (column if named)
   time_event,  ///< depends on time and controls only: restart only (column if named)
   discrete,    ///< depends on discrete states only: changes by jumps only, never slides; at zero it is as written
+  region,      ///< of a mode by `indicator`: see ModeGroup; in no column
 };
 
 /// psi_j(t, x, u, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index (nesting).
@@ -86,9 +87,19 @@ struct Cell {
 };
 
 /// A group of [[modes]], of which one holds at a time; its part of the right-hand side is in f.
+///
+/// By `when` the regions are unions of sign patterns. By `indicator` (Stewart's form [stewart1990]) region i is where
+/// g_i is smallest. Where several are, their fields f_i mix with weights theta_i >= 0, sum_i theta_i = 1. Each region
+/// is a switching function of role `region`,
+///   psi_i = g_r - g_i,   alpha_i = theta_i,
+/// against a region r of the group that is active, its reference: psi_i < 0 where i is not active, psi_i = 0 where it
+/// is. What stands for theta_r in f is 1 less the others, so that the theta_i, i != r, are selections like any other.
 struct ModeGroup {
   std::string name;  ///< empty for the group without a name
   int regions = 0;
+  int first = -1;                         ///< by `indicator`: index of its first function in System::switching
+  std::vector<std::string> mode_names{};  ///< by `indicator`: given, or mode1, mode2, …
+  casadi::SX reference{};                 ///< by `indicator`: a symbol per region, 1 for the reference and 0 for others
 };
 
 /// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j), with the constants of cells as further symbols. With

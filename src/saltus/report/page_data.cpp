@@ -85,6 +85,8 @@ json event_data(const result::Event& event, std::size_t most) {
           {"mode_after", head_or_null(event.mode_after, most)},
           {"alpha_before", head_or_null(event.alpha_before, most)},
           {"alpha_after", head_or_null(event.alpha_after, most)},
+          {"regions_before", or_null(event.regions_before)},
+          {"regions_after", or_null(event.regions_after)},
           {"x", head(event.x, most)},
           {"x_after", head(event.x_after, most)},
           {"unique", or_null(event.unique)},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace saltus::report {
 namespace {
@@ -86,6 +87,19 @@ std::string modes(const result::Event& event) {
   return fmt::format("{} > {}", signs(event.mode_before), signs(event.mode_after));
 }
 
+/// "a > a+b; c": the active modes of every group before and behind, once where they stay.
+std::string regions(const result::Event& event) {
+  std::string text;
+  const auto joined = [](const std::vector<std::string>& active) { return fmt::format("{}", fmt::join(active, "+")); };
+  for (std::size_t g = 0; event.regions_after && g < event.regions_after->size(); ++g) {
+    const auto& after = (*event.regions_after)[g];
+    if (g > 0) text += "; ";
+    if (event.regions_before && (*event.regions_before)[g] != after) text += joined((*event.regions_before)[g]) + " > ";
+    text += joined(after);
+  }
+  return text;
+}
+
 std::string what(const result::Event& event) {
   std::string text = event.name.value_or("");
   for (const auto& surface : event.surfaces) {
@@ -103,8 +117,13 @@ using Row = std::vector<std::string>;
 
 Row event_row(std::size_t number, const result::Event& event, std::size_t columns) {
   const bool with_modes = columns > 0 && columns <= most_signs;
-  return {fmt::format("{}", number),  fmt::format("{:.12g}", event.t), std::string(name(event.kind)),
-          shortened(what(event), 24), with_modes ? modes(event) : "",  remark(event)};
+  return {fmt::format("{}", number),
+          fmt::format("{:.12g}", event.t),
+          std::string(name(event.kind)),
+          shortened(what(event), 24),
+          with_modes ? modes(event) : "",
+          shortened(regions(event), 40),
+          remark(event)};
 }
 
 std::string aligned(const std::vector<Row>& rows) {
@@ -129,12 +148,13 @@ std::string event_table(const result::Result& result) {
   if (events.empty()) return "events      none\n";
   const std::size_t columns = result.switching_functions.size();
   const bool all = events.size() <= 2 * shown_at_each_end;
-  std::vector<Row> rows{{"#", "t", "kind", "surfaces", columns > 0 && columns <= most_signs ? "mode" : "", ""}};
+  std::vector<Row> rows{{"#", "t", "kind", "surfaces", columns > 0 && columns <= most_signs ? "mode" : "",
+                         events.front().regions_after ? "regions" : "", ""}};
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (all || i < shown_at_each_end || i + shown_at_each_end >= events.size()) {
       rows.push_back(event_row(i + 1, events[i], columns));
     } else if (i == shown_at_each_end) {
-      rows.push_back({"…", "", "", "", "", ""});
+      rows.push_back({"…", "", "", "", "", "", ""});
     }
   }
   const auto count = all ? fmt::format("events      {}\n", events.size())

@@ -26,9 +26,13 @@ enum class EventKind { start, crossing, enter_sliding, leave_sliding, change_sli
 /// The kind of a switch from the components of the modes (interface.md section 3).
 [[nodiscard]] EventKind kind_of_switch(const Mode& before, const Mode& after);
 
+/// The active modes of every group by `indicator`, in the order of the model; empty without such groups.
+using Regions = std::vector<std::vector<std::string>>;
+
 struct Alternative {
   Mode mode;
   std::vector<double> alpha;  ///< one per switching function; NaN where not determined
+  Regions regions{};
 };
 
 /// The fields where two surfaces that influence each other were met: what a picture of the decision needs.
@@ -48,6 +52,7 @@ struct Event {
   std::vector<std::string> surfaces;
   std::optional<Mode> mode_before, mode_after;
   std::optional<std::vector<double>> alpha_before, alpha_after;
+  std::optional<Regions> regions_before, regions_after;
   std::vector<double> x, x_after;
   std::optional<bool> unique = true;  ///< nullopt: not decided
   std::vector<Alternative> alternatives;
@@ -61,6 +66,7 @@ struct Trajectory {
   std::vector<std::vector<double>> x, u, alpha;
   std::vector<Mode> mode;
   std::vector<std::vector<double>> outputs;
+  std::vector<Regions> regions;  ///< a row per time if there are groups by `indicator`, else none
 };
 
 struct Final {
@@ -69,6 +75,7 @@ struct Final {
   Mode mode;
   std::vector<double> alpha;
   std::vector<double> outputs;
+  Regions regions{};
 };
 
 struct Statistics {

@@ -235,6 +235,14 @@ void Regulariser::finish() {
 }
 
 Expected<Regularisation> Regulariser::run() {
+  const auto& groups = original_.mode_groups;
+  if (std::any_of(groups.begin(), groups.end(), [](const auto& group) { return group.first >= 0; })) {
+    return tl::unexpected(Error{ErrorCode::not_available,
+                                "method \"smoothed\" does not cover modes by `indicator`",
+                                "use --method event",
+                                {},
+                                {}});
+  }
   for (int j = 0; j < static_cast<int>(inner_.size()); ++j) find_inner(j);
   std::sort(all_inner_.begin(), all_inner_.end());
   all_inner_.erase(std::unique(all_inner_.begin(), all_inner_.end()), all_inner_.end());

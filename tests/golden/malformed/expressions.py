@@ -82,7 +82,8 @@ FILES = {
                                  "'otherwise' is no condition: it stands alone"),
     "otherwise in dynamics": (with_line(9, 'x = "otherwise"'), "9:6", "otherwise"),
     "state twice in a mode": (modes("when = 'x > 0'\ndynamics = { x = 1, x = 2 }\n"), 15, "not valid TOML"),
-    "indicators": (modes("indicator = 'x'\ndynamics = { x = 1 }\n"), 13, "run by a later version"),
+    "indicators with conditions": (modes("indicator = 'x'\ndynamics = { x = 1 }\n[[modes]]\nwhen = 'x > 0'\n"
+                                         "dynamics = { x = 1 }\n"), 16, "in one group"),
     # events
     "event cut": (after("[[events]]\nwhen = 'x -'\n"), "14:12", "expect"),
     "event of nothing known": (after("[[events]]\nwhen = 'y > 0'\n"), "14:9", "unknown name 'y'"),

@@ -197,12 +197,20 @@ Description with_indicators(const std::string& second) {
   return description;
 }
 
-TEST(Modes, IndicatorsAreReadCheckedAndRefused) {
+TEST(Modes, IndicatorsAreReadAndChecked) {
   Description description = with_indicators("(x - 1)^2");
   auto system = build(description);
+  ASSERT_TRUE(system.has_value()) << to_text(system.error());
+  ASSERT_EQ(system->mode_groups.size(), 1U);
+  EXPECT_EQ(system->mode_groups[0].first, 0);
+  EXPECT_EQ(system->mode_groups[0].mode_names, (std::vector<std::string>{"mode1", "mode2"}));
+  ASSERT_EQ(system->switching.size(), 2U);
+  EXPECT_EQ(system->switching[1].role, SwitchingRole::region);
+  EXPECT_TRUE(system->columns.empty());
+  description.modes[1].name = "mode1";
+  system = build(description);
   ASSERT_FALSE(system.has_value());
-  EXPECT_EQ(system.error().code, ErrorCode::not_available);
-  expect_contains(system.error().message, "run by a later version");
+  expect_contains(system.error().message, "modes without a name are mode1");
   description.modes[0].name = description.modes[1].name = "left";
   system = build(description);
   ASSERT_FALSE(system.has_value());

@@ -1,0 +1,141 @@
+// Where three or more regions of a group by `indicator` meet: Stewart's complementarity system decides.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/transition_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// Weights and rates below this fraction of their scale are looked at a little later along the motion. It only has to
+/// be well above what an event is located to.
+constexpr double marginal = 1e-7;
+
+std::vector<ActiveRegion> active_of(const std::vector<int>& candidates, const switching::RegionSet& set) {
+  std::vector<ActiveRegion> active;
+  for (std::size_t k = 0; k < set.active.size(); ++k) {
+    active.push_back({candidates[at(set.active[k])], std::clamp(set.weights[k], 0.0, 1.0)});
+  }
+  return active;
+}
+
+}  // namespace
+
+/// d/dt (g_i - g_r) of all candidates along the field of each; the first of them is the reference r.
+switching::RegionRates Decider::region_rates(const std::vector<int>& candidates, double t, const double* x) {
+  Occasion there = occasion_;
+  there.t = t;
+  there.x = x;
+  const ProjectedFields fields(s_.kernel, there);
+  const std::vector<int> others(candidates.begin() + 1, candidates.end());
+  const auto n = candidates.size();
+  switching::RegionRates rates{static_cast<int>(n), std::vector<double>(n * n, 0.0)};
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<double> alpha = base_.alpha;
+    for (const int region : candidates) alpha[at(region)] = 0.0;
+    alpha[at(candidates[j])] = 1.0;
+    const auto velocities = fields.velocities(alpha, others);
+    for (std::size_t i = 1; i < n; ++i) rates.rates[i * n + j] = -velocities[i - 1];
+  }
+  return rates;
+}
+
+/// x := a little later along the motion of a set (midpoint rule).
+void Decider::step_ahead(const std::vector<int>& candidates, const switching::RegionSet& set, std::vector<double>& x) {
+  const double time = 1e-2 * occasion_.time_scale;
+  x.assign(occasion_.x, occasion_.x + s_.kernel.states());
+  std::vector<double> f(x.size());
+  switching::RegionSet own = set;
+  for (const double fraction : {0.5, 1.0}) {
+    std::vector<double> alpha = base_.alpha;
+    for (const int region : candidates) alpha[at(region)] = 0.0;
+    for (std::size_t k = 0; k < own.active.size(); ++k) alpha[at(candidates[at(own.active[k])])] = own.weights[k];
+    s_.kernel.field(occasion_.t + 0.5 * (fraction > 0.5 ? time : 0.0), x.data(), alpha.data(), f.data());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = occasion_.x[i] + fraction * time * f[i];
+    if (fraction < 1.0 &&
+        !switching::solve_region_set(region_rates(candidates, occasion_.t + 0.5 * time, x.data()), set.active, own)) {
+      return;
+    }
+  }
+}
+
+/// Whether a set that is admissible to rounding is so a little later along its own motion. What stays on the verge (an
+/// equilibrium of one of the fields) is marked as not attracting: it is the last to be taken.
+bool Decider::goes_on(const std::vector<int>& candidates, switching::RegionSet& set) {
+  constexpr double rounding = 1e-14;
+  std::vector<double> ahead;
+  step_ahead(candidates, set, ahead);
+  switching::RegionSet later;
+  const auto rates = region_rates(candidates, occasion_.t + 1e-2 * occasion_.time_scale, ahead.data());
+  if (!switching::solve_region_set(rates, set.active, later) || !(later.margin >= -rounding)) return false;
+  if (later.margin <= rounding) set.attracts = false;
+  return true;
+}
+
+bool Decider::decide_regions(const std::vector<int>& group) {
+  const auto& groups = s_.kernel.region_groups();
+  const auto range = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
+    return std::any_of(group.begin(), group.end(), [&](int j) { return g.holds(j); });
+  });
+  const bool alone = std::all_of(group.begin(), group.end(), [&](int j) { return range->holds(j); });
+  constexpr std::size_t most = 12;
+  if (!alone || group.size() >= most || !s_.affine_in_alpha) {
+    return fail(result::Termination::outside_class,
+                fmt::format("at t = {} three or more regions by `indicator` meet on other surfaces that influence "
+                            "them ({}), or more than {} regions meet: that decision is not available; perturb a "
+                            "parameter",
+                            occasion_.t, names(s_.system, group), most));
+  }
+  std::vector<int> candidates{reference_of(before_, *range)};
+  candidates.insert(candidates.end(), group.begin(), group.end());
+  const auto rates = region_rates(candidates, occasion_.t, occasion_.x);
+  std::vector<switching::RegionSet> sets;
+  for (auto& set : switching::admissible_region_sets(rates, marginal)) {
+    if (set.margin > marginal || goes_on(candidates, set)) sets.push_back(std::move(set));
+  }
+  if (sets.empty()) {
+    return fail(result::Termination::no_admissible_mode,
+                fmt::format("the regions {} meet at t = {}, and no set of them continues the solution",
+                            names(s_.system, candidates), occasion_.t));
+  }
+  std::vector<int> before;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const auto j = candidates[k];
+    if (!occasion_.start && before_.mode[at(j)] == 0) before.push_back(static_cast<int>(k));
+  }
+  const auto best = switching::preferred_region_set(sets, before);
+  RegionChoice choice{*range, {active_of(candidates, sets[best])}, {}};
+  std::vector<int> active;
+  for (const auto& region : choice.sets.front()) active.push_back(region.region);
+  choice.reason =
+      fmt::format("{}: {} by Stewart's complementarity system", names(s_.system, candidates), names(s_.system, active));
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    if (k != best) choice.sets.push_back(active_of(candidates, sets[k]));
+  }
+  if (choice.sets.size() > 1) transition_.unique = false;
+  group_reasons_.push_back(choice.reason);
+  region_choices_.push_back(std::move(choice));
+  return true;
+}
+
+void Decider::apply_regions() {
+  for (const auto& choice : region_choices_) set_active(transition_.state, choice.group, choice.sets.front());
+}
+
+/// The other sets of regions that continue the solution, as alternatives.
+void Decider::follow_other_regions() {
+  for (const auto& choice : region_choices_) {
+    for (std::size_t k = 1; k < choice.sets.size(); ++k) {
+      ModeState other = transition_.state;
+      set_active(other, choice.group, choice.sets[k]);
+      Transition checked = check_forced_mode(s_, other, occasion_);
+      if (checked.termination != result::Termination::completed) continue;
+      checked.reason = choice.reason;
+      checked.unique = false;
+      transition_.alternatives.push_back(std::move(checked));
+    }
+  }
+}
+
+}  // namespace saltus::event_integrator
