@@ -15,9 +15,9 @@
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
 #include "saltus/evaluation/model_function_internal.hpp"
-#include "saltus/evaluation/region_constants_internal.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/evaluation/native_code.hpp"
+#include "saltus/evaluation/region_constants_internal.hpp"
 
 namespace saltus::evaluation {
 

@@ -102,6 +102,12 @@ void Decider::note_scales(const std::vector<int>& group, const switching::Corner
 }
 
 bool Decider::decide(const std::vector<int>& group) {
+  if (group.size() > 1) {
+    for (const int j : group) {
+      const auto is_other = [&](int i) { return i != j && same_group(s_.kernel, i, j); };
+      if (std::any_of(group.begin(), group.end(), is_other)) return decide_regions(group);
+    }
+  }
   for (const int j : group) {
     const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
     // An exit is located where one field is tangent: its selection is at its bound to rounding over the other field,
@@ -109,12 +115,6 @@ bool Decider::decide(const std::vector<int>& group) {
     constexpr double lost = 1e-6;
     if (at_exit && !(before_.alpha[at(j)] >= -lost && before_.alpha[at(j)] <= 1.0 + lost)) {
       return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
-    }
-  }
-  if (group.size() > 1) {
-    for (const int j : group) {
-      const auto is_other = [&](int i) { return i != j && same_group(s_.kernel, i, j); };
-      if (std::any_of(group.begin(), group.end(), is_other)) return decide_regions(group);
     }
   }
   if (group.size() > largest_group || (!s_.affine_in_alpha && group.size() > 1)) {

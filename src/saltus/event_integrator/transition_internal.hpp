@@ -55,6 +55,7 @@ class Decider {
 
  private:
   bool decide(const std::vector<int>& group);
+  bool cross_beside(int surface);
   bool decide_regions(const std::vector<int>& group);
   void apply_regions();
   void follow_other_regions();

@@ -73,12 +73,31 @@ bool Decider::goes_on(const std::vector<int>& candidates, switching::RegionSet& 
   return true;
 }
 
+/// A kink, or a time, that is passed where regions meet: nothing slides on it, they feel its other side from here on.
+bool Decider::cross_beside(int surface) {
+  const auto role = s_.system.switching[at(surface)].role;
+  const int mode = before_.mode[at(surface)];
+  const bool passes = role == model::SwitchingRole::kink || role == model::SwitchingRole::time_event;
+  if (!passes || occasion_.start || mode == 0) return false;
+  set_surface(base_, surface, -mode, mode > 0 ? 0.0 : 1.0);
+  take({surface}, {-mode}, {mode > 0 ? 0.0 : 1.0});
+  return true;
+}
+
 bool Decider::decide_regions(const std::vector<int>& group) {
   const auto& groups = s_.kernel.region_groups();
   const auto range = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
     return std::any_of(group.begin(), group.end(), [&](int j) { return g.holds(j); });
   });
-  const bool alone = std::all_of(group.begin(), group.end(), [&](int j) { return range->holds(j); });
+  std::vector<int> candidates{reference_of(before_, *range)};
+  bool alone = true;
+  for (const int j : group) {
+    if (range->holds(j)) {
+      candidates.push_back(j);
+    } else {
+      alone = alone && cross_beside(j);
+    }
+  }
   constexpr std::size_t most = 12;
   if (!alone || group.size() >= most || !s_.affine_in_alpha) {
     return fail(result::Termination::outside_class,
@@ -87,8 +106,6 @@ bool Decider::decide_regions(const std::vector<int>& group) {
                             "parameter",
                             occasion_.t, names(s_.system, group), most));
   }
-  std::vector<int> candidates{reference_of(before_, *range)};
-  candidates.insert(candidates.end(), group.begin(), group.end());
   const auto rates = region_rates(candidates, occasion_.t, occasion_.x);
   std::vector<switching::RegionSet> sets;
   for (auto& set : switching::admissible_region_sets(rates, marginal)) {
