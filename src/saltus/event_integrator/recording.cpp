@@ -46,6 +46,18 @@ result::Regions active_regions(const model::System& system, const std::vector<in
   return active;
 }
 
+/// Weights of all modes by `indicator`: those of the inactive ones are exactly 0.
+std::vector<double> region_weights(const model::System& system, const std::vector<int>& mode,
+                                   const std::vector<double>& alpha) {
+  std::vector<double> theta;
+  for (const auto& group : system.mode_groups) {
+    for (int j = group.first; group.first >= 0 && j < group.first + group.regions; ++j) {
+      theta.push_back(mode[at(j)] == 0 ? alpha[at(j)] : 0.0);
+    }
+  }
+  return theta;
+}
+
 /// `count` numbers of a list from `begin` on.
 std::vector<double> part(const std::vector<double>& list, std::size_t begin, std::size_t count) {
   const auto first = list.begin() + static_cast<std::ptrdiff_t>(begin);
@@ -146,7 +158,10 @@ result::Trajectory Recording::trajectory(const model::System& system) const {
     reader.seek(row_modes[k]);
     rows.alpha.push_back(alpha_columns(system, reader.alpha()));
     rows.mode.push_back(mode_columns(system, reader.mode(), reader.alpha()));
-    if (auto active = active_regions(system, reader.mode()); !active.empty()) rows.regions.push_back(std::move(active));
+    if (auto active = active_regions(system, reader.mode()); !active.empty()) {
+      rows.regions.push_back(std::move(active));
+      rows.theta.push_back(region_weights(system, reader.mode(), reader.alpha()));
+    }
   }
   return rows;
 }
@@ -155,9 +170,13 @@ result::Final Recording::last(const model::System& system) const {
   SALTUS_ASSERT(!row_times.empty());
   ModeLog::Reader reader(modes);
   reader.seek(row_modes.back());
-  return {row_times.back(), part(row_states, row_states.size() - n_x, n_x),
-          mode_columns(system, reader.mode(), reader.alpha()), alpha_columns(system, reader.alpha()),
-          part(row_outputs, row_outputs.size() - n_y, n_y), active_regions(system, reader.mode())};
+  return {row_times.back(),
+          part(row_states, row_states.size() - n_x, n_x),
+          mode_columns(system, reader.mode(), reader.alpha()),
+          alpha_columns(system, reader.alpha()),
+          part(row_outputs, row_outputs.size() - n_y, n_y),
+          active_regions(system, reader.mode()),
+          region_weights(system, reader.mode(), reader.alpha())};
 }
 
 }  // namespace saltus::event_integrator

@@ -94,8 +94,8 @@ class Decider {
   std::vector<std::pair<int, switching::SurfaceDecision>> decisions_;
   std::vector<std::string> group_reasons_;  ///< of coupled groups
   std::vector<RegionChoice> region_choices_;
-  std::vector<double> scale_;               ///< by surface: largest normal component where its group was decided
-  std::vector<int> standing_;               ///< surfaces that psi does not leave, without consequence for the field
+  std::vector<double> scale_;  ///< by surface: largest normal component where its group was decided
+  std::vector<int> standing_;  ///< surfaces that psi does not leave, without consequence for the field
 };
 
 }  // namespace saltus::event_integrator

@@ -1,6 +1,7 @@
 #include <iterator>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/io/json_result.hpp"
 
@@ -28,6 +29,10 @@ void append_rows(std::string& text, const result::Trajectory& trajectory, const 
     append(text, trajectory.u[i]);
     append(text, trajectory.alpha[i]);
     append(text, trajectory.mode[i]);
+    if (!trajectory.regions.empty()) {
+      for (const auto& active : trajectory.regions[i]) text += "," + field(fmt::format("{}", fmt::join(active, "+")));
+      append(text, trajectory.theta[i]);
+    }
     text += end + "\n";
   }
 }
@@ -40,6 +45,10 @@ std::string to_csv(const result::Result& result) {
   for (const auto& control : result.controls) text += "," + field(control);
   for (const auto& name : result.switching_functions) text += "," + field("alpha(" + name + ")");
   for (const auto& name : result.switching_functions) text += "," + field("mode(" + name + ")");
+  for (const auto& group : result.region_groups) {
+    text += "," + field(group.name.empty() ? "regions" : "regions(" + group.name + ")");
+  }
+  for (const auto& label : result::region_labels(result.region_groups)) text += "," + field("theta(" + label + ")");
   const bool with_branches = !result.branches.empty();
   text += with_branches ? ",branch\n" : "\n";
   for (const auto& [part, label, parent] : result::tree(result)) {

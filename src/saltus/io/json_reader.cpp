@@ -109,6 +109,7 @@ void read_trajectory(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_member(json, path, "mode", trajectory.mode);
   reader.read_member(json, path, "outputs", trajectory.outputs);
   reader.read_if_there(json, path, "regions", trajectory.regions);
+  reader.read_if_there(json, path, "theta", trajectory.theta);
 }
 
 void read_affine(JsonReader& reader, const Json& json, const std::string& path, result::Surface& surface) {
@@ -157,6 +158,7 @@ void read_final(JsonReader& reader, const Json& json, const std::string& path, r
   reader.read_member(json, path, "alpha", final.alpha);
   reader.read_member(json, path, "outputs", final.outputs);
   reader.read_if_there(json, path, "regions", final.regions);
+  reader.read_if_there(json, path, "theta", final.theta);
 }
 
 void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics) {
@@ -228,6 +230,13 @@ void read_branches(JsonReader& reader, const Json& json, const std::string& path
   }
 }
 
+result::RegionGroup read_region_group(JsonReader& reader, const Json& json, const std::string& path) {
+  result::RegionGroup group;
+  reader.read_member(json, path, "name", group.name);
+  reader.read_member(json, path, "modes", group.modes);
+  return group;
+}
+
 result::Result read_whole(JsonReader& reader, const Json& json, const std::string& path, int depth) {
   result::Result result;
   read_part(reader, json, path, "model", read_model, result.model);
@@ -238,6 +247,9 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   reader.read_member(json, path, "controls", result.controls);
   reader.read_member(json, path, "switching_functions", result.switching_functions);
   reader.read_member(json, path, "outputs", result.outputs);
+  if (json.is_object() && json.contains("region_groups")) {
+    read_list(reader, json["region_groups"], path + "/region_groups", result.region_groups, read_region_group);
+  }
   read_part(reader, json, path, "final", read_final, result.final);
   read_part(reader, json, path, "events", read_events, result.events);
   read_part(reader, json, path, "trajectory", read_trajectory, result.trajectory);

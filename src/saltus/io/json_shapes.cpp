@@ -49,6 +49,42 @@ void check_surface(JsonReader& reader, const result::Surface& surface, const std
   }
 }
 
+/// Of each group the active modes, each one of its own.
+void check_active(JsonReader& reader, const std::string& path, const result::Regions& regions,
+                  const std::vector<result::RegionGroup>& groups) {
+  check_length(reader, path, regions, groups.size());
+  for (std::size_t g = 0; g < std::min(regions.size(), groups.size()); ++g) {
+    const auto& modes = groups[g].modes;
+    for (const auto& mode : regions[g]) {
+      if (std::find(modes.begin(), modes.end(), mode) != modes.end()) continue;
+      reader.fail(fmt::format("{}/{}", path, g), fmt::format("'{}' is no mode of this group", mode));
+    }
+  }
+}
+
+void check_regions(JsonReader& reader, const std::string& path, const result::Result& result) {
+  const auto& groups = result.region_groups;
+  const auto& trajectory = result.trajectory;
+  const std::size_t times = groups.empty() ? 0 : trajectory.t.size();
+  const std::size_t weights = result::region_labels(groups).size();
+  check_length(reader, path + "/trajectory/regions", trajectory.regions, times);
+  for (std::size_t i = 0; i < trajectory.regions.size(); ++i) {
+    check_active(reader, fmt::format("{}/trajectory/regions/{}", path, i), trajectory.regions[i], groups);
+  }
+  check_rows(reader, path + "/trajectory/theta", trajectory.theta, times, weights);
+  check_active(reader, path + "/final/regions", result.final.regions, groups);
+  check_length(reader, path + "/final/theta", result.final.theta, weights);
+  for (std::size_t i = 0; i < result.events.size(); ++i) {
+    const auto& event = result.events[i];
+    const auto here = fmt::format("{}/events/{}", path, i);
+    if (event.regions_before) check_active(reader, here + "/regions_before", *event.regions_before, groups);
+    if (event.regions_after) check_active(reader, here + "/regions_after", *event.regions_after, groups);
+    for (const auto& other : event.alternatives) {
+      check_active(reader, here + "/alternatives", other.regions, groups);
+    }
+  }
+}
+
 }  // namespace
 
 void check_shapes(JsonReader& reader, const std::string& path, const result::Result& result) {
@@ -59,7 +95,7 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   check_rows(reader, path + "/trajectory/u", trajectory.u, times, result.controls.size());
   check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, columns);
   check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, columns);
-  if (!trajectory.regions.empty()) check_length(reader, path + "/trajectory/regions", trajectory.regions, times);
+  check_regions(reader, path, result);
   check_rows(reader, path + "/trajectory/outputs", trajectory.outputs, times, result.outputs.size());
   check_rows(reader, path + "/u", result.interval_controls, result.interval_controls.size(), result.controls.size());
   check_length(reader, path + "/final/x", result.final.x, result.states.size());
@@ -77,8 +113,11 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
 void check_branch(JsonReader& reader, const std::string& path, const result::Result& parent,
                   const result::Result& branch) {
   const bool same = branch.states == parent.states && branch.controls == parent.controls &&
-                    branch.switching_functions == parent.switching_functions && branch.outputs == parent.outputs;
-  if (!same) reader.fail(path, "expected the states, controls, switching functions and outputs of what it leaves");
+                    branch.switching_functions == parent.switching_functions && branch.outputs == parent.outputs &&
+                    branch.region_groups == parent.region_groups;
+  if (!same)
+    reader.fail(path,
+                "expected the states, controls, switching functions, outputs and groups of regions of what it leaves");
   if (!branch.left_at) {
     reader.fail(path, "'left_at' is missing");
     return;

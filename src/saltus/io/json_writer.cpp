@@ -71,7 +71,10 @@ Json final_json(const result::Final& final) {
   json["mode"] = final.mode;
   json["alpha"] = final.alpha;
   json["outputs"] = final.outputs;
-  if (!final.regions.empty()) json["regions"] = final.regions;
+  if (!final.regions.empty()) {
+    json["regions"] = final.regions;
+    json["theta"] = final.theta;
+  }
   return json;
 }
 
@@ -83,7 +86,10 @@ Json trajectory_json(const result::Trajectory& trajectory) {
   json["alpha"] = trajectory.alpha;
   json["mode"] = trajectory.mode;
   json["outputs"] = trajectory.outputs;
-  if (!trajectory.regions.empty()) json["regions"] = trajectory.regions;
+  if (!trajectory.regions.empty()) {
+    json["regions"] = trajectory.regions;
+    json["theta"] = trajectory.theta;
+  }
   return json;
 }
 
@@ -137,6 +143,9 @@ Json whole_json(const result::Result& result) {
   json["controls"] = result.controls;
   json["switching_functions"] = result.switching_functions;
   json["outputs"] = result.outputs;
+  for (const auto& group : result.region_groups) {
+    json["region_groups"].push_back({{"name", group.name}, {"modes", group.modes}});
+  }
   json["final"] = final_json(result.final);
   json["events"] = std::move(events);
   json["trajectory"] = trajectory_json(result.trajectory);

@@ -190,6 +190,9 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   result.controls = system.control_names;
   result.outputs = system.output_names;
   for (const auto& column : system.columns) result.switching_functions.push_back(column.name);
+  for (const auto& group : system.mode_groups) {
+    if (group.first >= 0) result.region_groups.push_back({group.name, group.mode_names});
+  }
   result.options = option_record(options);
   return result;
 }

@@ -55,6 +55,14 @@ std::optional<SurfaceRole> surface_role_named(std::string_view name_of_one) {
   return std::nullopt;
 }
 
+std::vector<std::string> region_labels(const std::vector<RegionGroup>& groups) {
+  std::vector<std::string> labels;
+  for (const auto& group : groups) {
+    for (const auto& mode : group.modes) labels.push_back(group.name.empty() ? mode : group.name + "." + mode);
+  }
+  return labels;
+}
+
 EventKind kind_of_switch(const Mode& before, const Mode& after) {
   SALTUS_ASSERT(before.size() == after.size());
   int entered = 0;

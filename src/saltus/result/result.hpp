@@ -29,6 +29,15 @@ enum class EventKind { start, crossing, enter_sliding, leave_sliding, change_sli
 /// The active modes of every group by `indicator`, in the order of the model; empty without such groups.
 using Regions = std::vector<std::vector<std::string>>;
 
+/// A group of modes by `indicator`, of which those with the smallest one are active.
+struct RegionGroup {
+  std::string name;  ///< empty for the group without a name
+  std::vector<std::string> modes;
+  bool operator==(const RegionGroup&) const = default;
+};
+/// The modes of all groups, one after the other, as columns: "mode", of a named group "group.mode".
+[[nodiscard]] std::vector<std::string> region_labels(const std::vector<RegionGroup>& groups);
+
 struct Alternative {
   Mode mode;
   std::vector<double> alpha;  ///< one per switching function; NaN where not determined
@@ -66,7 +75,9 @@ struct Trajectory {
   std::vector<std::vector<double>> x, u, alpha;
   std::vector<Mode> mode;
   std::vector<std::vector<double>> outputs;
-  std::vector<Regions> regions;  ///< a row per time if there are groups by `indicator`, else none
+  /// With groups by `indicator` a row per time, else none: the active modes, and the weights of all (region_labels).
+  std::vector<Regions> regions{};
+  std::vector<std::vector<double>> theta{};
 };
 
 struct Final {
@@ -76,6 +87,7 @@ struct Final {
   std::vector<double> alpha;
   std::vector<double> outputs;
   Regions regions{};
+  std::vector<double> theta{};  ///< of all modes by `indicator`
 };
 
 struct Statistics {
@@ -142,6 +154,7 @@ struct Result {
   std::string method = "event";
   Status status;
   std::vector<std::string> states, controls, switching_functions, outputs;
+  std::vector<RegionGroup> region_groups;
   Final final;
   std::vector<Event> events;
   Trajectory trajectory;
