@@ -150,10 +150,9 @@ struct Effort {
   double before;
   double eps;
 };
-constexpr Effort usual{30000, 1e-3, 1e-6};
-/// Decides where the usual effort ends open, or an exit differs from the tree: other events, or the delay eps^(2/3),
-/// may be as near as 1e-3.
-constexpr Effort closer{600000, 1e-5, 1e-9};
+/// The next one decides where one ends open, or an exit differs from the tree: other events, or the delay eps^(2/3),
+/// may be as near.
+constexpr Effort efforts[]{{30000, 1e-3, 1e-6}, {600000, 1e-5, 1e-9}, {3000000, 1e-7, 1e-12}};
 
 /// The regularised system. Entries and spirals: from where the solution comes. Exits (a) and (b): through the event,
 /// from the root shortly before it. Exit (c), where no scaling gives a stable root: from four places beside the root,
@@ -235,10 +234,11 @@ AtlasTable compare_tree(Tree tree, const AtlasOptions& options) {
       const bool stiff = std::max(kappa[0], kappa[1]) > 10.0;
       if (options.simulate_every == 0 || i % options.simulate_every != 0 || (passes && stiff)) continue;
       for (std::size_t turn = 0; turn < (tree == Tree::unstable ? 4 : 1); ++turn) {
-        auto simulated = simulate(tree, one, kappa, options.eta, oscillates, turn, usual);
-        if (!simulated.decided || (passes && simulated != Finding{true, false, answer.modes.front()})) {
-          simulated = simulate(tree, one, kappa, options.eta, oscillates, turn, closer);
-          ++cell.closer;
+        Finding simulated;
+        for (const Effort& effort : efforts) {
+          simulated = simulate(tree, one, kappa, options.eta, oscillates, turn, effort);
+          if (simulated.decided && (!passes || simulated == Finding{true, false, answer.modes.front()})) break;
+          if (&effort == &efforts[0]) ++cell.closer;
         }
         count(expected, simulated, one, cell.simulated);
         // Which way an unstable root is left depends on the nudge: nothing to compare.
