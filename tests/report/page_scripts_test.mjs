@@ -68,6 +68,38 @@ test("the mode at an edge is the one behind it", () => {
   assert.equal(saltus.valueAt({edges: [], values: []}, 1), null);
 });
 
+test("modes by indicator have bands and weights of their own, behind the switching functions", () => {
+  const bands = [{edges: [0, 1, 2], values: [1, 0]}, {edges: [0, 1, 2], values: [null, 0]}];
+  const result = {
+    states: ["x"],
+    controls: [],
+    output_names: [],
+    switching_functions: [],
+    regions: ["a", "b"],
+    trajectory: {
+      t: [0, 1, 1, 2],
+      x: [[1, 0, 0, 0]],
+      u: [],
+      outputs: [],
+      alpha: [],
+      modes: [],
+      theta: [[1, 1, 0.5, 0.5], [0, 0, 0.5, 0.5]],
+      regions: bands
+    },
+  };
+  assert.deepEqual(saltus.slidingIntervals(saltus.bandIntervals(result)), [[1, 2]]);
+  const {panels} = saltus.stackPanels(result, 600);
+  assert.deepEqual(panels.map((panel) => panel.sort ?? panel.kind), ["events", "modes", "state", "theta"]);
+  assert.deepEqual(panels[3].curves.map((curve) => curve.name), ["a", "b"]);
+});
+
+test("of several groups an event tells those that change", () => {
+  const event = {regions_before: [["a"], ["c", "d"]], regions_after: [["a", "b"], ["c", "d"]]};
+  assert.equal(saltus.regionChange(event), "a → a + b");
+  assert.equal(saltus.regionChange({...event, regions_before: null}), "a + b; c + d");
+  assert.equal(saltus.regionChange({...event, regions_before: event.regions_after}), "same");
+});
+
 test("many curves share panels if their scales go together", () => {
   const curve = (size) => ({values: [0, size]});
   const sizes = (groups) => groups.map((group) => group.length);

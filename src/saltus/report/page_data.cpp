@@ -43,13 +43,11 @@ json columns(const Rows& rows, const std::vector<std::size_t>& chosen, std::size
   return result;
 }
 
-/// Intervals of constant mode of one switching function: edges t_0 < … < t_n and the n values between them.
-json mode_intervals(const result::Trajectory& trajectory, std::size_t surface) {
+/// Intervals of constant value of one band: edges t_0 < … < t_n and the n values between them.
+/// @param mode_at  of a row: -1, 0, 1, or null
+template <class ModeAt>
+json mode_intervals(const result::Trajectory& trajectory, const ModeAt& mode_at) {
   json::array_t edges, values;
-  const auto mode_at = [&](std::size_t i) -> json {
-    const bool there = i < trajectory.mode.size() && surface < trajectory.mode[i].size();
-    return there ? json(trajectory.mode[i][surface]) : json(nullptr);
-  };
   for (std::size_t i = 1; i < trajectory.t.size(); ++i) {
     if (trajectory.t[i - 1] == trajectory.t[i]) continue;
     const json mode = mode_at(i - 1);
@@ -64,6 +62,35 @@ json mode_intervals(const result::Trajectory& trajectory, std::size_t surface) {
   return {{"edges", edges}, {"values", values}};
 }
 
+/// Bands of the switching functions: their modes.
+json::array_t mode_bands(const result::Trajectory& trajectory, std::size_t width) {
+  json::array_t bands;
+  for (std::size_t j = 0; j < width; ++j) {
+    bands.push_back(mode_intervals(trajectory, [&](std::size_t i) -> json {
+      const bool there = i < trajectory.mode.size() && j < trajectory.mode[i].size();
+      return there ? json(trajectory.mode[i][j]) : json(nullptr);
+    }));
+  }
+  return bands;
+}
+
+/// Bands of the modes by `indicator`: 1 active alone, 0 active with others, null not active.
+json::array_t region_bands(const result::Result& result) {
+  json::array_t bands;
+  const auto& rows = result.trajectory.regions;
+  for (std::size_t g = 0; g < result.region_groups.size(); ++g) {
+    for (const auto& mode : result.region_groups[g].modes) {
+      if (bands.size() == columns_in_page) return bands;
+      bands.push_back(mode_intervals(result.trajectory, [&](std::size_t i) -> json {
+        const auto& active = rows[i][g];
+        if (std::find(active.begin(), active.end(), mode) == active.end()) return nullptr;
+        return active.size() == 1 ? 1 : 0;
+      }));
+    }
+  }
+  return bands;
+}
+
 json intersection_data(const std::optional<result::Intersection>& intersection) {
   if (!intersection) return nullptr;
   return {{"surfaces", intersection->surfaces},
@@ -75,7 +102,8 @@ json intersection_data(const std::optional<result::Intersection>& intersection) 
 json event_data(const result::Event& event, std::size_t most) {
   json alternatives = json::array();
   for (const auto& other : event.alternatives) {
-    alternatives.push_back({{"mode", head(other.mode, most)}, {"alpha", head(other.alpha, most)}});
+    alternatives.push_back(
+        {{"mode", head(other.mode, most)}, {"alpha", head(other.alpha, most)}, {"regions", other.regions}});
   }
   return {{"t", event.t},
           {"kind", result::name(event.kind)},
@@ -144,17 +172,18 @@ json trajectory_data(const result::Result& result, std::size_t limit) {
   const std::size_t columns_drawn = 1 + number_of_columns(trajectory, columns_in_page);
   const auto chosen = rows_to_draw(trajectory, std::max<std::size_t>(1, limit / columns_drawn), columns_in_page);
   const auto width = [](const std::vector<std::string>& names) { return std::min(columns_in_page, names.size()); };
-  json::array_t t, modes;
+  json::array_t t;
   t.reserve(chosen.size());
   for (const std::size_t i : chosen) t.emplace_back(trajectory.t[i]);
-  for (std::size_t j = 0; j < width(result.switching_functions); ++j) modes.push_back(mode_intervals(trajectory, j));
   return {{"rows", trajectory.t.size()},
           {"t", std::move(t)},
           {"x", columns(trajectory.x, chosen, width(result.states))},
           {"u", columns(trajectory.u, chosen, width(result.controls))},
           {"alpha", columns(trajectory.alpha, chosen, width(result.switching_functions))},
           {"outputs", columns(trajectory.outputs, chosen, width(result.outputs))},
-          {"modes", std::move(modes)}};
+          {"theta", columns(trajectory.theta, chosen, width(result::region_labels(result.region_groups)))},
+          {"modes", mode_bands(trajectory, width(result.switching_functions))},
+          {"regions", region_bands(result)}};
 }
 
 /// The branches of a tree, parents first; branch i of the list is entry i + 1 of the tree, entry 0 the root.
@@ -168,7 +197,8 @@ json branches_data(const std::vector<result::TreeEntry>& tree, std::size_t limit
                         {"left_at",
                          {{"event", branch->left_at ? branch->left_at->event : 0},
                           {"t", left.t},
-                          {"mode", head_or_null(left.mode_after, columns_in_page)}}},
+                          {"mode", head_or_null(left.mode_after, columns_in_page)},
+                          {"regions", or_null(left.regions_after)}}},
                         {"status", status_data(branch->status)},
                         {"events", branch->events.size()},
                         {"final", {{"t", branch->final.t}, {"x", head(branch->final.x, columns_in_page)}}},
@@ -210,6 +240,7 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"states", states},
           {"controls", shown(result.controls)},
           {"switching_functions", shown(result.switching_functions)},
+          {"regions", shown(result::region_labels(result.region_groups))},
           {"output_names", shown(result.outputs)},
           {"sizes",
            {{"states", result.states.size()},

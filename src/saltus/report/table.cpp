@@ -122,7 +122,7 @@ Row event_row(std::size_t number, const result::Event& event, std::size_t column
           std::string(name(event.kind)),
           shortened(what(event), 24),
           with_modes ? modes(event) : "",
-          shortened(regions(event), 40),
+          shortened(regions(event), 64),
           remark(event)};
 }
 

@@ -10,13 +10,14 @@ namespace {
 
 using Rows = std::vector<std::vector<double>>;
 
-std::array<const Rows*, 4> tables(const result::Trajectory& trajectory) {
-  return {&trajectory.x, &trajectory.u, &trajectory.alpha, &trajectory.outputs};
+std::array<const Rows*, 5> tables(const result::Trajectory& trajectory) {
+  return {&trajectory.x, &trajectory.u, &trajectory.alpha, &trajectory.outputs, &trajectory.theta};
 }
 
 bool is_pair(const result::Trajectory& trajectory, std::size_t i) {
   const bool mode_changes = i < trajectory.mode.size() && trajectory.mode[i - 1] != trajectory.mode[i];
-  return trajectory.t[i - 1] == trajectory.t[i] || mode_changes;
+  const bool regions_change = i < trajectory.regions.size() && trajectory.regions[i - 1] != trajectory.regions[i];
+  return trajectory.t[i - 1] == trajectory.t[i] || mode_changes || regions_change;
 }
 
 void keep_pairs(const result::Trajectory& trajectory, std::size_t limit, std::vector<char>& keep) {

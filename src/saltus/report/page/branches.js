@@ -3,7 +3,8 @@
 
 /** The column of a branch that belongs to a curve of the drawing. */
 saltus.branchColumn = (branch, curve) =>
-    branch.trajectory[{state: "x", output: "outputs", input: "u", alpha: "alpha"}[curve.sort]][curve.index];
+    branch.trajectory[{state: "x", output: "outputs", input: "u", alpha: "alpha", theta: "theta"}
+                          [curve.sort]][curve.index];
 
 /** One path for the given columns of all branches, cut between them; `columns(branch)` gives one list for each axis. */
 saltus.branchPath = (branches, columns, window, buckets) => {
@@ -94,7 +95,9 @@ saltus.branchCard = (result, actions) => {
                                         `event ${event + 1} of ${branches[branch.parent - 1].label}`;
     const cells = [
       "\u2003".repeat(depth - 1) + branch.label, place, saltus.brief(branch.left_at.t, 8),
-      saltus.modeBoxes(branch.left_at.mode), String(branch.events),
+      branch.left_at.regions === null ? saltus.modeBoxes(branch.left_at.mode) :
+                                        saltus.regionsText(branch.left_at.regions),
+      String(branch.events),
       `${branch.status.termination.replaceAll("_", " ")} at t = ${saltus.brief(branch.status.time_reached, 6)}`,
       saltus.branchEnd(branch)
     ];

@@ -35,6 +35,13 @@ saltus.readoutValues = (result, row) => {
     const alpha = mode === 0 ? `, α = ${saltus.brief(trajectory.alpha[i][last], 6)}` : "";
     values.push([name, `${saltus.modeWord(mode)}${alpha}`]);
   });
+  result.regions.forEach((name, i) => {
+    const active = saltus.valueAt(trajectory.regions[i], trajectory.t[row]);
+    const word = active === null ? "not active" :
+        active === 1             ? "active" :
+                                   `θ = ${saltus.brief(trajectory.theta[i][last], 6)}`;
+    values.push([name, word]);
+  });
   return values;
 };
 

@@ -16,6 +16,18 @@ saltus.modeChange = (event, which) => {
   return saltus.element("span", {}, part(before), " → ", part(after));
 };
 
+/** "a + b", of several groups "a + b; c"; before and after only the groups that change. */
+saltus.regionsText = (regions) => regions.map((active) => active.join(" + ")).join("; ");
+saltus.regionChange = (event) => {
+  const [before, after] = [event.regions_before, event.regions_after];
+  if (after === null) return before === null ? "" : saltus.regionsText(before);
+  if (before === null) return saltus.regionsText(after);
+  const changed = after.map((_, g) => g).filter((g) => String(before[g]) !== String(after[g]));
+  if (changed.length === 0) return "same";
+  const part = (regions) => saltus.regionsText(changed.map((g) => regions[g]));
+  return `${part(before)} → ${part(after)}`;
+};
+
 /** Name and surfaces; a jump is its own surface. */
 saltus.eventPlace = (event) => {
   const others = event.surfaces.filter((surface) => surface !== event.name).join(", ");
@@ -37,15 +49,23 @@ saltus.eventColumns = (result) => {
     {title: "kind", cell: (event) => saltus.kindLabel(event.kind)},
     {title: "unique", cell: unique},
     {title: "surfaces", cell: saltus.eventPlace, class: "fill"},
-    {title: "mode", cell: (event) => saltus.modeChange(event, "changed")},
+    ...(result.switching_functions.length > 0 || result.regions.length === 0 ?
+            [{title: "mode", cell: (event) => saltus.modeChange(event, "changed")}] :
+            []),
+    ...(result.regions.length > 0 ?
+            [
+              {title: "regions", cell: (event) => saltus.regionsText(event.regions_after ?? event.regions_before ?? [])}
+            ] :
+            []),
   ];
   const wide = [
     {title: "mode of all", cell: (event) => saltus.modeChange(event, "all")},
-    {
+    ...(result.regions.length > 0 ? [{title: "regions before → after", cell: saltus.regionChange}] : []),
+    ...(result.switching_functions.length === 0 ? [] : [{
       title: "α before → after",
       cell: (event) => `${alpha(event.alpha_before)} → ${alpha(event.alpha_after)}`,
       class: "digits"
-    },
+    }]),
     {
       title: `x = (${result.states.join(", ")})`,
       class: "digits",
@@ -59,10 +79,10 @@ saltus.eventColumns = (result) => {
 };
 
 /** What a search looks through: number, kind, name, surfaces, reason. */
-saltus.eventText =
-    (event, i) => [`#${i + 1}`, saltus.kindLabel(event.kind), event.name ?? "", ...event.surfaces, event.reason]
-                      .join("\n")
-                      .toLowerCase();
+saltus.eventText = (event, i) => [`#${i + 1}`, saltus.kindLabel(event.kind), event.name ?? "", ...event.surfaces,
+                                  event.reason, ...(event.regions_after ?? []).flat()]
+                                     .join("\n")
+                                     .toLowerCase();
 
 /** Events that have all words of the search in their text. */
 saltus.matchingEvents = (events, search) => {

@@ -57,7 +57,7 @@ saltus.thinIntervals = ({edges, values}, [from, to], pixels) => {
 };
 
 saltus.curveColour = (panel, i, palette) => {
-  const first = {state: 0, output: 1, input: 2, alpha: 3}[panel.sort];
+  const first = {state: 0, output: 1, input: 2, alpha: 3, theta: 4}[panel.sort];
   return palette.curves[(panel.curves.length === 1 ? first : i) % palette.curves.length];
 };
 
@@ -66,7 +66,7 @@ saltus.maximumJumpEnds = 80;
 
 /** Jumps of one curve: a dotted line, open where the curve ends, full where it goes on. */
 saltus.jumpTrace = (curve, jumps, axis, color) => {
-  const ends = curve.sort !== "alpha" && jumps.x.length <= 3 * saltus.maximumJumpEnds;
+  const ends = !saltus.isFraction(curve.sort) && jumps.x.length <= 3 * saltus.maximumJumpEnds;
   return {
     type: "scatter",
     mode: ends ? "lines+markers" : "lines",
@@ -107,7 +107,7 @@ saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) =
   const axis = saltus.axisName(i);
   if (panel.kind === "events") return [saltus.markTrace(result, view.marks, view.selected, view.palette)];
   if (panel.kind === "modes") {
-    const rows = result.trajectory.modes.map((mode) => saltus.thinIntervals(mode, view.window, view.pixels));
+    const rows = saltus.bandIntervals(result).map((mode) => saltus.thinIntervals(mode, view.window, view.pixels));
     return rows.map((mode, row) => saltus.modeTrace(mode, rows.length - 1 - row, axis, view.palette));
   }
   return saltus.curveTraces(result, panel, axis, view);
@@ -120,8 +120,8 @@ saltus.panelAxis = (panel, stack, palette, result) => {
   const domain = saltus.panelDomain(panel, stack);
   const bare = {domain, fixedrange: true, showgrid: false, zeroline: false, showticklabels: false, ticks: ""};
   if (panel.kind === "events") return {...bare, range: [0, 1]};
-  if (panel.kind === "modes") return {...bare, range: [-0.5, result.switching_functions.length - 0.5]};
-  const alpha = panel.sort === "alpha" ? {range: [-0.06, 1.06], tickvals: [0, 0.5, 1], fixedrange: true} : {};
+  if (panel.kind === "modes") return {...bare, range: [-0.5, saltus.bands(result).length - 0.5]};
+  const alpha = saltus.isFraction(panel.sort) ? {range: [-0.06, 1.06], tickvals: [0, 0.5, 1], fixedrange: true} : {};
   return {
     domain,
     gridcolor: palette.grid,
@@ -154,13 +154,15 @@ saltus.panelLabels = (panel, stack, palette, result) => {
   });
   if (panel.kind === "events") return [label("events", panel.height / 2, palette.quiet)];
   if (panel.kind === "modes") {
-    const row = panel.height / result.switching_functions.length;
-    return result.switching_functions.map((name, i) => label(name, (i + 0.5) * row, palette.text));
+    const bands = saltus.bands(result);
+    const row = panel.height / bands.length;
+    return bands.map((name, i) => label(name, (i + 0.5) * row, palette.text));
   }
   const step = Math.min(17, panel.height / panel.curves.length);
   const first = panel.height / 2 - ((panel.curves.length - 1) / 2) * step;
   return panel.curves.map((curve, i) => {
-    const name = curve.sort === "alpha" ? `α(${curve.name})` : curve.name;
+    const sign = {alpha: "α", theta: "θ"}[curve.sort];
+    const name = sign === undefined ? curve.name : `${sign}(${curve.name})`;
     return label(name, first + i * step, saltus.curveColour(panel, i, palette));
   });
 };
@@ -177,7 +179,7 @@ saltus.labelWidth = (result) => {
       names.reduce((most, name) => Math.max(most, Math.min(18, name.length + extra)), 0);
   const letters = Math.max(
       6, longest(result.states), longest(result.output_names), longest(result.controls),
-      longest(result.switching_functions, 3));
+      longest(saltus.bands(result), 3));
   return 12 + Math.round(7.2 * letters);
 };
 

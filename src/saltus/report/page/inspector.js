@@ -11,11 +11,26 @@ saltus.modeTable = (result, event) => {
   return saltus.plainTable(["", "before", "after", "α before", "α after"], rows);
 };
 
-saltus.alternatives = (event) => event.alternatives.map(
-    (other, i) => saltus.element(
-        "p", {}, `alternative ${i + 1}: mode `, saltus.modeBoxes(other.mode), ", α = ",
-        saltus.element(
-            "span", {class: "digits"}, `(${other.alpha.map((value) => saltus.brief(value, 8)).join(", ")})`)));
+saltus.alternatives = (event) => event.alternatives.map((other, i) => {
+  const alpha = `(${other.alpha.map((value) => saltus.brief(value, 8)).join(", ")})`;
+  const modes = other.mode.length === 0 ?
+      [] :
+      ["mode ", saltus.modeBoxes(other.mode), ", α = ", saltus.element("span", {class: "digits"}, alpha)];
+  const regions = other.regions.length === 0 ? [] : [`regions ${saltus.regionsText(other.regions)}`];
+  const comma = modes.length > 0 && regions.length > 0 ? [", "] : [];
+  return saltus.element("p", {}, `alternative ${i + 1}: `, ...modes, ...comma, ...regions);
+});
+
+/** Weights of the modes by `indicator` on both sides of an event, from the rows of the trajectory. */
+saltus.weightTable = (result, event) => {
+  const {t, theta} = result.trajectory;
+  const row = saltus.lowerBound(t, event.t);
+  if (t[row] !== event.t) return [];
+  const [first, last] = saltus.rowsAtOneTime(t, row);
+  const rows =
+      result.regions.map((name, i) => [name, saltus.brief(theta[i][first], 10), saltus.brief(theta[i][last], 10)]);
+  return [saltus.plainTable(["", "θ before", "θ after"], rows)];
+};
 
 saltus.plainTable = (head, rows) => saltus.element(
     "table", {class: "plain"},
@@ -68,7 +83,7 @@ saltus.inspector = (result, actions) => {
         saltus.element(
             "div", {class: "tables"},
             ...(result.switching_functions.length > 0 ? [saltus.modeTable(result, event)] : []),
-            saltus.stateTable(result, event)));
+            ...(result.regions.length > 0 ? saltus.weightTable(result, event) : []), saltus.stateTable(result, event)));
   };
   show(null);
   return {element, show};

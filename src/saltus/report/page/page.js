@@ -7,8 +7,12 @@ saltus.legend = (result, holder, timeline) => {
     saltus.element("span", {class: "quiet"}, "mode"), swatch("mode mode-minus", "− ψ<0"),
     swatch("mode mode-sliding", "0 sliding"), swatch("mode mode-plus", "+ ψ>0")
   ];
+  const regions = result.regions.length === 0 ? [] : [
+    saltus.element("span", {class: "quiet"}, "regions"), swatch("mode mode-plus", "active"),
+    swatch("mode mode-sliding", "active with others")
+  ];
   return saltus.element(
-      "div", {class: "toolbar"}, ...modes,
+      "div", {class: "toolbar"}, ...modes, ...regions,
       ...(result.events.some(saltus.isAlarming) ? [swatch("alarm-line", "not unique")] : []),
       ...(result.branches.length > 0 ? [swatch("branch-line", "branches")] : []),
       saltus.element(

@@ -42,7 +42,14 @@ saltus.groupCurves = (curves) => {
   return groups;
 };
 
-/** Panels of curves, top to bottom: states, outputs, inputs, alpha. */
+/** Rows of the bands: switching functions, then modes by `indicator` (alone: 1, with others: 0, not active: null). */
+saltus.bands = (result) => [...result.switching_functions, ...result.regions];
+saltus.bandIntervals = (result) => [...result.trajectory.modes, ...result.trajectory.regions];
+
+/** Selections and weights are between 0 and 1. */
+saltus.isFraction = (sort) => sort === "alpha" || sort === "theta";
+
+/** Panels of curves, top to bottom: states, outputs, inputs, alpha, theta. */
 saltus.curvePanels = (result) => {
   const {trajectory} = result;
   const curves = (names, columns, sort) =>
@@ -59,10 +66,14 @@ saltus.curvePanels = (result) => {
     ...saltus.groupCurves(curves(result.output_names, trajectory.outputs, "output")),
     ...saltus.groupCurves(curves(result.controls, trajectory.u, "input")),
   ].map((group) => ({kind: "curves", sort: group[0].sort, curves: group}));
-  const alphas = curves(result.switching_functions, trajectory.alpha, "alpha");
-  for (let i = 0; i < alphas.length; i += saltus.perPanel) {
-    panels.push({kind: "curves", sort: "alpha", curves: alphas.slice(i, i + saltus.perPanel)});
-  }
+  const fractions = (names, columns, sort) => {
+    const all = curves(names, columns, sort);
+    for (let i = 0; i < all.length; i += saltus.perPanel) {
+      panels.push({kind: "curves", sort, curves: all.slice(i, i + saltus.perPanel)});
+    }
+  };
+  fractions(result.switching_functions, trajectory.alpha, "alpha");
+  fractions(result.regions, trajectory.theta, "theta");
   return panels;
 };
 
@@ -71,13 +82,13 @@ saltus.curvePanels = (result) => {
  * curves. They fill `height` if that leaves every curve enough room, otherwise the drawing becomes taller.
  */
 saltus.stackPanels = (result, height) => {
-  const surfaces = result.switching_functions.length;
+  const bands = saltus.bands(result).length;
   const curves = saltus.curvePanels(result);
   const panels = [{kind: "events", height: 22}];
-  if (surfaces > 0) panels.push({kind: "modes", height: surfaces === 1 ? 26 : 20 * surfaces});
+  if (bands > 0) panels.push({kind: "modes", height: bands === 1 ? 26 : 20 * bands});
   const gap = 12;
   const fixed = panels.reduce((sum, panel) => sum + panel.height + gap, 0);
-  const weights = curves.map((panel) => (panel.sort === "alpha" ? 0.65 : 1));
+  const weights = curves.map((panel) => (saltus.isFraction(panel.sort) ? 0.65 : 1));
   const total = weights.reduce((sum, weight) => sum + weight, 0);
   const least = curves.length > 5 ? 92 : 110;
   const free = height - fixed - gap * (curves.length - 1);

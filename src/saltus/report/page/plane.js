@@ -136,7 +136,7 @@ saltus.phasePlane = (result, timeline, select) => {
   const holder = saltus.element("div", {class: "phase-plot"});
   const note = saltus.element("p", {class: "quiet note"});
   const choice = saltus.firstChoice(result, 2);
-  const sliding = saltus.slidingIntervals(result.trajectory.modes);
+  const sliding = saltus.slidingIntervals(saltus.bandIntervals(result));
   const equal = saltus.element("input", {type: "checkbox", onchange: () => draw()});
   const draw = () => {
     const palette = saltus.palette();

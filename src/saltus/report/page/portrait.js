@@ -115,7 +115,7 @@ saltus.phasePortrait = (result, timeline, select) => {
   const holder = saltus.element("div", {class: "phase-plot"});
   const note = saltus.element("p", {class: "quiet note"});
   const choice = saltus.firstChoice(result, 3);
-  const sliding = saltus.slidingIntervals(result.trajectory.modes);
+  const sliding = saltus.slidingIntervals(saltus.bandIntervals(result));
   const possible = saltus.hasWebGL();
   let visible = false;
   const draw = () => {

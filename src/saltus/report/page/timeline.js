@@ -8,7 +8,7 @@
 saltus.timeline = (result, holder, listeners) => {
   const full = saltus.fullWindow(result);
   // Of many switching functions some slide nearly always: shading would say nothing, the bands say it.
-  const sliding = result.switching_functions.length <= 3 ? saltus.slidingIntervals(result.trajectory.modes) : [];
+  const sliding = saltus.bands(result).length <= 4 ? saltus.slidingIntervals(saltus.bandIntervals(result)) : [];
   let shown = result.events.map((_, i) => i);
   let selected = null;
   let branch = null;
