@@ -45,6 +45,7 @@ void expect_event(const Event& event, const ReferenceEvent& reference, double to
   EXPECT_EQ(event.mode_before, reference.mode_before) << what;
   ASSERT_TRUE(event.mode_after.has_value()) << what;
   EXPECT_EQ(*event.mode_after, reference.mode_after) << what;
+  EXPECT_EQ(event.regions_after, reference.regions_after) << what;
   EXPECT_FALSE(event.reason.empty()) << what;
   expect_near(event.t, reference.t, tolerance, what + ", time");
   expect_near(event.x, reference.x, tolerance, what + ", state");
@@ -65,6 +66,7 @@ void expect_reference(const Result& result, const ReferenceProblem& problem, dou
   EXPECT_EQ(result.final.mode, problem.final_mode);
   expect_near(result.final.x, problem.final_x, tolerance, "end state");
   expect_near(result.final.alpha, problem.final_alpha, tolerance, "alpha at the end");
+  expect_near(result.final.theta, problem.final_theta, tolerance, "theta at the end");
 }
 
 void expect_identical(const Result& a, const Result& b) {
@@ -77,6 +79,7 @@ void expect_identical(const Result& a, const Result& b) {
     EXPECT_EQ(left.kind, right.kind) << "event " << i + 1;
     EXPECT_EQ(left.mode_after, right.mode_after) << "event " << i + 1;
     EXPECT_EQ(left.alpha_after, right.alpha_after) << "event " << i + 1;
+    EXPECT_EQ(left.regions_after, right.regions_after) << "event " << i + 1;
     EXPECT_EQ(left.x, right.x) << "event " << i + 1;
     EXPECT_EQ(left.x_after, right.x_after) << "event " << i + 1;
   }
@@ -84,6 +87,7 @@ void expect_identical(const Result& a, const Result& b) {
   EXPECT_EQ(a.final.x, b.final.x);
   EXPECT_EQ(a.final.mode, b.final.mode);
   EXPECT_EQ(a.final.alpha, b.final.alpha);
+  EXPECT_EQ(a.final.theta, b.final.theta);
 }
 
 /// Models that only radau5 gets through: their file asks for it. Whether they earn it is a test of its own.

@@ -132,6 +132,13 @@ INSTANTIATE_TEST_SUITE_P(
                     OrderCase{"sweeping-disc", Integrator::dopri5, 5, 0.3, 1.06},
                     OrderCase{"sweeping-disc", Integrator::dop853, 8, 0.5, 1.04},
                     OrderCase{"sweeping-disc", Integrator::radau5, 5, 0.3, 1.06},
+                    // Regions by indicator: through borders of two, onto and off points where three meet.
+                    OrderCase{"empty-circle", Integrator::dopri5, 5, 0.4, 1.06},
+                    OrderCase{"empty-circle", Integrator::dop853, 8, 0.6, 1.04},
+                    OrderCase{"empty-circle", Integrator::radau5, 5, 0.4, 1.06},
+                    OrderCase{"three-windings", Integrator::dopri5, 5, 0.4, 1.06},
+                    OrderCase{"three-windings", Integrator::dop853, 8, 0.6, 1.04},
+                    OrderCase{"three-windings", Integrator::radau5, 5, 0.4, 1.06},
                     // Jumps of the field's parameters and of the state itself.
                     OrderCase{"hiskens-pai", Integrator::dopri5, 5, 0.01, 1.06},
                     OrderCase{"hiskens-pai", Integrator::radau5, 5, 0.01, 1.06},

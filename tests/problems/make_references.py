@@ -22,6 +22,7 @@ import intersection_problems
 import jump_problems
 import mpmath
 import phased_problems
+import region_problems
 from mpmath import mp, mpf
 from taylor_events import solve
 
@@ -43,6 +44,7 @@ def numbers_of(solution):
         yield from event.get("x_after", [])
     yield from solution["final"]["x"]
     yield from solution["final"]["alpha"]
+    yield from solution["final"].get("theta", [])
 
 
 class Raw(float):
@@ -142,6 +144,8 @@ def main():
         phased_problems.compare_with_literature(problem, report_on(problem, entries))
     for problem in intersection_problems.problems():
         intersection_problems.compare_with_literature(problem, report_on(problem, entries))
+    for problem in region_problems.problems():
+        report_on(problem, entries)
     text = dump(entries)
     json.loads(text)
     if "--check" in sys.argv:

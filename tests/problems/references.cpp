@@ -26,6 +26,7 @@ ReferenceEvent event_of(const json& entry) {
                        .alternatives = {}};
   if (!entry.at("mode_before").is_null()) event.mode_before = entry.at("mode_before").get<std::vector<int>>();
   if (entry.contains("unique")) event.unique = entry.at("unique").get<bool>();
+  if (entry.contains("regions_after")) event.regions_after = entry.at("regions_after");
   const json alternatives = entry.value("alternatives", json::array());
   for (const json& other : alternatives) {
     event.alternatives.push_back({.mode = other.at("mode"), .alpha = other.at("alpha")});
@@ -51,6 +52,7 @@ ReferenceProblem problem_of(const json& entry) {
   problem.final_x = entry.at("final").at("x").get<std::vector<double>>();
   problem.final_mode = entry.at("final").at("mode").get<std::vector<int>>();
   problem.final_alpha = entry.at("final").at("alpha").get<std::vector<double>>();
+  problem.final_theta = entry.at("final").value("theta", std::vector<double>{});
   return problem;
 }
 

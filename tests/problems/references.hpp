@@ -24,6 +24,7 @@ struct ReferenceEvent {
   std::vector<double> x, x_after;  ///< they differ at jumps
   std::optional<bool> unique = true;
   std::vector<ReferenceAlternative> alternatives;
+  std::optional<std::vector<std::vector<std::string>>> regions_after{};  ///< of groups by `indicator`
 };
 
 /// A model of the catalogue with the changes of one case, its events and its end.
@@ -35,7 +36,7 @@ struct ReferenceProblem {
   double until = 0.0;
   int digits = 0;  ///< to which every number is known
   std::vector<ReferenceEvent> events;
-  std::vector<double> final_x, final_alpha;
+  std::vector<double> final_x, final_alpha, final_theta;
   std::vector<int> final_mode;
 };
 

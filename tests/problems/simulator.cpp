@@ -30,7 +30,8 @@ bool is_declared(const model::Description& description, const std::string& name)
                      [&](const model::NamedExpression& psi) { return psi.name == name; });
 }
 
-/// Named switching functions get the factor; every unnamed one gets an equal named one, found by parsing its name.
+/// Named switching functions and indicators get the factor; every unnamed one gets an equal named one, found by parsing
+/// its name.
 void scale_switching_functions(model::Description& description, const std::vector<model::Override>& overrides,
                                double factor) {
   const model::System unscaled = value_or_throw(model::build(description, overrides));
@@ -42,6 +43,9 @@ void scale_switching_functions(model::Description& description, const std::vecto
     added.push_back({"scaled" + std::to_string(added.size() + 1), scaled(factor, psi), here});
   }
   for (model::NamedExpression& psi : description.switching) psi.expression = scaled(factor, psi.expression);
+  for (model::ModeDescription& mode : description.modes) {
+    if (mode.indicator) mode.indicator = scaled(factor, mode.indicator);
+  }
   description.switching.insert(description.switching.end(), added.begin(), added.end());
 }
 

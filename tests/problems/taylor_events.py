@@ -174,7 +174,7 @@ class Step:
         length = degree + 1
         clock = clock_series(t, problem.frequency, length)
         self.x = [Series([value]) for value in x]
-        self.alpha = alphas(problem, clock, self.x, mode)
+        self.alpha = self.selections(problem, clock)
         for series, rate in zip(self.x, problem.f(clock, self.x, self.alpha)):
             series.rule = lambda k, rate=Series.lift(rate): rate[k - 1] / k
         for k in range(length):
@@ -186,6 +186,9 @@ class Step:
             if isinstance(alpha, Series):
                 alpha.to(length)
         self.h = self.safe_length(degree, mpf(problem.max_step))
+
+    def selections(self, problem, clock):
+        return alphas(problem, clock, self.x, self.mode)
 
     def safe_length(self, degree, longest):
         """The last two terms stay below rounding, for the states and what the events are found from."""
