@@ -163,13 +163,10 @@ bool Recorder::started(double t, const std::vector<double>& x, const Transition&
     const bool at_zero = std::find(surfaces.begin(), surfaces.end(), function) != surfaces.end();
     if (at_zero && system_.switching[at(function)].role == model::SwitchingRole::listed) columns_.push_back(c);
   }
-  for (const auto& range : kernel_.region_groups()) {
-    if (std::none_of(surfaces.begin(), surfaces.end(), [&](int j) { return range.holds(j); })) continue;
-    for (int j = range.first; j < range.first + range.count; ++j) {
-      const bool here = std::find(surfaces.begin(), surfaces.end(), j) != surfaces.end();
-      if (here || transition.state.mode[at(j)] == 0) columns_.push_back(surface_of_region(j));
-    }
+  for (const int j : surfaces) {
+    if (system_.switching[at(j)].role == model::SwitchingRole::region) columns_.push_back(surface_of_region(j));
   }
+  std::sort(columns_.begin(), columns_.end());
   if (columns_.empty()) return false;
   auto& event = begin(t, result::EventKind::start);
   for (const std::size_t column : columns_) add_surface(event, column);
@@ -218,6 +215,11 @@ void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passa
     const bool takes_part = std::find(surfaces.begin(), surfaces.end(), function) != surfaces.end();
     if (takes_part && passage.before.mode[at(function)] != transition.state.mode[at(function)]) add_surface(entry, c);
   }
+  columns_.clear();
+  listed_before_.clear();
+  listed_after_.clear();
+  note_changed_regions(passage.before, transition.state);
+  for (const std::size_t region : columns_) add_surface(entry, region);
   set_states(entry, passage.x, passage.x_after);
   entry.mode = number(passage.before);
   add_reason(entry, "the intervals of these switches shrink geometrically: the state is their limit");

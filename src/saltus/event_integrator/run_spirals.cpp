@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "saltus/event_integrator/continuations.hpp"
+#include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -11,6 +12,26 @@ namespace {
 /// A surface with the mode that it changes to, as one number: what has to repeat from lap to lap.
 int label_of(int surface, int mode) { return 3 * surface + mode + 1; }
 int surface_of(int label) { return label / 3; }
+
+/// All surfaces of the laps at zero, and all of their regions active.
+void put_on(const evaluation::ModelKernel& kernel, const std::vector<int>& labels, ModeState& state) {
+  std::vector<std::vector<ActiveRegion>> active(kernel.region_groups().size());
+  for (const int label : labels) {
+    const int surface = surface_of(label);
+    bool is_region = false;
+    for (std::size_t g = 0; g < active.size(); ++g) {
+      if (!kernel.region_groups()[g].holds(surface)) continue;
+      is_region = true;
+      const auto known = [&](const ActiveRegion& region) { return region.region == surface; };
+      if (std::none_of(active[g].begin(), active[g].end(), known)) active[g].push_back({surface, 0.0});
+    }
+    if (!is_region) set_surface(state, surface, 0, 0.5);
+  }
+  for (std::size_t g = 0; g < active.size(); ++g) {
+    for (auto& region : active[g]) region.weight = 1.0 / static_cast<double>(active[g].size());
+    if (!active[g].empty()) set_active(state, kernel.region_groups()[g], active[g]);
+  }
+}
 
 }  // namespace
 
@@ -27,7 +48,8 @@ void Run::note_tightening_switch() {
     const int mode = state_.mode[at(j)];
     if (before_.mode[at(j)] == mode) continue;
     // Kinks do not hold a solution, and times pass.
-    if (surroundings_.system.switching[at(j)].role != model::SwitchingRole::listed) return switch_laps_.clear();
+    const auto role = surroundings_.system.switching[at(j)].role;
+    if (role != model::SwitchingRole::listed && role != model::SwitchingRole::region) return switch_laps_.clear();
     labels.push_back(label_of(j, mode));
     // Where sliding begins or ends psi moves on the other side only.
     const double rate = std::max(std::abs(rate_along_field(j, t_, x_.data(), arriving.data()).value),
@@ -50,17 +72,21 @@ void Run::accumulate_switches() {
 
 bool Run::follow_spiral(const JumpLimit& limit) {
   ModeState on = state_;
-  for (const int label : limit.jumps) set_surface(on, surface_of(label), 0, 0.5);
+  put_on(kernel_, limit.jumps, on);
   std::vector<double> x = limit.x;
-  ModeField field(kernel_, surroundings_.affine_in_alpha);
-  field.enter(on);
-  field.project(limit.t, x.data());
   Occasion occasion;
+  {
+    const ReferenceScope references(kernel_, on);
+    ModeField field(kernel_, surroundings_.affine_in_alpha);
+    field.enter(on);
+    field.project(limit.t, x.data());
+  }
   occasion.t = limit.t;
   occasion.x = x.data();
   occasion.at_zero = occasion.touched = on.sliding;
   occasion.start = occasion.limit = true;  // no side is the one it comes from
   occasion.time_scale = h_scale_;
+  note_ties(kernel_, on, occasion);
   Transition transition = decide_mode(surroundings_, on, occasion);
   if (transition.termination != result::Termination::completed) return false;
   other_continuations(surroundings_, on, occasion, transition);

@@ -129,6 +129,42 @@ bool finite_at_start(const Surroundings& s, double t, const double* x, const Mod
   return true;
 }
 
+/// Whether a mode is as given: of a region 1 says that it is active alone, 0 with others, -1 that it is not active.
+bool has_given_modes(const evaluation::ModelKernel& kernel, const ModeState& state,
+                     const std::vector<std::pair<int, int>>& given) {
+  return std::all_of(given.begin(), given.end(), [&](const auto& entry) {
+    const auto& [function, mode] = entry;
+    for (const auto& range : kernel.region_groups()) {
+      if (!range.holds(function)) continue;
+      const auto first = state.mode.begin() + range.first;
+      const bool alone = std::count(first, first + range.count, 0) == 1;
+      return mode == (state.mode[at(function)] != 0 ? -1 : alone ? 1 : 0);
+    }
+    return state.mode[at(function)] == mode;
+  });
+}
+
+/// The first one that is as given: of what was decided with the given surfaces, if any are, what was decided without,
+/// and its alternatives.
+std::optional<Transition> with_given_modes(const evaluation::ModelKernel& kernel,
+                                           const std::vector<std::pair<int, int>>& given,
+                                           const std::optional<Transition>& chosen, const Transition& decided) {
+  const auto fits = [&](const Transition& t) {
+    return t.termination == result::Termination::completed && has_given_modes(kernel, t.state, given);
+  };
+  if (chosen && fits(*chosen)) return chosen;
+  std::optional<Transition> found;
+  if (fits(decided)) {
+    found = decided;
+  } else {
+    const auto& others = decided.alternatives;
+    const auto other = std::find_if(others.begin(), others.end(), fits);
+    if (other != others.end()) found = *other;
+  }
+  if (found) found->alternatives.clear();
+  return found;
+}
+
 struct Point {
   Occasion occasion;
   ModeState state;
@@ -159,13 +195,18 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   Start start;
   const auto [occasion, state] = read_point(s, t, x, time_scale, {});
   start.at_zero = occasion.at_zero;
+  for (const int j : occasion.tied) {
+    if (std::find(start.at_zero.begin(), start.at_zero.end(), j) == start.at_zero.end()) start.at_zero.push_back(j);
+  }
   if (!finite_at_start(s, t, x, state, start.transition)) return start;
   start.transition = decide_mode(s, state, occasion);
   other_continuations(s, state, occasion, start.transition);
   if (forced.empty()) return start;
 
   const auto decided = start.transition;
+  const auto is_region = [&](int j) { return s.system.switching[at(j)].role == model::SwitchingRole::region; };
   for (const auto& [surface, mode] : forced) {
+    if (is_region(surface)) continue;
     const bool at_zero = std::find(start.at_zero.begin(), start.at_zero.end(), surface) != start.at_zero.end();
     if (!at_zero && mode != state.mode[at(surface)]) {
       start.transition.termination = result::Termination::no_admissible_mode;
@@ -176,8 +217,11 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
     }
   }
   std::vector<GivenMode> given;
-  for (const auto& [surface, mode] : forced) given.push_back({surface, mode});
-  auto chosen = decide_with(s, state, occasion, given);
+  for (const auto& [surface, mode] : forced) {
+    if (!is_region(surface)) given.push_back({surface, mode});
+  }
+  auto chosen = given.empty() ? std::nullopt : decide_with(s, state, occasion, given);
+  if (given.size() < forced.size()) chosen = with_given_modes(s.kernel, forced, chosen, decided);
   if (!chosen) {
     start.transition.termination = result::Termination::no_admissible_mode;
     start.transition.message = "initial_mode does not continue the solution: its field does not move to where it says";

@@ -61,7 +61,7 @@ void Decider::step_ahead(const std::vector<int>& candidates, const switching::Re
 }
 
 /// Whether a set that is admissible to rounding is so a little later along its own motion. What stays on the verge (an
-/// equilibrium of one of the fields) is marked as not attracting: it is the last to be taken.
+/// equilibrium of one of the fields) is marked so, and as not attracting: it is the last to be taken.
 bool Decider::goes_on(const std::vector<int>& candidates, switching::RegionSet& set) {
   constexpr double rounding = 1e-14;
   std::vector<double> ahead;
@@ -69,7 +69,10 @@ bool Decider::goes_on(const std::vector<int>& candidates, switching::RegionSet& 
   switching::RegionSet later;
   const auto rates = region_rates(candidates, occasion_.t + 1e-2 * occasion_.time_scale, ahead.data());
   if (!switching::solve_region_set(rates, set.active, later) || !(later.margin >= -rounding)) return false;
-  if (later.margin <= rounding) set.attracts = false;
+  if (later.margin <= rounding) {
+    set.marginal = true;
+    set.attracts = false;
+  }
   return true;
 }
 
@@ -111,6 +114,7 @@ bool Decider::decide_regions(const std::vector<int>& group) {
   for (auto& set : switching::admissible_region_sets(rates, marginal)) {
     if (set.margin > marginal || goes_on(candidates, set)) sets.push_back(std::move(set));
   }
+  switching::merge_same_motions(sets);
   if (sets.empty()) {
     return fail(result::Termination::no_admissible_mode,
                 fmt::format("the regions {} meet at t = {}, and no set of them continues the solution",

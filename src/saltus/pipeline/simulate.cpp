@@ -48,14 +48,34 @@ Expected<model::SwitchingColumn> find_column(const model::System& system, const 
     if (column.name == name) return column;
     known.push_back(column.name);
   }
+  for (const auto& group : system.mode_groups)
+    known.insert(known.end(), group.mode_names.begin(), group.mode_names.end());
   return tl::unexpected(
       with_context({ErrorCode::unknown_name, "unknown switching function '" + name + "'", suggest(name, known), {}, {}},
                    "in simulate." + key + "." + name));
 }
 
+/// The region of a group by `indicator` with this name: "mode", or "group.mode"; nullopt if there is none, or several.
+std::optional<int> find_region(const model::System& system, const std::string& name) {
+  std::optional<int> found;
+  for (const auto& group : system.mode_groups) {
+    for (int i = 0; group.first >= 0 && i < group.regions; ++i) {
+      const auto& mode = group.mode_names[static_cast<std::size_t>(i)];
+      if (name != mode && name != group.name + "." + mode) continue;
+      if (found) return std::nullopt;
+      found = group.first + i;
+    }
+  }
+  return found;
+}
+
 Expected<std::vector<std::pair<int, int>>> forced_modes(const model::System& system, const SimulateOptions& options) {
   std::vector<std::pair<int, int>> forced;
   for (const auto& [name, mode] : options.initial_mode) {
+    if (const auto region = find_region(system, name)) {
+      forced.emplace_back(*region, mode);
+      continue;
+    }
     const auto found = find_column(system, "initial_mode", name);
     if (!found) return tl::unexpected(found.error());
     forced.emplace_back(found->function, found->orientation * mode);

@@ -86,6 +86,27 @@ std::vector<RegionSet> admissible_region_sets(const RegionRates& rates, double t
   return found;
 }
 
+void merge_same_motions(std::vector<RegionSet>& sets) {
+  const auto weight = [](const RegionSet& set, int region) {
+    const auto place = std::lower_bound(set.active.begin(), set.active.end(), region);
+    return place == set.active.end() || *place != region
+               ? 0.0
+               : set.weights[at(static_cast<int>(place - set.active.begin()))];
+  };
+  const auto within = [&](const RegionSet& small, const RegionSet& large) {
+    if (!small.marginal || !large.marginal || small.active.size() >= large.active.size()) return false;
+    const auto& all = large.active;
+    const bool part = std::includes(all.begin(), all.end(), small.active.begin(), small.active.end());
+    return part && std::all_of(all.begin(), all.end(), [&](int region) {
+             return std::abs(weight(small, region) - weight(large, region)) <= 1e-9;  // between 0 and 1
+           });
+  };
+  const auto all = sets;
+  std::erase_if(sets, [&](const RegionSet& set) {
+    return std::any_of(all.begin(), all.end(), [&](const RegionSet& other) { return within(set, other); });
+  });
+}
+
 std::size_t preferred_region_set(const std::vector<RegionSet>& sets, const std::vector<int>& before) {
   const auto rank = [&](const RegionSet& set) {
     const auto kept = std::count_if(before.begin(), before.end(), [&](int region) {

@@ -29,6 +29,7 @@ struct RegionSet {
   /// The smallest of theta_i over I and (w_i - mu) / max |w_ij| elsewhere: within rounding of 0 the set is only
   /// admissible if both grow along its own motion.
   double margin = 0.0;
+  bool marginal = false;  ///< it is within rounding of 0, and stays there: for who looks along the motion to set
 };
 
 /// Weights of the set `active` (ascending) as they solve the equalities, admissible or not; nothing if they are not
@@ -37,6 +38,10 @@ struct RegionSet {
 
 /// All sets whose margin is at least -tolerance, by enumeration of the 2^n - 1 subsets; n <= 12.
 [[nodiscard]] std::vector<RegionSet> admissible_region_sets(const RegionRates& rates, double tolerance);
+
+/// Of marginal sets that move alike, with the same weights, the largest one stands for all: at an equilibrium of one of
+/// the fields the indicators of all regions stay equal.
+void merge_same_motions(std::vector<RegionSet>& sets);
 
 /// Which of several sets to go on with: one that attracts before one that does not, then the one with most regions of
 /// `before`, then the larger one, then the first.

@@ -84,6 +84,13 @@ FILES = {
     "state twice in a mode": (modes("when = 'x > 0'\ndynamics = { x = 1, x = 2 }\n"), 15, "not valid TOML"),
     "indicators with conditions": (modes("indicator = 'x'\ndynamics = { x = 1 }\n[[modes]]\nwhen = 'x > 0'\n"
                                          "dynamics = { x = 1 }\n"), 16, "in one group"),
+    "indicator cut": (modes("indicator = 'x +'\ndynamics = { x = 1 }\n"), "14:17", "expect"),
+    "indicator of nothing known": (modes("indicator = 'xx'\ndynamics = { x = 1 }\n"), "14:14", "unknown name 'xx'", "'x'"),
+    "indicator a condition": (modes("indicator = 'x > 0'\ndynamics = { x = 1 }\n"), "14:16", "condition"),
+    "indicator and when": (modes("indicator = 'x'\nwhen = 'x > 0'\ndynamics = { x = 1 }\n"), 13, "both `when` and `indicator`"),
+    "name with a condition": (modes("when = 'x > 0'\nname = 'up'\ndynamics = { x = 1 }\n"), 13, "belongs to modes with"),
+    "two indicators of one name": (modes("indicator = 'x'\nname = 'a'\ndynamics = { x = 1 }\n[[modes]]\nindicator = '-x'\n"
+                                         "name = 'a'\ndynamics = { x = 2 }\n"), 17, "two modes are named 'a'"),
     # events
     "event cut": (after("[[events]]\nwhen = 'x -'\n"), "14:12", "expect"),
     "event of nothing known": (after("[[events]]\nwhen = 'y > 0'\n"), "14:9", "unknown name 'y'"),

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/event_integrator/integrate.hpp"
-#include "saltus/model/builder.hpp"
+#include "regions_systems.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -16,18 +15,7 @@ using model::Builder;
 using result::EventKind;
 using result::Regions;
 using result::Termination;
-
-Integration run(Builder& builder, double until) {
-  const auto system = builder.build();
-  EXPECT_TRUE(system.has_value()) << (system ? "" : system.error().message);
-  auto kernel = evaluation::ModelKernel::compile(*system);
-  EXPECT_TRUE(kernel.has_value());
-  IntegrationOptions options;
-  options.method = ode::Method::dop853;
-  options.tolerances = {1e-11, 1e-13};
-  options.until = until;
-  return integrate(*kernel, *system, options);
-}
+using testing::run_regions;
 
 TEST(Regions, TwoAreTheSameModelAsAStep) {
   const auto state = [](Builder& b) {
@@ -48,8 +36,8 @@ TEST(Regions, TwoAreTheSameModelAsAStep) {
     by_condition.mode(model::less(x, 0.0), {{"x", 1.0 + 0.3 * cos(3 * y)}});
     by_condition.otherwise({{"x", -1.0 + 1.5 * sin(2 * y)}});
   }
-  const auto regions = run(by_indicator, 12);
-  const auto steps = run(by_condition, 12);
+  const auto regions = run_regions(by_indicator, 12);
+  const auto steps = run_regions(by_condition, 12);
   ASSERT_EQ(regions.status.termination, Termination::completed) << regions.status.message;
   ASSERT_EQ(regions.events.size(), steps.events.size());
   ASSERT_GE(steps.events.size(), 5U);
@@ -76,7 +64,7 @@ Integration sectors(const std::array<int, 3>& order) {
     const double c = std::cos(angle), s = std::sin(angle);
     b.region(-(c * x + s * y), {{"x", SX(-c)}, {"y", SX(-s)}}, names.at(static_cast<std::size_t>(i)));
   }
-  return run(b, 8.0);
+  return run_regions(b, 8.0);
 }
 
 TEST(Regions, ThreeMeetAtAPointAndHoldTheSolutionThere) {
@@ -132,7 +120,7 @@ TEST(Regions, HysteresisByFourRegionsHasItsPeriod) {
   b.region(indicator(0.25, 0.25), {{"w", down}}, "to_on");
   b.region(indicator(0.75, 0.75), {{"w", up}}, "to_off");
   b.region(indicator(0.75, 1.25), {{"y", -0.4 * y}, {"w", -up}, {"clock", 2.0}}, "off");
-  const auto result = run(b, 4.0);
+  const auto result = run_regions(b, 4.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   std::vector<double> clock;  // at which the sliding modes are left
   for (const auto& event : result.events) {
@@ -155,7 +143,7 @@ TEST(Regions, TwoGroupsAndAStepBesideThem) {
   b.region(y, {{"y", SX(1.0)}}, "low", "second");
   b.region(-y, {{"y", SX(-1.0)}}, "high", "second");
   b.dynamics("z", -b.sign(z));
-  const auto result = run(b, 2.0);
+  const auto result = run_regions(b, 2.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(result.events[i].t, 0.5 + 0.25 * static_cast<double>(i), 1e-13);

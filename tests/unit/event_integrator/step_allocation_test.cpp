@@ -1,8 +1,12 @@
 // No memory is allocated from step to step between events.
+#include <cmath>
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "../counted_allocations.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/builder.hpp"
 #include "systems.hpp"
 
 namespace saltus::event_integrator {
@@ -61,6 +65,24 @@ TEST(StepAllocation, NoneWhereEventFunctionsAreCurved) {
     const auto turns = count(system, method, 40.0);
     EXPECT_GT(turns.steps, 20);
     EXPECT_EQ(turns.with_allocation, 0) << static_cast<int>(method);
+  }
+}
+
+TEST(StepAllocation, NoneWhereThreeRegionsHoldTheSolution) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+    model::Builder b("moving point");
+    const auto x = b.state("x", {0.5});
+    const auto y = b.state("y", {0.0});
+    const auto ahead = cos(b.time()) / 4.0 - x, beside = sin(b.time()) / 4.0 - y;
+    for (int i = 0; i < 3; ++i) {
+      const double c = std::cos(2.0 * std::numbers::pi / 3.0 * i), s = std::sin(2.0 * std::numbers::pi / 3.0 * i);
+      b.region(-(c * ahead + s * beside), {{"x", casadi::SX(2.0 * c)}, {"y", casadi::SX(2.0 * s)}});
+    }
+    const auto system = b.build();
+    ASSERT_TRUE(system.has_value());
+    const auto held = count(*system, method, 20.0);
+    EXPECT_GT(held.steps, 20) << static_cast<int>(method);
+    EXPECT_EQ(held.with_allocation, 0) << static_cast<int>(method);
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -99,6 +101,23 @@ TEST(RegionDecision, TwoRegionsSlideWhereBothFieldsLeadToTheOther) {
   ASSERT_EQ(part.size(), 3U);
   EXPECT_TRUE(part[preferred_region_set(part, {})].attracts);
   EXPECT_EQ(part[preferred_region_set(part, {1})].active, (std::vector<int>{1}));
+}
+
+TEST(RegionDecision, AnEquilibriumOfOneFieldIsOneMotionOfAllThatMeet) {
+  const auto set = [](std::vector<int> active, std::vector<double> weights, bool marginal) {
+    RegionSet made;
+    made.active = std::move(active);
+    made.weights = std::move(weights);
+    made.marginal = marginal;
+    return made;
+  };
+  std::vector<RegionSet> sets{set({1}, {1}, true), set({2}, {1}, false), set({1, 2}, {1, 0}, true),
+                              set({0, 1, 2}, {0, 1, 0}, true), set({0, 2}, {0.5, 0.5}, true)};
+  merge_same_motions(sets);
+  ASSERT_EQ(sets.size(), 3U);
+  EXPECT_EQ(sets[0].active, (std::vector<int>{2}));
+  EXPECT_EQ(sets[1].active, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(sets[2].active, (std::vector<int>{0, 2}));
 }
 
 }  // namespace
