@@ -304,8 +304,7 @@ constexpr std::array fields{
     OptionField{"max_events", "a whole number >= 1", "Stop with iteration_limit after so many events.",
                 set_count<max_events>, record_count<max_events>},
     OptionField{"initial_mode.*", "-1, 0, 1",
-                "Force the side of a switching function at the start (0: slide on it); of a mode by `indicator` 1: "
-                "alone, 0: with others, -1: not active.",
+                "Force the side of a switching function at the start (0: slide on it), or a mode by `indicator`.",
                 set_initial_mode, record_initial_mode},
     OptionField{"event.integrator", "dopri5, dop853, radau5",
                 "Explicit Runge-Kutta method of order 5 or 8, or implicit one of order 5 for stiff models.",

@@ -42,10 +42,10 @@ TEST(Regions, TwoAreTheSameModelAsAStep) {
   ASSERT_EQ(regions.events.size(), steps.events.size());
   ASSERT_GE(steps.events.size(), 5U);
   for (std::size_t i = 0; i < steps.events.size(); ++i) {
-    EXPECT_NEAR(regions.events[i].t, steps.events[i].t, 1e-11);
+    EXPECT_EQ(regions.events[i].t, steps.events[i].t);
     EXPECT_EQ(regions.events[i].kind, steps.events[i].kind);
   }
-  EXPECT_NEAR(regions.final.x[0], steps.final.x[0], 1e-11);
+  EXPECT_EQ(regions.final.x, steps.final.x);
   EXPECT_EQ(*regions.events[0].regions_before, (Regions{{"right"}}));
   EXPECT_EQ(*regions.events[0].regions_after, (Regions{{"left", "right"}}));
   EXPECT_EQ(regions.events[0].surfaces, (std::vector<std::string>{"left"}));
