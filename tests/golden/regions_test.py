@@ -90,6 +90,7 @@ class Files(tool.ToolTest):
 
     def test_the_table_names_them(self):
         out, _ = self.run_tool("simulate", "groups.toml", code=0)
+        self.assertRegex(out, r"regions +first\.(low|high) +second\.low \(theta 0\.5\) +second\.mode2 \(theta 0\.5\)")
         self.assertRegex(out, r"0\.5 +enter_sliding +low .*mode2 > low\+mode2")
 
     def test_check(self):

@@ -237,6 +237,19 @@ std::string end_state(const result::Result& result) {
   }
   if (!pieces.empty()) text += wrapped(smoothed ? "in layer of" : "sliding on", pieces);
   pieces.clear();
+  const auto labels = result::region_labels(result.region_groups);
+  std::size_t label = 0;
+  for (std::size_t g = 0; g < std::min(result.region_groups.size(), result.final.regions.size()); ++g) {
+    const auto& active = result.final.regions[g];
+    for (const auto& mode : result.region_groups[g].modes) {
+      const std::size_t k = label++;
+      if (std::find(active.begin(), active.end(), mode) == active.end() || k >= result.final.theta.size()) continue;
+      const bool alone = active.size() == 1;
+      pieces.push_back(shortened(labels[k], 40) + (alone ? "" : fmt::format(" (theta {:.6g})", result.final.theta[k])));
+    }
+  }
+  if (!pieces.empty()) text += wrapped("regions", pieces);
+  pieces.clear();
   for (std::size_t i = 0; i < result.outputs.size() && i < result.final.outputs.size(); ++i) {
     pieces.push_back(fmt::format("{} = {:.12g}", result.outputs[i], result.final.outputs[i]));
   }
