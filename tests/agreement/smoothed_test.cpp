@@ -79,6 +79,44 @@ TEST(SmoothedRun, RowsAreWhatTheDefinitionSays) {
   }
 }
 
+TEST(SmoothedRun, ConvergesWithOrderOneToSlidingOnThreeCoupledSurfaces) {
+  // Each velocity depends on all selections and on products of them; w sees the moving root.
+  const Simulator model = Simulator::from_text(R"toml([model]
+name = "three-coupled"
+[states]
+x = 1
+y = 0.8
+z = 0.9
+w = 0
+[definitions]
+a = "sign(x)"
+b = "sign(y)"
+c = "sign(z)"
+[dynamics]
+x = "-a + 0.4*b - 0.3*c + 0.2*b*c + 0.3*sin(t)"
+y = "-0.5*a - b + 0.3*c + 0.2*a*c + 0.2*cos(2*t)"
+z = "0.3*a - 0.4*b - c + 0.3*a*b - 0.2*t"
+w = "a + 2*b*c + a*b*c - w"
+[simulate]
+until = 3
+rtol = 1e-10
+)toml");
+  const Result exact = model.run(model.options());
+  ASSERT_EQ(exact.status.termination, Termination::completed) << exact.status.message;
+  ASSERT_EQ(exact.final.mode, (result::Mode{0, 0, 0}));
+  ASSERT_EQ(exact.events.size(), 3u);
+  double previous = 0.0;
+  for (const double epsilon : {1e-3, 1e-4, 1e-5}) {
+    const Result smooth = run_smoothed(model, epsilon);
+    const double error = std::abs(smooth.final.x[3] - exact.final.x[3]);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(smooth.final.alpha[i], exact.final.alpha[i], epsilon);
+    if (previous > 0.0) {
+      EXPECT_NEAR(std::log10(previous / error), 1.0, 0.02) << epsilon;
+    }
+    previous = error;
+  }
+}
+
 TEST(SmoothedRun, NestedFunctionsHaveTheLimitOfTheEventEngine) {
   // x slides with alpha = 0.6; around it step(y - step(x)) is read on both sides: y' = 0.6 - 0.4 for 0 < y < 1.
   const Simulator model = Simulator::from_text(R"toml([model]

@@ -72,6 +72,15 @@ std::vector<Form> field(Dice& dice, std::size_t states) {
   return rows;
 }
 
+/// Constant velocities, turned towards the surfaces.
+void make_constant(Dice& dice, const RandomSystem& system, std::size_t corner, std::vector<Form>& rows) {
+  for (auto& row : rows) row.slope.assign(system.states, 0.0);
+  for (std::size_t j = 0; j < system.tabled; ++j) {
+    const double speed = std::abs(dice.coefficient(2.0)) * ((corner >> j & 1U) != 0 ? -1.0 : 1.0);
+    for (std::size_t i = 0; i < system.states; ++i) rows[i].constant += speed * system.psi[j].slope[i];
+  }
+}
+
 /// A table in which every field differs from a common one, in all or in a few components only.
 void draw_table(Dice& dice, RandomSystem& system) {
   system.tabled = system.surfaces = 1 + dice.below(4);
@@ -81,8 +90,9 @@ void draw_table(Dice& dice, RandomSystem& system) {
   const double share = dice.chance(0.5) ? 1.0 : 0.5;
   for (std::size_t corner = 0; corner < (std::size_t{1} << system.tabled); ++corner) {
     auto own = field(dice, system.states);
+    if (system.family == Family::constant) make_constant(dice, system, corner, own);
     for (std::size_t i = 0; i < system.states; ++i) {
-      if (constant_difference) own[i].slope = common[i].slope;
+      if (constant_difference && system.family != Family::constant) own[i].slope = common[i].slope;
       if (!dice.chance(share)) own[i] = common[i];
       if (system.family == Family::smooth) add_curvature(dice, own[i], 0.8, Form::Term::Kind::bounded_product);
     }
@@ -184,12 +194,16 @@ std::string name(Family family) {
       return "friction";
     case Family::smooth:
       return "smooth";
+    case Family::constant:
+      return "constant";
   }
   return "";
 }
 
 RandomSystem draw(Family family, std::uint64_t seed) {
-  Dice dice(seed * 4 + static_cast<std::uint64_t>(family));
+  // Seeds of the fifth family lie beyond those of the others.
+  constexpr std::uint64_t beyond = std::uint64_t{1} << 40;
+  Dice dice(seed * 4 + (family == Family::constant ? beyond : static_cast<std::uint64_t>(family)));
   dice.round_numbers = dice.chance(0.2);
   RandomSystem system;
   system.family = family;

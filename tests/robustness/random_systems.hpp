@@ -14,8 +14,10 @@ enum class Family {
   nested,    ///< max, abs and saturations, inside and outside of signs, signs inside of signs
   friction,  ///< oscillators with additive friction laws: decoupled selections
   smooth,    ///< multi-affine table of nonlinear fields, curved surfaces
+  constant,  ///< multi-affine table of constant fields that point to affine surfaces more often than not
 };
-inline constexpr Family families[] = {Family::affine, Family::nested, Family::friction, Family::smooth};
+inline constexpr Family families[] = {Family::affine, Family::nested, Family::friction, Family::smooth,
+                                      Family::constant};
 [[nodiscard]] std::string name(Family family);
 
 /// c + sum a_i x_i + rate t + sum of products and sines.

@@ -202,9 +202,15 @@ bool has_limit(const Result& result, double t, double nearby) {
   });
 }
 
-/// Whether the switches at t are part of an accumulation that the run passes, or in which it ends.
-bool in_accumulation(const Result& result, double t) {
+/// Whether the switches of a surface at t are part of an accumulation that the run passes, or in which it ends. One
+/// whose laps shrink fast is over where two surfaces are met together: sliding on both.
+bool in_accumulation(const Result& result, double t, std::size_t surface) {
   if (has_limit(result, t, 1e-6)) return true;
+  const auto ends_it = [&](const Event& event) {
+    if (!event.mode_after || event.t < t || event.t - t > 1e-9 || (*event.mode_after)[surface] != 0) return false;
+    return std::count(event.mode_after->begin(), event.mode_after->end(), 0) > 1;
+  };
+  if (std::any_of(result.events.begin(), result.events.end(), ends_it)) return true;
   return result.status.termination == result::Termination::outside_class &&
          result.status.message.starts_with("switches accumulate") && result.status.time_reached - t < 1e-6;
 }
@@ -237,7 +243,7 @@ std::string events_of(const Result& result, const std::vector<bool>& listed) {
                            (*events[i - 1].mode_after)[j], from, events[i - 1].t, event.t);
       }
       if (from == to) continue;
-      if (last[j] && event.t - events[*last[j]].t < 1e-9 && !in_accumulation(result, event.t)) {
+      if (last[j] && event.t - events[*last[j]].t < 1e-9 && !in_accumulation(result, event.t, j)) {
         const bool back = *events[*last[j]].mode_before == *event.mode_after;
         return fmt::format("s{} changes {} at t = {}", j, back ? "there and back" : "twice", event.t);
       }

@@ -1,4 +1,4 @@
-// Random systems of four families: every run ends with a status, solves its system, and agrees between integrators.
+// Random systems of five families: every run ends with a status, solves its system, and agrees between integrators.
 #include <algorithm>
 #include <functional>
 #include <iterator>

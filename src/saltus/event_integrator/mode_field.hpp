@@ -29,7 +29,8 @@ struct ExitValues {
   /// Keeps its sign while the root exists. Not affine: d g / d alpha. First of a group of coupled surfaces: det G
   /// squared for two, det G for more, relative to the size of g.
   double loss = 0.0;
-  double stability = 0.0;  ///< first of a group of coupled surfaces: > 0 while (4.12) of [guglielmi2022] holds
+  double stability = 0.0;  ///< first of a group of coupled surfaces: > 0 while (4.12) of [guglielmi2022] holds, or for
+                           ///< more than two while a scaling is known that makes the root stable
 };
 
 enum class Region { below, above };
@@ -78,6 +79,7 @@ class ModeField {
   void evaluate_groups(double t, const double* x);
   void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
+  void find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows);
   void find_stability();
   [[nodiscard]] bool several_regions(std::size_t row) const;
   void find_regions(const ModeState& state);
@@ -112,6 +114,8 @@ class ModeField {
   std::vector<SlidingRegions> regions_;
   std::vector<std::optional<switching::SelectionNewton>> newton_;  ///< by row, for the first of a larger group
   std::vector<double> selections_;                                 ///< of the group at hand
+  std::vector<double> speed_;                                      ///< by row: in groups of more than two
+  std::vector<double> scaled_;                                     ///< G of such a group, rows over their speeds
   std::vector<double> condition_;                                  ///< by row: of a coupled selection
   std::vector<bool> constant_row_;                                 ///< gradient known once and for all in this mode
   std::vector<int> coordinate_;                                    ///< the only nonzero column of a row, or -1

@@ -39,6 +39,7 @@ void ModeField::find_groups() {
   groups_.clear();
   group_size_.assign(m, 0);
   condition_.assign(m, 1.0);
+  speed_.assign(m, not_a_number);
   kind_.assign(m, std::nullopt);
   std::vector<bool> placed(m, false);
   for (std::size_t first = 0; first < m; ++first) {
@@ -158,6 +159,18 @@ void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::
   exits_[rows[0]].stability = root.stability;
 }
 
+/// Largest normal components over all corners where the mode begins: the default speeds of its hidden dynamics.
+void ModeField::find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows) {
+  std::vector<double> alpha(rows.size());
+  std::vector<double> g(rows.size());
+  for (const std::size_t row : rows) speed_[row] = 0.0;
+  for (std::size_t corner = 0; corner < std::size_t{1} << rows.size(); ++corner) {
+    for (std::size_t k = 0; k < rows.size(); ++k) alpha[k] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+    velocities(alpha.data(), g.data());
+    for (std::size_t k = 0; k < rows.size(); ++k) speed_[rows[k]] = std::max(speed_[rows[k]], std::abs(g[k]));
+  }
+}
+
 /// More than two surfaces: Newton from the selections of the mode.
 void ModeField::evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) selections_[k] = start_alpha_[at(sliding_[rows[k]])];
@@ -166,6 +179,7 @@ void ModeField::evaluate_many(double t, const double* x, const std::vector<std::
     kernel_.field(t, x, trial_.data(), f_[1].data());
     for (std::size_t k = 0; k < rows.size(); ++k) g[k] = normal_velocity(rows[k], f_[1]);
   };
+  if (std::isnan(speed_[rows[0]])) find_speeds(velocities, rows);
   const bool found = newton_[rows[0]]->solve(velocities, selections_.data());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto j = at(sliding_[rows[k]]);
@@ -188,7 +202,12 @@ void ModeField::find_stability() {
       size *= std::sqrt(square);
     }
     exits_[rows[0]].loss = newton.determinant() / size;
-    exits_[rows[0]].stability = newton.margin();
+    // Some scaling makes the root stable: one that Fisher and Fuller know of, or that of the hidden dynamics where the
+    // mode began, which may have settled there beyond their condition.
+    scaled_.assign(jacobian.begin(), jacobian.end());
+    for (std::size_t k = 0; k < scaled_.size(); ++k) scaled_[k] /= speed_[rows[k / rows.size()]];
+    exits_[rows[0]].stability =
+        std::max(newton.margin(), switching::hurwitz_margin(scaled_, static_cast<int>(rows.size())));
   }
 }
 

@@ -143,7 +143,7 @@ bool Decider::check() {
       const double ahead = velocity_ahead(field, xdot, j);
       motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
     }
-    if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode);
+    if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode, motion);
     transition_.zero_order[at(j)] = std::min(motion.order, 2);
   }
   return true;
@@ -159,14 +159,20 @@ bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
 }
 
 /// The field of the new mode does not move psi_j to where the mode says: why not.
-bool Decider::fail_at_tangency(int j, int mode) {
+bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
   const auto& state = transition_.state;
+  const auto& name = s_.system.switching[at(j)].name;
+  if (motion.side.drift == switching::Drift::stays) {
+    return fail(result::Termination::outside_class,
+                fmt::format("behind t = {} the field of the new mode does not leave '{}', to any order (boundary "
+                            "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
+                            occasion_.t, name));
+  }
   std::array<switching::Side, 2> sides;
   for (const std::size_t corner : {std::size_t{0}, std::size_t{1}}) {
     const auto alpha = fields_.corner_alpha(state.alpha, {j}, corner);
     sides[corner] = fields_.motion(alpha, j, fields_.velocities(alpha, {j}).front(), scale_[at(j)]).side;
   }
-  const auto& name = s_.system.switching[at(j)].name;
   const bool tangent =
       std::max(std::abs(sides[0].velocity), std::abs(sides[1].velocity)) <= sign_tolerance * scale_[at(j)];
   if (tangent && sides[0].drift == switching::Drift::up && sides[1].drift == switching::Drift::down) {

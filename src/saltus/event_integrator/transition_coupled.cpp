@@ -114,6 +114,21 @@ void Decider::note_others(const std::vector<int>& group, const switching::PlaneM
   }
 }
 
+/// The same of any number of surfaces.
+void Decider::note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen,
+                          const std::vector<switching::GroupMode>& modes) {
+  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-6; };
+  for (const auto& other : modes) {
+    const bool same =
+        other.mode == chosen.mode && std::equal(other.alpha.begin(), other.alpha.end(), chosen.alpha.begin(), near);
+    if (same) continue;
+    transition_.unique = false;
+    std::vector<GivenMode> choice;
+    for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], other.mode[k], other.alpha[k]});
+    transition_.other_choices.push_back(std::move(choice));
+  }
+}
+
 bool Decider::accept(const std::vector<int>& group, const PlaneDecision& decision) {
   const auto& chosen = decision.chosen;
   take(group, {chosen.mode[0], chosen.mode[1]}, {chosen.alpha[0], chosen.alpha[1]});
@@ -228,6 +243,8 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
       if (mode.mode != PlaneMode{hidden.mode[0], hidden.mode[1]}) others.push(mode);
     }
     note_others(group, others);
+  } else if (s_.affine_in_alpha && group.size() <= at(switching::largest_enumerated)) {
+    note_others(group, hidden, switching::admissible_modes(table));
   } else if (transition_.unique == true) {
     transition_.unique = std::nullopt;
   }

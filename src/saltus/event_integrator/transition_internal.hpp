@@ -13,6 +13,7 @@
 #include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/event_integrator/transition.hpp"
+#include "saltus/switching/group_modes.hpp"
 #include "saltus/switching/hidden_dynamics.hpp"
 #include "saltus/switching/intersection.hpp"
 #include "saltus/switching/region_decision.hpp"
@@ -74,6 +75,8 @@ class Decider {
   void note_meeting(const std::vector<int>& group, const switching::CornerTable& table);
   void take(const std::vector<int>& group, const std::vector<int>& mode, const std::vector<double>& alpha);
   void note_others(const std::vector<int>& group, const switching::PlaneModes& others);
+  void note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen,
+                   const std::vector<switching::GroupMode>& modes);
   bool spiral_out(const std::vector<int>& group, const switching::PlaneTable& table, switching::PlaneDecision decision);
   double velocity_ahead(ModeField& field, const std::vector<double>& xdot, int surface);
   switching::SurfaceDecision ask_selection(const switching::CornerTable& table, int surface);
@@ -81,7 +84,7 @@ class Decider {
   bool set_corners();
   bool check();
   bool fail_where_surfaces_touch(const std::vector<int>& surfaces);
-  bool fail_at_tangency(int surface, int mode);
+  bool fail_at_tangency(int surface, int mode, const Motion& motion);
   bool keeps_selections() const;
   bool fail(result::Termination termination, std::string message);
 

@@ -178,6 +178,43 @@ bool is_hurwitz(std::span<const double> matrix, int n) {
   return false;
 }
 
+double hurwitz_margin(std::span<const double> matrix, int n) {
+  std::vector<double> a(matrix.begin(), matrix.end());
+  const double size = norm(a, n);
+  if (!(size > 0.0)) return 0.0;
+  for (double& entry : a) entry /= size;
+  // Faddeev and LeVerrier: c_k = -tr(A B) / k with B <- A B + c_k I from B = I.
+  std::vector<double> c(at(n + 1));
+  c[0] = 1.0;
+  std::vector<double> product(a);
+  for (int k = 1; k <= n; ++k) {
+    double trace = 0.0;
+    for (int i = 0; i < n; ++i) trace += product[at(i * n + i)];
+    c[at(k)] = -trace / k;
+    std::vector<double> b(product);
+    for (int i = 0; i < n; ++i) b[at(i * n + i)] += c[at(k)];
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        double sum = 0.0;
+        for (int l = 0; l < n; ++l) sum += a[at(i * n + l)] * b[at(l * n + j)];
+        product[at(i * n + j)] = sum;
+      }
+    }
+  }
+  double margin = std::numeric_limits<double>::infinity();
+  std::vector<double> hurwitz(at(n * n));
+  for (int k = 1; k <= n; ++k) {
+    for (int i = 0; i < k; ++i) {
+      for (int j = 0; j < k; ++j) {
+        const int degree = 2 * (j + 1) - (i + 1);
+        hurwitz[at(i * k + j)] = degree >= 0 && degree <= n ? c[at(degree)] : 0.0;
+      }
+    }
+    margin = std::min(margin, determinant_of(hurwitz.data(), k, k));
+  }
+  return margin;
+}
+
 double fisher_fuller_margin(std::span<const double> matrix, int n) {
   // NOTE: up to 2 x 2 without workspace, since sliding on two surfaces asks in every step.
   const auto scaled = [&](int i, int j) {

@@ -27,6 +27,12 @@ class LuFactors {
 /// 30 products of matrices; allocates.
 [[nodiscard]] bool is_hurwitz(std::span<const double> matrix, int n);
 
+/// A number that is positive exactly if all eigenvalues of A (n x n, row by row) have negative real parts: the least
+/// leading Hurwitz determinant of det(s I - A / |A|) (Routh and Hurwitz). A polynomial of A / |A|, so that an event can
+/// be located where it passes 0: a complex pair crosses the imaginary axis, or an eigenvalue 0. Cost: n^4 operations;
+/// allocates.
+[[nodiscard]] double hurwitz_margin(std::span<const double> matrix, int n);
+
 /// A number that is positive only if some positive diagonal D makes DA stable (all eigenvalues in the left half plane):
 ///   max over orderings of the indices, min over k, of the k-th leading principal minor of -A in that ordering,
 /// the rows of A being divided by their largest entries first ([fisher1958]). For n = 2 it is positive exactly if

@@ -1,4 +1,4 @@
-// Ten thousand random systems: what random_systems_test.cpp does with a few hundred.
+// More than ten thousand random systems: what random_systems_test.cpp does with a few hundred.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

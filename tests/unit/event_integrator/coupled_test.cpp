@@ -1,10 +1,13 @@
 // Surfaces that influence each other: modes behind their events, where fields are tangent, nested, or of no help.
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/model/builder.hpp"
 
 namespace saltus::event_integrator {
@@ -90,6 +93,55 @@ TEST(Coupled, SlidingOfSecondOrderIsNotTakenForACrossing) {
               result.status.termination == Termination::completed)
       << result.status.message;
   EXPECT_LT(result.events.size(), 10U);
+}
+
+TEST(Coupled, OfThreeSurfacesStabilityIsThatOfTheScalingTheSlidingBeganWithToo) {
+  // x' = -M(t) (alpha - 1/2): no ordering of M has positive minors (Fisher and Fuller), but -M is stable up to the time
+  // at which c1 c2 = c3 (Routh and Hurwitz).
+  // Rows of M(0) have the sum 2 of sizes: speeds 1.
+  const double a = 0.2, b = 0.8, c = 0.65, d = 1.3, e = 0.2, f = -1.75, g = -0.05;
+  const auto routh = [&](double t) {
+    const double c1 = (1 + t) + 2 * g;
+    const double c2 = 2 * g * (1 + t) - a * c + g * g - d * f - b * e;
+    const double c3 = (1 + t) * (g * g - d * f) - a * (c * g - d * e) + b * (c * f - g * e);
+    return c1 * c2 - c3;
+  };
+  double wanted = 0.0, beyond = 2.0;
+  ASSERT_GT(routh(wanted), 0.0);
+  ASSERT_LT(routh(beyond), 0.0);
+  while (beyond - wanted > 1e-12) {
+    const double middle = 0.5 * (wanted + beyond);
+    (routh(middle) > 0.0 ? wanted : beyond) = middle;
+  }
+  Builder builder("three");
+  const SX x = builder.state("x", {0});
+  const SX y = builder.state("y", {0});
+  const SX z = builder.state("z", {0});
+  const SX u = builder.step(x) - 0.5;
+  const SX v = builder.step(y) - 0.5;
+  const SX w = builder.step(z) - 0.5;
+  builder.dynamics("x", -((1 + builder.time()) * u + a * v + b * w));
+  builder.dynamics("y", -(c * u + g * v + d * w));
+  builder.dynamics("z", -(e * u + f * v + g * w));
+  const auto system = builder.build();
+  ASSERT_TRUE(system.has_value());
+  const auto kernel = evaluation::ModelKernel::compile(*system);
+  ASSERT_TRUE(kernel.has_value());
+  ModeState state;
+  state.mode = {0, 0, 0};
+  state.alpha = {0.5, 0.5, 0.5};
+  state.sliding = {0, 1, 2};
+  ModeField field(*kernel, true);
+  field.enter(state);
+  const std::vector<double> point(3, 0.0);
+  const auto stability_at = [&](double t) {
+    std::array<ExitValues, 3> exits;
+    field.exits(t, point.data(), exits.data());
+    return exits[0].stability;
+  };
+  EXPECT_GT(stability_at(0.0), 1e-3);
+  EXPECT_GT(stability_at(wanted - 1e-9), 0.0);
+  EXPECT_LT(stability_at(wanted + 1e-9), 0.0);
 }
 
 }  // namespace

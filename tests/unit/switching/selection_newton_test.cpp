@@ -100,6 +100,7 @@ TEST(MatrixStability, HurwitzAgreesWithConstructedEigenvalues) {
         for (std::size_t c = 0; c < size; ++c) a[r * size + c] -= st[r * size + e] * v[c] / (1.0 + v[e]);
       }
       EXPECT_EQ(is_hurwitz(a, n), stable) << n;
+      EXPECT_EQ(hurwitz_margin(a, n) > 0.0, stable) << n;
     }
   }
 }
