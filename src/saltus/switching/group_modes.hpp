@@ -26,7 +26,7 @@ inline constexpr int largest_enumerated = 4;
 /// other if G(root)^-1 G has dominant diagonals at the corners of a box around both. None is missed but in boxes of
 /// width 2^-9 that pass neither test: roots that are double, or nearly.
 /// @param table  m <= largest_enumerated surfaces
-/// Cost: 60 microseconds for three surfaces, a millisecond for four. Allocates.
+/// Cost: half a millisecond for three surfaces, ten for four, once per meeting of so many. Allocates.
 [[nodiscard]] std::vector<GroupMode> admissible_modes(const CornerTable& table);
 
 }  // namespace saltus::switching
