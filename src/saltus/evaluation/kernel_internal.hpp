@@ -27,9 +27,6 @@ struct Gradient {
   std::vector<double> constant;  ///< row and rate, once known
 };
 
-/// f as native code: x, constants and xdot are not null and do not overlap.
-using DirectField = void (*)(double t, const double* x, const double* constants, double* xdot);
-
 /// xdot = f, free or with guards held, and what follows from it.
 struct Motion {
   casadi::SX f;
@@ -67,7 +64,7 @@ struct ModelKernel::Implementation {
   int first_jump_guard = 0;
   std::map<std::vector<int>, Motion> held;  ///< by event functions; compiled when first held
   Motion* motion = &free;
-  long field_evaluations = 0;
+  FieldUse field_use;  ///< its motion is `motion`
 
   NativeCode native = NativeCode::off;
   double operations = 0.0;    ///< interpreted so far

@@ -23,16 +23,19 @@ void ModelKernel::prepare_field(const double* alpha, FieldConstants& constants) 
   auto& function = self.motion->constants;
   constants.values.resize(index(static_cast<int>(function.function().numel_out(0))));
   constants.alpha.assign(alpha, alpha + self.n_psi);
-  constants.motion = self.motion;
+  constants.motion = self.field_use.motion = self.motion;
+  constants.direct = self.motion->direct;
+  constants.use = &self.field_use;
   self.count(function);
   function(std::array<const double*, 2>{self.parameters.data(), alpha},
            std::array<double*, 1>{constants.values.data()});
 }
 
-void ModelKernel::prepared_field(double t, const double* x, const FieldConstants& constants, double* xdot) const {
+void ModelKernel::prepared_field_anyhow(double t, const double* x, const FieldConstants& constants,
+                                        double* xdot) const {
   auto& self = *implementation_;
   if (constants.motion != self.motion) return field(t, x, constants.alpha.data(), xdot);
-  ++self.field_evaluations;
+  ++self.field_use.evaluations;
   if (self.motion->direct != nullptr) return self.motion->direct(t, x, constants.values.data(), xdot);
   self.count(self.motion->field);
   self.motion->field(std::array<const double*, 3>{&t, x, constants.values.data()}, std::array<double*, 1>{xdot});
@@ -57,7 +60,7 @@ Expected<Motion> ModelKernel::Implementation::compile_held(const std::vector<int
 Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
   auto& self = *implementation_;
   if (holds.empty()) {
-    self.motion = &self.free;
+    self.field_use.motion = self.motion = &self.free;
     return {};
   }
   std::vector<int> functions;
@@ -68,7 +71,7 @@ Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
     if (!motion) return tl::unexpected(motion.error());
     known = self.held.emplace(functions, std::move(*motion)).first;
   }
-  self.motion = &known->second;
+  self.field_use.motion = self.motion = &known->second;
   return {};
 }
 

@@ -23,7 +23,7 @@ int ModelKernel::switching_functions() const { return implementation_->n_psi; }
 int ModelKernel::event_functions() const { return static_cast<int>(implementation_->phi.numel()); }
 int ModelKernel::outputs() const { return static_cast<int>(implementation_->outputs.numel()); }
 int ModelKernel::controls() const { return static_cast<int>(implementation_->input.numel()); }
-long ModelKernel::field_evaluations() const { return implementation_->field_evaluations; }
+long ModelKernel::field_evaluations() const { return implementation_->field_use.evaluations; }
 
 void ModelKernel::functions(double t, const double* x, const double* alpha, double* values) const {
   auto& self = *implementation_;

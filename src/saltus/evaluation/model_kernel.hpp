@@ -55,11 +55,22 @@ struct RegionRange {
   [[nodiscard]] bool holds(int function) const { return first <= function && function < first + count; }
 };
 
+/// f as native code: x, constants and xdot are not null and do not overlap.
+using DirectField = void (*)(double t, const double* x, const double* constants, double* xdot);
+
+/// The motion in force, free or held, and how often it was evaluated: of a kernel, for its callers' shortcut.
+struct FieldUse {
+  const void* motion = nullptr;
+  long evaluations = 0;
+};
+
 /// What a right-hand side needs of its parameters and selections; filled by ModelKernel::prepare_field.
 struct FieldConstants {
   std::vector<double> values;
   std::vector<double> alpha;     ///< what they were made of
   const void* motion = nullptr;  ///< free or held
+  DirectField direct = nullptr;  ///< of that motion, if there was native code
+  FieldUse* use = nullptr;       ///< of the kernel
 };
 
 /// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons
@@ -95,7 +106,13 @@ class ModelKernel {
   /// selections stay, and the rest. However many selections f sums up, an evaluation pays for none of them (for all
   /// where hold() has changed the motion since).
   void prepare_field(const double* alpha, FieldConstants& constants) const;
-  void prepared_field(double t, const double* x, const FieldConstants& constants, double* xdot) const;
+  void prepared_field(double t, const double* x, const FieldConstants& constants, double* xdot) const {
+    if (constants.direct == nullptr || constants.use->motion != constants.motion) {
+      return prepared_field_anyhow(t, x, constants, xdot);
+    }
+    ++constants.use->evaluations;
+    constants.direct(t, x, constants.values.data(), xdot);
+  }
   /// Values of all event functions.
   void functions(double t, const double* x, const double* alpha, double* values) const;
   /// Magnitudes from which rounding and tolerances of event functions follow, each over all event functions:
@@ -168,6 +185,8 @@ class ModelKernel {
   [[nodiscard]] long field_evaluations() const;
 
  private:
+  void prepared_field_anyhow(double t, const double* x, const FieldConstants& constants, double* xdot) const;
+
   struct Implementation;
   explicit ModelKernel(std::unique_ptr<Implementation> implementation);
   std::unique_ptr<Implementation> implementation_;

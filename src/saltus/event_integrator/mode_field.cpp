@@ -223,11 +223,7 @@ void ModeField::select(double t, const double* x) {
   }
 }
 
-void ModeField::operator()(double t, const double* x, double* xdot) {
-  if (solve_ == SlidingSolve::none) {
-    kernel_.prepared_field(t, x, constants_[0], xdot);
-    return;
-  }
+void ModeField::slide(double t, const double* x, double* xdot) {
   if (is_single()) return slide_on_one(t, x, xdot);
   select(t, x);
   remove_normal_part(xdot);

@@ -49,7 +49,10 @@ class ModeField {
   [[nodiscard]] int codimension() const { return static_cast<int>(sliding_.size()); }
 
   /// xdot (n_x); not finite where the model or the sliding selection is undefined.
-  void operator()(double t, const double* x, double* xdot);
+  void operator()(double t, const double* x, double* xdot) {
+    if (solve_ != SlidingSolve::none) return slide(t, x, xdot);
+    kernel_.prepared_field(t, x, constants_[0], xdot);
+  }
   /// Selections of the last evaluation, n_psi.
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   /// Exit functions at a point, one per sliding surface.
@@ -74,6 +77,7 @@ class ModeField {
   void gradients(double t, const double* x);
   [[nodiscard]] double normal_velocity(std::size_t row, const std::vector<double>& f) const;
   void evaluate_corners(double t, const double* x);
+  void slide(double t, const double* x, double* xdot);
   void slide_on_one(double t, const double* x, double* xdot);
   void find_groups();
   void evaluate_groups(double t, const double* x);
