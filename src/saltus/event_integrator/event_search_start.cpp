@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saltus/event_integrator/event_search_internal.hpp"
+#include "saltus/event_integrator/mode_differences_internal.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -23,11 +24,15 @@ void EventSearch::start_at(double t) {
 bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
   if (!flips_ || !state.sliding.empty() || !held_.empty() || !followers_.empty()) return false;
   inspected_.clear();
-  for (std::size_t j = 0; j < state.mode.size(); ++j) {
-    if (state.mode[j] == state_.mode[j] && zero_order[j] == 0) continue;
-    if (state.mode[j] == 0 || state_.mode[j] == 0) return false;
+  bool crosses = true;
+  for_each_difference(state_.mode, state.mode, [&](std::size_t j) {
+    crosses = crosses && state.mode[j] != 0 && state_.mode[j] != 0;
     inspected_.push_back(j);
-  }
+  });
+  if (!crosses) return false;
+  for_each_nonzero(zero_order, [&](std::size_t j) {
+    if (state.mode[j] == state_.mode[j]) inspected_.push_back(j);
+  });
   for (const std::size_t i : special_) {
     functions_[i].zero_order = 0;
     functions_[i].offset = 0.0;

@@ -3,14 +3,21 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-/// Functions that are compared at once: a loop without a branch.
+/// Functions that are compared at once before a difference is looked for.
 constexpr std::size_t block = 32;
+
+/// Bit for bit.
+template <class Number>
+bool are_same(const std::vector<Number>& a, const std::vector<Number>& b, std::size_t begin, std::size_t end) {
+  return begin == end || std::memcmp(a.data() + begin, b.data() + begin, (end - begin) * sizeof(Number)) == 0;
+}
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
@@ -24,14 +31,13 @@ std::size_t ModeLog::append(const std::vector<int>& mode, const std::vector<doub
     ends_.push_back(0);
     return 0;
   }
+  if (are_same(mode, last_mode_, 0, mode.size()) && are_same(alpha, last_alpha_, 0, mode.size())) {
+    return ends_.size() - 1;
+  }
   const std::size_t known = changes_.size();
   for (std::size_t begin = 0; begin < mode.size(); begin += block) {
     const std::size_t end = std::min(begin + block, mode.size());
-    std::uint32_t modes = 0;
-    std::uint64_t alphas = 0;
-    for (std::size_t j = begin; j < end; ++j) modes |= static_cast<std::uint32_t>(mode[j] ^ last_mode_[j]);
-    for (std::size_t j = begin; j < end; ++j) alphas |= bits(alpha[j]) ^ bits(last_alpha_[j]);
-    if (modes == 0 && alphas == 0) continue;
+    if (are_same(mode, last_mode_, begin, end) && are_same(alpha, last_alpha_, begin, end)) continue;
     for (std::size_t j = begin; j < end; ++j) {
       if (mode[j] == last_mode_[j] && bits(alpha[j]) == bits(last_alpha_[j])) continue;
       changes_.push_back({j, last_mode_[j], mode[j], alpha[j]});

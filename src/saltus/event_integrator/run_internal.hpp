@@ -51,9 +51,9 @@ class Run {
     long events = 0;  ///< recorded before it
     RowBefore row = RowBefore::missing;
   };
-  /// dg/dt, and the sum of the sizes of its terms.
+  /// dg/dt, the sum of the sizes of its terms, and the size of those of g that its rounding follows from.
   struct Rate {
-    double value = 0.0, terms = 0.0;
+    double value = 0.0, terms = 0.0, magnitude = 0.0;
   };
   /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
   struct Landing {

@@ -61,9 +61,11 @@ Run::Rate Run::rate_along_field(int function, double t, const double* x, const d
   Rate rate;
   kernel_.gradient(function, t, x, state_.alpha.data(), row.data(), &rate.value);
   rate.terms = std::abs(rate.value);
+  rate.magnitude = rate.value == 0.0 ? 0.0 : std::abs(rate.value * t);
   for (std::size_t i = 0; i < row.size(); ++i) {
     const double term = row[i] == 0.0 ? 0.0 : row[i] * slope[i];
     rate.value += term;
+    rate.magnitude += row[i] == 0.0 ? 0.0 : std::abs(row[i] * x[i]);
     rate.terms += std::abs(term);
   }
   return rate;

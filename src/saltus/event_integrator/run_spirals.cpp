@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "saltus/event_integrator/continuations.hpp"
+#include "saltus/event_integrator/mode_differences_internal.hpp"
 #include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
 
@@ -39,23 +40,22 @@ void put_on(const evaluation::ModelKernel& kernel, const std::vector<int>& label
 void Run::note_tightening_switch() {
   if (before_.mode == state_.mode) return;
   if (jumped_ || !series_.tightens()) return switch_laps_.clear();
-  std::vector<double> magnitude(at(kernel_.event_functions())), slope(magnitude.size());
-  std::vector<double> arriving(x_.size());
-  kernel_.field(t_, x_.data(), before_.alpha.data(), arriving.data());
-  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
   std::vector<int> labels;
-  for (int j = 0; j < kernel_.switching_functions(); ++j) {
-    const int mode = state_.mode[at(j)];
-    if (before_.mode[at(j)] == mode) continue;
-    // Kinks do not hold a solution, and times pass.
-    const auto role = surroundings_.system.switching[at(j)].role;
-    if (role != model::SwitchingRole::listed && role != model::SwitchingRole::region) return switch_laps_.clear();
-    labels.push_back(label_of(j, mode));
+  bool holds = true;  // kinks do not hold a solution, and times pass
+  for_each_difference(before_.mode, state_.mode, [&](std::size_t j) {
+    const auto role = surroundings_.system.switching[j].role;
+    holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
+    labels.push_back(label_of(static_cast<int>(j), state_.mode[j]));
+  });
+  if (!holds) return switch_laps_.clear();
+  kernel_.field(t_, x_.data(), before_.alpha.data(), row_slope_.data());
+  for (const int label : labels) {
     // Where sliding begins or ends psi moves on the other side only.
-    const double rate = std::max(std::abs(rate_along_field(j, t_, x_.data(), arriving.data()).value),
-                                 std::abs(rate_along_field(j, t_, x_.data(), slope_.data()).value));
+    const Rate arriving = rate_along_field(surface_of(label), t_, x_.data(), row_slope_.data());
+    const Rate leaving = rate_along_field(surface_of(label), t_, x_.data(), slope_.data());
+    const double rate = std::max(std::abs(arriving.value), std::abs(leaving.value));
     // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the lap.
-    shortest_switch_lap_[at(labels.back())] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(j)] / rate : 0.0;
+    shortest_switch_lap_[at(label)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * leaving.magnitude / rate : 0.0;
   }
   switch_laps_.add(t_, std::move(labels), x_);
 }

@@ -2,13 +2,18 @@
 
 #include <algorithm>
 
+#include "saltus/event_integrator/mode_differences_internal.hpp"
+
 namespace saltus::event_integrator {
 namespace {
 
+std::size_t weight(std::size_t surface) { return 0x9e3779b97f4a7c15U * (surface + 1); }
+/// Modulo 2^64, as are sums of marks.
+std::size_t unsigned_of(int difference) { return static_cast<std::size_t>(difference); }
+
 std::size_t mark_of(const std::vector<int>& mode) {
   std::size_t mark = 0;
-  for (std::size_t j = 0; j < mode.size(); ++j)
-    mark += static_cast<std::size_t>(mode[j] + 1) * (0x9e3779b97f4a7c15U * (j + 1));
+  for (std::size_t j = 0; j < mode.size(); ++j) mark += weight(j) * unsigned_of(mode[j]);
   return mark;
 }
 
@@ -22,7 +27,12 @@ double StepMemory::change(const std::vector<int>& mode, double t, double propose
   start_ = t;
   first_accepted_ = false;
   lasts_ = true;
-  const std::size_t mark = mark_of(mode);
+  // The mark of the mode before is known: what differs from it is added.
+  std::size_t mark = used_ == 0 ? mark_of(mode) : entries_[current_].mark;
+  if (used_ != 0) {
+    const auto& before = entries_[current_].mode;
+    for_each_difference(before, mode, [&](std::size_t j) { mark += weight(j) * unsigned_of(mode[j] - before[j]); });
+  }
   for (current_ = 0; current_ < used_; ++current_) {
     const auto& entry = entries_[current_];
     if (entry.mark == mark && entry.mode == mode) return entry.step > 0.0 ? entry.step : proposed;
