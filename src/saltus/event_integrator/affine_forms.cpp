@@ -162,6 +162,20 @@ bool AffineForms::reaches_zero(const Form& form, const StepBounds& bounds) const
   return !(least > margin * terms(form, bounds));
 }
 
+bool AffineForms::leaves(std::size_t i, int sign, const StepBounds& mean_slopes) const {
+  const Form& form = forms_[i];
+  double least = sign * form.rate;
+  double size = std::abs(form.rate);
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    const auto [column, coefficient] = terms_[k];
+    const double low = mean_slopes.low[column];
+    const double high = mean_slopes.high[column];
+    least += sign * coefficient * (sign * coefficient > 0.0 ? low : high);
+    size += std::abs(coefficient) * std::max(std::abs(low), std::abs(high));
+  }
+  return least > margin * size;
+}
+
 bool AffineForms::reaches_threshold(std::size_t state, const StepBounds& bounds) const {
   const double low = bounds.low[state];
   const double high = bounds.high[state];
@@ -179,9 +193,16 @@ bool AffineForms::may_vanish(const StepBounds& bounds) const {
 void AffineForms::append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const {
   for (std::size_t state = 0; state < lower_.size(); ++state) {
     if (!reaches_threshold(state, bounds)) continue;
+    const double low = bounds.low[state];
+    const double high = bounds.high[state];
+    const double largest = std::max(std::abs(low), std::abs(high));
     for (std::size_t k = first_[state]; k < first_[state + 1]; ++k) {
       const auto& threshold = thresholds_[k];
-      if (threshold.side != 0 && reaches_zero(forms_[threshold.function], bounds)) {
+      if (threshold.side == 0) continue;
+      // In units of the state, with twice the room for rounding: most thresholds are far from its bounds.
+      const double room = 2.0 * margin * (largest + std::abs(threshold.value));
+      const double distance = threshold.side > 0 ? low - threshold.value : threshold.value - high;
+      if (!(distance > room) && reaches_zero(forms_[threshold.function], bounds)) {
         suspects.push_back(threshold.function);
       }
     }

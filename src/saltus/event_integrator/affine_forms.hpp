@@ -59,6 +59,9 @@ class AffineForms {
   /// Whether any watched function may vanish within the bounds; true where a bound is not finite. Cost: O(n_x), and the
   /// terms of the forms of several states.
   [[nodiscard]] bool may_vanish(const StepBounds& bounds) const;
+  /// Whether function i, which is zero or has the sign `sign` where the step starts, gets away from there into that
+  /// sign at once and stays: by bounds of the mean slopes of the states (in place of their values).
+  [[nodiscard]] bool leaves(std::size_t i, int sign, const StepBounds& mean_slopes) const;
   /// The watched functions that may, in no particular order.
   void append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const;
 

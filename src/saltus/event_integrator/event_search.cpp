@@ -247,9 +247,19 @@ bool EventSearch::is_far(std::size_t i) const {
   return stays_far({value(0), value(2), value(4), value(6), value(8)}, functions_[i].sign);
 }
 
+/// Whether what is special about the start of the step are zeros only that are left at once.
+bool EventSearch::specials_leave(const ode::Stepper& stepper) {
+  if (special_.empty()) return true;
+  if (!stepper.mean_slopes(low_.data(), high_.data())) return false;
+  const StepBounds slopes{0.0, 0.0, low_.data(), high_.data()};
+  return std::all_of(special_.begin(), special_.end(), [&](std::size_t i) {
+    return functions_[i].sign != 0 && forms_.has(i) && forms_.leaves(i, functions_[i].sign, slopes);
+  });
+}
+
 bool EventSearch::may_vanish(const ode::Stepper& stepper) {
   if (functions_.empty()) return false;
-  if (!curved_.empty() || !special_.empty()) return true;
+  if (!curved_.empty() || !specials_leave(stepper)) return true;
   if (!stepper.bounds(low_.data(), high_.data())) return true;
   bounds_ = {stepper.start_time(), stepper.start_time() + stepper.length(), low_.data(), high_.data()};
   return forms_.may_vanish(bounds_);

@@ -114,6 +114,7 @@ class EventSearch {
   };
 
   void start_at(double t);
+  [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
   void set_forms(const double* x);
   void sort_functions();
   void rescale(double t, const double* x, const std::vector<std::size_t>& which);

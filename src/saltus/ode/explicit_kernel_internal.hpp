@@ -106,7 +106,7 @@ inline void dense_rows(const ExplicitStep& step, double* result, std::index_sequ
   (dense_row<Tableau, row, Size>(step, result + row * size_of<Size>(step)), ...);
 }
 
-/// The functions of one method; `Pair` has its Tableau, error_norm, bounds and stability_limit.
+/// The functions of one method; `Pair` has its Tableau, error_norm, bounds, mean_slopes and stability_limit.
 template <class Pair, class Size>
 struct ExplicitKernel {
   using Tableau = typename Pair::Tableau;
@@ -150,8 +150,9 @@ struct ExplicitKernel {
     return std::abs(step.h) * std::sqrt(slopes / states) / Pair::stability_limit;
   }
 
-  static constexpr ExplicitMethod method{take, Pair::template bounds<Size>, dense, stability_ratio,
-                                         last, Tableau::dense_stages};
+  static constexpr ExplicitMethod method{
+      take, Pair::template bounds<Size>, Pair::template mean_slopes<Size>, dense, stability_ratio,
+      last, Tableau::dense_stages};
 };
 
 }  // namespace saltus::ode

@@ -32,6 +32,7 @@ struct ExplicitMethod {
   /// first stage that is not finite.
   bool (*take)(const ExplicitStep& step, const StageWork& work, const Tolerances& tolerances, double& error_norm);
   void (*bounds)(const ExplicitStep& step, double* low, double* high);
+  void (*mean_slopes)(const ExplicitStep& step, double* low, double* high);
   /// Coefficients of the dense output; false if a further stage is not finite, and then those of the cubic.
   bool (*dense)(const ExplicitStep& step, const StageWork& work, double* coefficients);
   double (*stability_ratio)(const ExplicitStep& step);

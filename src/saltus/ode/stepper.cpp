@@ -106,6 +106,12 @@ bool Stepper::bounds(double* low, double* high) const {
   return true;
 }
 
+bool Stepper::mean_slopes(double* low, double* high) const {
+  if (explicit_ == nullptr) return false;
+  explicit_->mean_slopes(explicit_step(), low, high);
+  return true;
+}
+
 Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
   const auto n = static_cast<std::size_t>(n_);
   output.t = t_;

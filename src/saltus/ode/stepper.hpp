@@ -90,6 +90,9 @@ class Stepper {
   /// doubles each. False where a method has none (radau5). With dop853 they rest on the slopes of the stages: right for
   /// right-hand sides that these resolve, which is what the error estimate assumes too.
   [[nodiscard]] bool bounds(double* low, double* high) const;
+  /// Bounds of the mean slopes (x_i(t + theta h) - x_i(t)) / (theta h) of that dense output over 0 < theta <= 1,
+  /// likewise: they say which components leave their starts in one direction only.
+  [[nodiscard]] bool mean_slopes(double* low, double* high) const;
   [[nodiscard]] double start_time() const { return t_; }  ///< of the last attempt
   [[nodiscard]] double length() const { return h_; }      ///< of the last attempt
 

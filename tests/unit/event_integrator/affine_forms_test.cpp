@@ -52,6 +52,20 @@ TEST_F(Forms, EvaluateTheirRows) {
   EXPECT_FALSE(forms.has(5));
 }
 
+TEST_F(Forms, LeaveTheirStartWhereNoMeanSlopeTurnsThemBack) {
+  // Mean slopes of x1 between 1 and 2, of x2 between -1 and 1.
+  const double low[] = {1.0, -1.0};
+  const double high[] = {2.0, 1.0};
+  const StepBounds slopes{0.0, 0.0, low, high};
+  EXPECT_TRUE(forms.leaves(0, +1, slopes));
+  EXPECT_FALSE(forms.leaves(0, -1, slopes));
+  EXPECT_TRUE(forms.leaves(2, -1, slopes));   // 2 - x1
+  EXPECT_FALSE(forms.leaves(3, -1, slopes));  // x2 - x1: between -3 and 0
+  EXPECT_TRUE(forms.leaves(4, +1, slopes));   // t - 5
+  const double lower_high[] = {2.0, 0.9};
+  EXPECT_TRUE(forms.leaves(3, -1, {0.0, 0.0, low, lower_high}));
+}
+
 TEST_F(Forms, OnlyWhatIsWatchedAndReachedIsSuspect) {
   // x1 between 1 and 2, both thresholds hidden behind those at 3; x2 above x1; t before 5.
   forms.watch(0, +1);

@@ -52,6 +52,36 @@ TEST_P(DenseOutput, is_exact_at_both_ends) {
   EXPECT_LT(distance(expected.data(), slope), 64 * epsilon / dense.h);
 }
 
+TEST_P(DenseOutput, leaves_its_start_with_slopes_within_their_bounds) {
+  for (const double h : {1e-3, 0.1, 0.5, 1.0}) {
+    if (GetParam() == Method::radau5 && h > 0.5) continue;  // its stages are not found at every t
+    for (double t = 0.0; t < 6.0; t += 0.37) {
+      Stepper stepper(GetParam(), Kepler::n);
+      const auto start = Kepler::exact(t);
+      const DenseStep dense = one_step(stepper, Kepler{}, t, start, h);
+      std::vector<double> low(start.size()), high(start.size()), x(start.size());
+      ASSERT_EQ(stepper.mean_slopes(low.data(), high.data()), GetParam() != Method::radau5);
+      if (GetParam() == Method::radau5) continue;
+      for (int k = 1; k <= 200; ++k) {
+        const double passed = h * k / 200.0;
+        dense.evaluate(k / 200.0, x.data());
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          const double slope = (x[i] - start[i]) / passed;
+          const double rounding = 16 * epsilon / passed;
+          ASSERT_GE(slope, low[i] - rounding) << "h = " << h << ", t = " << t << ", " << k;
+          ASSERT_LE(slope, high[i] + rounding) << "h = " << h << ", t = " << t << ", " << k;
+        }
+      }
+      // They say something: for a short step no more than the slopes at its ends, about.
+      if (h > 1e-3) continue;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const double bend = std::abs(stepper.slope_new()[i] - (x[i] - start[i]) / h);
+        EXPECT_LE(high[i] - low[i], 8.0 * bend + 64 * epsilon / h) << i;
+      }
+    }
+  }
+}
+
 TEST_P(DenseOutput, stays_within_its_bounds) {
   for (const double h : {1e-3, 0.1, 0.5, 1.0}) {
     if (GetParam() == Method::radau5 && h > 0.5) continue;  // its stages are not found at every t
