@@ -95,7 +95,8 @@ bool Run::change_mode(const Located& located) {
   occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
   note_ties(kernel_, state_, occasion);
   Transition& transition = transition_;
-  if (!single_surface_.decide(before_, occasion, transition)) {
+  const bool slope_holds = cells_.empty() && jumps_.none();  // no cell was left, and no guard released, here
+  if (!single_surface_.decide(before_, occasion, transition, slope_holds ? &slope_ : nullptr)) {
     transition = decide_mode(surroundings_, before_, occasion);
   }
   if (transition.termination == Termination::completed) {

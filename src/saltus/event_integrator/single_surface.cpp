@@ -20,6 +20,10 @@ SingleSurface::SingleSurface(const Surroundings& surroundings)
       field_(surroundings.kernel, surroundings.affine_in_alpha) {
   for (int j = 0; j < surroundings.kernel.switching_functions(); ++j) {
     for (const int inner : surroundings.kernel.inner(j)) is_inner_[at(inner)] = true;
+    if (!surroundings.kernel.inner(j).empty()) between_.push_back(j);
+  }
+  for (const auto& group : surroundings.kernel.region_groups()) {
+    for (int j = group.first; j < group.first + group.count; ++j) between_.push_back(j);
   }
 }
 
@@ -47,24 +51,32 @@ double SingleSurface::velocity(const Occasion& occasion, int surface, double sel
   const auto& kernel = surroundings_.kernel;
   alpha_[at(surface)] = selection;
   kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
-  if (!is_finite(f_)) return std::numeric_limits<double>::quiet_NaN();
+  return velocity(occasion, surface, f_);
+}
+
+/// The same with the field that belongs to alpha_.
+double SingleSurface::velocity(const Occasion& occasion, int surface, const std::vector<double>& f) {
+  if (!is_finite(f)) return std::numeric_limits<double>::quiet_NaN();
   double velocity = 0.0;
-  kernel.gradient(surface, occasion.t, occasion.x, alpha_.data(), row_.data(), &velocity);
-  for (std::size_t i = 0; i < f_.size(); ++i) velocity += row_[i] == 0.0 ? 0.0 : row_[i] * f_[i];
+  surroundings_.kernel.gradient(surface, occasion.t, occasion.x, alpha_.data(), row_.data(), &velocity);
+  for (std::size_t i = 0; i < f.size(); ++i) velocity += row_[i] == 0.0 ? 0.0 : row_[i] * f[i];
   return velocity;
 }
 
-bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Transition& transition) {
+bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Transition& transition,
+                           const std::vector<double>* slope) {
   if (!applies(before, occasion)) return false;
   const int j = occasion.touched.front();
   alpha_ = before.alpha;
-  for (std::size_t i = 0; i < alpha_.size(); ++i) {
-    if (before.mode[i] != 0) alpha_[i] = before.mode[i] > 0 ? 1.0 : 0.0;
+  for (const int i : between_) {
+    if (before.mode[at(i)] != 0) alpha_[at(i)] = before.mode[at(i)] > 0 ? 1.0 : 0.0;
   }
   switching::SurfaceSituation situation;
   auto& [below, above, arrival] = situation;
-  below.velocity = velocity(occasion, j, 0.0);
-  above.velocity = velocity(occasion, j, 1.0);
+  // Outside of surfaces the side that the solution comes from is that of its own field.
+  const int known = slope != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
+  below.velocity = known < 0 ? velocity(occasion, j, *slope) : velocity(occasion, j, 0.0);
+  above.velocity = known > 0 ? velocity(occasion, j, *slope) : velocity(occasion, j, 1.0);
   if (!std::isfinite(below.velocity) || !std::isfinite(above.velocity)) return false;
   const double scale = std::max(std::abs(below.velocity), std::abs(above.velocity));
   for (auto* side : {&below, &above}) {

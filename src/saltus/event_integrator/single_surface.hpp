@@ -16,25 +16,29 @@ namespace saltus::event_integrator {
 ///   - f is affine in the selection, and both normal components are clear of zero (at an exit the other one, and a
 ///   later
 ///     derivative of the tangent one).
-/// Cost: two evaluations of f, one of the sliding field if there are other surfaces; at an exit a second derivative,
-/// too. Owns its work space.
+/// Cost: one evaluation of f, or two where the mode before slides, one of the sliding field if there are other
+/// surfaces; at an exit a second derivative, too. Owns its work space.
 class SingleSurface {
  public:
   explicit SingleSurface(const Surroundings& surroundings);
 
   /// Fills `transition`, whose storage is used again.
+  /// @param slope  the field of the mode before at the occasion's point, if it is known
   /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
-  [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition);
+  [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition,
+                            const std::vector<double>* slope = nullptr);
 
  private:
   [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
   double velocity(const Occasion& occasion, int surface, double selection);
+  double velocity(const Occasion& occasion, int surface, const std::vector<double>& f);
   void fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
             Transition& transition) const;
   bool select_others(const Occasion& occasion, ModeState& state);
 
   const Surroundings& surroundings_;
   std::vector<bool> is_inner_;  ///< n_psi: a switching function is nested around it
+  std::vector<int> between_;    ///< functions whose selection outside the mode may lie between 0 and 1
   std::vector<double> alpha_;   ///< n_psi
   std::vector<double> f_, row_;
   ModeField field_;
