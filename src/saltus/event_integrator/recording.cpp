@@ -5,33 +5,58 @@
 #include <utility>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/event_integrator/mode_differences_internal.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-result::Mode mode_columns(const model::System& system, const std::vector<int>& mode, const std::vector<double>& alpha) {
-  result::Mode columns;
-  columns.reserve(system.columns.size());
-  for (const auto& column : system.columns) {
-    const auto j = at(column.function);
-    // Functions of discrete states are in no mode: their sign is that of their selection.
-    const bool discrete = system.switching[j].role == model::SwitchingRole::discrete;
-    const int sign = discrete ? (alpha[j] > 0.5 ? 1 : alpha[j] < 0.5 ? -1 : 0) : mode[j];
-    columns.push_back(column.orientation * sign);
+/// The columns of one mode after the other: what changes from each to the next is turned into columns, the rest stays.
+class Columns {
+ public:
+  explicit Columns(const model::System& system) : system_(system), of_function_(system.switching.size()) {
+    for (std::size_t c = 0; c < system.columns.size(); ++c) of_function_[at(system.columns[c].function)].push_back(c);
+    columns_mode_.resize(system.columns.size());
+    columns_alpha_.resize(system.columns.size());
   }
-  return columns;
-}
 
-std::vector<double> alpha_columns(const model::System& system, const std::vector<double>& alpha) {
-  std::vector<double> columns;
-  columns.reserve(system.columns.size());
-  for (const auto& column : system.columns) {
-    const double value = alpha[at(column.function)];
-    columns.push_back(column.orientation > 0 ? value : 1.0 - value);
+  void set(const std::vector<int>& mode, const std::vector<double>& alpha) {
+    if (mode_.size() != mode.size()) {
+      mode_ = mode;
+      alpha_ = alpha;
+      for (std::size_t j = 0; j < mode.size(); ++j) set_function(j);
+      return;
+    }
+    const auto take = [&](std::size_t j) {
+      mode_[j] = mode[j];
+      alpha_[j] = alpha[j];
+      set_function(j);
+    };
+    for_each_difference(alpha_, alpha, take);
+    for_each_difference(mode_, mode, take);
   }
-  return columns;
-}
+  [[nodiscard]] const result::Mode& mode() const { return columns_mode_; }
+  [[nodiscard]] const std::vector<double>& alpha() const { return columns_alpha_; }
+
+ private:
+  void set_function(std::size_t j) {
+    // Functions of discrete states are in no mode: their sign is that of their selection.
+    const bool discrete = system_.switching[j].role == model::SwitchingRole::discrete;
+    const int sign = discrete ? (alpha_[j] > 0.5 ? 1 : alpha_[j] < 0.5 ? -1 : 0) : mode_[j];
+    for (const std::size_t c : of_function_[j]) {
+      const int orientation = system_.columns[c].orientation;
+      columns_mode_[c] = orientation * sign;
+      columns_alpha_[c] = orientation > 0 ? alpha_[j] : 1.0 - alpha_[j];
+    }
+  }
+
+  const model::System& system_;
+  std::vector<std::vector<std::size_t>> of_function_;
+  std::vector<int> mode_;      ///< by function, as are
+  std::vector<double> alpha_;  ///< these
+  result::Mode columns_mode_;
+  std::vector<double> columns_alpha_;
+};
 
 /// Names of the active modes of every group by `indicator`.
 result::Regions active_regions(const model::System& system, const std::vector<int>& mode) {
@@ -106,6 +131,7 @@ void Recording::drop(std::size_t events, std::size_t rows) {
 
 std::vector<result::Event> Recording::events(const model::System& system) const {
   ModeLog::Reader reader(modes);
+  Columns columns(system);
   std::vector<result::Event> expanded;
   expanded.reserve(event_list.size());
   for (const Event& event : event_list) {
@@ -126,8 +152,9 @@ std::vector<result::Event> Recording::events(const model::System& system) const 
     const auto expand = [&](std::size_t number, auto& mode, auto& alpha, auto& regions) {
       if (number == none) return;
       reader.seek(number);
-      mode = mode_columns(system, reader.mode(), reader.alpha());
-      alpha = alpha_columns(system, reader.alpha());
+      columns.set(reader.mode(), reader.alpha());
+      mode = columns.mode();
+      alpha = columns.alpha();
       if (auto active = active_regions(system, reader.mode()); !active.empty()) regions = std::move(active);
     };
     expand(event.mode, entry.mode_before, entry.alpha_before, entry.regions_before);
@@ -136,8 +163,8 @@ std::vector<result::Event> Recording::events(const model::System& system) const 
     entry.unique = event.unique;
     for (std::size_t k = event.alternatives.begin; k < event.alternatives.end; ++k) {
       const auto& other = alternatives[k];
-      entry.alternatives.push_back({mode_columns(system, other.mode, other.alpha), alpha_columns(system, other.alpha),
-                                    active_regions(system, other.mode)});
+      columns.set(other.mode, other.alpha);
+      entry.alternatives.push_back({columns.mode(), columns.alpha(), active_regions(system, other.mode)});
     }
     entry.reason = text.substr(event.reason.begin, event.reason.end - event.reason.begin);
   }
@@ -146,6 +173,7 @@ std::vector<result::Event> Recording::events(const model::System& system) const 
 
 result::Trajectory Recording::trajectory(const model::System& system) const {
   ModeLog::Reader reader(modes);
+  Columns columns(system);
   result::Trajectory rows;
   const std::size_t count = row_times.size();
   rows.t = row_times;
@@ -156,8 +184,9 @@ result::Trajectory Recording::trajectory(const model::System& system) const {
     rows.u.push_back(part(row_inputs, k * n_u, n_u));
     rows.outputs.push_back(part(row_outputs, k * n_y, n_y));
     reader.seek(row_modes[k]);
-    rows.alpha.push_back(alpha_columns(system, reader.alpha()));
-    rows.mode.push_back(mode_columns(system, reader.mode(), reader.alpha()));
+    columns.set(reader.mode(), reader.alpha());
+    rows.alpha.push_back(columns.alpha());
+    rows.mode.push_back(columns.mode());
     if (auto active = active_regions(system, reader.mode()); !active.empty()) {
       rows.regions.push_back(std::move(active));
       rows.theta.push_back(region_weights(system, reader.mode(), reader.alpha()));
@@ -169,11 +198,13 @@ result::Trajectory Recording::trajectory(const model::System& system) const {
 result::Final Recording::last(const model::System& system) const {
   SALTUS_ASSERT(!row_times.empty());
   ModeLog::Reader reader(modes);
+  Columns columns(system);
   reader.seek(row_modes.back());
+  columns.set(reader.mode(), reader.alpha());
   return {row_times.back(),
           part(row_states, row_states.size() - n_x, n_x),
-          mode_columns(system, reader.mode(), reader.alpha()),
-          alpha_columns(system, reader.alpha()),
+          columns.mode(),
+          columns.alpha(),
           part(row_outputs, row_outputs.size() - n_y, n_y),
           active_regions(system, reader.mode()),
           region_weights(system, reader.mode(), reader.alpha())};
