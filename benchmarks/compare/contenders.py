@@ -63,7 +63,11 @@ class Contender:
 
 
 def succeeds(*command):
-    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+    """False also where there is no such program."""
+    try:
+        return subprocess.run(command, capture_output=True, check=False).returncode == 0
+    except FileNotFoundError:
+        return False
 
 
 def build(folder):
