@@ -109,7 +109,7 @@ std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period, const std::vec
   const auto jumps = last_jumps(period);
   const double drowning = longest(shortest, jumps);
   if (now.size() >= 2 && now[0] <= std::max(16.0 * resolution, hundredth * drowning))
-    return JumpLimit{t, back(0).x, jumps, false};
+    return JumpLimit{t, back(0).x, jumps, now[0], false};
   if (laps_[period] < fewest_laps * period || now.size() < fewest_laps) return std::nullopt;
   const auto before = durations(period, 1);
   const double ratio = ratio_of(now);
@@ -122,7 +122,7 @@ std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period, const std::vec
   // A fiftieth of what remains is 2e-10 of the time taken.
   const double difference = (t + remaining) - (back(period).t + remaining_before);
   if (std::abs(difference) > 0.02 * remaining + 4.0 * resolution) return std::nullopt;
-  return JumpLimit{t + remaining, extrapolated(period, ratio), jumps, false};
+  return JumpLimit{t + remaining, extrapolated(period, ratio), jumps, now[0], false};
 }
 
 std::optional<JumpLimit> JumpSeries::end_of_rattling(const std::vector<double>& shortest) const {
@@ -134,7 +134,7 @@ std::optional<JumpLimit> JumpSeries::end_of_rattling(const std::vector<double>& 
   const double t = recent_.back().first;
   const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * longest(shortest, jumps));
   if (t - recent_.front().first > static_cast<double>(many) * resolved) return std::nullopt;
-  return JumpLimit{t, entries_.back().x, std::move(jumps), true};
+  return JumpLimit{t, entries_.back().x, std::move(jumps), resolved, true};
 }
 
 std::optional<JumpLimit> JumpSeries::limit(const std::vector<double>& shortest) const {

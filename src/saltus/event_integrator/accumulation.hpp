@@ -14,6 +14,7 @@ struct JumpLimit {
   double t = 0.0;
   std::vector<double> x;
   std::vector<int> jumps;  ///< of one lap, ascending, each once
+  double lap = 0.0;        ///< duration of the last one
   bool rattling = false;   ///< no laps: jumps in any order, faster than their guards are resolved
 };
 

@@ -157,7 +157,8 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
     const double size = is_side ? std::abs(exit.below) + std::abs(exit.above) : coupled ? 1.0 : std::abs(exit.loss);
     noise_[i] = 32.0 * epsilon * size;
     // Near a two-fold point both fields vanish, but not the terms they are the sum of.
-    if (field_.solve() == SlidingSolve::decoupled || (coupled && is_side)) {
+    const bool by_sides = coupled || field_.solve() == SlidingSolve::higher_order;
+    if (field_.solve() == SlidingSolve::decoupled || (by_sides && is_side)) {
       noise_[i] = std::max(noise_[i], 8.0 * epsilon * field_.normal_terms(at(function.row)));
     }
     accuracy_[i] = 0.1 * tolerances_.rtol * size;

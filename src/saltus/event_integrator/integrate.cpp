@@ -62,6 +62,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       row_slope_(x_.size()),
       evaluations_before_(kernel.field_evaluations()),
       series_(options.until - options.from) {
+  mode_atol_ = tolerances_.atol;
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (i >= system.discrete_states.size() || !system.discrete_states[i]) continuous_.push_back(i);
   }
@@ -90,6 +91,8 @@ bool Run::enter(const Transition& transition) {
   if (!options_.layers.corners.empty()) {
     const auto wanted = local_tolerances(options_.tolerances);
     tolerances_ = within_layers(kernel_, options_.layers, wanted, state_, t_, x_.data());
+    mode_atol_ = tolerances_.atol;
+    tolerances_.atol *= lap_share_;
   }
   field_.enter(state_);
   stepper_.restart();

@@ -55,6 +55,11 @@ void ModeField::enter(const ModeState& state) {
   constant_row_.assign(sliding_.size(), false);
   find_regions(state);
   find_groups();
+  if (state.higher) {
+    solve_ = SlidingSolve::higher_order;
+    higher_order_.emplace(kernel_);
+    higher_order_->enter(*state.higher, sliding_, state.alpha);
+  }
   if (sliding_.size() != 1) return;
   between_.clear();
   for (std::size_t corner = 0; corner < 2; ++corner) {
@@ -108,7 +113,7 @@ bool ModeField::exit_row(std::size_t row, Region region, const double* x, evalua
 }
 
 double ModeField::normal_terms(std::size_t row) const {
-  if (solve_ == SlidingSolve::coupled) return condition_[row];
+  if (solve_ == SlidingSolve::coupled || solve_ == SlidingSolve::higher_order) return condition_[row];
   const auto r = static_cast<Eigen::Index>(row);
   double sum = std::abs(rates_[r]);
   for (std::size_t i = 0; i < f_[0].size(); ++i) {
@@ -211,7 +216,7 @@ void ModeField::remove_normal_part(double* xdot) {
 }
 
 void ModeField::select(double t, const double* x) {
-  gradients(t, x);
+  if (solve_ != SlidingSolve::higher_order) gradients(t, x);
   switch (solve_) {
     case SlidingSolve::none:
       return;
@@ -220,12 +225,34 @@ void ModeField::select(double t, const double* x) {
       return evaluate_groups(t, x);
     case SlidingSolve::nonaffine:
       return evaluate_nonaffine(t, x);
+    case SlidingSolve::higher_order:
+      return evaluate_higher_order(t, x);
+  }
+}
+
+/// A balance is lost where all its corners have one sign; its first surface stands for it.
+void ModeField::evaluate_higher_order(double t, const double* x) {
+  higher_order_->evaluate(t, x);
+  alpha_ = higher_order_->alpha();
+  exits_.assign(sliding_.size(), {1.0, -1.0});
+  const auto& set = higher_order_->set();
+  for (std::size_t b = 0; b < set.balances.size(); ++b) {
+    const auto& balance = set.balances[b];
+    const auto& range = higher_order_->ranges()[b];
+    exits_[balance.rows.front()] = {range.max, range.min};
+    // Gradients by differences leave five digits less.
+    const bool exact = set.functions[balance.function].order == 0;
+    condition_[balance.rows.front()] = exact ? range.terms : 0x1p17 * range.terms;
   }
 }
 
 void ModeField::slide(double t, const double* x, double* xdot) {
   if (is_single()) return slide_on_one(t, x, xdot);
   select(t, x);
+  if (solve_ == SlidingSolve::higher_order) {
+    std::copy(higher_order_->motion().begin(), higher_order_->motion().end(), xdot);
+    return;
+  }
   remove_normal_part(xdot);
 }
 
@@ -235,13 +262,14 @@ void ModeField::exits(double t, const double* x, ExitValues* values) {
     evaluate_corners(t, x);
   } else {
     select(t, x);
-    find_stability();
+    if (solve_ == SlidingSolve::coupled) find_stability();
   }
   std::copy(exits_.begin(), exits_.end(), values);
 }
 
 bool ModeField::project(double t, double* x) {
   if (solve_ == SlidingSolve::none) return false;
+  if (solve_ == SlidingSolve::higher_order) return higher_order_->project(t, x);
   bool changed = false;
   // Newton converges quadratically from O(tolerance): three steps reach rounding, the fourth proves it.
   for (int iteration = 0; iteration < 4; ++iteration) {

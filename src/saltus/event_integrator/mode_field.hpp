@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/higher_order.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/switching/bilinear_root.hpp"
 #include "saltus/switching/selection_newton.hpp"
@@ -16,10 +17,11 @@ namespace saltus::event_integrator {
 
 /// How the selections of the sliding surfaces follow from grad psi_I . f(alpha) + d psi_I/dt = 0.
 enum class SlidingSolve {
-  none,       ///< no sliding
-  decoupled,  ///< each normal component depends on its own selection only: closed form
-  coupled,    ///< multi-affine in several selections: closed form for pairs, otherwise Newton from the mode's ones
-  nonaffine,  ///< decoupled, but not affine (Aizerman-Pyatnitskii): secant from the mode's selections
+  none,          ///< no sliding
+  decoupled,     ///< each normal component depends on its own selection only: closed form
+  coupled,       ///< multi-affine in several selections: closed form for pairs, otherwise Newton from the mode's ones
+  nonaffine,     ///< decoupled, but not affine (Aizerman-Pyatnitskii): secant from the mode's selections
+  higher_order,  ///< on derivatives of psi, too: HigherOrderField
 };
 
 /// Exit functions of one sliding surface; the mode ends where one changes its sign.
@@ -91,11 +93,13 @@ class ModeField {
   void evaluate_nonaffine(double t, const double* x);
   double selected_velocity(double t, const double* x, std::size_t row, double selection);
   void remove_normal_part(double* xdot);
+  void evaluate_higher_order(double t, const double* x);
   [[nodiscard]] bool solve_normal_equations();
 
   const evaluation::ModelKernel& kernel_;
   bool affine_in_alpha_;
   SlidingSolve solve_ = SlidingSolve::none;
+  std::optional<HigherOrderField> higher_order_;
   std::vector<int> sliding_;
   std::vector<double> start_alpha_;          ///< of the mode
   std::vector<double> alpha_;                ///< of the last evaluation

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace saltus::event_integrator {
+
+struct HigherOrderSet;
 
 /// k in {-1, 0, 1}^n_psi with its selections. "On the surface" is part of the mode, never a floating-point accident.
 struct ModeState {
@@ -15,6 +18,9 @@ struct ModeState {
   /// For one sliding surface: the selections of the two regions that meet there. They differ from `alpha` also in
   /// switching functions nested around the sliding one, whose sign is read in each region.
   std::array<std::vector<double>, 2> corner_alpha;
+
+  /// Of higher-order sliding, null otherwise: what else is held at zero, and which selections mean nothing.
+  std::shared_ptr<const HigherOrderSet> higher = {};
 };
 
 /// Sets mode, alpha and sliding of one surface.

@@ -1,9 +1,11 @@
 #include "saltus/event_integrator/recorder.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 #include <utility>
 
+#include "saltus/event_integrator/higher_order.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -37,7 +39,7 @@ Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& s
 }
 
 void Recorder::row(double t, const std::vector<double>& x, const std::vector<int>& mode,
-                   const std::vector<double>& alpha) {
+                   const std::vector<double>& alpha, const HigherOrderSet* higher) {
   recording_.row_times.push_back(t);
   recording_.row_states.insert(recording_.row_states.end(), x.begin(), x.end());
   const auto appended = [](std::vector<double>& list, std::size_t count) {
@@ -48,7 +50,15 @@ void Recorder::row(double t, const std::vector<double>& x, const std::vector<int
   if (recording_.n_y > 0) {
     kernel_.outputs(t, x.data(), alpha.data(), appended(recording_.row_outputs, recording_.n_y));
   }
-  recording_.row_modes.push_back(recording_.modes.append(mode, alpha));
+  recording_.row_modes.push_back(number(mode, alpha, higher));
+}
+
+std::size_t Recorder::number(const std::vector<int>& mode, const std::vector<double>& alpha,
+                             const HigherOrderSet* higher) {
+  if (higher == nullptr || higher->undetermined.empty()) return recording_.modes.append(mode, alpha);
+  determined_ = alpha;
+  for (const int j : higher->undetermined) determined_[at(j)] = std::numeric_limits<double>::quiet_NaN();
+  return recording_.modes.append(mode, determined_);
 }
 
 Recording::Event& Recorder::begin(double t, result::EventKind kind) {

@@ -34,7 +34,9 @@ class Recorder {
   Recorder(const evaluation::ModelKernel& kernel, const model::System& system);
 
   /// One row; `alpha` over switching functions (the sliding values at this point).
-  void row(double t, const std::vector<double>& x, const std::vector<int>& mode, const std::vector<double>& alpha);
+  /// Selections of `higher` that nothing determines are recorded as NaN; outputs have the ones that they are handed.
+  void row(double t, const std::vector<double>& x, const std::vector<int>& mode, const std::vector<double>& alpha,
+           const HigherOrderSet* higher = nullptr);
   /// A switch, if a listed switching function changes its mode; returns whether it did.
   bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
   /// A start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
@@ -60,7 +62,11 @@ class Recorder {
   /// A new event; the reference is valid until the next one.
   Recording::Event& begin(double t, result::EventKind kind);
   [[nodiscard]] std::size_t keep(const std::vector<double>& x);
-  [[nodiscard]] std::size_t number(const ModeState& state) { return recording_.modes.append(state.mode, state.alpha); }
+  [[nodiscard]] std::size_t number(const std::vector<int>& mode, const std::vector<double>& alpha,
+                                   const HigherOrderSet* higher);
+  [[nodiscard]] std::size_t number(const ModeState& state) {
+    return number(state.mode, state.alpha, state.higher.get());
+  }
   void set_states(Recording::Event& event, const std::vector<double>& x, const std::vector<double>& x_after);
   void set_passage(Recording::Event& event, const Passage& passage);
   void add_surface(Recording::Event& event, std::size_t surface);
@@ -78,6 +84,7 @@ class Recorder {
   std::vector<std::vector<std::size_t>> listed_columns_;  ///< by switching function: of the result, if it is listed
   std::vector<std::size_t> changed_, columns_;            ///< of one event
   std::vector<int> listed_before_, listed_after_;
+  std::vector<double> determined_;  ///< selections, NaN where nothing determines them
 };
 
 }  // namespace saltus::event_integrator

@@ -84,6 +84,7 @@ class Run {
   bool enter(const Transition& transition);
   void begin_spiral();
   void note_tightening_switch();
+  void follow_shrinking();
   void accumulate_switches();
   bool follow_spiral(const JumpLimit& limit);
   void pass_to(double t, std::vector<double> x);
@@ -150,6 +151,9 @@ class Run {
   ode::StepControl control_;
   ode::StiffnessWatch stiffness_;
   ode::Tolerances tolerances_;  ///< of a step
+  double mode_atol_ = 0.0;      ///< of the mode; a part of it while switches tighten
+  double lap_share_ = 1.0;      ///< that part
+  double first_gap_ = 0.0;      ///< between switches, before they tightened
   ode::DenseStep dense_;
   Cells cells_;
   CellChange cell_change_ = CellChange::none;  ///< at the event being handled

@@ -60,9 +60,27 @@ void Run::note_tightening_switch() {
   switch_laps_.add(t_, std::move(labels), x_);
 }
 
+/// Laps that shrink by q have psi shrink by q or, where psi is tangent to its surface at the limit, q^2: an absolute
+/// tolerance that did not follow would end them in noise long before their limit.
+void Run::follow_shrinking() {
+  constexpr std::size_t lap = 2;
+  if (switch_laps_.empty()) {
+    first_gap_ = series_.last_gap(lap);
+    if (lap_share_ != 1.0) tolerances_.atol = mode_atol_;
+    lap_share_ = 1.0;
+    return;
+  }
+  if (first_gap_ == 0.0) first_gap_ = series_.last_gap(lap);
+  if (first_gap_ == 0.0) return;
+  const double share = std::clamp(series_.last_gap(lap) / first_gap_, 1e-6, 1.0);
+  lap_share_ = share * share;
+  tolerances_.atol = mode_atol_ * lap_share_;
+}
+
 /// If the switches up to here have a limit that nothing else precedes, the run goes on from there.
 void Run::accumulate_switches() {
   note_tightening_switch();
+  follow_shrinking();
   if (switch_laps_.empty()) return;
   const auto limit = switch_laps_.limit(shortest_switch_lap_);
   if (!limit || limit->rattling || limit->t > std::min(options_.until, jumps_.next_time())) return;
@@ -72,6 +90,7 @@ void Run::accumulate_switches() {
 
 bool Run::follow_spiral(const JumpLimit& limit) {
   ModeState on = state_;
+  on.higher.reset();
   put_on(kernel_, limit.jumps, on);
   std::vector<double> x = limit.x;
   Occasion occasion;
@@ -85,7 +104,8 @@ bool Run::follow_spiral(const JumpLimit& limit) {
   occasion.x = x.data();
   occasion.at_zero = occasion.touched = on.sliding;
   occasion.start = occasion.limit = true;  // no side is the one it comes from
-  occasion.time_scale = h_scale_;
+  // What the last lap changes is at rest behind it, and what t does not resolve.
+  occasion.time_scale = std::max({h_scale_, limit.lap, 1e3 * rounding_unit * std::abs(limit.t)});
   note_ties(kernel_, on, occasion);
   Transition transition = decide_mode(surroundings_, on, occasion);
   if (transition.termination != result::Termination::completed) return false;

@@ -28,7 +28,7 @@ SingleSurface::SingleSurface(const Surroundings& surroundings)
 }
 
 bool SingleSurface::applies(const ModeState& before, const Occasion& occasion) const {
-  if (!surroundings_.affine_in_alpha || occasion.start) return false;
+  if (!surroundings_.affine_in_alpha || occasion.start || before.higher) return false;
   if (occasion.touched.size() != 1) return false;
   const int j = occasion.touched.front();
   const bool arrives = before.mode[at(j)] != 0;

@@ -308,6 +308,7 @@ std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& be
 }  // namespace
 
 Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion) {
+  if (before.higher && !occasion.start) return decide_from_higher_order(surroundings, before, occasion);
   const ReferenceScope references(surroundings.kernel, before);
   const ModeState exact = with_exact_selections(before);
   ModeState behind = exact;
@@ -323,11 +324,19 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     }
   }
   if (jumping >= 0) return Decider(surroundings, behind, rest).run_crossing(jumping);
+  if (occasion.limit) {
+    // Rounding of the limit decides what the fields do there one by one.
+    if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
+  }
   Transition transition = Decider(surroundings, exact, occasion).run();
   if (transition.termination == result::Termination::outside_class) {
     set_references(surroundings.kernel, before);
     // The codimension of a kink and a surface is 2, but the kink itself does not hold the solution.
     if (auto crossed = cross_kinks(surroundings, exact, occasion)) return std::move(*crossed);
+  }
+  if (transition.termination == result::Termination::outside_class ||
+      transition.termination == result::Termination::no_admissible_mode) {
+    if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
   }
   return transition;
 }

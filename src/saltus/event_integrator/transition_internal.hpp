@@ -33,6 +33,14 @@ std::string two_fold_at(const std::string& surface, double t);
 std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
                             const std::vector<double>& alpha, int surface, double t);
 
+/// Where no rule decides: all surfaces at zero held there, together with their derivatives that no selection enters, if
+/// some selections do. `alternatives` are the regions that the solution can leave into.
+std::optional<Transition> hold_with_higher_order(const Surroundings& s, const ModeState& before,
+                                                 const Occasion& occasion);
+
+/// The mode behind an event of a state that is held so.
+Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion);
+
 /// What was decided where three or more regions of a group by `indicator` meet.
 struct RegionChoice {
   evaluation::RegionRange group;

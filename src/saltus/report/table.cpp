@@ -1,6 +1,7 @@
 #include "saltus/report/table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -232,8 +233,9 @@ std::string end_state(const result::Result& result) {
   const bool smoothed = result.method == "smoothed";
   for (std::size_t j = 0; j < result.switching_functions.size() && j < result.final.mode.size(); ++j) {
     if (result.final.mode[j] != 0) continue;
-    pieces.push_back(fmt::format("{}{} (alpha {:.6g})", shortened(result.switching_functions[j], 40),
-                                 smoothed ? "" : " = 0", j < result.final.alpha.size() ? result.final.alpha[j] : 0.0));
+    const double alpha = j < result.final.alpha.size() ? result.final.alpha[j] : 0.0;
+    pieces.push_back(fmt::format("{}{} ({})", shortened(result.switching_functions[j], 40), smoothed ? "" : " = 0",
+                                 std::isfinite(alpha) ? fmt::format("alpha {:.6g}", alpha) : "alpha not determined"));
   }
   if (!pieces.empty()) text += wrapped(smoothed ? "in layer of" : "sliding on", pieces);
   pieces.clear();

@@ -1,0 +1,72 @@
+// Switching functions and their derivatives along the field as functions of the state: values, gradients, projection.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "saltus/evaluation/model_kernel.hpp"
+
+namespace saltus::event_integrator {
+
+/// The derivative of this order of psi_surface along the field; order 0: psi itself.
+struct HeldFunction {
+  int surface = 0;
+  int order = 0;
+};
+
+/// c_i(t, x) = 0 for a list of such functions, ordered by `order`; those of order >= 1 must not depend on the
+/// selections of the sliding surfaces where the functions before them are zero. Their gradients are taken by central
+/// differences along the set where the functions of lower order vanish, so that a field need not be differentiable
+/// across its surface (the root of super-twisting).
+/// Owns its work space; allocates in set() only. Cost: two evaluations of c_i per state and function of order >= 1.
+class HeldFunctions {
+ public:
+  explicit HeldFunctions(const evaluation::ModelKernel& kernel);
+
+  /// @param alpha  n_psi selections to evaluate with, 1/2 for the sliding surfaces
+  void set(std::vector<HeldFunction> functions, std::vector<double> alpha);
+  [[nodiscard]] const std::vector<HeldFunction>& list() const { return functions_; }
+  [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
+  [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
+  /// Gradients and d c/dt at a point.
+  void differentiate(double t, const double* x);
+  [[nodiscard]] const Eigen::MatrixXd& rows() const { return rows_; }
+  [[nodiscard]] const Eigen::VectorXd& rates() const { return rates_; }
+  /// Behind differentiate(): grad c_i . f + d c_i/dt; and the sum of the sizes of its terms.
+  [[nodiscard]] double velocity(std::size_t i, const std::vector<double>& f) const;
+  [[nodiscard]] double velocity_terms(std::size_t i, const std::vector<double>& f) const;
+  /// Behind differentiate(): f less its part normal to the set, for a motion that stays in it.
+  void remove_normal_part(std::vector<double>& f);
+  /// Newton steps onto c = 0; returns whether x changed. Low orders first.
+  bool project(double t, double* x);
+  /// Behind differentiate(): x moved by about `step` (relative to 1 + |x_i|) along the tangent space, in a direction
+  /// that `pattern` says, and projected; equal to x if the tangent space is empty.
+  [[nodiscard]] std::vector<double> displaced(double t, const double* x, double step, unsigned pattern);
+
+ private:
+  [[nodiscard]] std::size_t below(std::size_t i) const;
+  [[nodiscard]] bool tangent_direction(std::size_t state, std::size_t lower, std::vector<double>& direction) const;
+  void extend_basis(std::size_t i);
+  bool correct(std::size_t part, double t, double* x);
+
+  const evaluation::ModelKernel& kernel_;
+  std::vector<HeldFunction> functions_;
+  std::vector<double> alpha_, values_, row_, direction_, point_;
+  Eigen::MatrixXd rows_, basis_;  ///< gradients; an orthonormal basis of their span, row by row
+  Eigen::VectorXd rates_, step_;
+  /// Of the first functions, the switching functions themselves, and of all: J J^T and what it is solved for.
+  struct Normal {
+    Eigen::Index count = 0;
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd residual;
+    Eigen::LLT<Eigen::MatrixXd> cholesky;
+    [[nodiscard]] bool solve(const Eigen::MatrixXd& rows);
+  };
+  std::array<Normal, 2> normals_;
+};
+
+}  // namespace saltus::event_integrator
