@@ -36,17 +36,17 @@ double ratio_of(const std::vector<double>& durations) {
 
 }  // namespace
 
-void JumpSeries::clear() {
+void EventSeries::clear() {
   clear_laps();
   recent_.clear();
 }
 
-void JumpSeries::clear_laps() {
+void EventSeries::clear_laps() {
   entries_.clear();
   std::fill(std::begin(laps_), std::end(laps_), std::size_t{0});
 }
 
-void JumpSeries::add(double t, std::vector<int> jumps, const std::vector<double>& x) {
+void EventSeries::add(double t, std::vector<int> jumps, const std::vector<double>& x) {
   recent_.emplace_back(t, jumps);
   if (recent_.size() > many) recent_.pop_front();
   entries_.push_back({t, std::move(jumps), x});
@@ -64,7 +64,7 @@ void JumpSeries::add(double t, std::vector<int> jumps, const std::vector<double>
   }
 }
 
-std::vector<double> JumpSeries::durations(std::size_t period, std::size_t skipped) const {
+std::vector<double> EventSeries::durations(std::size_t period, std::size_t skipped) const {
   std::vector<double> result;
   for (std::size_t lap = skipped; lap < skipped + most_laps && (lap + 1) * period < entries_.size(); ++lap) {
     if (back(lap * period).jumps != back((lap + 1) * period).jumps) break;
@@ -78,7 +78,7 @@ std::vector<double> JumpSeries::durations(std::size_t period, std::size_t skippe
   return result;
 }
 
-std::vector<double> JumpSeries::extrapolated(std::size_t period, double ratio) const {
+std::vector<double> EventSeries::extrapolated(std::size_t period, double ratio) const {
   std::vector<double> x = back(0).x;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double last = x[i] - back(period).x[i];
@@ -90,7 +90,7 @@ std::vector<double> JumpSeries::extrapolated(std::size_t period, double ratio) c
   return x;
 }
 
-std::vector<int> JumpSeries::last_jumps(std::size_t entries) const {
+std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
   std::vector<int> result;
   for (std::size_t k = 0; k < entries; ++k) {
     result.insert(result.end(), back(k).jumps.begin(), back(k).jumps.end());
@@ -100,7 +100,7 @@ std::vector<int> JumpSeries::last_jumps(std::size_t entries) const {
   return result;
 }
 
-std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period, const std::vector<double>& shortest) const {
+std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::vector<double>& shortest) const {
   // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
   if (laps_[period] < 2 * period || entries_.size() <= 2 * period) return std::nullopt;
   const auto now = durations(period, 0);
@@ -109,7 +109,7 @@ std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period, const std::vec
   const auto jumps = last_jumps(period);
   const double drowning = longest(shortest, jumps);
   if (now.size() >= 2 && now[0] <= std::max(16.0 * resolution, hundredth * drowning))
-    return JumpLimit{t, back(0).x, jumps, now[0], false};
+    return SeriesLimit{t, back(0).x, jumps, now[0], false};
   if (laps_[period] < fewest_laps * period || now.size() < fewest_laps) return std::nullopt;
   const auto before = durations(period, 1);
   const double ratio = ratio_of(now);
@@ -122,10 +122,10 @@ std::optional<JumpLimit> JumpSeries::limit_of(std::size_t period, const std::vec
   // A fiftieth of what remains is 2e-10 of the time taken.
   const double difference = (t + remaining) - (back(period).t + remaining_before);
   if (std::abs(difference) > 0.02 * remaining + 4.0 * resolution) return std::nullopt;
-  return JumpLimit{t + remaining, extrapolated(period, ratio), jumps, now[0], false};
+  return SeriesLimit{t + remaining, extrapolated(period, ratio), jumps, now[0], false};
 }
 
-std::optional<JumpLimit> JumpSeries::end_of_rattling(const std::vector<double>& shortest) const {
+std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double>& shortest) const {
   if (recent_.size() < many || entries_.empty()) return std::nullopt;
   std::vector<int> jumps;
   for (const auto& [time, executed] : recent_) jumps.insert(jumps.end(), executed.begin(), executed.end());
@@ -134,17 +134,28 @@ std::optional<JumpLimit> JumpSeries::end_of_rattling(const std::vector<double>& 
   const double t = recent_.back().first;
   const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * longest(shortest, jumps));
   if (t - recent_.front().first > static_cast<double>(many) * resolved) return std::nullopt;
-  return JumpLimit{t, entries_.back().x, std::move(jumps), resolved, true};
+  return SeriesLimit{t, entries_.back().x, std::move(jumps), resolved, true};
 }
 
-std::optional<JumpLimit> JumpSeries::limit(const std::vector<double>& shortest) const {
+std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortest) const {
   for (std::size_t period = 1; period <= longest_period; ++period) {
     if (auto found = limit_of(period, shortest)) return found;
   }
   return end_of_rattling(shortest);
 }
 
-std::optional<double> JumpSeries::last_lap() const {
+std::optional<SeriesLimit> EventSeries::nearly() const {
+  for (std::size_t period = 1; period <= longest_period && entries_.size() > 2 * period; ++period) {
+    const auto now = durations(period, 0);
+    if (now.size() < 2 || !(now[0] <= hundredth * now[1])) continue;
+    if (now[0] <= 1e-7 * (back(0).t - start_[period])) {
+      return SeriesLimit{back(0).t, back(0).x, last_jumps(period), now[0], false};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<double> EventSeries::last_lap() const {
   for (std::size_t period = 1; period <= longest_period; ++period) {
     if (laps_[period] >= 2 * period && entries_.size() > period) return back(0).t - back(period).t;
   }

@@ -45,6 +45,7 @@ class Run {
  private:
   enum class Step { taken, shortened, failed };
   enum class RowBefore { written, missing };
+  enum class Behind { any, higher_order };  ///< a limit of switches
 
   /// Of an event in hand, beside before_ and x_before_.
   struct Arrival {
@@ -86,7 +87,7 @@ class Run {
   void note_tightening_switch();
   void follow_shrinking();
   void accumulate_switches();
-  bool follow_spiral(const JumpLimit& limit);
+  bool follow_spiral(const SeriesLimit& limit, Behind wanted);
   void pass_to(double t, std::vector<double> x);
   void go_on_from_limit();
   bool fire_user_events(const std::vector<double>& x_before, const ModeState& before);
@@ -112,7 +113,7 @@ class Run {
   [[nodiscard]] Rate rate_along_field(int function, double t, const double* x, const double* slope) const;
   bool release(const Located& located);
   void accumulate_jumps();
-  void follow_limit(const JumpLimit& limit);
+  void follow_limit(const SeriesLimit& limit);
   [[nodiscard]] std::string jump_names(const std::vector<int>& jumps) const;
   [[nodiscard]] JumpPoint jump_point() const { return {t_, x_, state_.alpha, search_.user_signs()}; }
   bool jumps_have_problem();
@@ -163,8 +164,8 @@ class Run {
   UserEvents user_events_;
   Jumps jumps_;
   Holding holding_;
-  JumpSeries jump_series_;
-  JumpSeries switch_laps_;                   ///< of switches, by surface and mode behind, while they tighten
+  EventSeries jump_series_;
+  EventSeries switch_laps_;                  ///< of switches, by surface and mode behind, while they tighten
   std::vector<double> shortest_switch_lap_;  ///< by the same: shorter laps drown in the rounding of psi
   std::vector<HeldGuard> last_guard_;        ///< by jump: the guard that was at zero when it was executed last
   std::vector<double> last_rate_;            ///< by jump: |dg/dt| then

@@ -70,7 +70,7 @@ void Run::accumulate_jumps() {
   if (limit && limit->t <= std::min(options_.until, jumps_.next_time())) follow_limit(*limit);
 }
 
-void Run::follow_limit(const JumpLimit& limit) {
+void Run::follow_limit(const SeriesLimit& limit) {
   field_(t_, x_.data(), slope_.data());
   if (!state_.sliding.empty()) state_.alpha = field_.alpha();
   const ModeState before = state_;
@@ -78,7 +78,7 @@ void Run::follow_limit(const JumpLimit& limit) {
   std::vector<HeldGuard> guards = holding_.resting();
   std::vector<int> jumps;
   double rate = 0.0;
-  for (const int jump : limit.jumps) {
+  for (const int jump : limit.events) {
     if (last_guard_[at(jump)].hold.jump < 0) continue;
     guards.push_back(last_guard_[at(jump)]);
     jumps.push_back(jump);
@@ -92,7 +92,7 @@ void Run::follow_limit(const JumpLimit& limit) {
   pass_to(limit.t, limit.x);
   Landing landing = landing_here();
   const auto accumulated = [&] {
-    recorder_.accumulated(t_, limit.jumps, {x_last, x_, before, state_},
+    recorder_.accumulated(t_, limit.events, {x_last, x_, before, state_},
                           limit.rattling
                               ? "these jumps follow each other faster than their guards are resolved"
                               : "the intervals of these jumps shrink geometrically: the state is their limit");
@@ -103,7 +103,7 @@ void Run::follow_limit(const JumpLimit& limit) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but no guard of theirs is left at 0: what follows is not "
                      "determined",
-                     jump_names(limit.jumps), t_));
+                     jump_names(limit.events), t_));
   }
   if (running_ && hold(std::move(guards), {}, landing) &&
       !(holding_.largest_rate(t_, state_.alpha, x_) <= 1e-3 * rate)) {

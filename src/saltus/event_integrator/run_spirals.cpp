@@ -83,15 +83,19 @@ void Run::accumulate_switches() {
   follow_shrinking();
   if (switch_laps_.empty()) return;
   const auto limit = switch_laps_.limit(shortest_switch_lap_);
+  if (const auto nearly = limit ? std::nullopt : switch_laps_.nearly(); nearly && nearly->t < options_.until) {
+    if (follow_spiral(*nearly, Behind::higher_order)) return switch_laps_.clear();
+  }
   if (!limit || limit->rattling || limit->t > std::min(options_.until, jumps_.next_time())) return;
   switch_laps_.clear();
-  if (!follow_spiral(*limit)) accumulates();
+  if (!follow_spiral(*limit, Behind::any)) accumulates();
 }
 
-bool Run::follow_spiral(const JumpLimit& limit) {
+/// Returns whether the run has gone on, or has ended for another reason.
+bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   ModeState on = state_;
   on.higher.reset();
-  put_on(kernel_, limit.jumps, on);
+  put_on(kernel_, limit.events, on);
   std::vector<double> x = limit.x;
   Occasion occasion;
   {
@@ -109,6 +113,7 @@ bool Run::follow_spiral(const JumpLimit& limit) {
   note_ties(kernel_, on, occasion);
   Transition transition = decide_mode(surroundings_, on, occasion);
   if (transition.termination != result::Termination::completed) return false;
+  if (wanted == Behind::higher_order && !transition.state.higher) return false;
   other_continuations(surroundings_, on, occasion, transition);
 
   field_(t_, x_.data(), slope_.data());
@@ -118,7 +123,7 @@ bool Run::follow_spiral(const JumpLimit& limit) {
   pass_to(limit.t, std::move(x));
   if (!enter(transition)) return true;
   std::vector<int> surfaces;
-  for (const int label : limit.jumps) surfaces.push_back(surface_of(label));
+  for (const int label : limit.events) surfaces.push_back(surface_of(label));
   recorder_.spiralled(t_, surfaces, {x_last, x_, before, state_}, transition);
   row(t_, x_);
   last_event_time_ = t_;
