@@ -19,6 +19,7 @@ import sys
 import catalogue_problems
 import classic_problems
 import intersection_problems
+import higher_order_problems
 import jump_problems
 import mpmath
 import phased_problems
@@ -145,6 +146,7 @@ def main():
     for problem in intersection_problems.problems():
         intersection_problems.compare_with_literature(problem, report_on(problem, entries))
     for problem in region_problems.problems():
+    for problem in higher_order_problems.problems():
         report_on(problem, entries)
     text = dump(entries)
     json.loads(text)
