@@ -39,25 +39,32 @@ void expect_branches(const std::string& name, const std::vector<Branch>& branche
   }
 }
 
-// Leaf E10. Along x = 0 with alpha = 0.5223/(0.5223 + 1.7734), then the field of x > 0, y > 0.
+/// Where the two fields of a surface balance, if one says `below` and the other one `above`.
+double balance(double below, double above) { return below / (below - above); }
+
+double between(double below, double above, double alpha) { return below + alpha * (above - below); }
+
+// Leaf E10. Along x = 0 to the intersection; then along y > 0 or x > 0 between fields that leave both, into x < 0 < y,
+// or (what a regularised solution does as well as staying) into x, y > 0.
 TEST(ShippedBranches, StayOrLeave) {
-  const double alpha = 0.5223 / (0.5223 + 1.7734);
-  const double left = 6.0 - 1.0 / (0.609 * (1.0 - alpha) - 0.9416 * alpha);
-  expect_branches("stay-or-leave", {{{1, 1}, {1.011 * left, 0.115 * left}}});
+  const double left = 6.0 - 1.0 / between(0.609, -0.9416, balance(0.5223, -1.7734));
+  expect_branches("stay-or-leave", {{{0, 1}, {0.0, between(0.3146, 0.115, balance(-0.194, 1.011)) * left}},
+                                    {{1, 0}, {between(-1.7734, 1.011, balance(-0.9416, 0.115)) * left, 0.0}},
+                                    {{-1, 1}, {-0.194 * left, 0.3146 * left}},
+                                    {{1, 1}, {1.011 * left, 0.115 * left}}});
 }
 
-// Leaf E12: along x = 0 below, and above with alpha = 1.8276/(1.8276 + 1.7031).
+// Leaf E12: the other, unstable, motion on both surfaces, or along x = 0 into y > 0.
 TEST(ShippedBranches, StayOrSlide) {
-  const double below = 0.4168 / (0.4168 + 1.4013);
-  const double above = 1.8276 / (1.8276 + 1.7031);
-  const double left = 36.0 - 1.0 / (0.3463 * (1.0 - below) - 0.904 * below);
-  expect_branches("stay-or-slide", {{{0, 1}, {0.0, (-0.1174 * (1.0 - above) + 0.5849 * above) * left}}});
+  const double left = 36.0 - 1.0 / between(0.3463, -0.904, balance(0.4168, -1.4013));
+  expect_branches("stay-or-slide",
+                  {{{0, 0}, {0.0, 0.0}}, {{0, 1}, {0.0, between(-0.1174, 0.5849, balance(1.8276, -1.7031)) * left}}});
 }
 
 // x' = sign(x) from 0: away to either side, or never.
 TEST(ShippedBranches, SpontaneousSwitch) {
   const Simulator model = Simulator::from_catalogue("spontaneous-switch");
-  const double until = model.options().until;
+  const double until = model.options().until.value();
   expect_branches("spontaneous-switch", {{{-1}, {-until}}, {{0}, {0.0}}});
 }
 

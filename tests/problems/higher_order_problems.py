@@ -67,7 +67,7 @@ def super_twisting():
     return Explicit(model="super-twisting", solution=solution)
 
 
-def ambiguous(model, until, fields, other_mode):
+def ambiguous(model, until, fields, other_modes):
     """Constant fields, columns --, -+, +-, ++; from (0, -1) along x = 0 to the intersection, which holds the solution.
 
     Selections of sliding on both: the multi-affine g(alpha) = 0 with det G > 0.
@@ -87,11 +87,24 @@ def ambiguous(model, until, fields, other_mode):
                             tol=mpf(10) ** (-2 * mp.dps + 10))
         a = alpha(b)
         assert g_a(0, b) * g_b(1, a) - g_b(0, a) * g_a(1, b) > 0
-        selection = mpf(1) if other_mode[0] else f[0][1] / (f[0][1] - f[0][3])
+
+        def other(mode):
+            """A motion that Definition 2.1 of the paper admits as well; on both surfaces: the root with det G < 0."""
+            if mode == [0, 0]:
+                steps = [k for k in range(1, 1000) if g(1, alpha(mpf(k) / 1000), mpf(k) / 1000) < 0]
+                high = mpmath.findroot(lambda b: g(1, alpha(b), b), (mpf(steps[-1]) / 1000, mpf(steps[-1] + 1) / 1000),
+                                       solver="anderson", tol=mpf(10) ** (-2 * mp.dps + 10))
+                return dict(mode=mode, alpha=[alpha(high), high])
+            if mode == [0, 1]:
+                return dict(mode=mode, alpha=[f[0][1] / (f[0][1] - f[0][3]), mpf(1)])
+            if mode == [1, 0]:
+                return dict(mode=mode, alpha=[mpf(1), f[1][2] / (f[1][2] - f[1][3])])
+            return dict(mode=mode, alpha=[mpf((k + 1) // 2) for k in mode])
+
         events = [dict(t=mpf(0), kind="start", surfaces=["x_zero"], mode_before=None, mode_after=[0, -1],
                        x=[mpf(0), mpf(-1)]),
                   dict(t=1 / rate, kind="enter_sliding", surfaces=["y_zero"], mode_before=[0, -1], mode_after=[0, 0],
-                       x=[mpf(0), mpf(0)], unique=False, alternatives=[dict(mode=other_mode, alpha=[selection, mpf(1)])])]
+                       x=[mpf(0), mpf(0)], unique=False, alternatives=[other(mode) for mode in other_modes])]
         return dict(events=events, final=dict(t=mpf(until), x=[mpf(0), mpf(0)], mode=[0, 0], alpha=[a, b]))
 
     return Explicit(model=model, solution=solution)
@@ -101,6 +114,6 @@ def problems():
     yield twisting()
     yield super_twisting()
     yield ambiguous("stay-or-leave", 6, [["0.5223", "-0.194", "-1.7734", "1.011"], ["0.609", "0.3146", "-0.9416", "0.115"]],
-                    [1, 1])
+                    [[0, 1], [1, 0], [-1, 1], [1, 1]])
     yield ambiguous("stay-or-slide", 36, [["0.4168", "1.8276", "-1.4013", "-1.7031"],
-                                         ["0.3463", "-0.1174", "-0.904", "0.5849"]], [0, 1])
+                                         ["0.3463", "-0.1174", "-0.904", "0.5849"]], [[0, 0], [0, 1]])

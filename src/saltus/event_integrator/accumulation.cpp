@@ -147,8 +147,11 @@ std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortes
 std::optional<SeriesLimit> EventSeries::nearly() const {
   for (std::size_t period = 1; period <= longest_period && entries_.size() > 2 * period; ++period) {
     const auto now = durations(period, 0);
-    if (now.size() < 2 || !(now[0] <= hundredth * now[1])) continue;
-    if (now[0] <= 1e-7 * (back(0).t - start_[period])) {
+    if (now.size() < 2) continue;
+    // Of a shorter period that repeats, too, the longer ones are multiples.
+    if (!(now[0] <= hundredth * now[1])) return std::nullopt;
+    // What would remain.
+    if (now[0] * (now[0] / now[1]) <= 1e-7 * (back(0).t - entries_.front().t)) {
       return SeriesLimit{back(0).t, back(0).x, last_jumps(period), now[0], false};
     }
   }

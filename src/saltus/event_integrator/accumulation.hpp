@@ -33,8 +33,8 @@ class EventSeries {
   ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
   ///                  hundredth of it, in any order, have their limit where they are.
   [[nodiscard]] std::optional<SeriesLimit> limit(const std::vector<double>& shortest) const;
-  /// Where the last event is, if the lap before it was less than a hundredth of the one before that and 1e-7 of the
-  /// time taken: too few laps to believe in a limit, unless there is something else that says so.
+  /// Where the last event is, if its lap was less than a hundredth of the one before and as much less again would be
+  /// 1e-7 of the time taken: too few laps to believe in a limit, unless there is something else that says so.
   [[nodiscard]] std::optional<SeriesLimit> nearly() const;
   /// How long the last lap of a shrinking sequence was; nullopt outside of one.
   [[nodiscard]] std::optional<double> last_lap() const;
