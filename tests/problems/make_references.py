@@ -146,6 +146,7 @@ def main():
     for problem in intersection_problems.problems():
         intersection_problems.compare_with_literature(problem, report_on(problem, entries))
     for problem in region_problems.problems():
+        report_on(problem, entries)
     for problem in higher_order_problems.problems():
         report_on(problem, entries)
     text = dump(entries)
