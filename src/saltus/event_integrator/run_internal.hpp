@@ -55,6 +55,7 @@ class Run {
   /// dg/dt, the sum of the sizes of its terms, and the size of those of g that its rounding follows from.
   struct Rate {
     double value = 0.0, terms = 0.0, magnitude = 0.0;
+    double slope = 0.0;  ///< sum of |d_i phi|
   };
   /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
   struct Landing {

@@ -67,6 +67,7 @@ Run::Rate Run::rate_along_field(int function, double t, const double* x, const d
     rate.value += term;
     rate.magnitude += row[i] == 0.0 ? 0.0 : std::abs(row[i] * x[i]);
     rate.terms += std::abs(term);
+    rate.slope += std::abs(row[i]);
   }
   return rate;
 }

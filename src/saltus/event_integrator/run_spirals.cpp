@@ -54,8 +54,12 @@ void Run::note_tightening_switch() {
     const Rate arriving = rate_along_field(surface_of(label), t_, x_.data(), row_slope_.data());
     const Rate leaving = rate_along_field(surface_of(label), t_, x_.data(), slope_.data());
     const double rate = std::max(std::abs(arriving.value), std::abs(leaving.value));
-    // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the lap.
-    shortest_switch_lap_[at(label)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * leaving.magnitude / rate : 0.0;
+    // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the lap. Shallower
+    // laps are lost in the rounding of psi, or in ten times its tolerance.
+    const double unresolved =
+        std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude,
+                 10.0 * (tolerances_.atol * leaving.slope + tolerances_.rtol * leaving.magnitude));
+    shortest_switch_lap_[at(label)] = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
   }
   switch_laps_.add(t_, std::move(labels), x_);
 }
