@@ -158,6 +158,13 @@ std::optional<SeriesLimit> EventSeries::nearly() const {
   return std::nullopt;
 }
 
+std::optional<double> EventSeries::closed_lap() const {
+  for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
+    if (back(0).jumps == back(period).jumps) return back(0).t - back(period).t;
+  }
+  return std::nullopt;
+}
+
 std::optional<double> EventSeries::last_lap() const {
   for (std::size_t period = 1; period <= longest_period; ++period) {
     if (laps_[period] >= 2 * period && entries_.size() > period) return back(0).t - back(period).t;

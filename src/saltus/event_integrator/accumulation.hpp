@@ -36,6 +36,8 @@ class EventSeries {
   /// Where the last event is, if its lap was less than a hundredth of the one before and as much less again would be
   /// 1e-7 of the time taken: too few laps to believe in a limit, unless there is something else that says so.
   [[nodiscard]] std::optional<SeriesLimit> nearly() const;
+  /// How long the shortest lap is that the last event closes; nullopt if none of its like is among the last eight.
+  [[nodiscard]] std::optional<double> closed_lap() const;
   /// How long the last lap of a shrinking sequence was; nullopt outside of one.
   [[nodiscard]] std::optional<double> last_lap() const;
   /// Behind a limit, or where guards came to rest: laps start anew. Rattling is followed through such rests.

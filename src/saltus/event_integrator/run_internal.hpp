@@ -155,7 +155,7 @@ class Run {
   ode::Tolerances tolerances_;  ///< of a step
   double mode_atol_ = 0.0;      ///< of the mode; a part of it while switches tighten
   double lap_share_ = 1.0;      ///< that part
-  double first_gap_ = 0.0;      ///< between switches, before they tightened
+  double first_lap_ = 0.0;      ///< duration of the first one that was closed
   ode::DenseStep dense_;
   Cells cells_;
   CellChange cell_change_ = CellChange::none;  ///< at the event being handled

@@ -67,16 +67,16 @@ void Run::note_tightening_switch() {
 /// Laps that shrink by q have psi shrink by q or, where psi is tangent to its surface at the limit, q^2: an absolute
 /// tolerance that did not follow would end them in noise long before their limit.
 void Run::follow_shrinking() {
-  constexpr std::size_t lap = 2;
   if (switch_laps_.empty()) {
-    first_gap_ = series_.last_gap(lap);
+    first_lap_ = 0.0;
     if (lap_share_ != 1.0) tolerances_.atol = mode_atol_;
     lap_share_ = 1.0;
     return;
   }
-  if (first_gap_ == 0.0) first_gap_ = series_.last_gap(lap);
-  if (first_gap_ == 0.0) return;
-  const double share = std::clamp(series_.last_gap(lap) / first_gap_, 1e-6, 1.0);
+  const auto lap = switch_laps_.closed_lap();
+  if (!lap) return;
+  if (first_lap_ == 0.0) first_lap_ = *lap;
+  const double share = std::clamp(*lap / first_lap_, 1e-6, 1.0);
   lap_share_ = share * share;
   tolerances_.atol = mode_atol_ * lap_share_;
 }

@@ -1,7 +1,6 @@
 // The budget of switches: ends accumulations and chattering that no rule resolves.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -26,11 +25,6 @@ class SwitchSeries {
   [[nodiscard]] bool shrinks(double t) const;
   /// Whether the last switches have followed each other faster than those before, over laps of one to four.
   [[nodiscard]] bool tightens() const;
-  /// The time between the last switch and the one `switches` before it; 0 if there were not so many.
-  [[nodiscard]] double last_gap(std::size_t switches) const {
-    if (switches >= std::min(switches_, remembered)) return 0.0;
-    return times_[(switches_ - 1) % remembered] - times_[(switches_ - 1 - switches) % remembered];
-  }
 
  private:
   using Change = std::pair<std::vector<int>, std::vector<int>>;
