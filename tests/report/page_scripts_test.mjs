@@ -127,6 +127,8 @@ test("the phase plane is cut at jumps and where sliding begins", () => {
 test("numbers keep all digits", () => {
   for (const value of [0.1 + 0.2, 1e-300, -2.5e-5, 123456789.123, 0]) assert.equal(Number(saltus.exact(value)), value);
   assert.equal(saltus.exact(null), "not a number");
+  assert.equal(saltus.selection(null), "not determined");
+  assert.equal(saltus.selection(0.25), "0.25");
   assert.equal(saltus.timeColumn([0, 39.123456789012345])(0.24468880178), "0.2446888018");
 });
 

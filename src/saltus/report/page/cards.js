@@ -90,7 +90,7 @@ saltus.finalCard = (result) => {
   const names = [...result.states, ...result.output_names];
   const values = [...final.x, ...final.outputs];
   const surfaces = result.switching_functions.map(
-      (name, i) => [name, saltus.modeBoxes([final.mode[i] ?? null]), saltus.exact(final.alpha[i])]);
+      (name, i) => [name, saltus.modeBoxes([final.mode[i] ?? null]), saltus.selection(final.alpha[i])]);
   return saltus.card(
       "End state",
       saltus.pairTable([["t", saltus.exact(final.t)], ...names.map((name, i) => [name, saltus.exact(values[i])])]),

@@ -22,6 +22,9 @@ saltus.exact = (value) => {
   return typeof value === "number" && value !== 0 && Math.abs(value) < 1e-3 ? value.toExponential() : String(value);
 };
 
+/** A selection or a weight: none where every one keeps the motion (sliding of higher order). */
+saltus.selection = (value) => (value === null ? "not determined" : saltus.exact(value));
+
 /** A number to look at, at most `digits` significant digits, without a tail of zeros. */
 saltus.brief = (value, digits = 6) => {
   if (typeof value !== "number") return "–";
