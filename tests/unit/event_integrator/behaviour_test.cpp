@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "run_model.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/builder.hpp"
 
@@ -19,16 +20,7 @@ using result::EventKind;
 using result::Termination;
 
 Integration run(Builder& builder, double until, const std::vector<std::pair<int, int>>& forced = {}) {
-  const auto system = builder.build();
-  EXPECT_TRUE(system.has_value()) << (system ? "" : system.error().message);
-  auto kernel = evaluation::ModelKernel::compile(*system);
-  EXPECT_TRUE(kernel.has_value());
-  IntegrationOptions options;
-  options.method = ode::Method::dop853;
-  options.tolerances = {1e-10, 1e-12};
-  options.until = until;
-  options.initial_mode = forced;
-  return integrate(*kernel, *system, options);
+  return testing::run_model(builder, until, {1e-10, 1e-12}, forced);
 }
 
 TEST(Behaviour, SlidingGoesOnWithANewGradientAcrossAKinkInsidePsi) {

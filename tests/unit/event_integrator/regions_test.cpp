@@ -2,10 +2,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
-#include "regions_systems.hpp"
+#include "run_model.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -15,7 +17,10 @@ using model::Builder;
 using result::EventKind;
 using result::Regions;
 using result::Termination;
-using testing::run_regions;
+
+Integration run_regions(Builder& builder, double until, std::vector<std::pair<int, int>> initial_mode = {}) {
+  return testing::run_model(builder, until, {1e-11, 1e-13}, std::move(initial_mode));
+}
 
 TEST(Regions, TwoAreTheSameModelAsAStep) {
   const auto state = [](Builder& b) {

@@ -1,4 +1,4 @@
-// Runs of models with groups of modes by indicator.
+// Runs of models made by a Builder.
 #pragma once
 
 #include <utility>
@@ -11,19 +11,24 @@
 
 namespace saltus::event_integrator::testing {
 
-/// With DOP853 and tight tolerances; `initial_mode` by numbers of switching functions.
-inline Integration run_regions(model::Builder& builder, double until,
-                               std::vector<std::pair<int, int>> initial_mode = {}) {
+/// Builds, compiles and runs; any failure before the run is one of the test.
+inline Integration run_model(model::Builder& builder, const IntegrationOptions& options) {
   const auto system = builder.build();
   EXPECT_TRUE(system.has_value()) << (system ? "" : system.error().message);
   auto kernel = evaluation::ModelKernel::compile(*system);
   EXPECT_TRUE(kernel.has_value());
+  return integrate(*kernel, *system, options);
+}
+
+/// With DOP853; `initial_mode` by numbers of switching functions.
+inline Integration run_model(model::Builder& builder, double until, ode::Tolerances tolerances,
+                             std::vector<std::pair<int, int>> initial_mode = {}) {
   IntegrationOptions options;
   options.method = ode::Method::dop853;
-  options.tolerances = {1e-11, 1e-13};
+  options.tolerances = tolerances;
   options.until = until;
   options.initial_mode = std::move(initial_mode);
-  return integrate(*kernel, *system, options);
+  return run_model(builder, options);
 }
 
 }  // namespace saltus::event_integrator::testing
