@@ -276,7 +276,11 @@ std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& l
     const bool in_last_laps = has_limit(result, rows.t[i], 1e-6) && !behind_limit;
     std::string problem = in_last_laps ? "" : check.row(rows.t[i], rows.x[i], rows.alpha[i]);
     if (problem.empty() && !last) {
-      if (rows.t[i + 1] > rows.t[i]) {
+      const bool later = rows.t[i + 1] > rows.t[i];
+      if (later && in_last_laps && has_limit(result, rows.t[i + 1], 0.0)) {
+        // What is left of the laps is extrapolated: no single mode leads there.
+        if (!same_state(rows.x[i], rows.x[i + 1], 1e-5)) problem = "the limit is far from the last lap";
+      } else if (later) {
         if (!same_where_listed(rows.mode[i], rows.mode[i + 1], listed)) problem = "the mode changes between rows";
         if (problem.empty()) {
           problem = check.stretch(rows.t[i], rows.t[i + 1], rows.x[i], rows.x[i + 1], rows.alpha[i]);
