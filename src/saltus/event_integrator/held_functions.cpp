@@ -24,7 +24,9 @@ HeldFunctions::HeldFunctions(const evaluation::ModelKernel& kernel)
       values_(at(kernel.event_functions())),
       row_(at(kernel.states())),
       direction_(row_.size()),
-      point_(row_.size()) {}
+      point_(row_.size()) {
+  set({}, {});
+}
 
 void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double> alpha) {
   functions_ = std::move(functions);
@@ -41,7 +43,8 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
   for (auto& normal : normals_) {
     normal.matrix.setZero(normal.count, normal.count);
     normal.residual.setZero(normal.count);
-    normal.cholesky = Eigen::LLT<Eigen::MatrixXd>(normal.count);
+    // Allocates, and leaves nothing undefined that a copy would read.
+    normal.cholesky.compute(Eigen::MatrixXd::Identity(normal.count, normal.count));
   }
 }
 
