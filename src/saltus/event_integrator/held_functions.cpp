@@ -21,10 +21,10 @@ Index index(std::size_t i) { return static_cast<Index>(i); }
 
 HeldFunctions::HeldFunctions(const evaluation::ModelKernel& kernel)
     : kernel_(kernel),
-      values_(at(kernel.event_functions())),
       row_(at(kernel.states())),
       direction_(row_.size()),
-      point_(row_.size()) {
+      point_(row_.size()),
+      values_(at(kernel.event_functions())) {
   set({}, {});
 }
 
@@ -35,6 +35,7 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
   rows_.setZero(m, kernel_.states());
   basis_.setZero(m, kernel_.states());
   rates_.setZero(m);
+  parts_.setZero(m);
   step_.setZero(kernel_.states());
   const auto of_order_zero = std::count_if(functions_.begin(), functions_.end(),
                                            [](const HeldFunction& function) { return function.order == 0; });
@@ -51,9 +52,8 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
 double HeldFunctions::value(std::size_t i, double t, const double* x) const {
   const auto [surface, order] = functions_[i];
   if (order > 0) return kernel_.lie_derivative(surface, order, t, x, alpha_.data());
-  auto& values = const_cast<std::vector<double>&>(values_);
-  kernel_.functions(t, x, alpha_.data(), values.data());
-  return values[at(surface)];
+  kernel_.functions(t, x, alpha_.data(), values_.data());
+  return values_[at(surface)];
 }
 
 /// The number of functions before i that are of lower order.
@@ -83,6 +83,8 @@ void HeldFunctions::extend_basis(std::size_t i) {
     basis_.row(index(i)) -= rows_.row(index(i)).dot(basis_.row(index(k))) * basis_.row(index(k));
   }
   const double size = basis_.row(index(i)).norm();
+  const double whole = rows_.row(index(i)).norm();
+  parts_[index(i)] = whole == 0.0 ? 0.0 : size / whole;
   if (size > 0.0) basis_.row(index(i)) /= size;
 }
 

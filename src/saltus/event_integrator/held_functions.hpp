@@ -36,6 +36,8 @@ class HeldFunctions {
   void differentiate(double t, const double* x);
   [[nodiscard]] const Eigen::MatrixXd& rows() const { return rows_; }
   [[nodiscard]] const Eigen::VectorXd& rates() const { return rates_; }
+  /// Behind differentiate(): the part of gradient i that the ones before do not span, relative to it; 0 if it is 0.
+  [[nodiscard]] double independent_part(std::size_t i) const { return parts_[static_cast<Eigen::Index>(i)]; }
   /// Behind differentiate(): grad c_i . f + d c_i/dt; and the sum of the sizes of its terms.
   [[nodiscard]] double velocity(std::size_t i, const std::vector<double>& f) const;
   [[nodiscard]] double velocity_terms(std::size_t i, const std::vector<double>& f) const;
@@ -55,9 +57,10 @@ class HeldFunctions {
 
   const evaluation::ModelKernel& kernel_;
   std::vector<HeldFunction> functions_;
-  std::vector<double> alpha_, values_, row_, direction_, point_;
+  std::vector<double> alpha_, row_, direction_, point_;
+  mutable std::vector<double> values_;
   Eigen::MatrixXd rows_, basis_;  ///< gradients; an orthonormal basis of their span, row by row
-  Eigen::VectorXd rates_, step_;
+  Eigen::VectorXd rates_, parts_, step_;
   /// Of the first functions, the switching functions themselves, and of all: J J^T and what it is solved for.
   struct Normal {
     Eigen::Index count = 0;

@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/higher_order.hpp"
@@ -68,24 +67,13 @@ class SetSearch {
     static_cast<void>(functions_.project(t_, x_.data()));
     functions_.differentiate(t_, x_.data());
     for (std::size_t i = 0; i < sliding_.size(); ++i) {
-      if (independent_part(i) <= 1e-6) return reject("the gradients of the surfaces depend on each other");
+      if (!(functions_.independent_part(i) > 1e-6)) return reject("the gradients of the surfaces depend on each other");
     }
     std::vector<double> ignored;
     static_cast<void>(velocities(0, x_, ignored));
     fields_ = corners_;
     return std::all_of(fields_.begin(), fields_.end(), [](const auto& f) { return is_finite(f); }) ||
            reject("a field is not finite on the surfaces");
-  }
-
-  /// The part of gradient i that the ones before do not span, relative to it.
-  double independent_part(std::size_t i) const {
-    const auto r = static_cast<Eigen::Index>(i);
-    const Eigen::MatrixXd before = functions_.rows().topRows(r).transpose();
-    const Eigen::VectorXd own = functions_.rows().row(r).transpose();
-    if (!(own.norm() > 0.0)) return 0.0;
-    if (r == 0) return 1.0;
-    const Eigen::VectorXd rest = own - before * before.colPivHouseholderQr().solve(own);
-    return rest.norm() / own.norm();
   }
 
   /// The velocities of function i of the set at all corners; the largest size of their terms.
@@ -129,7 +117,7 @@ class SetSearch {
       functions.push_back(function);
       functions_.set(functions, alpha_);
       functions_.differentiate(t_, x_.data());
-      if (independent_part(place) <= 1e-6) return follows(place);
+      if (!(functions_.independent_part(place) > 1e-6)) return follows(place);
       set_.functions = std::move(functions);
     }
     std::vector<double> velocity;

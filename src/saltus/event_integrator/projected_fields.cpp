@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
+#include "saltus/event_integrator/held_functions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -156,24 +157,13 @@ bool ProjectedFields::gradient_vanishes(const std::vector<double>& alpha, int su
 }
 
 bool ProjectedFields::gradients_depend(const std::vector<double>& alpha, const std::vector<int>& surfaces) const {
-  const auto n = at(kernel_.states());
-  const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-  };
-  std::vector<std::vector<double>> basis;
-  std::vector<double> row(n);
-  double rate = 0.0;
-  for (const int j : surfaces) {
-    kernel_.gradient(j, occasion_.t, occasion_.x, alpha.data(), row.data(), &rate);
-    const double length = std::sqrt(dot(row, row));
-    for (const auto& direction : basis) {
-      const double part = dot(row, direction);
-      for (std::size_t i = 0; i < n; ++i) row[i] -= part * direction[i];
-    }
-    const double rest = std::sqrt(dot(row, row));
-    if (rest <= 1e-6 * length) return true;
-    for (double& entry : row) entry /= rest;
-    basis.push_back(row);
+  std::vector<HeldFunction> functions;
+  for (const int j : surfaces) functions.push_back({j, 0});
+  HeldFunctions held(kernel_);
+  held.set(std::move(functions), alpha);
+  held.differentiate(occasion_.t, occasion_.x);
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (held.independent_part(i) <= 1e-6) return true;
   }
   return false;
 }
