@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -25,5 +26,9 @@ struct ModeState {
 
 /// Sets mode, alpha and sliding of one surface.
 void set_surface(ModeState& state, int surface, int mode, double alpha);
+/// Leaves surfaces to the sides of a corner: above the i-th of them where bit i is set.
+void set_to_corner(ModeState& state, const std::vector<int>& surfaces, std::size_t corner);
+/// corner_alpha from alpha, on both sides of the first sliding surface and below the others; as it is without nesting.
+void set_corner_alpha(ModeState& state);
 
 }  // namespace saltus::event_integrator

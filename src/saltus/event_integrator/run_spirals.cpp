@@ -32,12 +32,7 @@ void put_on(const evaluation::ModelKernel& kernel, const std::vector<int>& label
     for (auto& region : active[g]) region.weight = 1.0 / static_cast<double>(active[g].size());
     if (!active[g].empty()) set_active(state, kernel.region_groups()[g], active[g]);
   }
-  // The fields on both sides of a single surface, as far as a projection onto it asks for them.
-  if (state.sliding.size() != 1) return;
-  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-    state.corner_alpha[side] = state.alpha;
-    state.corner_alpha[side][at(state.sliding.front())] = static_cast<double>(side);
-  }
+  set_corner_alpha(state);
 }
 
 }  // namespace

@@ -123,13 +123,7 @@ void SingleSurface::fill(const ModeState& before, const Occasion& occasion, cons
   state.alpha = alpha_;
   state.sliding = before.sliding;
   set_surface(state, j, decision.mode, decision.alpha);
-  if (!state.sliding.empty()) {
-    for (std::size_t corner = 0; corner < 2; ++corner) {
-      state.corner_alpha[corner] = state.alpha;
-      for (const int k : state.sliding) state.corner_alpha[corner][at(k)] = 0.0;
-      state.corner_alpha[corner][at(state.sliding.front())] = static_cast<double>(corner);
-    }
-  }
+  set_corner_alpha(state);
   transition.termination = result::Termination::completed;
   transition.message.clear();
   // Both fields are finite here; where they are not behind the projection onto the surface, this point is as good.

@@ -56,10 +56,7 @@ Transition transition_to(ModeState state) {
 /// A state that leaves these surfaces to the sides of a corner (bit i: the i-th of them), if its field agrees.
 std::optional<Transition> leave_to(const Surroundings& s, ModeState state, const Occasion& occasion,
                                    const std::vector<double>& x, const std::vector<int>& surfaces, std::size_t corner) {
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const bool above = (corner >> i & 1U) != 0;
-    set_surface(state, surfaces[i], above ? 1 : -1, above ? 1.0 : 0.0);
-  }
+  set_to_corner(state, surfaces, corner);
   if (!leads_into_its_region(s, state, occasion, x, surfaces)) return std::nullopt;
   Transition transition = transition_to(std::move(state));
   for (const int j : surfaces) transition.zero_order[at(j)] = 2;
@@ -136,10 +133,7 @@ Transition leave_balance(const Surroundings& s, const ModeState& before, const O
   state.higher.reset();
   std::string problem = "its fields do not lead away from it";
   if (leaving.size() < before.sliding.size()) {
-    for (std::size_t i = 0; i < leaving.size(); ++i) {
-      const bool above = (corner >> i & 1U) != 0;
-      set_surface(state, leaving[i], above ? 1 : -1, above ? 1.0 : 0.0);
-    }
+    set_to_corner(state, leaving, corner);
     std::vector<double> point = x;
     auto held = hold(s, state, occasion, point, problem);
     if (!held) return failed(occasion, before, s, problem);
