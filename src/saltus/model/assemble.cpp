@@ -90,7 +90,7 @@ class Assembly {
     for (const auto& parameter : statement_.parameters) p.push_back(parameter.symbol);
     for (const auto& state : statement_.states) {
       x.push_back(state.symbol);
-      if (auto error = take_root(*state.dynamics, f_)) return located_error(*error, state.dynamics_location);
+      if (auto error = take_root(*state.dynamics, f_)) return with_location(*error, state.dynamics_location);
       const auto& rate = graph_.tape()[f_.back()];
       system_.discrete_states.push_back(rate.written == 0 && constant_value(graph_.tape(), f_.back()) == 0.0 &&
                                         !in_regions_[f_.size() - 1]);
@@ -109,7 +109,7 @@ class Assembly {
       u.push_back(control.symbol);
       input.push_back(control.input ? *control.input : SXElem(control.initial));
       std::vector<int> node;
-      if (auto error = take_root(input.back(), node)) return located_error(*error, control.input_location);
+      if (auto error = take_root(input.back(), node)) return with_location(*error, control.input_location);
       constexpr KindSet forbidden = changing_kinds & ~kind_bit(VariableKind::time) & ~kind_bit(VariableKind::cell);
       if ((graph_.tape()[node.front()].reached & forbidden) != 0) {
         return Error{ErrorCode::invalid_model,
@@ -128,10 +128,10 @@ class Assembly {
   /// Indicators and right-hand sides of modes by `indicator`.
   std::optional<Error> take_regions() {
     for (const auto& [indicator, location] : indicators(statement_)) {
-      if (auto error = take_root(indicator, others_)) return located_error(*error, location);
+      if (auto error = take_root(indicator, others_)) return with_location(*error, location);
     }
     for (const auto& [state, rate, location] : region_rates(statement_)) {
-      if (auto error = take_root(rate, others_)) return located_error(*error, location);
+      if (auto error = take_root(rate, others_)) return with_location(*error, location);
     }
     return std::nullopt;
   }
@@ -143,11 +143,6 @@ class Assembly {
     return std::nullopt;
   }
 
-  static Error located_error(Error error, const SourceLocation& location) {
-    if (error.location.line == 0) error.location = location;
-    return error;
-  }
-
   std::optional<Error> take_events() {
     int position = 0;
     for (const auto& stated : statement_.events) {
@@ -157,7 +152,7 @@ class Assembly {
       event.name = stated.name.value_or(fmt::format("event{}", position));
       event.direction = stated.direction;
       event.action = stated.action;
-      if (auto error = fill_event(stated, event)) return located_error(*error, stated.location);
+      if (auto error = fill_event(stated, event)) return with_location(*error, stated.location);
       system_.events.push_back(std::move(event));
     }
     return std::nullopt;
@@ -190,7 +185,7 @@ class Assembly {
   std::optional<Error> take_jumps() {
     for (const auto& stated : statement_.jumps) {
       auto jump = jump_of(recognition_, stated, static_cast<int>(system_.jumps.size()) + 1, event_warnings_);
-      if (!jump) return with_context(located_error(jump.error(), stated.location), "in [[jumps]]");
+      if (!jump) return with_context(with_location(jump.error(), stated.location), "in [[jumps]]");
       for (const auto* expressions : {&jump->guards, &jump->values, &jump->priority, &jump->delay}) {
         for (const SXElem& e : expressions->nonzeros()) others_.push_back(graph_.node(e));
       }
@@ -278,7 +273,7 @@ class Assembly {
         continue;
       }
       auto component = interpolate(graph_, f_[i], sliding_, state.name);
-      if (!component) return located_error(component.error(), state.dynamics_location);
+      if (!component) return with_location(component.error(), state.dynamics_location);
       reduced.push_back(*component);
     }
     for (const auto& [state, rate, location] : region_rates(statement_)) {

@@ -106,11 +106,7 @@ class Cover {
         continue;
       }
       const auto truth = recognition_.truth(diagram(), *mode.when);
-      if (!truth) {
-        Error error = truth.error();
-        if (error.location.line == 0) error.location = mode.location;
-        return error;
-      }
+      if (!truth) return with_location(truth.error(), mode.location);
       regions_.truth.back() = *truth;
     }
     literals_ = literals_in(regions_.truth);

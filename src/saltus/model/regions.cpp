@@ -84,12 +84,7 @@ std::optional<Error> add_regions(SxGraph& graph, const Statement& statement, con
         if (statement.inclusion != Inclusion::aizerman_pyatnitskii) {
           const auto& name = statement.states[static_cast<std::size_t>(state)].name;
           auto component = interpolate(graph, graph.node(rate), sliding, name);
-          if (!component)
-            return [&] {
-              Error error = component.error();
-              if (error.location.line == 0) error.location = location;
-              return error;
-            }();
+          if (!component) return with_location(component.error(), location);
           reduced = *component;
         }
         system.f(state) += casadi::SX(graph.weighted(weight, reduced));

@@ -143,6 +143,12 @@ struct Statement {
 [[nodiscard]] std::optional<Error> check_values(const std::string& what, double initial, const Bounds& bounds,
                                                 const SourceLocation& location, std::vector<std::string>& warnings);
 
+/// The error with this place, unless it says one itself.
+[[nodiscard]] inline Error with_location(Error error, const SourceLocation& location) {
+  if (error.location.line == 0) error.location = location;
+  return error;
+}
+
 /// "file:line: text", as far as the place is known.
 [[nodiscard]] std::string located(const SourceLocation& location, const std::string& text);
 

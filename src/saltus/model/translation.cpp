@@ -6,6 +6,7 @@
 
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/model_scope_internal.hpp"
+#include "saltus/model/statement_internal.hpp"
 #include "saltus/model/translation_internal.hpp"
 
 namespace saltus::model {
@@ -77,11 +78,6 @@ Error condition_found(const Node& node) {
           {}};
 }
 
-Error located(Error error, const SourceLocation& location) {
-  if (error.location.line == 0) error.location = location;
-  return error;
-}
-
 int casadi_operation(BinaryOperator op) {
   switch (op) {
     case BinaryOperator::add:
@@ -139,7 +135,8 @@ Expected<SXElem> Translation::binary(const expression::Binary& binary, const Sou
 }
 
 Expected<SXElem> Translation::call(const expression::Call& call, const SourceLocation& location) {
-  if (call.function == "if") return branch(call).map_error([&](Error e) { return located(std::move(e), location); });
+  if (call.function == "if")
+    return branch(call).map_error([&](Error e) { return with_location(std::move(e), location); });
   const auto first = number(*call.arguments.front());
   if (!first) return first;
   if (call.function == "log10") return log10_of(*first);
@@ -153,7 +150,7 @@ Expected<SXElem> Translation::call(const expression::Call& call, const SourceLoc
 }
 
 Expected<SXElem> Translation::nonsmooth(const expression::Call& call, const SourceLocation& location) {
-  const auto locate = [&](Error error) { return located(std::move(error), location); };
+  const auto locate = [&](Error error) { return with_location(std::move(error), location); };
   const auto a = number(*call.arguments.front());
   if (!a) return a;
   const std::string text = expression::to_text(*call.arguments.front());
@@ -237,7 +234,7 @@ Expected<Condition> Translation::equality(const expression::Binary& binary, cons
   if (!right) return tl::unexpected(right.error());
   for (const auto& [side, node] : {std::pair{*left, binary.left}, std::pair{*right, binary.right}}) {
     const auto still = recognition_.changes_by_jumps_only(side);
-    if (!still) return tl::unexpected(located(still.error(), location));
+    if (!still) return tl::unexpected(with_location(still.error(), location));
     if (*still) continue;
     return tl::unexpected(Error{
         ErrorCode::invalid_model,
