@@ -20,41 +20,43 @@ struct Dopri5 {
     return largest_error<Tableau::error, 0, Size>(step, scale, ratio);
   }
 
-  /// The chord, widened by the largest values of the other terms of the nested form of the dense output.
+  /// Of the nested form of the dense output of one component: x + theta (difference + (1 - theta) (bend + theta (twist
+  /// + (1 - theta) h last))).
+  struct Nested {
+    double difference, bend, twist, last;
+  };
+  static Nested nested(const ExplicitStep& step, std::size_t n, std::size_t i) {
+    const double difference = step.x_new[i] - step.start[i];
+    const double bend = step.h * step.stages[i] - difference;
+    const double twist = difference - step.h * step.stages[(Tableau::stages - 1) * n + i] - bend;
+    return {difference, bend, twist, stage_sum<Tableau::dense, 0>(step.stages, n, i)};
+  }
+
+  /// The chord, widened by the largest values of the other terms.
   template <class Size>
   static void bounds(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
     const std::size_t n = size_of<Size>(step);
-    const double* stages = step.stages;
-    const double h = step.h;
     for (std::size_t i = 0; i < n; ++i) {
-      const double begin = step.start[i];
-      const double end = step.x_new[i];
-      const double difference = end - begin;
-      const double bend = h * stages[i] - difference;
-      const double twist = difference - h * stages[(Tableau::stages - 1) * n + i] - bend;
-      const double width = std::abs(bend) / 4.0 + std::abs(twist) * (4.0 / 27.0) +
-                           std::abs(h * stage_sum<Tableau::dense, 0>(stages, n, i)) / 16.0;
-      low[i] = std::min(begin, end) - width;
-      high[i] = std::max(begin, end) + width;
+      const Nested terms = nested(step, n, i);
+      const double width =
+          std::abs(terms.bend) / 4.0 + std::abs(terms.twist) * (4.0 / 27.0) + std::abs(step.h * terms.last) / 16.0;
+      low[i] = std::min(step.start[i], step.x_new[i]) - width;
+      high[i] = std::max(step.start[i], step.x_new[i]) + width;
     }
   }
 
-  /// (p(theta) - x) / (theta h) = d + (1 - theta) (bend + theta (twist + (1 - theta) last)) / h with the chord's slope
-  /// d: between d and the slope at the start, but for the last two terms.
+  /// (p(theta) - x) / (theta h) = d + (1 - theta) (bend + theta (twist + (1 - theta) h last)) / h with the chord's
+  /// slope d: between d and the slope at the start, but for the last two terms.
   template <class Size>
   static void mean_slopes(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
     const std::size_t n = size_of<Size>(step);
-    const double* stages = step.stages;
-    const double h = step.h;
     for (std::size_t i = 0; i < n; ++i) {
-      const double slope = stages[i];
-      const double difference = step.x_new[i] - step.start[i];
-      const double bend = h * slope - difference;
-      const double twist = difference - h * stages[(Tableau::stages - 1) * n + i] - bend;
-      const double width =
-          std::abs(twist / h) / 4.0 + std::abs(stage_sum<Tableau::dense, 0>(stages, n, i)) * (4.0 / 27.0);
-      low[i] = std::min(slope, difference / h) - width;
-      high[i] = std::max(slope, difference / h) + width;
+      const Nested terms = nested(step, n, i);
+      const double slope = step.stages[i];
+      const double chord = terms.difference / step.h;
+      const double width = std::abs(terms.twist / step.h) / 4.0 + std::abs(terms.last) * (4.0 / 27.0);
+      low[i] = std::min(slope, chord) - width;
+      high[i] = std::max(slope, chord) + width;
     }
   }
 };
