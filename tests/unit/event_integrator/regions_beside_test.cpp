@@ -18,10 +18,7 @@ using model::Builder;
 using result::EventKind;
 using result::Regions;
 using result::Termination;
-
-Integration run_regions(Builder& builder, double until, std::vector<std::pair<int, int>> initial_mode = {}) {
-  return testing::run_model(builder, until, {1e-11, 1e-13}, std::move(initial_mode));
-}
+using testing::run_tightly;
 
 /// |x| -> 0 at unit speed, then held there by two regions.
 SX held_at_zero(Builder& b, double initial) {
@@ -35,7 +32,7 @@ TEST(RegionsBeside, AJumpLeavesThemAndTheyAreReadAnew) {
   Builder b("pushed");
   const SX x = held_at_zero(b, 1.0);
   b.jump_at({2.0, 2.5}, {{"x", x - 0.75}});
-  const auto run = run_regions(b, 4.0);
+  const auto run = run_tightly(b, 4.0);
   ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
   ASSERT_EQ(run.events.size(), 4U);
   const std::array<double, 4> times{1.0, 2.0, 2.5, 3.5};  // at 2.5 the state is -0.25, then -1
@@ -53,7 +50,7 @@ TEST(RegionsBeside, AJumpOntoTheirBorderIsDecidedThere) {
   Builder b("put");
   const SX x = held_at_zero(b, 3.0);
   b.jump_at({1.0}, {{"x", 0.0 * x}});
-  const auto run = run_regions(b, 2.0);
+  const auto run = run_tightly(b, 2.0);
   ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
   ASSERT_EQ(run.events.size(), 1U);
   EXPECT_EQ(*run.events[0].regions_after, (Regions{{"left", "right"}}));
@@ -69,7 +66,7 @@ TEST(RegionsBeside, AnAccumulationOfJumpsPassesWhileTheyHold) {
   b.dynamics("y", v);
   b.dynamics("v", -10);
   b.jump(y, model::Direction::down, {{"v", -0.5 * v}});
-  const auto run = run_regions(b, 4.0);
+  const auto run = run_tightly(b, 4.0);
   ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
   bool accumulated = false;
   for (const auto& event : run.events) {
@@ -95,7 +92,7 @@ TEST(RegionsBeside, ASwitchingFunctionInTheirFieldsMovesTheirWeights) {
   const SX step = b.step(y - 1.0, "late");
   b.region(x, {{"x", SX(1.0)}}, "left");
   b.region(-x, {{"x", -1.0 + 0.5 * step}}, "right");
-  const auto run = run_regions(b, 2.0);
+  const auto run = run_tightly(b, 2.0);
   ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
   ASSERT_EQ(run.events.size(), 2U);  // start, late
   EXPECT_EQ(run.events[1].surfaces, (std::vector<std::string>{"late"}));
@@ -120,7 +117,7 @@ void repelling_sectors(Builder& b) {
 TEST(RegionsBeside, AStartWhereAllRepelHasEveryAlternativeAndFollowsTheOneThatIsForced) {
   Builder free("repelling");
   repelling_sectors(free);
-  const auto run = run_regions(free, 1.0);
+  const auto run = run_tightly(free, 1.0);
   ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
   ASSERT_EQ(run.events.size(), 1U);
   EXPECT_EQ(run.events[0].kind, EventKind::start);
@@ -131,7 +128,7 @@ TEST(RegionsBeside, AStartWhereAllRepelHasEveryAlternativeAndFollowsTheOneThatIs
 
   Builder forced("repelling");
   repelling_sectors(forced);
-  const auto along = run_regions(forced, 1.0, {{1, 0}, {2, 0}, {0, -1}});
+  const auto along = run_tightly(forced, 1.0, {{1, 0}, {2, 0}, {0, -1}});
   ASSERT_EQ(along.status.termination, Termination::completed) << along.status.message;
   EXPECT_EQ(along.final.regions, (Regions{{"b", "c"}}));
   EXPECT_NEAR(along.final.x[0], -0.5, 1e-12);
@@ -139,7 +136,7 @@ TEST(RegionsBeside, AStartWhereAllRepelHasEveryAlternativeAndFollowsTheOneThatIs
   EXPECT_EQ(along.events[0].alternatives.size(), 6U);
   EXPECT_EQ(along.events[0].unique, false);
 
-  const auto alone = run_regions(forced, 1.0, {{2, 1}});
+  const auto alone = run_tightly(forced, 1.0, {{2, 1}});
   ASSERT_EQ(alone.status.termination, Termination::completed) << alone.status.message;
   EXPECT_EQ(alone.final.regions, (Regions{{"c"}}));
   EXPECT_NEAR(alone.final.x[1], -std::sqrt(0.75), 1e-12);
@@ -157,7 +154,7 @@ TEST(RegionsBeside, ASpiralEndsWhereThreeMeet) {
     const double c = std::cos(angle), s = std::sin(angle);
     b.region(-(c * x + s * y), {{"x", SX(-c - 8.0 * s)}, {"y", SX(-s + 8.0 * c)}});
   }
-  const auto run = run_regions(b, 2.0);
+  const auto run = run_tightly(b, 2.0);
   ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
   const auto& limit = run.events.back();
   EXPECT_EQ(limit.kind, EventKind::accumulation);
@@ -171,7 +168,7 @@ TEST(RegionsBeside, ASpiralEndsWhereThreeMeet) {
 TEST(RegionsBeside, AForcedRegionThatIsNotThereIsTold) {
   Builder b("away");
   held_at_zero(b, 1.0);
-  const auto run = run_regions(b, 2.0, {{0, 1}});
+  const auto run = run_tightly(b, 2.0, {{0, 1}});
   EXPECT_EQ(run.status.termination, Termination::no_admissible_mode);
   EXPECT_NE(run.status.message.find("initial_mode"), std::string::npos);
 }

@@ -17,10 +17,7 @@ using model::Builder;
 using result::EventKind;
 using result::Regions;
 using result::Termination;
-
-Integration run_regions(Builder& builder, double until, std::vector<std::pair<int, int>> initial_mode = {}) {
-  return testing::run_model(builder, until, {1e-11, 1e-13}, std::move(initial_mode));
-}
+using testing::run_tightly;
 
 TEST(Regions, TwoAreTheSameModelAsAStep) {
   const auto state = [](Builder& b) {
@@ -41,8 +38,8 @@ TEST(Regions, TwoAreTheSameModelAsAStep) {
     by_condition.mode(model::less(x, 0.0), {{"x", 1.0 + 0.3 * cos(3 * y)}});
     by_condition.otherwise({{"x", -1.0 + 1.5 * sin(2 * y)}});
   }
-  const auto regions = run_regions(by_indicator, 12);
-  const auto steps = run_regions(by_condition, 12);
+  const auto regions = run_tightly(by_indicator, 12);
+  const auto steps = run_tightly(by_condition, 12);
   ASSERT_EQ(regions.status.termination, Termination::completed) << regions.status.message;
   ASSERT_EQ(regions.events.size(), steps.events.size());
   ASSERT_GE(steps.events.size(), 5U);
@@ -69,7 +66,7 @@ Integration sectors(const std::array<int, 3>& order) {
     const double c = std::cos(angle), s = std::sin(angle);
     b.region(-(c * x + s * y), {{"x", SX(-c)}, {"y", SX(-s)}}, names.at(static_cast<std::size_t>(i)));
   }
-  return run_regions(b, 8.0);
+  return run_tightly(b, 8.0);
 }
 
 TEST(Regions, ThreeMeetAtAPointAndHoldTheSolutionThere) {
@@ -125,7 +122,7 @@ TEST(Regions, HysteresisByFourRegionsHasItsPeriod) {
   b.region(indicator(0.25, 0.25), {{"w", down}}, "to_on");
   b.region(indicator(0.75, 0.75), {{"w", up}}, "to_off");
   b.region(indicator(0.75, 1.25), {{"y", -0.4 * y}, {"w", -up}, {"clock", 2.0}}, "off");
-  const auto result = run_regions(b, 4.0);
+  const auto result = run_tightly(b, 4.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   std::vector<double> clock;  // at which the sliding modes are left
   for (const auto& event : result.events) {
@@ -148,7 +145,7 @@ TEST(Regions, TwoGroupsAndAStepBesideThem) {
   b.region(y, {{"y", SX(1.0)}}, "low", "second");
   b.region(-y, {{"y", SX(-1.0)}}, "high", "second");
   b.dynamics("z", -b.sign(z));
-  const auto result = run_regions(b, 2.0);
+  const auto result = run_tightly(b, 2.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(result.events[i].t, 0.5 + 0.25 * static_cast<double>(i), 1e-13);

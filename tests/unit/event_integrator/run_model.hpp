@@ -31,4 +31,10 @@ inline Integration run_model(model::Builder& builder, double until, ode::Toleran
   return run_model(builder, options);
 }
 
+/// The same with tolerances far below those of the expectations.
+inline Integration run_tightly(model::Builder& builder, double until,
+                               std::vector<std::pair<int, int>> initial_mode = {}) {
+  return run_model(builder, until, {1e-11, 1e-13}, std::move(initial_mode));
+}
+
 }  // namespace saltus::event_integrator::testing

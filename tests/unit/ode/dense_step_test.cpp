@@ -52,60 +52,63 @@ TEST_P(DenseOutput, is_exact_at_both_ends) {
   EXPECT_LT(distance(expected.data(), slope), 64 * epsilon / dense.h);
 }
 
-TEST_P(DenseOutput, leaves_its_start_with_slopes_within_their_bounds) {
+/// Calls visit(stepper, start, dense, t) for steps of several lengths from places all along the orbit.
+template <class Visit>
+void for_steps_along_the_orbit(Method method, Visit&& visit) {
   for (const double h : {1e-3, 0.1, 0.5, 1.0}) {
-    if (GetParam() == Method::radau5 && h > 0.5) continue;  // its stages are not found at every t
+    if (method == Method::radau5 && h > 0.5) continue;  // its stages are not found at every t
     for (double t = 0.0; t < 6.0; t += 0.37) {
-      Stepper stepper(GetParam(), Kepler::n);
+      Stepper stepper(method, Kepler::n);
       const auto start = Kepler::exact(t);
-      const DenseStep dense = one_step(stepper, Kepler{}, t, start, h);
-      std::vector<double> low(start.size()), high(start.size()), x(start.size());
-      ASSERT_EQ(stepper.mean_slopes(low.data(), high.data()), GetParam() != Method::radau5);
-      if (GetParam() == Method::radau5) continue;
-      for (int k = 1; k <= 200; ++k) {
-        const double passed = h * k / 200.0;
-        dense.evaluate(k / 200.0, x.data());
-        for (std::size_t i = 0; i < x.size(); ++i) {
-          const double slope = (x[i] - start[i]) / passed;
-          const double rounding = 16 * epsilon / passed;
-          ASSERT_GE(slope, low[i] - rounding) << "h = " << h << ", t = " << t << ", " << k;
-          ASSERT_LE(slope, high[i] + rounding) << "h = " << h << ", t = " << t << ", " << k;
-        }
-      }
-      // They say something: for a short step no more than the slopes at its ends, about.
-      if (h > 1e-3) continue;
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        const double bend = std::abs(stepper.slope_new()[i] - (x[i] - start[i]) / h);
-        EXPECT_LE(high[i] - low[i], 8.0 * bend + 64 * epsilon / h) << i;
-      }
+      visit(stepper, start, one_step(stepper, Kepler{}, t, start, h), t);
     }
   }
 }
 
-TEST_P(DenseOutput, stays_within_its_bounds) {
-  for (const double h : {1e-3, 0.1, 0.5, 1.0}) {
-    if (GetParam() == Method::radau5 && h > 0.5) continue;  // its stages are not found at every t
-    for (double t = 0.0; t < 6.0; t += 0.37) {
-      Stepper stepper(GetParam(), Kepler::n);
-      const auto start = Kepler::exact(t);
-      const DenseStep dense = one_step(stepper, Kepler{}, t, start, h);
-      std::vector<double> low(start.size()), high(start.size()), early_low(start.size()), early_high(start.size());
-      dense.bounds(low.data(), high.data());
-      const bool early = stepper.bounds(early_low.data(), early_high.data());
-      EXPECT_EQ(early, GetParam() != Method::radau5);
-      std::vector<double> x(start.size());
-      for (int k = 0; k <= 200; ++k) {
-        dense.evaluate(k / 200.0, x.data());
-        for (std::size_t i = 0; i < x.size(); ++i) {
-          ASSERT_GE(x[i], low[i] - 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
-          ASSERT_LE(x[i], high[i] + 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
-          if (!early) continue;
-          ASSERT_GE(x[i], early_low[i] - 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
-          ASSERT_LE(x[i], early_high[i] + 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
-        }
+TEST_P(DenseOutput, leaves_its_start_with_slopes_within_their_bounds) {
+  for_steps_along_the_orbit(GetParam(), [](Stepper& stepper, const auto& start, const DenseStep& dense, double t) {
+    const double h = dense.h;
+    std::vector<double> low(start.size()), high(start.size()), x(start.size());
+    ASSERT_EQ(stepper.mean_slopes(low.data(), high.data()), GetParam() != Method::radau5);
+    if (GetParam() == Method::radau5) return;
+    for (int k = 1; k <= 200; ++k) {
+      const double passed = h * k / 200.0;
+      dense.evaluate(k / 200.0, x.data());
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const double slope = (x[i] - start[i]) / passed;
+        const double rounding = 16 * epsilon / passed;
+        ASSERT_GE(slope, low[i] - rounding) << "h = " << h << ", t = " << t << ", " << k;
+        ASSERT_LE(slope, high[i] + rounding) << "h = " << h << ", t = " << t << ", " << k;
       }
     }
-  }
+    // They say something: for a short step no more than the slopes at its ends, about.
+    if (h > 1e-3) return;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double bend = std::abs(stepper.slope_new()[i] - (x[i] - start[i]) / h);
+      EXPECT_LE(high[i] - low[i], 8.0 * bend + 64 * epsilon / h) << i;
+    }
+  });
+}
+
+TEST_P(DenseOutput, stays_within_its_bounds) {
+  for_steps_along_the_orbit(GetParam(), [](Stepper& stepper, const auto& start, const DenseStep& dense, double t) {
+    const double h = dense.h;
+    std::vector<double> low(start.size()), high(start.size()), early_low(start.size()), early_high(start.size());
+    dense.bounds(low.data(), high.data());
+    const bool early = stepper.bounds(early_low.data(), early_high.data());
+    EXPECT_EQ(early, GetParam() != Method::radau5);
+    std::vector<double> x(start.size());
+    for (int k = 0; k <= 200; ++k) {
+      dense.evaluate(k / 200.0, x.data());
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        ASSERT_GE(x[i], low[i] - 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
+        ASSERT_LE(x[i], high[i] + 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
+        if (!early) continue;
+        ASSERT_GE(x[i], early_low[i] - 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
+        ASSERT_LE(x[i], early_high[i] + 16 * epsilon) << "h = " << h << ", t = " << t << ", " << k;
+      }
+    }
+  });
 }
 
 TEST_P(DenseOutput, both_ways_of_writing_it_meet_in_the_middle) {
