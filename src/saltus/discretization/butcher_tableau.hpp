@@ -20,7 +20,7 @@ enum class TableauFamily {
 /// The name of a family in model files.
 [[nodiscard]] std::string_view name(TableauFamily family);
 
-/// x_1 = x_0 + h sum_i b_i k_i,   k_i = f(t_0 + c_i h, x_0 + h sum_j a_ij k_j)   (paper 000, eq. (33)).
+/// x_1 = x_0 + h sum_i b_i k_i,   k_i = f(t_0 + c_i h, x_0 + h sum_j a_ij k_j)   (eq. (33) of [nurkanovic2024]).
 struct ButcherTableau {
   TableauFamily family = TableauFamily::radau_iia;
   int order = 0;
