@@ -1,0 +1,34 @@
+// Functions inside others taken apart: a System whose switching functions are free of selections.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saltus/reformulation/dcs.hpp"
+#include "saltus/reformulation/expressions_internal.hpp"
+
+namespace saltus::reformulation {
+
+/// The regions of a group by `indicator`, for one choice of sides of what the indicators contain.
+struct IndicatorPart {
+  int mode_group = 0;
+  std::vector<SXElem> theta;
+  std::vector<SXElem> indicator;
+};
+
+/// A System in selections of which none is inside another.
+struct Unnested {
+  std::vector<Surface> surfaces;
+  std::vector<SXElem> surface_symbols;  ///< alpha of each
+  std::vector<IndicatorPart> indicator_parts;
+  std::vector<HeldSymbol> held_symbols;
+  std::vector<SXElem> held;
+
+  SX f;  ///< multi-affine in the selections with filippov
+  SX alpha, outputs, input;
+  std::vector<model::UserEvent> events;
+};
+
+[[nodiscard]] Expected<Unnested> unnest(const model::System& system);
+
+}  // namespace saltus::reformulation
