@@ -4,6 +4,7 @@
 # name            version  licence   Debian package, why
 # Eigen           >= 3.4   MPL-2.0   libeigen3-dev; small dense linear algebra of the integrators
 # CasADi          >= 3.7   LGPL-3    wheel of PyPI in .venv; symbolic expressions of the model, their derivatives
+# Ipopt           >= 3.14  EPL-2.0   the same wheel, with MUMPS and OpenBLAS; nonlinear programs (cmake/ipopt.cmake)
 # tl::expected    >= 1.0   CC0       libexpected-dev; error lane for bad input (std::expected is C++23)
 # fmt             >= 9     MIT       libfmt-dev; messages (std::format is not in g++ 12)
 # toml++          >= 3.3   MIT       libtomlplusplus-dev; model files, with source positions
@@ -34,6 +35,12 @@ saltus_require(casadi "scripts/install.sh makes .venv with the wheel of PyPI" CO
 saltus_require(tomlplusplus "apt-get install libtomlplusplus-dev")
 saltus_require(nlohmann_json "apt-get install nlohmann-json3-dev" 3.11)
 saltus_require(CLI11 "apt-get install libcli11-dev" 2.1)
+if(casadi_FOUND)
+  include(cmake/ipopt.cmake)
+  if(NOT TARGET saltus_wheel::ipopt)
+    string(APPEND saltus_missing "\n  Ipopt: no libipopt beside ${casadi_DIR}; the wheel of PyPI has it, other builds of CasADi may not")
+  endif()
+endif()
 if(SALTUS_DEVELOPER)
   saltus_require(GTest "apt-get install libgtest-dev")
 endif()

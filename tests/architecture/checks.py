@@ -37,7 +37,12 @@ def module_of(path, root):
     """Module of a C++ file below src/saltus, None for any other file."""
     parts = path.relative_to(root).parts
     inside = len(parts) > 3 and parts[:2] == ("src", "saltus") and path.suffix in (".cpp", ".hpp", ".h")
-    return parts[2] if inside else None
+    return module_named(parts[2:]) if inside else None
+
+
+def module_named(parts):
+    """Module of a path below src/saltus; each folder of adapters is a module of its own."""
+    return "/".join(parts[:2]) if parts[0] == "adapters" else parts[0]
 
 
 def module_includes(root):
@@ -65,7 +70,7 @@ def check_include_directions(root, table):
             if bracket == '"' and (path.parent / name).exists():
                 complaints.append(f'{place}: include "{name}" by its full path, "saltus/{module}/{name}"')
             continue
-        target = name.split("/")[1]
+        target = module_named(name.split("/")[1:])
         allowed = set(table["modules"][module])
         if target != module and target not in ALWAYS_ALLOWED | allowed and "*" not in allowed:
             complaints.append(f"{place}: {module} must not include {target} ({name})")

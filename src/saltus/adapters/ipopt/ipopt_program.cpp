@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
+#include "saltus/base/contracts.hpp"
+
+namespace saltus::adapters {
+namespace {
+
+using Input = Eigen::Map<const Eigen::VectorXd>;
+using Output = Eigen::Map<Eigen::VectorXd>;
+
+void write_pattern(const mpcc::Pattern& pattern, Ipopt::Index* row, Ipopt::Index* column) {
+  std::copy(pattern.row.begin(), pattern.row.end(), row);
+  std::copy(pattern.column.begin(), pattern.column.end(), column);
+}
+
+}  // namespace
+
+bool IpoptProgram::get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries,
+                                Ipopt::Index& hessian_entries, IndexStyleEnum& index_style) {
+  SALTUS_ASSERT(problem_->pairs() == 0);
+  n = problem_->variables();
+  m = problem_->constraints();
+  jacobian_entries = problem_->jacobian_pattern().entries();
+  hessian_entries = problem_->hessian_pattern().entries();
+  index_style = C_STYLE;
+  return true;
+}
+
+bool IpoptProgram::get_bounds_info(Ipopt::Index n, double* w_lower, double* w_upper, Ipopt::Index m, double* g_lower,
+                                   double* g_upper) {
+  Output(w_lower, n) = problem_->variable_bounds().lower;
+  Output(w_upper, n) = problem_->variable_bounds().upper;
+  Output(g_lower, m) = problem_->constraint_bounds().lower;
+  Output(g_upper, m) = problem_->constraint_bounds().upper;
+  return true;
+}
+
+bool IpoptProgram::get_starting_point(Ipopt::Index n, bool wants_w, double* w, bool wants_z, double* z_lower,
+                                      double* z_upper, Ipopt::Index m, bool wants_y, double* y) {
+  if (wants_w) Output(w, n) = point_->w;
+  if (wants_z) {
+    if (point_->z_lower.size() != n || point_->z_upper.size() != n) return false;
+    Output(z_lower, n) = point_->z_lower;
+    Output(z_upper, n) = point_->z_upper;
+  }
+  if (wants_y) {
+    if (point_->y.size() != m) return false;
+    Output(y, m) = point_->y;
+  }
+  return true;
+}
+
+bool IpoptProgram::eval_f(Ipopt::Index n, const double* w, bool /*is_new*/, double& value) {
+  value = problem_->objective(Input(w, n));
+  return std::isfinite(value);
+}
+
+bool IpoptProgram::eval_grad_f(Ipopt::Index n, const double* w, bool /*is_new*/, double* gradient) {
+  problem_->objective_gradient(Input(w, n), Output(gradient, n));
+  return Input(gradient, n).allFinite();
+}
+
+bool IpoptProgram::eval_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipopt::Index m, double* g) {
+  problem_->functions(Input(w, n), Output(g, m));
+  return Input(g, m).allFinite();
+}
+
+bool IpoptProgram::eval_jac_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipopt::Index /*m*/,
+                              Ipopt::Index entries, Ipopt::Index* row, Ipopt::Index* column, double* values) {
+  if (values == nullptr) {
+    write_pattern(problem_->jacobian_pattern(), row, column);
+    return true;
+  }
+  problem_->jacobian(Input(w, n), Output(values, entries));
+  return Input(values, entries).allFinite();
+}
+
+bool IpoptProgram::eval_h(Ipopt::Index n, const double* w, bool /*is_new*/, double objective_factor, Ipopt::Index m,
+                          const double* y, bool /*is_new_y*/, Ipopt::Index entries, Ipopt::Index* row,
+                          Ipopt::Index* column, double* values) {
+  if (values == nullptr) {
+    write_pattern(problem_->hessian_pattern(), row, column);
+    return true;
+  }
+  problem_->hessian(Input(w, n), objective_factor, Input(y, m), Output(values, entries));
+  return Input(values, entries).allFinite();
+}
+
+void IpoptProgram::finalize_solution(Ipopt::SolverReturn /*status*/, Ipopt::Index n, const double* w,
+                                     const double* z_lower, const double* z_upper, Ipopt::Index m, const double* /*g*/,
+                                     const double* y, double objective, const Ipopt::IpoptData* /*data*/,
+                                     Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
+  *point_ = {.w = Input(w, n), .y = Input(y, m), .z_lower = Input(z_lower, n), .z_upper = Input(z_upper, n)};
+  objective_ = objective;
+}
+
+}  // namespace saltus::adapters

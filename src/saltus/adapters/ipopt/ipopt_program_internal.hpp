@@ -1,0 +1,43 @@
+// A Problem without pairs as Ipopt sees it.
+#pragma once
+
+#include <IpTNLP.hpp>
+
+#include "saltus/solver/nlp_solver.hpp"
+
+namespace saltus::adapters {
+
+/// Hands every question on to the problem, and keeps the point that Ipopt ends with.
+class IpoptProgram final : public Ipopt::TNLP {
+ public:
+  /// What the next solution is about; both outlive it.
+  void set(mpcc::Problem& problem, solver::NlpPoint& point) {
+    problem_ = &problem;
+    point_ = &point;
+  }
+  [[nodiscard]] double objective() const { return objective_; }
+
+  bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries, Ipopt::Index& hessian_entries,
+                    IndexStyleEnum& index_style) override;
+  bool get_bounds_info(Ipopt::Index n, double* w_lower, double* w_upper, Ipopt::Index m, double* g_lower,
+                       double* g_upper) override;
+  bool get_starting_point(Ipopt::Index n, bool wants_w, double* w, bool wants_z, double* z_lower, double* z_upper,
+                          Ipopt::Index m, bool wants_y, double* y) override;
+  bool eval_f(Ipopt::Index n, const double* w, bool is_new, double& value) override;
+  bool eval_grad_f(Ipopt::Index n, const double* w, bool is_new, double* gradient) override;
+  bool eval_g(Ipopt::Index n, const double* w, bool is_new, Ipopt::Index m, double* g) override;
+  bool eval_jac_g(Ipopt::Index n, const double* w, bool is_new, Ipopt::Index m, Ipopt::Index entries, Ipopt::Index* row,
+                  Ipopt::Index* column, double* values) override;
+  bool eval_h(Ipopt::Index n, const double* w, bool is_new, double objective_factor, Ipopt::Index m, const double* y,
+              bool is_new_y, Ipopt::Index entries, Ipopt::Index* row, Ipopt::Index* column, double* values) override;
+  void finalize_solution(Ipopt::SolverReturn status, Ipopt::Index n, const double* w, const double* z_lower,
+                         const double* z_upper, Ipopt::Index m, const double* g, const double* y, double objective,
+                         const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities) override;
+
+ private:
+  mpcc::Problem* problem_ = nullptr;
+  solver::NlpPoint* point_ = nullptr;
+  double objective_ = 0.0;
+};
+
+}  // namespace saltus::adapters

@@ -1,0 +1,137 @@
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
+
+#include <IpIpoptApplication.hpp>
+#include <IpSolveStatistics.hpp>
+#include <algorithm>
+
+#include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
+#include "saltus/base/contracts.hpp"
+
+namespace saltus::adapters {
+namespace {
+
+using result::Termination;
+
+struct Outcome {
+  Termination termination;
+  const char* message;
+};
+
+Outcome outcome_of(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Solve_Succeeded:
+    case Ipopt::Feasible_Point_Found:
+    case Ipopt::Solved_To_Acceptable_Level:
+      return {Termination::completed, ""};
+    case Ipopt::Infeasible_Problem_Detected:
+      return {Termination::infeasible, "Ipopt converged to a point that is locally infeasible"};
+    case Ipopt::Search_Direction_Becomes_Too_Small:
+      return {Termination::step_size_too_small, "Ipopt's search direction became too small"};
+    case Ipopt::Diverging_Iterates:
+      return {Termination::not_converged, "Ipopt's iterates diverge"};
+    case Ipopt::User_Requested_Stop:
+      return {Termination::stopped_by_user, "stopped on request"};
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return {Termination::iteration_limit, "Ipopt reached the limit of iterations"};
+    case Ipopt::Restoration_Failed:
+      return {Termination::not_converged, "Ipopt's restoration phase failed"};
+    case Ipopt::Error_In_Step_Computation:
+      return {Termination::factorization_failed, "Ipopt could not compute a search direction"};
+    case Ipopt::Maximum_CpuTime_Exceeded:
+    case Ipopt::Maximum_WallTime_Exceeded:
+      return {Termination::time_limit, "Ipopt reached the time limit"};
+    case Ipopt::Not_Enough_Degrees_Of_Freedom:
+      return {Termination::infeasible, "the problem has more equations than free variables"};
+    case Ipopt::Invalid_Number_Detected:
+      return {Termination::evaluation_failed, "a function of the problem is not finite"};
+    case Ipopt::Insufficient_Memory:
+      return {Termination::factorization_failed, "Ipopt ran out of memory"};
+    case Ipopt::Invalid_Problem_Definition:
+    case Ipopt::Invalid_Option:
+    case Ipopt::Unrecoverable_Exception:
+    case Ipopt::NonIpopt_Exception_Thrown:
+    case Ipopt::Internal_Error:
+      break;
+  }
+  return {Termination::not_converged, "Ipopt ended with an internal error"};
+}
+
+/// Where to begin when the point comes with multipliers: as near to the bounds as it stands, instead of 1e-2 inside.
+constexpr double warm_push = 1e-9;
+
+}  // namespace
+
+struct IpoptSolver::Implementation {
+  Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
+  Ipopt::SmartPtr<IpoptProgram> program = new IpoptProgram;
+  const mpcc::Problem* solved = nullptr;  ///< the problem the application has its structures for
+
+  Implementation() {
+    auto options = application->Options();
+    const bool are_set = options->SetIntegerValue("print_level", 0) && options->SetStringValue("sb", "yes") &&
+                         options->SetStringValue("linear_solver", "mumps") &&
+                         // Relaxed bounds would let lambda and alpha become negative, and with them products of pairs.
+                         options->SetNumericValue("bound_relax_factor", 0.0) &&
+                         options->SetStringValue("mu_oracle", "quality-function") &&
+                         options->SetStringValue("fixed_variable_treatment", "make_parameter");
+    SALTUS_ASSERT(are_set);
+    // An empty name: no option file of the current folder changes results.
+    const auto status = application->Initialize(std::string());
+    SALTUS_ASSERT(status == Ipopt::Solve_Succeeded);
+  }
+
+  void set_options(const solver::NlpOptions& wanted, bool has_multipliers) {
+    auto options = application->Options();
+    const double feasible = std::max(wanted.tolerance, 1e-10);
+    bool are_set = options->SetNumericValue("tol", wanted.tolerance) &&
+                   options->SetNumericValue("dual_inf_tol", wanted.tolerance) &&
+                   options->SetNumericValue("compl_inf_tol", wanted.tolerance) &&
+                   options->SetNumericValue("acceptable_tol", wanted.acceptable_tolerance) &&
+                   // Only optimality may be poor at an acceptable point (Ipopt's own choice is 1e-2 for both): a point
+                   // that is not feasible solves nothing.
+                   options->SetNumericValue("constr_viol_tol", feasible) &&
+                   options->SetNumericValue("acceptable_constr_viol_tol", feasible) &&
+                   options->SetIntegerValue("max_iter", wanted.iteration_limit) &&
+                   // 1e20 is Ipopt's own default: no limit.
+                   options->SetNumericValue("max_wall_time", std::max(wanted.time_limit.value_or(1e20), 1e-9)) &&
+                   options->SetStringValue("warm_start_init_point", has_multipliers ? "yes" : "no");
+    for (const char* name : {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
+                             "warm_start_slack_bound_frac", "warm_start_mult_bound_push"}) {
+      are_set = are_set && options->SetNumericValue(name, warm_push);
+    }
+    // Only the monotone strategy begins with a given parameter; the adaptive one chooses its own.
+    const bool begins_with_mu = has_multipliers && wanted.warm_barrier_mu;
+    are_set = are_set && options->SetStringValue("mu_strategy", begins_with_mu ? "monotone" : "adaptive") &&
+              options->SetNumericValue("mu_init", begins_with_mu ? *wanted.warm_barrier_mu : 0.1);
+    SALTUS_ASSERT(are_set);
+  }
+};
+
+IpoptSolver::IpoptSolver() : implementation_(std::make_unique<Implementation>()) {}
+IpoptSolver::~IpoptSolver() = default;
+
+solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point, const solver::NlpOptions& options) {
+  SALTUS_ASSERT(point.w.size() == nlp.variables());
+  auto& [application, program, solved] = *implementation_;
+  const bool has_multipliers = point.y.size() == nlp.constraints() && point.z_lower.size() == nlp.variables() &&
+                               point.z_upper.size() == nlp.variables();
+  implementation_->set_options(options, has_multipliers);
+  program->set(nlp, point);
+  const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
+  const auto status = solved == &nlp ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
+  // An application that failed half-way may hold half of its structures.
+  solved = status == Ipopt::Solve_Succeeded ? &nlp : nullptr;
+
+  const Outcome outcome = outcome_of(status);
+  solver::NlpReport report;
+  report.termination = outcome.termination;
+  report.acceptable_only = status == Ipopt::Solved_To_Acceptable_Level;
+  report.objective = program->objective();
+  report.message = outcome.message;
+  if (const auto statistics = application->Statistics(); Ipopt::IsValid(statistics)) {
+    report.iterations = statistics->IterationCount();
+  }
+  return report;
+}
+
+}  // namespace saltus::adapters

@@ -1,0 +1,26 @@
+// Ipopt as a solver of nonlinear programs.
+#pragma once
+
+#include <memory>
+
+#include "saltus/solver/nlp_solver.hpp"
+
+namespace saltus::adapters {
+
+/// The interior-point method of [waechter2006] with the linear solver MUMPS, through Ipopt's own C++ interface. Keeps
+/// its application between solutions, so that solving a problem of the same structure again costs no set-up. Bounds are
+/// not relaxed; reads no option file; prints nothing.
+class IpoptSolver final : public solver::NlpSolver {
+ public:
+  IpoptSolver();
+  ~IpoptSolver() override;
+
+  [[nodiscard]] solver::NlpReport solve(mpcc::Problem& nlp, solver::NlpPoint& point,
+                                        const solver::NlpOptions& options) override;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace saltus::adapters

@@ -1,0 +1,56 @@
+// The seam to solvers of smooth nonlinear programs.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "saltus/mpcc/problem.hpp"
+#include "saltus/result/status.hpp"
+
+namespace saltus::solver {
+
+using mpcc::ConstVectorView;
+using mpcc::VectorView;
+
+/// A primal and dual point of min f(w), lower_w <= w <= upper_w, lower_g <= g(w) <= upper_g:
+///   grad f + (dg/dw)' y - z_lower + z_upper = 0.
+struct NlpPoint {
+  Eigen::VectorXd w;
+  Eigen::VectorXd y;        ///< one per row of g; empty in a start without multipliers
+  Eigen::VectorXd z_lower;  ///< one per variable, >= 0
+  Eigen::VectorXd z_upper;
+};
+
+struct NlpOptions {
+  double tolerance = 1e-12;            ///< of the solver's own scaled optimality error
+  double acceptable_tolerance = 1e-6;  ///< taken if the solver cannot improve any more
+  int iteration_limit = 500;
+  std::optional<double> time_limit;  ///< seconds
+  /// Barrier parameter to begin with where the start has multipliers; the solver's own choice if absent.
+  std::optional<double> warm_barrier_mu;
+};
+
+struct NlpReport {
+  /// completed (also at the acceptable tolerance), infeasible, iteration_limit, time_limit, stopped_by_user,
+  /// evaluation_failed, factorization_failed, step_size_too_small, not_converged.
+  result::Termination termination = result::Termination::not_converged;
+  bool acceptable_only = false;  ///< completed, but only to the acceptable tolerance
+  double objective = 0.0;
+  int iterations = 0;
+  std::string message;  ///< the solver's own words; empty if completed
+};
+
+/// A solver of smooth nonlinear programs: mpcc::Problems without pairs.
+class NlpSolver {
+ public:
+  NlpSolver() = default;
+  virtual ~NlpSolver() = default;
+  NlpSolver(const NlpSolver&) = delete;
+  NlpSolver& operator=(const NlpSolver&) = delete;
+
+  /// Solves from `point` and leaves the last iterate there, whatever the outcome. Multipliers of the start are used if
+  /// they are there.
+  [[nodiscard]] virtual NlpReport solve(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options) = 0;
+};
+
+}  // namespace saltus::solver
