@@ -54,10 +54,10 @@ Expected<void> check(const Output& output, std::set<fs::path>& taken) {
 }  // namespace
 
 Expected<Outputs> Outputs::make(const std::vector<std::string>& files, const std::string& report,
-                                const std::string& input) {
+                                const std::string& input, const std::vector<std::string>& suffixes) {
   std::set<fs::path> taken{identity(input)};
   std::vector<Output> wanted;
-  for (const auto& file : files) wanted.push_back({"--out", file, {".json", ".csv"}});
+  for (const auto& file : files) wanted.push_back({"--out", file, suffixes});
   if (!report.empty()) wanted.push_back({"--report", report, {".html", ".htm"}});
   for (const auto& output : wanted) {
     if (auto writable = check(output, taken); !writable) return tl::unexpected(writable.error());

@@ -13,13 +13,14 @@ namespace saltus::cli {
 /// The outputs of one run; exists only if all of them can be written.
 class Outputs {
  public:
-  /// @param files   of --out: .json or .csv
-  /// @param report  of --report: .html; empty for none
-  /// @param input   file that is read and must not be overwritten
+  /// @param files     of --out
+  /// @param report    of --report: .html; empty for none
+  /// @param input     file that is read and must not be overwritten
+  /// @param suffixes  that files of --out may have: .json, .csv
   /// @return the outputs, or an error: a suffix without meaning, a file twice, one that cannot be written, plotly
   ///         missing.
   [[nodiscard]] static Expected<Outputs> make(const std::vector<std::string>& files, const std::string& report,
-                                              const std::string& input);
+                                              const std::string& input, const std::vector<std::string>& suffixes = {});
 
   /// Whether any of them has the surfaces of the model in it.
   [[nodiscard]] bool show_surfaces() const;

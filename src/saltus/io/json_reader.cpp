@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "saltus/io/atomic_file.hpp"
-#include "saltus/io/json_reader_internal.hpp"
+#include "saltus/io/json_parts_internal.hpp"
 #include "saltus/io/json_result.hpp"
 #include "saltus/io/json_shapes_internal.hpp"
 
@@ -27,28 +27,6 @@ void read_model(JsonReader& reader, const Json& json, const std::string& path, r
     double number = 0.0;
     reader.read(value, path + "/parameters/" + name, number);
     model.parameters.emplace_back(name, number);
-  }
-}
-
-void read_status(JsonReader& reader, const Json& json, const std::string& path, result::Status& status) {
-  std::string word;
-  reader.read_member(json, path, "termination", word);
-  const auto termination = result::termination_named(word);
-  if (!termination) reader.fail(path + "/termination", fmt::format("'{}' is no termination", word));
-  status.termination = termination.value_or(result::Termination::completed);
-  reader.read_member(json, path, "message", status.message);
-  reader.read_member(json, path, "time_reached", status.time_reached);
-}
-
-/// Reads every entry of a list by read_one(reader, json, path).
-template <class Part, class Read>
-void read_list(JsonReader& reader, const Json& json, const std::string& path, std::vector<Part>& parts, Read read_one) {
-  if (!json.is_array()) {
-    reader.mismatch(path, "a list", json);
-    return;
-  }
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    parts.push_back(read_one(reader, json[i], fmt::format("{}/{}", path, i)));
   }
 }
 
@@ -161,13 +139,6 @@ void read_final(JsonReader& reader, const Json& json, const std::string& path, r
   reader.read_if_there(json, path, "theta", final.theta);
 }
 
-void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics) {
-  reader.read_member(json, path, "steps", statistics.steps);
-  reader.read_member(json, path, "rejected", statistics.rejected);
-  reader.read_member(json, path, "rhs_evaluations", statistics.rhs_evaluations);
-  reader.read_member(json, path, "wall_seconds", statistics.wall_seconds);
-}
-
 void read_options(JsonReader& reader, const Json& json, const std::string& path, result::OptionRecord& options) {
   if (!json.is_object()) {
     reader.mismatch(path, "an object", json);
@@ -198,12 +169,6 @@ void read_format(JsonReader& reader, const Json& json) {
   reader.read_member(json, "", "format", format);
   if (format == format_name) return;
   reader.fail("/format", fmt::format("expected \"{}\", found \"{}\": no result of this version", format_name, format));
-}
-
-/// Applies a reader of a part to the member `key`.
-template <class Read, class Part>
-void read_part(JsonReader& reader, const Json& json, const std::string& path, const char* key, Read read, Part& part) {
-  if (const auto* member = reader.member(json, path, key)) read(reader, *member, path + "/" + key, part);
 }
 
 void read_departure(JsonReader& reader, const Json& json, const std::string& path,
@@ -260,6 +225,10 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   }
   read_part(reader, json, path, "statistics", read_statistics, result.statistics);
   read_part(reader, json, path, "options", read_options, result.options);
+  if (json.is_object() && json.contains("comparison")) {
+    read_part(reader, json, path, "comparison", read_comparison, result.comparison);
+  }
+  if (json.is_object() && json.contains("order")) read_part(reader, json, path, "order", read_order, result.order);
   if (json.is_object() && json.contains("left_at")) {
     read_part(reader, json, path, "left_at", read_departure, result.left_at);
   }

@@ -2,20 +2,12 @@
 #include <cmath>
 #include <cstddef>
 
-#include <nlohmann/json.hpp>
-
 #include "saltus/base/version.hpp"
+#include "saltus/io/json_parts_internal.hpp"
 #include "saltus/io/json_result.hpp"
 
 namespace saltus::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json model_json(const result::ModelRecord& model) {
   Json parameters = Json::object();
@@ -136,9 +128,7 @@ Json whole_json(const result::Result& result) {
   json["model"] = model_json(result.model);
   json["command"] = result.command;
   json["method"] = result.method;
-  json["status"] = {{"termination", name(result.status.termination)},
-                    {"message", result.status.message},
-                    {"time_reached", result.status.time_reached}};
+  json["status"] = status_json(result.status);
   json["states"] = result.states;
   json["controls"] = result.controls;
   json["switching_functions"] = result.switching_functions;
@@ -151,11 +141,10 @@ Json whole_json(const result::Result& result) {
   json["trajectory"] = trajectory_json(result.trajectory);
   if (!result.interval_controls.empty()) json["u"] = result.interval_controls;
   json["surfaces"] = std::move(surfaces);
-  json["statistics"] = {{"steps", result.statistics.steps},
-                        {"rejected", result.statistics.rejected},
-                        {"rhs_evaluations", result.statistics.rhs_evaluations},
-                        {"wall_seconds", result.statistics.wall_seconds}};
+  json["statistics"] = statistics_json(result.statistics);
   json["options"] = options_json(result.options);
+  if (result.comparison) json["comparison"] = comparison_json(*result.comparison);
+  if (result.order) json["order"] = order_json(*result.order);
   if (result.left_at) {
     json["left_at"] = {{"event", result.left_at->event}, {"alternative", result.left_at->alternative}};
   }

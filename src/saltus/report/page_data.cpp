@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "saltus/base/version.hpp"
+#include "saltus/report/page_comparison_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
 #include "saltus/report/thinning_internal.hpp"
 
@@ -16,11 +17,6 @@ using Rows = std::vector<std::vector<double>>;
 template <class T>
 std::vector<T> head(const std::vector<T>& list, std::size_t most) {
   return {list.begin(), list.begin() + static_cast<std::ptrdiff_t>(std::min(most, list.size()))};
-}
-
-template <class T>
-json or_null(const std::optional<T>& value) {
-  return value ? json(*value) : json(nullptr);
 }
 
 template <class T>
@@ -160,13 +156,6 @@ json pairs(const Pairs& list) {
   return result;
 }
 
-json status_data(const result::Status& status) {
-  return {{"termination", result::name(status.termination)},
-          {"done", result::is_done(status.termination)},
-          {"message", status.message},
-          {"time_reached", status.time_reached}};
-}
-
 json trajectory_data(const result::Result& result, std::size_t limit) {
   const auto& trajectory = result.trajectory;
   const std::size_t columns_drawn = 1 + number_of_columns(trajectory, columns_in_page);
@@ -258,6 +247,8 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"branches", branches_data(tree, share_of_trajectory)},
           {"not_followed", not_followed},
           {"surfaces", std::move(surfaces)},
+          {"comparison", comparison_data(result.comparison)},
+          {"order", order_data(result.order)},
           {"statistics",
            {{"steps", result.statistics.steps},
             {"rejected", result.statistics.rejected},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -17,6 +18,11 @@ inline constexpr std::size_t numbers_in_page = 1500000;
 inline constexpr std::size_t columns_in_page = 40;
 /// Values of every sort that an event keeps however many events there are.
 inline constexpr std::size_t least_values_of_event = 4;
+
+template <class T>
+[[nodiscard]] nlohmann::json or_null(const std::optional<T>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+}
 
 /// The result column by column, modes as intervals; non-finite numbers become null when written.
 /// @param limit  numbers of the trajectory to aim at; see rows_to_draw.

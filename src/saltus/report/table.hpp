@@ -7,7 +7,8 @@
 
 namespace saltus::report {
 
-/// Method, status, end state, event list (first and last ten, with the count), statistics.
+/// Method, status, end state, event list (first and last ten, with the count), statistics; of a comparison a row for
+/// every run, of an order study one for every scheme.
 [[nodiscard]] std::string to_table(const result::Result& result);
 
 }  // namespace saltus::report

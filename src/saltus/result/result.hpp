@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "saltus/result/comparison.hpp"
+#include "saltus/result/statistics.hpp"
 #include "saltus/result/status.hpp"
 
 namespace saltus::result {
@@ -90,13 +92,6 @@ struct Final {
   std::vector<double> theta{};  ///< of all modes by `indicator`
 };
 
-struct Statistics {
-  std::int64_t steps = 0;
-  std::int64_t rejected = 0;
-  std::int64_t rhs_evaluations = 0;
-  double wall_seconds = 0.0;
-};
-
 struct ModelRecord {
   std::string name;
   std::string description;
@@ -163,6 +158,10 @@ struct Result {
   Statistics statistics;
   OptionRecord options;
   std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)
+
+  /// Of `compare` and `order`, whose reference run the rest of the result is.
+  std::optional<Comparison> comparison;
+  std::optional<OrderStudy> order;
 
   /// Of a branch. It has that event, with the mode that was taken, as its first event.
   std::optional<Departure> left_at;

@@ -108,6 +108,25 @@ TEST(JsonResult, ReadsBackEqual) {
   EXPECT_EQ(read->surfaces[1].curves[0].coordinates[0], (std::vector<double>{1.0, 1e-300}));
 }
 
+TEST(JsonResult, ReadsComparisonsAndOrdersBack) {
+  auto original = sample();
+  result::ComparedRun absent{"fesd", "", "not for this model", {}, {}, {}, {}, {}, {}, {}};
+  result::ComparedRun run{"event", "dop853", "", original.status, {0.1, 1e-300}, 3, 0.7, 1e-12, std::nullopt, {}};
+  original.comparison = result::Comparison{{absent, run}, 1};
+  result::OrderSeries series{"fesd", "radau_iia", 2, "stewart", {}, 3.01, std::nullopt};
+  series.points = {{10, 0.1, 1e-3, std::nullopt, "", 0.5}, {20, 0.05, std::nullopt, std::nullopt, "stopped", 0.25}};
+  original.order = result::OrderStudy{"event, dop853", 1e-13, 1e-12, {series}};
+  const auto text = to_json(original);
+  const auto read = parse_result(text, "r.json");
+  ASSERT_TRUE(read) << to_text(read.error());
+  EXPECT_EQ(to_json(*read), text);
+  EXPECT_EQ(read->comparison->runs[0].reason, "not for this model");
+  EXPECT_EQ(read->comparison->runs[1].switches, 3);
+  EXPECT_EQ(read->comparison->runs[1].switch_time_difference, std::nullopt);
+  EXPECT_EQ(read->order->series[0].slope, 3.01);
+  EXPECT_EQ(read->order->series[0].points[1].reason, "stopped");
+}
+
 TEST(JsonResult, ReadsBranchesBack) {
   const auto text = to_json(with_branches());
   const auto read = parse_result(text, "r.json");

@@ -80,7 +80,14 @@ saltus.start = () => {
     },
   };
   const theme = saltus.followTheme(redraw);
-  main.append(saltus.pageHeader(result, theme.toggle), ...saltus.banners(result, select), layout);
+  main.append(saltus.pageHeader(result, theme.toggle), ...saltus.banners(result, select));
+  const comparison = saltus.comparisonCard(result);
+  if (comparison !== null) main.append(comparison);
+  const orders = saltus.orderPictures(result);
+  phases.push(...orders);
+  if (orders.length > 0)
+    main.append(saltus.element("div", {class: "cards two orders"}, ...orders.map((order) => order.element)));
+  main.append(layout);
   layout.append(
       saltus.element("section", {class: "card drawing"}, saltus.legend(result, holder, () => timeline), frame),
       saltus.eventSection(result, parts));
@@ -106,9 +113,10 @@ saltus.start = () => {
   }
   const intersection = saltus.intersectionPicture(result, timeline, select);
   if (intersection !== null) phases.push(intersection);
-  if (phases.length > 0) {
-    cards.classList.toggle("two", phases.length > 1);
-    cards.append(...phases.map((phase) => phase.element));
+  const inCards = phases.slice(orders.length);
+  if (inCards.length > 0) {
+    cards.classList.toggle("two", inCards.length > 1);
+    cards.append(...inCards.map((phase) => phase.element));
   }
   cards.append(saltus.element("div", {class: "info"}, ...saltus.infoCards(result)));
   // Not before all stand at their places: a drawing takes its width from there.

@@ -1,0 +1,141 @@
+#include "saltus/cli/run_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "saltus/cli/interrupt.hpp"
+#include "saltus/cli/model_input.hpp"
+#include "saltus/cli/outputs.hpp"
+#include "saltus/cli/progress.hpp"
+#include "saltus/cli/terminal.hpp"
+#include "saltus/expression/parser.hpp"
+#include "saltus/model/build.hpp"
+#include "saltus/pipeline/surfaces.hpp"
+#include "saltus/report/table.hpp"
+
+namespace saltus::cli {
+namespace {
+
+Expected<void> apply_shortcuts(const RunArguments& arguments, io::ModelFile& file) {
+  for (const auto& [shortcut, value] : arguments.shortcuts) {
+    if (!value) continue;
+    auto options = io::with_option(file.simulate, shortcut.key, *value);
+    if (!options) {
+      options.error().location = {fmt::format("{} {}", shortcut.flag, *value), 0, 0};
+      return tl::unexpected(options.error());
+    }
+    file.simulate = std::move(*options);
+  }
+  return {};
+}
+
+/// What a simulation cannot know: the file's fingerprint, and the inputs as they were written.
+void complete_record(const ModelInput& input, result::Result& result) {
+  result.model.sha256 = input.file.sha256;
+  for (const auto& value : input.file.description.inputs) {
+    result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));
+  }
+  for (auto& branch : result.branches) complete_record(input, branch);
+}
+
+Expected<result::Result> compute_all(const RunArguments& arguments, const ModelInput& input, const Outputs& outputs,
+                                     Compute compute) {
+  const auto system = model::build(input.file.description, input.overrides);
+  if (!system) return tl::unexpected(system.error());
+  for (const auto& warning : system->warnings) print_error(fmt::format("warning: {}", warning));
+  ProgressLine progress(arguments.quiet ? ShowProgress::never : ShowProgress::when_terminal);
+  pipeline::Observers observers;
+  observers.on_step = [&](const pipeline::StepRecord& step) {
+    progress.update(step);
+    return interrupted() ? pipeline::Proceed::stop : pipeline::Proceed::on;
+  };
+  catch_interrupt();
+  auto result = compute(*system, input.file.simulate, observers);
+  if (!result) return result;
+  complete_record(input, *result);
+  if (outputs.show_surfaces()) result->surfaces = pipeline::surfaces(*system, *result);
+  return result;
+}
+
+/// Says which trajectories stopped early, if any did.
+class Stops {
+ public:
+  void look_at(const std::string& who, const result::Status& status) {
+    constexpr std::size_t most_said = 5;
+    if (is_done(status.termination) || ++stopped_ > most_said) return;
+    const bool says_when = status.message.find("t = ") != std::string::npos;
+    print_error(fmt::format("{}stopped early: {}{}{}{}", who, name(status.termination),
+                            says_when ? "" : fmt::format(" at t = {}", status.time_reached),
+                            status.message.empty() ? "" : ": ", status.message));
+    said_ = stopped_;
+  }
+  [[nodiscard]] ExitCode exit_code() const {
+    if (stopped_ > said_) print_error(fmt::format("and {} more stopped early", stopped_ - said_));
+    return stopped_ == 0 ? ExitCode::done : ExitCode::stopped_early;
+  }
+
+ private:
+  std::size_t stopped_ = 0;
+  std::size_t said_ = 0;
+};
+
+ExitCode report_stops(const result::Result& result) {
+  Stops stops;
+  for (const auto& entry : result::tree(result)) {
+    stops.look_at(entry.result == &result ? "" : "branch " + entry.label + " ", entry.result->status);
+  }
+  if (result.comparison) {
+    const auto& runs = result.comparison->runs;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (i != result.comparison->reference && runs[i].reason.empty()) {
+        stops.look_at(fmt::format("{} ({}) ", runs[i].method, runs[i].variant), runs[i].status);
+      }
+    }
+  }
+  return stops.exit_code();
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts,
+                     const std::vector<std::string>& suffixes, const std::string& out_help) {
+  command.add_option("MODEL", arguments.model, "model file, or a name of the catalogue (saltus models)")->required();
+  for (const auto& shortcut : shortcuts) arguments.shortcuts.emplace_back(shortcut, std::nullopt);
+  for (auto& [shortcut, value] : arguments.shortcuts) {
+    command.add_option(shortcut.flag, value, shortcut.help)->type_name(shortcut.placeholder);
+  }
+  command
+      .add_option("--set", arguments.settings,
+                  "change a parameter, an initial value, a constant input or (dotted) any key; may repeat")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->take_all();
+  arguments.output_suffixes = suffixes;
+  command.add_option("--out", arguments.outputs, out_help)
+      ->type_name(suffixes.size() == 1 ? "FILE" + suffixes.front() : "FILE")
+      ->expected(1)
+      ->take_all();
+  command.add_option("--report", arguments.report, "write a page with pictures that works offline")
+      ->type_name("FILE.html");
+  command.add_flag("--quiet", arguments.quiet, "no table, no progress");
+}
+
+ExitCode run_model(const RunArguments& arguments, Compute compute) {
+  auto input = read_input(arguments.model, arguments.settings);
+  if (!input) return refuse(input.error());
+  if (auto done = apply_shortcuts(arguments, input->file); !done) return refuse(done.error());
+  if (auto fits = io::check_options(input->file); !fits) return refuse(fits.error());
+  const auto outputs = Outputs::make(arguments.outputs, arguments.report, input->path, arguments.output_suffixes);
+  if (!outputs) return refuse(outputs.error());
+
+  auto result = compute_all(arguments, *input, *outputs, compute);
+  if (!result) return refuse(io::located(result.error(), input->file));
+
+  const auto written = outputs->write(*result);
+  if (!arguments.quiet) print(report::to_table(*result));  // also if nothing could be written: it is all that is left
+  if (!written) return refuse(written.error());
+  return report_stops(*result);
+}
+
+}  // namespace saltus::cli

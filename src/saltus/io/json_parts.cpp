@@ -1,0 +1,34 @@
+#include "saltus/io/json_parts_internal.hpp"
+
+namespace saltus::io {
+
+Json status_json(const result::Status& status) {
+  return {
+      {"termination", name(status.termination)}, {"message", status.message}, {"time_reached", status.time_reached}};
+}
+
+void read_status(JsonReader& reader, const Json& json, const std::string& path, result::Status& status) {
+  std::string word;
+  reader.read_member(json, path, "termination", word);
+  const auto termination = result::termination_named(word);
+  if (!termination) reader.fail(path + "/termination", fmt::format("'{}' is no termination", word));
+  status.termination = termination.value_or(result::Termination::completed);
+  reader.read_member(json, path, "message", status.message);
+  reader.read_member(json, path, "time_reached", status.time_reached);
+}
+
+Json statistics_json(const result::Statistics& statistics) {
+  return {{"steps", statistics.steps},
+          {"rejected", statistics.rejected},
+          {"rhs_evaluations", statistics.rhs_evaluations},
+          {"wall_seconds", statistics.wall_seconds}};
+}
+
+void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics) {
+  reader.read_member(json, path, "steps", statistics.steps);
+  reader.read_member(json, path, "rejected", statistics.rejected);
+  reader.read_member(json, path, "rhs_evaluations", statistics.rhs_evaluations);
+  reader.read_member(json, path, "wall_seconds", statistics.wall_seconds);
+}
+
+}  // namespace saltus::io

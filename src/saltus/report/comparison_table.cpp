@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "saltus/report/comparison_table_internal.hpp"
+#include "saltus/report/text_columns_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+/// Components of the end state that fit into a row.
+constexpr std::size_t shown_states = 3;
+
+template <class Value>
+std::string or_dash(const std::optional<Value>& value, fmt::string_view form) {
+  return value ? fmt::format(fmt::runtime(form), *value) : "–";
+}
+
+std::string difference(const std::optional<double>& value) { return or_dash(value, "{:.1e}"); }
+
+std::string seconds(double value) { return fmt::format("{:.3g}", value); }
+
+Row run_row(const result::ComparedRun& run, bool is_reference, std::size_t states) {
+  const bool done = is_done(run.status.termination);
+  Row row{run.method, run.variant};
+  for (std::size_t i = 0; i < states; ++i) {
+    row.push_back(i < run.x.size() && done ? fmt::format("{:.10g}", run.x[i]) : "–");
+  }
+  row.push_back(or_dash(run.switches, "{}"));
+  row.push_back(or_dash(run.last_switch, "{:.10g}"));
+  row.push_back(is_reference ? "reference" : difference(run.state_difference));
+  row.push_back(is_reference ? "" : difference(run.switch_time_difference));
+  row.push_back(seconds(run.statistics.wall_seconds));
+  return row;
+}
+
+std::string of_run(const result::ComparedRun& run) {
+  return run.variant.empty() ? run.method : fmt::format("{} ({})", run.method, run.variant);
+}
+
+std::string not_unique(const result::Result& reference) {
+  const auto& events = reference.events;
+  const auto ambiguous = [](const result::Event& event) { return event.unique == false; };
+  const auto found = std::find_if(events.begin(), events.end(), ambiguous);
+  if (found == events.end()) return "";
+  return paragraph("not unique", fmt::format("the solution has other continuations at t = {:.12g}: there methods may "
+                                             "differ and both be right",
+                                             found->t));
+}
+
+}  // namespace
+
+std::string comparison_table(const result::Result& result, const result::Comparison& comparison) {
+  const std::size_t states = std::min(shown_states, result.states.size());
+  Row head{"method", ""};
+  head.insert(head.end(), result.states.begin(), result.states.begin() + static_cast<std::ptrdiff_t>(states));
+  for (const auto* title : {"switches", "last at t", "state differs by", "switches by", "seconds"}) {
+    head.emplace_back(title);
+  }
+  std::vector<Row> rows{head};
+  std::string stops, refusals;
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const auto& run = comparison.runs[i];
+    if (!run.reason.empty()) {
+      refusals += paragraph("", fmt::format("{}: {}", of_run(run), run.reason));
+      continue;
+    }
+    rows.push_back(run_row(run, i == comparison.reference, states));
+    if (is_done(run.status.termination)) continue;
+    stops += paragraph("", fmt::format("{}: {} at t = {:.12g}: {}", of_run(run), name(run.status.termination),
+                                       run.status.time_reached, run.status.message));
+  }
+  std::string text =
+      paragraph("compared", fmt::format("end states at t = {:.12g}{}, and the times of switches", result.final.t,
+                                        states < result.states.size() ? ", the first components" : ""));
+  text += aligned(rows);
+  text += not_unique(result);
+  if (!stops.empty()) text += "stopped early\n" + stops;
+  if (!refusals.empty()) text += "not run\n" + refusals;
+  return text;
+}
+
+std::string order_table(const result::Result& result, const result::OrderStudy& order) {
+  std::string text = paragraph(
+      "order", fmt::format("error of the state at t = {:.12g} over the mean step, against {}; slopes of errors above "
+                           "{:.1e}",
+                           result.final.t, order.reference, order.floor));
+  std::vector<double> steps;
+  for (const auto& series : order.series) {
+    for (const auto& point : series.points) {
+      if (std::find(steps.begin(), steps.end(), point.mean_step) == steps.end()) steps.push_back(point.mean_step);
+    }
+  }
+  Row head{"scheme", "", "", "step"};
+  for (const double step : steps) head.push_back(fmt::format("{:.3g}", step));
+  head.emplace_back("slope");
+  head.emplace_back("of switches");
+  std::vector<Row> rows{head};
+  std::string refusals;
+  for (const auto& series : order.series) {
+    Row row{fmt::format("{} {}", series.scheme, series.stages), series.method, series.reformulation, ""};
+    for (const double step : steps) {
+      const auto same = [&](const result::OrderPoint& point) { return point.mean_step == step; };
+      const auto point = std::find_if(series.points.begin(), series.points.end(), same);
+      row.push_back(point == series.points.end() ? "" : difference(point->error));
+      if (point == series.points.end() || point->reason.empty()) continue;
+      refusals += paragraph("", fmt::format("{} {}, {}, step {:.3g}: {}", series.scheme, series.stages, series.method,
+                                            step, point->reason));
+    }
+    row.push_back(or_dash(series.slope, "{:.2f}"));
+    row.push_back(or_dash(series.switch_time_slope, "{:.2f}"));
+    rows.push_back(std::move(row));
+  }
+  text += aligned(rows);
+  if (!refusals.empty()) text += "no error\n" + refusals;
+  return text;
+}
+
+}  // namespace saltus::report

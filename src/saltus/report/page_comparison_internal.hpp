@@ -1,0 +1,16 @@
+// What the page of a comparison or of an order study shows, as JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "saltus/result/result.hpp"
+
+namespace saltus::report {
+
+[[nodiscard]] nlohmann::json status_data(const result::Status& status);
+/// null without a comparison.
+[[nodiscard]] nlohmann::json comparison_data(const std::optional<result::Comparison>& comparison);
+/// null without an order study.
+[[nodiscard]] nlohmann::json order_data(const std::optional<result::OrderStudy>& order);
+
+}  // namespace saltus::report
