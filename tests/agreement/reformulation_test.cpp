@@ -87,5 +87,14 @@ TEST(CatalogueAsDcs, StepFormWithoutLifting) {
   expect_catalogue({.reformulation = Form::step, .lifting = std::nullopt}, {});
 }
 
+TEST(CatalogueAsDcs, StepFormWithTwoFactorsPerProduct) {
+  expect_catalogue({.reformulation = Form::step, .lifting = 2}, {});
+}
+
+/// The breaks of quarter-car's road occur in products with each other: 2^43 sign patterns.
+TEST(CatalogueAsDcs, StewartForm) {
+  expect_catalogue({.reformulation = Form::stewart}, {{"quarter-car", "sign patterns"}});
+}
+
 }  // namespace
 }  // namespace saltus::problems

@@ -7,6 +7,8 @@
 
 #include <casadi/core/function.hpp>
 
+#include "unit/reformulation/dcs_tools.hpp"
+
 namespace saltus::problems {
 namespace {
 
@@ -95,16 +97,6 @@ std::vector<double> evaluated(const Dcs& dcs, const System& system, const SX& ex
                DM(values.lifted), DM(values.held)});
 }
 
-std::vector<double> lifted_at(const Dcs& dcs, const std::vector<double>& selection) {
-  const casadi::Function lifting("lifting", {dcs.selection, dcs.lifted}, {SX::densify(dcs.lifting)});
-  std::vector<double> lifted(static_cast<std::size_t>(dcs.lifted.numel()), 0.0);
-  // Row k is beta_k less a product of selections and earlier betas.
-  for (std::size_t k = 0; k < lifted.size(); ++k) {
-    lifted[k] = -std::vector<double>(lifting(std::vector<DM>{DM(selection), DM(lifted)}).front())[k];
-  }
-  return lifted;
-}
-
 DcsValues values_at(const Dcs& dcs, const System& system, const SmoothPoint& point) {
   DcsValues result;
   result.nearest = std::numeric_limits<double>::infinity();
@@ -135,7 +127,7 @@ DcsValues values_at(const Dcs& dcs, const System& system, const SmoothPoint& poi
       result.nearest = std::min(result.nearest, std::abs(indicator[j]));
     }
   }
-  result.lifted = lifted_at(dcs, result.selection);
+  result.lifted = reformulation::lifted_at(dcs, result.selection);
   result.f = value(dcs.f);
   result.alpha = value(dcs.alpha);
   result.outputs = value(dcs.outputs);

@@ -32,9 +32,6 @@ struct DcsValues {
                                             const casadi::SX& expression, const SmoothPoint& point,
                                             const DcsValues& values);
 
-/// The lifted variables of given selections.
-[[nodiscard]] std::vector<double> lifted_at(const reformulation::Dcs& dcs, const std::vector<double>& selection);
-
 /// A repeatable point around the initial state.
 [[nodiscard]] SmoothPoint random_point(const model::System& system, unsigned seed);
 

@@ -102,7 +102,28 @@ SX Replacement::of(const SX& expression) const {
 
 std::vector<SXElem> symbols_in(const SX& expression) {
   std::vector<SXElem> found;
-  for (const SX& symbol : SX::symvar(expression)) found.push_back(symbol.nonzeros().front());
+  std::unordered_set<const void*> seen;
+  for (const SXElem& e : expression.nonzeros()) {
+    visit_from_below(
+        e, [&](const SXElem& node) { return seen.contains(node.get()); },
+        [&](const SXElem& node) {
+          seen.insert(node.get());
+          if (node.is_symbolic()) found.push_back(node);
+        });
+  }
+  return found;
+}
+
+std::unordered_set<const void*> nodes_with(const SXElem& expression, const std::unordered_set<const void*>& symbols) {
+  std::unordered_set<const void*> seen, found;
+  visit_from_below(
+      expression, [&](const SXElem& node) { return seen.contains(node.get()); },
+      [&](const SXElem& node) {
+        seen.insert(node.get());
+        bool has = symbols.contains(node.get());
+        for (casadi_int i = 0; !is_leaf(node) && i < node.n_dep(); ++i) has = has || found.contains(node.dep(i).get());
+        if (has) found.insert(node.get());
+      });
   return found;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include <casadi/core/sx.hpp>
@@ -32,6 +33,10 @@ class Replacement {
 
 /// The symbols an expression is made of.
 [[nodiscard]] std::vector<SXElem> symbols_in(const SX& expression);
+
+/// The parts of an expression (by address, as SXElem::get) in which one of the symbols occurs.
+[[nodiscard]] std::unordered_set<const void*> nodes_with(const SXElem& expression,
+                                                         const std::unordered_set<const void*>& symbols);
 
 /// Whether branches of an expression can be NaN or infinite at finite values; operations on constants and `constants`
 /// (parameters) alone are taken to be finite.

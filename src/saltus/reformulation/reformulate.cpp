@@ -1,10 +1,12 @@
 #include <utility>
 
-#include "saltus/reformulation/dcs.hpp"
-#include "saltus/reformulation/unnesting_internal.hpp"
+#include "saltus/base/contracts.hpp"
+#include "saltus/reformulation/forms_internal.hpp"
 
 namespace saltus::reformulation {
 namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Error no_jumps() {
   return {ErrorCode::not_available,
@@ -29,40 +31,78 @@ Dcs common_part(const model::System& system, const Unnested& unnested) {
   return dcs;
 }
 
-void append(std::vector<SXElem>& to, const std::vector<SXElem>& from) { to.insert(to.end(), from.begin(), from.end()); }
+/// Outputs, events and the alphas of columns, in what the surfaces' alphas are in this form.
+void take_rest(Unnested& unnested, Dcs& dcs) {
+  Replacement replacement;
+  if (!unnested.surface_symbols.empty()) replacement.set(column(unnested.surface_symbols), dcs.surface_alpha);
+  dcs.alpha = replacement.of(unnested.alpha);
+  dcs.outputs = replacement.of(unnested.outputs);
+  dcs.input = replacement.of(unnested.input);
+  dcs.events = std::move(unnested.events);
+  for (auto& event : dcs.events) {
+    event.value = replacement.of(event.value);
+    event.guards = replacement.of(event.guards);
+  }
+}
 
 }  // namespace
 
-Expected<Dcs> reformulate(const model::System& system, const ReformulationOptions&) {
+void add_group(GroupSizes group, Sizes& sizes) {
+  const Counts& counts = group.counts;
+  sizes.total.alpha += counts.alpha;
+  sizes.total.theta += counts.theta;
+  sizes.total.beta += counts.beta;
+  sizes.total.algebraic += counts.algebraic;
+  sizes.total.complementarities += counts.complementarities;
+  sizes.total.equations += counts.equations;
+  sizes.groups.push_back(std::move(group));
+}
+
+std::vector<std::string> names_of(const FieldGroup& group, const Unnested& unnested) {
+  std::vector<std::string> names;
+  for (const int surface : group.surfaces) names.push_back(unnested.surfaces[at(surface)].name);
+  return names;
+}
+
+void add_indicator_part(const IndicatorPart& part, const model::System& system, Collected& collected,
+                        Reformulated& result) {
+  const auto count = static_cast<int>(part.theta.size());
+  result.dcs.parts.push_back({.form = Form::stewart,
+                              .first = static_cast<int>(collected.selection.size()),
+                              .count = count,
+                              .mode_group = part.mode_group});
+  collected.selection.insert(collected.selection.end(), part.theta.begin(), part.theta.end());
+  collected.indicator.insert(collected.indicator.end(), part.indicator.begin(), part.indicator.end());
+  Counts counts;
+  counts.theta = count;
+  counts.algebraic = 2 * count + 1;
+  counts.complementarities = count;
+  counts.equations = count + 1;
+  add_group({system.mode_groups[at(part.mode_group)].mode_names, Form::stewart, counts}, result.sizes);
+}
+
+Expected<Reformulated> reformulated(const model::System& system, const ReformulationOptions& options) {
+  SALTUS_ASSERT(!options.lifting || *options.lifting >= 2);
   if (!system.jumps.empty()) return tl::unexpected(no_jumps());
   auto unnested = unnest(system);
   if (!unnested) return tl::unexpected(unnested.error());
-  Dcs dcs = common_part(system, *unnested);
-  std::vector<SXElem> selection = unnested->surface_symbols, indicator;
-  DcsPart steps{.form = Form::step, .first = 0, .count = static_cast<int>(selection.size())};
-  for (int j = 0; j < steps.count; ++j) {
-    steps.surfaces.push_back(j);
-    indicator.push_back(entry(dcs.surfaces[static_cast<std::size_t>(j)].psi));
-  }
-  if (steps.count > 0) dcs.parts.push_back(steps);
-  for (const auto& part : unnested->indicator_parts) {
-    const auto count = static_cast<int>(part.theta.size());
-    dcs.parts.push_back({.form = Form::stewart,
-                         .first = static_cast<int>(selection.size()),
-                         .count = count,
-                         .mode_group = part.mode_group});
-    append(selection, part.theta);
-    append(indicator, part.indicator);
-  }
-  dcs.selection = column(selection);
-  dcs.indicator = column(indicator);
-  dcs.surface_alpha = column(unnested->surface_symbols);
-  dcs.f = unnested->f;
-  dcs.alpha = unnested->alpha;
-  dcs.outputs = unnested->outputs;
-  dcs.input = unnested->input;
-  dcs.events = std::move(unnested->events);
-  return dcs;
+  Reformulated result{common_part(system, *unnested), {}};
+  auto collected = options.reformulation == Form::step
+                       ? Expected<Collected>(fill_step_form(system, *unnested, options.lifting, result))
+                       : fill_stewart_form(system, *unnested, result);
+  if (!collected) return tl::unexpected(collected.error());
+  result.dcs.selection = column(collected->selection);
+  result.dcs.indicator = column(collected->indicator);
+  take_rest(*unnested, result.dcs);
+  return result;
+}
+
+Expected<Dcs> reformulate(const model::System& system, const ReformulationOptions& options) {
+  return reformulated(system, options).map([](Reformulated&& result) { return std::move(result.dcs); });
+}
+
+Expected<Sizes> sizes_of(const model::System& system, const ReformulationOptions& options) {
+  return reformulated(system, options).map([](Reformulated&& result) { return std::move(result.sizes); });
 }
 
 }  // namespace saltus::reformulation

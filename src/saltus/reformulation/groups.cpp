@@ -1,0 +1,266 @@
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <set>
+#include <unordered_map>
+
+#include <casadi/core/function.hpp>
+
+#include "saltus/reformulation/groups_internal.hpp"
+
+// Needs names that only sx_elem.hpp brings.
+#include <casadi/core/calculus.hpp>
+
+#include "saltus/base/contracts.hpp"
+
+namespace saltus::reformulation {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Numbers selections: surfaces first, then the simplexes of indicators as one each.
+class SelectionNumbers {
+ public:
+  explicit SelectionNumbers(const Unnested& unnested) {
+    for (const SXElem& symbol : unnested.surface_symbols) number_[symbol.get()] = count_++;
+    for (const auto& part : unnested.indicator_parts) {
+      for (const SXElem& symbol : part.theta) number_[symbol.get()] = count_;
+      ++count_;
+    }
+  }
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] std::unordered_set<const void*> parts_with_selections(const SXElem& expression) const {
+    std::unordered_set<const void*> symbols;
+    for (const auto& [symbol, number] : number_) symbols.insert(symbol);
+    return nodes_with(expression, symbols);
+  }
+  [[nodiscard]] std::vector<int> in(const SXElem& expression) const {
+    std::set<int> found;
+    for (const SXElem& symbol : symbols_in(SX(expression))) {
+      if (const auto it = number_.find(symbol.get()); it != number_.end()) found.insert(it->second);
+    }
+    return {found.begin(), found.end()};
+  }
+
+ private:
+  std::unordered_map<const void*, int> number_;
+  int count_ = 0;
+};
+
+/// The summands of an expression that have selections, and the sum of those that have none.
+class Terms {
+ public:
+  Terms(const SXElem& expression, const SelectionNumbers& numbers)
+      : with_selections_(numbers.parts_with_selections(expression)) {}
+
+  std::vector<SXElem> of(const SXElem& e) {
+    if (!has_selections(e)) return {e};
+    const auto operation = static_cast<casadi_int>(e.op());
+    switch (operation) {
+      case casadi::OP_ADD:
+        return joined(of(e.dep(0)), of(e.dep(1)));
+      case casadi::OP_SUB:
+        return joined(of(e.dep(0)), each(of(e.dep(1)), [](const SXElem& term) { return -term; }));
+      case casadi::OP_NEG:
+      case casadi::OP_TWICE:
+        return each(of(e.dep(0)), [operation](const SXElem& term) { return SXElem::unary(operation, term); });
+      case casadi::OP_DIV:
+        if (has_selections(e.dep(1))) return {e};
+        return each(of(e.dep(0)), [&](const SXElem& term) { return term / e.dep(1); });
+      case casadi::OP_MUL:
+        if (!has_selections(e.dep(1))) return each(of(e.dep(0)), [&](const SXElem& term) { return term * e.dep(1); });
+        if (!has_selections(e.dep(0))) return each(of(e.dep(1)), [&](const SXElem& term) { return e.dep(0) * term; });
+        return {e};
+      default:
+        return {e};
+    }
+  }
+
+ private:
+  using List = std::vector<SXElem>;
+
+  [[nodiscard]] bool has_selections(const SXElem& e) const { return with_selections_.contains(e.get()); }
+  static List joined(List a, const List& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  }
+  template <class Change>
+  static List each(List terms, Change&& change) {
+    for (SXElem& term : terms) term = change(term);
+    return terms;
+  }
+
+  std::unordered_set<const void*> with_selections_;
+};
+
+/// Connected components of numbers 0, …, count - 1.
+class Components {
+ public:
+  explicit Components(int count) : parent_(at(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int root(int i) {
+    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+    return i;
+  }
+  /// The smaller root stays.
+  void connect(int i, int j) {
+    const int a = root(i), b = root(j);
+    parent_[at(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace
+
+FieldGroups additive_groups(const Unnested& unnested) {
+  const SelectionNumbers numbers(unnested);
+  const auto n_surfaces = static_cast<int>(unnested.surfaces.size());
+  Components components(numbers.count());
+  FieldGroups result;
+  std::vector<std::pair<int, FieldTerm>> terms;
+  for (const SXElem& component : entries(unnested.f)) {
+    const auto state = static_cast<int>(result.constant.size());
+    result.constant.emplace_back(0.0);
+    Terms split(component, numbers);
+    // Terms in the same selections are one.
+    std::map<std::vector<int>, std::size_t> place_of;
+    for (const SXElem& term : split.of(component)) {
+      std::vector<int> in = numbers.in(term);
+      if (in.empty()) {
+        result.constant.back() += term;
+        continue;
+      }
+      const auto [place, is_new] = place_of.try_emplace(in, terms.size());
+      if (!is_new) {
+        terms[place->second].second.value += term;
+        continue;
+      }
+      for (const int i : in) components.connect(in.front(), i);
+      const int first = in.front();
+      in.erase(std::lower_bound(in.begin(), in.end(), n_surfaces), in.end());
+      terms.emplace_back(first, FieldTerm{state, term, in});
+    }
+  }
+  std::map<int, std::size_t> group_of;
+  for (int i = 0; i < numbers.count(); ++i) {
+    const auto [place, is_new] = group_of.try_emplace(components.root(i), result.groups.size());
+    if (is_new) result.groups.emplace_back();
+    FieldGroup& group = result.groups[place->second];
+    if (i < n_surfaces) {
+      group.surfaces.push_back(i);
+    } else {
+      group.indicator_parts.push_back(i - n_surfaces);
+    }
+  }
+  for (auto& [first, term] : terms) result.groups[group_of.at(components.root(first))].terms.push_back(std::move(term));
+  return result;
+}
+
+std::vector<SXElem> corner_values(const FieldTerm& term, const Unnested& unnested) {
+  // One surface after the other, so that what one side switches off is gone before the next.
+  std::vector<SXElem> values{term.value};
+  for (const int surface : term.surfaces) {
+    std::vector<SXElem> below, above;
+    for (auto [alpha, half] : {std::pair{0.0, &below}, std::pair{1.0, &above}}) {
+      Replacement side;
+      side.set(unnested.surface_symbols[at(surface)], alpha);
+      for (const SXElem& value : values) half->push_back(side.of(value));
+    }
+    values = std::move(below);
+    values.insert(values.end(), above.begin(), above.end());
+  }
+  return values;
+}
+
+namespace {
+
+/// Rows and fields of a group: a walk that asks only for the surfaces that still matter.
+class RegionWalk {
+ public:
+  RegionWalk(const FieldGroup& group, const Unnested& unnested) : group_(group), unnested_(unnested) {}
+
+  void descend(const SX& field, std::vector<int>& signs) {
+    if (signs.size() == group_.surfaces.size()) {
+      rows.push_back(signs);
+      fields.push_back(field);
+      return;
+    }
+    const SXElem& alpha = unnested_.surface_symbols[at(group_.surfaces[signs.size()])];
+    const auto symbols = symbols_in(field);
+    if (std::none_of(symbols.begin(), symbols.end(), [&](const SXElem& s) { return s.get() == alpha.get(); })) {
+      signs.push_back(0);
+      descend(field, signs);
+      signs.pop_back();
+      return;
+    }
+    for (const int sign : {1, -1}) {
+      Replacement side;
+      side.set(alpha, sign > 0 ? 1.0 : 0.0);
+      signs.push_back(sign);
+      descend(side.of(field), signs);
+      signs.pop_back();
+    }
+  }
+
+  std::vector<std::vector<int>> rows;
+  std::vector<SX> fields;
+
+ private:
+  const FieldGroup& group_;
+  const Unnested& unnested_;
+};
+
+/// The bits of fields at three points: equal fields have equal ones. Fields of different roundings count as different,
+/// which costs a multiplier and changes nothing else.
+std::vector<std::vector<std::uint64_t>> signatures(const std::vector<SX>& fields, const Unnested& unnested,
+                                                   const model::System& system) {
+  const casadi::Function function("fields", {system.t, system.x, system.u, system.p, column(unnested.held)},
+                                  {SX::horzcat(fields)});
+  std::vector<std::vector<std::uint64_t>> result(fields.size());
+  for (const double phase : {0.3, 1.7, 2.9}) {
+    double angle = phase;
+    const auto numbers = [&](std::size_t count) {
+      std::vector<double> drawn(count);
+      for (double& value : drawn) value = 1.0 + std::sin(angle += 1.6180339887);
+      return casadi::DM(drawn);
+    };
+    std::vector<casadi::DM> point{numbers(1), numbers(system.state_names.size()), numbers(system.control_names.size())};
+    point.emplace_back(system.parameter_values);
+    point.push_back(numbers(unnested.held.size()));
+    const auto values = std::vector<double>(casadi::DM::densify(function(point).front()));
+    const std::size_t n_x = values.size() / fields.size();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      result[i / n_x].push_back(std::bit_cast<std::uint64_t>(values[i] == 0.0 ? 0.0 : values[i]));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+GroupRegions regions_of(const FieldGroup& group, const Unnested& unnested, const model::System& system) {
+  SALTUS_ASSERT(group.surfaces.size() <= at(most_surfaces) && group.indicator_parts.empty());
+  std::vector<SXElem> sum(system.state_names.size(), SXElem(0.0));
+  for (const auto& term : group.terms) sum[at(term.state)] += term.value;
+  RegionWalk walk(group, unnested);
+  std::vector<int> signs;
+  walk.descend(column(sum), signs);
+  GroupRegions result;
+  result.signs.resize(static_cast<Eigen::Index>(walk.rows.size()), static_cast<Eigen::Index>(group.surfaces.size()));
+  const auto keys = signatures(walk.fields, unnested, system);
+  std::map<std::vector<std::uint64_t>, int> known;
+  for (std::size_t i = 0; i < walk.rows.size(); ++i) {
+    for (std::size_t j = 0; j < group.surfaces.size(); ++j) {
+      result.signs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = walk.rows[i][j];
+    }
+    const auto [place, is_new] = known.try_emplace(keys[i], static_cast<int>(result.fields.size()));
+    if (is_new) result.fields.push_back(walk.fields[i]);
+    result.field_of.push_back(place->second);
+  }
+  return result;
+}
+
+}  // namespace saltus::reformulation
