@@ -1,7 +1,6 @@
 // Solutions through intersections of two surfaces: closed forms of tests/data/switching_cases.json, spirals,
 // invariance.
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "problems/closed_forms.hpp"
 #include "problems/simulator.hpp"
 
 namespace saltus::problems {
@@ -20,51 +20,6 @@ using result::Event;
 using result::EventKind;
 using result::Result;
 using result::Termination;
-
-json closed_forms() {
-  std::ifstream file(SALTUS_SOURCE_DIR "/tests/data/switching_cases.json");
-  return json::parse(file).at("problems");
-}
-
-std::string affine(const json& row, double constant) {
-  std::string text = fmt::format("{}", constant);
-  for (std::size_t i = 0; i < row.size(); ++i) text += fmt::format(" + ({})*y{}", row[i].get<double>(), i + 1);
-  return text;
-}
-
-/// Product of the steps of a region: "-+" is (1 - step(s1))*step(s2).
-std::string weight_of(const std::string& region) {
-  std::string text = "1";
-  for (std::size_t j = 0; j < region.size(); ++j) {
-    const std::string step = fmt::format("step(s{})", j + 1);
-    text += region[j] == '+' ? "*" + step : "*(1 - " + step + ")";
-  }
-  return text;
-}
-
-/// The model file of a problem; every psi times `scale`.
-std::string text_of(const json& problem, double scale) {
-  const auto n = problem.at("n").get<std::size_t>();
-  std::string text = "[model]\nname = \"closed-form\"\n[states]\n";
-  for (std::size_t i = 0; i < n; ++i) text += fmt::format("y{} = {}\n", i + 1, problem.at("y0")[i].get<double>());
-  text += "[switching]\n";
-  const json& surfaces = problem.at("alpha");
-  for (std::size_t j = 0; j < surfaces.size(); ++j) {
-    text += fmt::format("s{} = \"{}*({})\"\n", j + 1, scale, affine(surfaces[j].at("a"), surfaces[j].at("b")));
-  }
-  text += "[dynamics]\n";
-  for (std::size_t i = 0; i < n; ++i) {
-    text += fmt::format("y{} = \"0", i + 1);
-    for (const auto& [region, field] : problem.at("fields").items()) {
-      text += fmt::format(" + ({})*{}", affine(field.at("A")[i], field.at("c")[i]), weight_of(region));
-    }
-    text += "\"\n";
-  }
-  text += fmt::format("[simulate]\nuntil = {}\n", problem.at("tend").get<double>());
-  const json& mode = problem.at("initial_mode");
-  if (!mode.is_array() || mode.size() != 2 || mode[0] != 0 || mode[1] != 0) return text;
-  return text + "initial_mode = { s1 = 0, s2 = 0 }\n";
-}
 
 Result simulated(const std::string& text, const Accuracy& accuracy) {
   const Simulator simulator = Simulator::from_text(text);
@@ -118,10 +73,10 @@ void expect_closed_form(const Result& result, const json& problem) {
 
 TEST(Intersection, ClosedFormsToTenDigits) {
   int checked = 0;
-  for (const json& problem : closed_forms()) {
+  for (const json& problem : stored_closed_forms()) {
     if (problem.at("id") == "P13") continue;  // a family: below
     SCOPED_TRACE(problem.at("id").get<std::string>());
-    expect_closed_form(simulated(text_of(problem, 1.0), fine), problem);
+    expect_closed_form(simulated(text_of(closed_form(problem)), fine), problem);
     ++checked;
   }
   EXPECT_EQ(checked, 8);
@@ -129,17 +84,17 @@ TEST(Intersection, ClosedFormsToTenDigits) {
 
 // The decisions and the selections are those of the fields, whatever the units of psi.
 TEST(Intersection, ClosedFormsDoNotDependOnTheScaleOfTheSurfaces) {
-  for (const json& problem : closed_forms()) {
+  for (const json& problem : stored_closed_forms()) {
     if (problem.at("id") == "P13") continue;
     for (const double scale : {1e8, 1e-8}) {
       SCOPED_TRACE(fmt::format("{} times {}", problem.at("id").get<std::string>(), scale));
-      expect_closed_form(simulated(text_of(problem, scale), fine), problem);
+      expect_closed_form(simulated(text_of(closed_form(problem, scale)), fine), problem);
     }
   }
 }
 
-json closed_form(const std::string& id) {
-  for (const json& problem : closed_forms()) {
+json stored(const std::string& id) {
+  for (const json& problem : stored_closed_forms()) {
     if (problem.at("id") == id) return problem;
   }
   return {};
@@ -148,8 +103,8 @@ json closed_form(const std::string& id) {
 // Which spiral of the family leaves is free, but each passes the ray y1 > 0, y2 = 0 at y1 = elapsed (gamma - 1)/kappa,
 // nine times farther out from lap to lap.
 TEST(Intersection, ASpiralLeavesSelfSimilar) {
-  const json problem = closed_form("P13");
-  const Result result = simulated(text_of(problem, 1.0), fine);
+  const json problem = stored("P13");
+  const Result result = simulated(text_of(closed_form(problem)), fine);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.front().kind, EventKind::start);
   EXPECT_EQ(result.events.front().unique, false);

@@ -103,6 +103,8 @@ const pipeline::SimulateOptions& Simulator::options() const { return parts_->opt
 
 void Simulator::set_initial_state(const std::vector<double>& x) { parts_->system.initial_state = x; }
 
+void Simulator::set_until(double t) { parts_->options.until = t; }
+
 result::Result Simulator::run(const pipeline::SimulateOptions& options) const {
   return value_or_throw(pipeline::simulate(parts_->system, options));
 }
