@@ -148,7 +148,7 @@ TEST_P(Catalogue, OutputGridChangesNothing) {
 TEST_P(Catalogue, ScalingPsiByAPowerOfTwoChangesNothing) {
   const Simulator model = Simulator::from_reference(GetParam());
   for (const double factor : {0x1p26, 0x1p-26}) {
-    const Simulator scaled = Simulator::from_reference(GetParam(), factor);
+    const Simulator scaled = Simulator::from_reference(GetParam(), {.name = "scaled", .psi_factor = factor});
     for (const Accuracy& accuracy : accuracies(GetParam())) {
       expect_identical(scaled.run(with(scaled.options(), accuracy)), model.run(with(model.options(), accuracy)));
     }
@@ -160,7 +160,7 @@ TEST_P(Catalogue, ScalingPsiByOtherFactorsStaysWithinTenTolerances) {
   const Result unscaled = model.run(model.options());
   const double tolerance = 10 * (model.options().rtol + model.options().atol);
   for (const double factor : {1e8, 1e-8}) {
-    const Simulator scaled = Simulator::from_reference(GetParam(), factor);
+    const Simulator scaled = Simulator::from_reference(GetParam(), {.name = "scaled", .psi_factor = factor});
     const Result result = scaled.run(scaled.options());
     ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
     ASSERT_EQ(result.events.size(), unscaled.events.size());

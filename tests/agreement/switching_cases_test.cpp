@@ -54,10 +54,7 @@ json cases(const std::string& situation) {
 
 /// The switch at t = `time` goes over into the first expected mode, or into another one of them if `any_expected`.
 enum class Expected { first, any };
-void expect_switch(const std::string& text, double time, double tolerance, const json& one, Expected which) {
-  SCOPED_TRACE(one.at("id").get<std::string>() + "\n" + text);
-  const Simulator simulator = Simulator::from_text(text);
-  const auto result = simulator.run(with(simulator.options(), fine));
+void expect_switch(const result::Result& result, double time, double tolerance, const json& one, Expected which) {
   EXPECT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
   const auto switches = switches_of(result);
   ASSERT_FALSE(switches.empty());
@@ -72,6 +69,19 @@ void expect_switch(const std::string& text, double time, double tolerance, const
   for (std::size_t j = 0; j < 2; ++j) {
     const double alpha = 0.5 * (1.0 + expected[outcome].at("lambda")[j].get<double>());
     EXPECT_NEAR(event.alpha_after.value()[j], alpha, 1e-9) << event.reason;
+  }
+}
+
+/// The system, and the same one reflected, scaled and in other orders.
+void expect_switch(const std::string& text, double time, double tolerance, const json& one, Expected which) {
+  SCOPED_TRACE(one.at("id").get<std::string>() + "\n" + text);
+  const Simulator simulator = Simulator::from_text(text);
+  expect_switch(simulator.run(with(simulator.options(), fine)), time, tolerance, one, which);
+  for (const Relabelling& relabelling : relabellings()) {
+    SCOPED_TRACE(relabelling.name);
+    const Simulator other = Simulator::from_text(text, relabelling);
+    const auto result = other.run(with(other.options(), fine));
+    expect_switch(in_original_words(result, relabelling, {"s1", "s2"}), time, tolerance, one, which);
   }
 }
 

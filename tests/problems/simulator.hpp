@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "problems/references.hpp"
+#include "problems/relabelled.hpp"
 #include "saltus/io/toml_model.hpp"
 #include "saltus/pipeline/simulate_options.hpp"
 #include "saltus/result/result.hpp"
@@ -19,12 +20,10 @@ class Simulator {
  public:
   /// A model of the catalogue as it is shipped.
   [[nodiscard]] static Simulator from_catalogue(const std::string& name);
-  /// The model file of a reference with its overrides, initial mode and end. Every switching function is multiplied by
-  /// `psi_scale` if that is not 1: named ones in their definition, the others by an equal named one (named scaled1, …),
-  /// whose scaling the engine keeps.
-  [[nodiscard]] static Simulator from_reference(const ReferenceProblem& problem, double psi_scale = 1.0);
+  /// The model file of a reference with its overrides, initial mode and end; relabelled if `relabelling` has a name.
+  [[nodiscard]] static Simulator from_reference(const ReferenceProblem& problem, const Relabelling& relabelling = {});
   /// A model file as text.
-  [[nodiscard]] static Simulator from_text(std::string_view toml);
+  [[nodiscard]] static Simulator from_text(std::string_view toml, const Relabelling& relabelling = {});
 
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
@@ -39,7 +38,8 @@ class Simulator {
  private:
   struct Parts;
   explicit Simulator(std::unique_ptr<Parts> parts);
-  [[nodiscard]] static Simulator from_file(const io::ModelFile& file);
+  [[nodiscard]] static Simulator from_file(io::ModelFile file, const std::vector<model::Override>& overrides,
+                                           const Relabelling& relabelling);
   std::unique_ptr<Parts> parts_;
 };
 
