@@ -54,7 +54,10 @@ bool is_finite(const NlpPoint& point) { return point.w.allFinite(); }
 /// What ends the path after this step, if anything does.
 void conclude(PathResult& path, const PathOptions& options) {
   const PathStep& last = path.steps.back();
-  if (last.nlp.termination != Termination::completed) {
+  // Where pairs are biactive a solver cannot always tell optimality from rounding any more; it stands still there.
+  const bool stands_still =
+      last.nlp.termination == Termination::step_size_too_small && satisfies(path.residuals, options);
+  if (last.nlp.termination != Termination::completed && !stands_still) {
     path.termination = last.nlp.termination;
     path.message = fmt::format("the relaxed problem with sigma = {:.3g} ended with: {}", last.sigma, last.nlp.message);
   } else if (satisfies(path.residuals, options)) {

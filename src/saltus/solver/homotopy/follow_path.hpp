@@ -43,8 +43,8 @@ struct PathStep {
 };
 
 struct PathResult {
-  /// completed: the last relaxed problem was solved and its point satisfies the original one. verification_failed: it
-  /// was solved, but its point does not. Else what the solver said about the last one.
+  /// completed: the last relaxed problem was solved, or its solver stands still, and the point satisfies the original
+  /// problem. verification_failed: it was solved, but its point does not. Else what the solver said about the last one.
   result::Termination termination = result::Termination::not_converged;
   std::string message;
   NlpPoint point;               ///< of the last relaxed problem, multipliers in its rows (RelaxedProblem)

@@ -1,0 +1,92 @@
+// A finite element and the boundary between two as symbolic expressions of their variables.
+#pragma once
+
+#include <vector>
+
+#include <casadi/core/sx.hpp>
+
+#include "saltus/base/error.hpp"
+#include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/discretization/fesd_options.hpp"
+#include "saltus/discretization/local_function_internal.hpp"
+#include "saltus/discretization/variable_layout.hpp"
+#include "saltus/reformulation/dcs.hpp"
+
+namespace saltus::discretization {
+
+/// One complementarity of the system, a _|_ lambda: alpha_j with lambda_n,j, 1 - alpha_j with lambda_p,j, or theta_i
+/// with lambda_i.
+struct SelectionPair {
+  int selection = 0;
+  bool complement = false;  ///< a = 1 - alpha_j
+  reformulation::Form form = reformulation::Form::step;
+};
+
+/// All pairs of a system, in the order of lambda: of step selection j first lambda_n,j, then lambda_p,j.
+[[nodiscard]] std::vector<SelectionPair> selection_pairs(const reformulation::Dcs& dcs);
+
+/// The variables of one element as matrices with one column per stage or point.
+struct ElementVariables {
+  casadi::SX h;
+  casadi::SX stage;       ///< n_x by n_s
+  casadi::SX selection;   ///< n_selections by n_s
+  casadi::SX lifted;      ///< n_lifted by n_s
+  casadi::SX lambda;      ///< n_lambda by points
+  casadi::SX simplex;     ///< n_simplices by points
+  casadi::SX end_state;   ///< n_x by 1, or empty
+  casadi::SX end_time;    ///< 1 by 1, or empty
+  casadi::SX correction;  ///< n_selections by 2, or empty
+};
+[[nodiscard]] ElementVariables element_variables(const ElementLayout& layout, const casadi::SX& v);
+
+/// The sides of the pairs at the points of an element, columns.
+struct ElementPairs {
+  casadi::SX a;       ///< n_pairs by n_s
+  casadi::SX lambda;  ///< n_pairs by 1 + points: the left end first
+};
+[[nodiscard]] ElementPairs element_pairs(const std::vector<SelectionPair>& pairs, const ElementVariables& variables,
+                                         const casadi::SX& left_lambda);
+
+/// The complementarities within an element; for `paper` those of the same stage.
+void add_cross_complementarities(CrossComplementarity mode, const ElementPairs& pairs, LocalExpressions& expressions);
+
+/// Both elements of a boundary.
+struct Boundary {
+  ElementPairs before, after;
+  casadi::SX h_before, h_after;
+  casadi::SX own;  ///< variables of the boundary itself
+};
+
+/// eq. (38): products of all components and different points of both elements.
+void add_paper_cross_complementarity(const Boundary& boundary, LocalExpressions& expressions);
+
+/// eta with the indicator of each pair (StepEquilibration).
+[[nodiscard]] casadi::SX switch_indicator(const Boundary& boundary);
+/// eta as printed in section 4.4 of [nurkanovic2024]; of Stewart's form, where theta takes part, as in the other modes.
+[[nodiscard]] casadi::SX printed_switch_indicator(const std::vector<SelectionPair>& kinds, const Boundary& boundary);
+
+/// How many variables a boundary has, with their bounds.
+[[nodiscard]] mpcc::Bounds boundary_bounds(StepEquilibration mode, int pairs);
+void add_step_equilibration(const FesdOptions& options, const std::vector<SelectionPair>& kinds,
+                            const Boundary& boundary, LocalExpressions& expressions);
+
+/// All symbols and expressions of the kernel.
+struct ElementExpressions {
+  ElementLayout layout;
+  std::vector<SelectionPair> pairs;
+  casadi::SX parameters;      ///< p, held, T/N
+  casadi::SX element_inputs;  ///< left state, left time (if it matters), left lambda, the element's variables
+  LocalExpressions element;
+  casadi::SX boundary_inputs;  ///< left lambda and variables of the element before, variables of the one after, own
+  LocalExpressions boundary;
+  mpcc::Bounds boundary_own_bounds;
+  casadi::SX eta, printed_eta;  ///< of the boundary
+  bool depends_on_time = false;
+};
+
+/// Fails (not_available) for Lobatto IIIA: the selections of its first stage are in no equation while sliding.
+[[nodiscard]] Expected<ElementExpressions> element_expressions(const reformulation::Dcs& dcs,
+                                                               const ButcherTableau& tableau,
+                                                               const FesdOptions& options);
+
+}  // namespace saltus::discretization

@@ -1,0 +1,84 @@
+// Functions of a few neighbouring variables with exact derivatives, made once and used for every element of a chain.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <casadi/core/function.hpp>
+#include <casadi/core/sx.hpp>
+
+#include "saltus/mpcc/problem.hpp"
+
+namespace saltus::discretization {
+
+/// A CasADi function of several dense vectors, called with raw pointers; every result is a dense vector.
+class VectorFunction {
+ public:
+  VectorFunction() = default;
+  VectorFunction(const std::string& name, const std::vector<casadi::SX>& in, const std::vector<casadi::SX>& out);
+  void operator()(const std::vector<const double*>& in, const std::vector<double*>& out);
+  /// Elementary operations of one evaluation.
+  [[nodiscard]] long operations() const { return static_cast<long>(function_.n_instructions()); }
+
+ private:
+  casadi::Function function_;
+  std::vector<const double*> arguments_;
+  std::vector<double*> results_;
+  std::vector<casadi_int> integers_;
+  std::vector<double> work_;
+};
+
+/// What an element, or the boundary between two, adds to a problem: an objective and rows (g, G, H) over local
+/// variables z and parameters. All of g are equations g = 0.
+struct LocalExpressions {
+  casadi::SX objective = 0.0;
+  std::vector<casadi::SX> g;  ///< scalars
+  std::vector<casadi::SX> G;
+  std::vector<casadi::SX> H;
+  std::vector<mpcc::Sign> G_signs;
+  std::vector<mpcc::Sign> H_signs;
+
+  void equation(const casadi::SX& rows) {
+    for (casadi_int i = 0; i < rows.numel(); ++i) g.push_back(rows(i));
+  }
+  /// Both sides sums of variables with lower bound 0.
+  void pair(const casadi::SX& a, const casadi::SX& b, mpcc::Sign sign = mpcc::Sign::implied) {
+    G.push_back(a);
+    H.push_back(b);
+    G_signs.push_back(sign);
+    H_signs.push_back(mpcc::Sign::implied);
+  }
+};
+
+class LocalFunction {
+ public:
+  LocalFunction() = default;
+  LocalFunction(const std::string& name, const casadi::SX& z, const casadi::SX& parameters,
+                const LocalExpressions& expressions);
+
+  [[nodiscard]] int variables() const { return variables_; }
+  [[nodiscard]] int equations() const { return equations_; }
+  [[nodiscard]] int pairs() const { return pairs_; }
+  [[nodiscard]] const std::vector<mpcc::Sign>& signs() const { return signs_; }  ///< of G, then of H
+  [[nodiscard]] bool has_objective() const { return has_objective_; }
+  /// Patterns over rows (g, G, H) and local variables; of the Hessian the lower triangle.
+  [[nodiscard]] const mpcc::Pattern& jacobian_pattern() const { return jacobian_pattern_; }
+  [[nodiscard]] const mpcc::Pattern& hessian_pattern() const { return hessian_pattern_; }
+
+  void values(const double* z, const double* parameters, double* objective, double* rows);
+  void gradient(const double* z, const double* parameters, double* gradient);  ///< of the objective, dense
+  void jacobian(const double* z, const double* parameters, double* values);
+  void hessian(const double* z, const double* parameters, double factor, const double* y, double* values);
+  /// Elementary operations of one evaluation of everything.
+  [[nodiscard]] long operations() const;
+
+ private:
+  int variables_ = 0, equations_ = 0, pairs_ = 0;
+  bool has_objective_ = false;
+  std::vector<mpcc::Sign> signs_;
+  mpcc::Pattern jacobian_pattern_;
+  mpcc::Pattern hessian_pattern_;
+  VectorFunction values_, gradient_, jacobian_, hessian_;
+};
+
+}  // namespace saltus::discretization

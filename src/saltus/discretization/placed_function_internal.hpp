@@ -1,0 +1,62 @@
+// A local function at many places of a sparse problem.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/discretization/local_function_internal.hpp"
+
+namespace saltus::discretization {
+
+/// Places of local variables: >= 0 a variable of the problem, else the constant constant_place() was made of.
+[[nodiscard]] constexpr int constant_place(int constant) { return -1 - constant; }
+[[nodiscard]] inline double value_at(int place, mpcc::ConstVectorView w, const Eigen::VectorXd& constants) {
+  return place >= 0 ? w[place] : constants[-1 - place];
+}
+
+/// First rows of a copy, and the sizes of the problem that turn a pair into rows of G and H.
+struct RowPlace {
+  int first_equation = 0;
+  int first_pair = 0;
+  int equations = 0;  ///< of the problem
+  int pairs = 0;
+};
+
+/// Copies of one LocalFunction with their variables and rows; entries with respect to constants are left out.
+class PlacedFunction {
+ public:
+  explicit PlacedFunction(LocalFunction& function);
+  /// @param places  one per local variable
+  void add(const std::vector<int>& places, const RowPlace& rows);
+
+  void write_signs(std::vector<mpcc::Sign>& signs, int equations) const;
+  void add_patterns(mpcc::Pattern& jacobian, mpcc::Pattern& hessian) const;
+
+  /// The local variables of a copy; overwritten by the next call.
+  const std::vector<double>& gather(int copy, mpcc::ConstVectorView w, const Eigen::VectorXd& constants);
+  [[nodiscard]] double objective(mpcc::ConstVectorView w, const Eigen::VectorXd& constants,
+                                 const Eigen::VectorXd& parameters);
+  void add_gradient(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+                    mpcc::VectorView gradient);
+  void rows(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+            mpcc::VectorView c);
+  /// Values in the order of add_patterns from `next` on; returns what follows them.
+  double* jacobian(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+                   double* next);
+  double* hessian(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+                  double factor, mpcc::ConstVectorView y, double* next);
+
+ private:
+  struct Copy {
+    std::vector<int> places;    ///< of local variables
+    std::vector<int> rows;      ///< of local rows
+    std::vector<int> jacobian;  ///< local entries that are kept
+    std::vector<int> hessian;
+  };
+  LocalFunction& function_;
+  std::vector<Copy> copies_;
+  std::vector<double> z_, rows_, entries_;
+};
+
+}  // namespace saltus::discretization
