@@ -7,6 +7,7 @@
 
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/model_input.hpp"
+#include "saltus/cli/reformulation_text.hpp"
 #include "saltus/cli/terminal.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/simulate_options.hpp"
@@ -204,7 +205,7 @@ std::string description_of(const model::System& system, const std::string& path)
   std::string text = fmt::format("{}{}{}\n{}\n", system.name, colon, system.description, path);
   text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
   text += cells_text(system) + modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system) +
-          methods_text(system);
+          methods_text(system) + reformulation_text(system);
   text += heading("warnings", system.warnings.size());
   for (const auto& warning : system.warnings) text += fmt::format("  {}\n", warning);
   return text;

@@ -1,0 +1,75 @@
+#include "saltus/cli/reformulation_text.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "saltus/reformulation/sizes.hpp"
+
+namespace saltus::cli {
+namespace {
+
+using reformulation::Counts;
+using reformulation::Form;
+using reformulation::ReformulationOptions;
+using reformulation::Sizes;
+
+struct Row {
+  std::string_view title;
+  ReformulationOptions options;
+};
+
+const Row rows[] = {
+    {"step", {.reformulation = Form::step, .lifting = std::nullopt}},
+    {"step, lifted", {}},
+    {"stewart", {.reformulation = Form::stewart}},
+};
+
+std::string line(std::string_view title, const Counts& counts) {
+  return fmt::format("  {:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", title, counts.alpha, counts.theta, counts.beta,
+                     counts.algebraic, counts.complementarities, counts.equations);
+}
+
+/// At most 24 characters.
+std::string shortened(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 24;
+  const std::string text = fmt::format("{}", fmt::join(names, ", "));
+  if (text.size() <= most) return text;
+  const std::string count = names.size() > 1 ? fmt::format("… ({})", names.size()) : "…";
+  const std::size_t room = most - std::min(most, count.size() - 2);  // the ellipsis is one character of three bytes
+  return text.substr(0, room) + count;
+}
+
+std::string groups_text(const Sizes& sizes) {
+  if (sizes.groups.size() < 2) return "";
+  std::string text;
+  for (const auto& group : sizes.groups) text += line("  " + shortened(group.surfaces), group.counts);
+  return text;
+}
+
+}  // namespace
+
+std::string reformulation_text(const model::System& system) {
+  std::string text = "\ncomplementarity systems (numbers of one stage, Table 4 of Nurkanović et al. 2024)\n";
+  std::string table, reasons;
+  for (const Row& row : rows) {
+    const auto sizes = reformulation::sizes_of(system, row.options);
+    if (!sizes) {
+      const std::string reason = fmt::format("{}; {}", sizes.error().message, sizes.error().remedy);
+      // Without any form there is one reason for all.
+      if (table.empty()) return text + fmt::format("  none: {}\n", reason);
+      reasons += fmt::format("  {}: none: {}\n", row.title, reason);
+      continue;
+    }
+    if (sizes->groups.empty()) return text + "  none: nothing switches with the state\n";
+    if (&row == &rows[1] && sizes->total.beta == 0) continue;
+    table += line(row.title, sizes->total) + groups_text(*sizes);
+  }
+  text += fmt::format("  {:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "form", "n_alpha", "n_theta", "n_beta", "n_alg",
+                      "n_comp", "n_eq");
+  return text + table + reasons;
+}
+
+}  // namespace saltus::cli

@@ -1,0 +1,13 @@
+// What `saltus check` says about a model as a dynamic complementarity system.
+#pragma once
+
+#include <string>
+
+#include "saltus/model/system.hpp"
+
+namespace saltus::cli {
+
+/// The sizes of Table 4 of [nurkanovic2024] for every form, in total and per group, or why there is none.
+[[nodiscard]] std::string reformulation_text(const model::System& system);
+
+}  // namespace saltus::cli
