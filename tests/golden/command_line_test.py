@@ -217,6 +217,22 @@ until = 1
             self.assertIn(expected, out)
         self.assertEqual(err, "")
 
+    def test_says_how_large_the_complementarity_systems_are_and_whether_they_are_regular(self):
+        out, _ = self.run_tool("check", "two-belts", code=0)
+        numbers = {line.split()[0]: [int(n) for n in line.split()[1:]]
+                   for line in out.splitlines() if line.startswith(("  step  ", "  stewart  "))}
+        # alpha, theta, beta, n_alg, n_comp, n_eq of two functions and four fields: Table 4
+        self.assertEqual(numbers, {"step": [2, 4, 0, 4 + 3 * 2, 2 * 2, 2 + 4],
+                                   "stewart": [0, 4, 0, 2 * 4 + 1, 4, 4 + 1]})
+        both = out.split("first, second = 0")[1].splitlines()
+        self.assertRegex(both[1], r"step +rank 2 of 2, smallest singular value 0\.[0-9]+$")
+        self.assertRegex(both[2], r"stewart +rank 4 of 5, .*singular")
+        out, _ = self.run_tool("check", "two-belts", "--set", "simulate.max_events=1", code=0)
+        self.assertRegex(out, r"the simulation stopped at t = 0\.24")
+        out, _ = self.run_tool("check", "bouncing-ball", code=0)
+        self.assertIn("none: finite elements with switch detection do not cover models with [[jumps]]", out)
+        self.assertNotIn("well-posedness", out)
+
     def test_lists_the_columns_in_their_order_then_the_rest(self):
         model = self.write("m.toml", """
 [model]

@@ -200,12 +200,13 @@ std::string jumps_text(const model::System& system) {
   return text;
 }
 
-std::string description_of(const model::System& system, const std::string& path) {
+std::string description_of(const model::System& system, const std::string& path,
+                           const pipeline::SimulateOptions& options) {
   const std::string_view colon = system.description.empty() ? "" : ": ";
   std::string text = fmt::format("{}{}{}\n{}\n", system.name, colon, system.description, path);
   text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
   text += cells_text(system) + modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system) +
-          methods_text(system) + reformulation_text(system);
+          methods_text(system) + reformulation_text(system) + ranks_text(system, options);
   text += heading("warnings", system.warnings.size());
   for (const auto& warning : system.warnings) text += fmt::format("  {}\n", warning);
   return text;
@@ -216,7 +217,7 @@ ExitCode run(const Arguments& arguments) {
   if (!input) return refuse(input.error());
   const auto system = model::build(input->file.description, input->overrides);
   if (!system) return refuse(io::located(system.error(), input->file));
-  print(description_of(*system, input->path));
+  print(description_of(*system, input->path, input->file.simulate));
   return ExitCode::done;
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/pipeline/well_posedness.hpp"
 #include "saltus/reformulation/sizes.hpp"
 
 namespace saltus::cli {
@@ -70,6 +71,30 @@ std::string reformulation_text(const model::System& system) {
   text += fmt::format("  {:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "form", "n_alpha", "n_theta", "n_beta", "n_alg",
                       "n_comp", "n_eq");
   return text + table + reasons;
+}
+
+std::string ranks_text(const model::System& system, const pipeline::SimulateOptions& options) {
+  // Without one there is nothing to look at.
+  if (!options.until || !reformulation::reformulate(system)) return "";
+  const auto ranks = pipeline::ranks_along_solution(system, options);
+  std::string text = "\nwell-posedness along the solution of [simulate] (rank of W B, Assumption 7 ibid.)\n";
+  if (!ranks) return text + fmt::format("  not computed: {}\n", ranks.error().message);
+  if (ranks->active_sets.empty()) text += "  nothing slides\n";
+  for (const auto& set : ranks->active_sets) {
+    text += fmt::format("  {} = 0, first at t = {:.6g}, {} row{}\n", fmt::join(set.names, ", "), set.first, set.rows,
+                        set.rows == 1 ? "" : "s");
+    for (const auto& form : set.forms) {
+      text += fmt::format("    {:<8} rank {} of {}, smallest singular value {:.3g}{}\n",
+                          form.form == Form::step ? "step" : "stewart", form.rank, form.unknowns,
+                          form.smallest_singular_value,
+                          form.rank < form.unknowns ? ": singular, the multipliers are not determined by it" : "");
+    }
+  }
+  const auto& status = ranks->status;
+  if (!result::is_done(status.termination)) {
+    text += fmt::format("  the simulation stopped at t = {:.6g}: {}\n", status.time_reached, status.message);
+  }
+  return text;
 }
 
 }  // namespace saltus::cli

@@ -4,10 +4,14 @@
 #include <string>
 
 #include "saltus/model/system.hpp"
+#include "saltus/pipeline/simulate_options.hpp"
 
 namespace saltus::cli {
 
 /// The sizes of Table 4 of [nurkanovic2024] for every form, in total and per group, or why there is none.
 [[nodiscard]] std::string reformulation_text(const model::System& system);
+
+/// The ranks of the systems for the multipliers along the solution of the model's [simulate].
+[[nodiscard]] std::string ranks_text(const model::System& system, const pipeline::SimulateOptions& options);
 
 }  // namespace saltus::cli

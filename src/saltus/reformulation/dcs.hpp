@@ -40,11 +40,10 @@ struct DcsPart {
 
 /// psi = 0, whose sides a selection tells apart.
 struct Surface {
-  std::string name;     ///< of the switching function; with the sides of the surfaces inside it if it is nested
-  int function = -1;    ///< index into System::switching, -1 for the break of a table
-  int cell = -1;        ///< index into System::cells for the break of a table of the state
-  int orientation = 1;  ///< -1: psi here is a negative multiple of the function's
-  casadi::SX psi;       ///< scalar over t, x, u, p, held
+  std::string name;   ///< of the switching function; with the sides of the surfaces inside it if it is nested
+  int function = -1;  ///< index into System::switching, -1 for the break of a table
+  int cell = -1;      ///< index into System::cells for the break of a table of the state
+  casadi::SX psi;     ///< scalar over t, x, u, p, held
 };
 
 /// What is constant within a simulation step and set from outside: selections of functions of time, inputs and discrete

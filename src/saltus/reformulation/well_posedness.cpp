@@ -1,0 +1,224 @@
+#include "saltus/reformulation/well_posedness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Dense>
+#include <casadi/core/function.hpp>
+
+#include "saltus/reformulation/expressions_internal.hpp"
+
+namespace saltus::reformulation {
+namespace {
+
+using casadi::DM;
+
+/// The entries are cosines; states on a surface are known to about 1e-10.
+constexpr double rank_tolerance = 1e-8;
+/// A surface is met by a solution that slides where its psi is 0 to the accuracy of the states.
+constexpr double zero_tolerance = 1e-6;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+Eigen::MatrixXd matrix(const DM& values) {
+  const DM dense = DM::densify(values);
+  return Eigen::Map<const Eigen::MatrixXd>(dense.ptr(), dense.size1(), dense.size2());
+}
+
+/// f with the lifted variables put in.
+SX unlifted(const Dcs& dcs) {
+  Replacement replacement;
+  const auto beta = entries(dcs.lifted), equations = entries(dcs.lifting);
+  for (std::size_t k = 0; k < beta.size(); ++k) {
+    Replacement own = replacement;
+    own.set(beta[k], 0.0);
+    replacement.set(beta[k], -own.of(equations[k]));
+  }
+  return replacement.of(dcs.f);
+}
+
+}  // namespace
+
+namespace {
+
+/// Of each surface: alpha, and whether it is 0 and the solution slides on it.
+struct Sides {
+  std::vector<double> alpha;
+  std::vector<bool> slides;
+};
+
+}  // namespace
+
+struct WellPosedness::Parts {
+  Dcs dcs;
+  std::vector<double> parameters;
+  std::vector<std::shared_ptr<const model::CellTable>> tables;  // shared: they belong to the System
+  std::vector<int> first_regions;                               ///< of each group of modes
+  casadi::Function held_arguments, surfaces, gradients;
+
+  [[nodiscard]] std::vector<double> held_at(const SolutionPoint& point) const;
+  [[nodiscard]] Sides sides_at(const SolutionPoint& point, const std::vector<double>& held) const;
+  [[nodiscard]] std::vector<int> undetermined(const DcsPart& part, const SolutionPoint& point, const Sides& sides,
+                                              std::vector<double>& selection) const;
+};
+
+WellPosedness::WellPosedness(const Dcs& dcs, const model::System& system)
+    : parts_(new Parts{dcs, system.parameter_values, {}, {}, {}, {}, {}}) {
+  for (const auto& cell : system.cells) parts_->tables.push_back(cell.table);
+  for (const auto& group : system.mode_groups) parts_->first_regions.push_back(group.first);
+  std::vector<SXElem> arguments, psi;
+  for (const auto& held : dcs.held_symbols) arguments.push_back(entry(held.argument));
+  for (const auto& surface : dcs.surfaces) psi.push_back(entry(surface.psi));
+  const std::vector<SX> place{dcs.t, dcs.x, dcs.u, dcs.p, dcs.held};
+  const SX values = column(psi);
+  parts_->held_arguments = casadi::Function("held_arguments", place, {column(arguments)});
+  parts_->surfaces = casadi::Function("surfaces", place, {values, SX::jacobian(values, dcs.x)});
+  auto with_selection = place;
+  with_selection.push_back(dcs.selection);
+  parts_->gradients = casadi::Function(
+      "gradients", with_selection, {SX::jacobian(dcs.indicator, dcs.x), SX::jacobian(unlifted(dcs), dcs.selection)});
+}
+
+WellPosedness::WellPosedness(WellPosedness&&) noexcept = default;
+WellPosedness::~WellPosedness() = default;
+
+std::vector<double> WellPosedness::Parts::held_at(const SolutionPoint& point) const {
+  std::vector<double> held(dcs.held_symbols.size(), 0.0);
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    const std::vector<DM> place{point.t, point.x, point.u, parameters, held};
+    const double argument = std::vector<double>(DM::densify(held_arguments(place).front()))[k];
+    const HeldSymbol& symbol = dcs.held_symbols[k];
+    if (symbol.kind == HeldSymbol::Kind::selection) {
+      held[k] = argument > 0.0 ? 1.0 : argument < 0.0 ? 0.0 : symbol.at_zero;
+    } else {
+      const auto& table = *tables[at(symbol.index)];
+      held[k] = table.constant(table.cell(argument), symbol.column);
+    }
+  }
+  return held;
+}
+
+Sides WellPosedness::Parts::sides_at(const SolutionPoint& point, const std::vector<double>& held) const {
+  const auto values = surfaces(std::vector<DM>{point.t, point.x, point.u, parameters, held});
+  const auto psi = std::vector<double>(DM::densify(values[0]));
+  const Eigen::MatrixXd gradient = matrix(values[1]);
+  const double size =
+      Eigen::Map<const Eigen::VectorXd>(point.x.data(), static_cast<Eigen::Index>(point.x.size())).norm();
+  Sides sides;
+  for (std::size_t j = 0; j < psi.size(); ++j) {
+    const Surface& surface = dcs.surfaces[j];
+    const double steepness = gradient.row(static_cast<Eigen::Index>(j)).norm();
+    const bool is_zero = std::abs(psi[j]) <= zero_tolerance * steepness * (1.0 + size);
+    const bool slides = surface.function >= 0 && point.mode[at(surface.function)] == 0 && is_zero;
+    sides.alpha.push_back(slides ? point.alpha[at(surface.function)] : psi[j] > 0.0 ? 1.0 : 0.0);
+    sides.slides.push_back(slides);
+  }
+  return sides;
+}
+
+namespace {
+
+/// What is unknown on an active set.
+struct Unknowns {
+  std::vector<int> selections;  ///< alpha of sliding surfaces, theta of active regions
+  std::vector<int> simplex_of;  ///< of each: number of its simplex, -1 for alpha
+  int simplexes = 0;
+};
+
+/// Gradients and fields divided by their lengths (those of a simplex by the longest), so that the entries are cosines;
+/// what is 0 stays 0.
+Eigen::MatrixXd system_of(const Unknowns& unknowns, const Eigen::MatrixXd& indicator_x,
+                          const Eigen::MatrixXd& f_selection) {
+  const auto n = static_cast<Eigen::Index>(unknowns.selections.size());
+  Eigen::MatrixXd gradients(n, indicator_x.cols()), fields(f_selection.rows(), n);
+  Eigen::VectorXd longest_gradient = Eigen::VectorXd::Zero(n + unknowns.simplexes), longest_field = longest_gradient;
+  const auto block = [&](Eigen::Index i) {
+    const int simplex = unknowns.simplex_of[static_cast<std::size_t>(i)];
+    return simplex < 0 ? i : n + simplex;
+  };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    gradients.row(i) = indicator_x.row(unknowns.selections[static_cast<std::size_t>(i)]);
+    fields.col(i) = f_selection.col(unknowns.selections[static_cast<std::size_t>(i)]);
+    longest_gradient(block(i)) = std::max(longest_gradient(block(i)), gradients.row(i).norm());
+    longest_field(block(i)) = std::max(longest_field(block(i)), fields.col(i).norm());
+  }
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n + unknowns.simplexes, n + unknowns.simplexes);
+  result.topLeftCorner(n, n) = gradients * fields;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (longest_gradient(block(i)) > 0.0) result.row(i).head(n) /= longest_gradient(block(i));
+    if (longest_field(block(i)) > 0.0) result.col(i).head(n) /= longest_field(block(i));
+    if (block(i) == i) continue;
+    result(i, block(i)) = 1.0;
+    result(block(i), i) = 1.0;
+  }
+  return result;
+}
+
+}  // namespace
+
+/// The selections of a part that are not determined by the signs of psi, and the values of all.
+std::vector<int> WellPosedness::Parts::undetermined(const DcsPart& part, const SolutionPoint& point, const Sides& sides,
+                                                    std::vector<double>& selection) const {
+  std::vector<int> active;
+  for (int i = 0; i < part.count; ++i) {
+    bool is_active = true;
+    double& value = selection[at(part.first + i)];
+    if (part.form == Form::step) {
+      value = sides.alpha[at(part.surfaces[at(i)])];
+      is_active = sides.slides[at(part.surfaces[at(i)])];
+    } else if (part.mode_group >= 0) {
+      const int region = first_regions[at(part.mode_group)] + i;
+      value = point.alpha[at(region)];
+      is_active = point.mode[at(region)] == 0;
+    } else {
+      value = 1.0;
+      for (std::size_t j = 0; j < part.surfaces.size(); ++j) {
+        const int surface = part.surfaces[j];
+        const double alpha = sides.alpha[at(surface)];
+        const double factor = part.signs(i, static_cast<Eigen::Index>(j)) > 0 ? alpha : 1.0 - alpha;
+        value *= factor;
+        is_active = is_active && (sides.slides[at(surface)] || factor == 1.0);
+      }
+    }
+    if (is_active) active.push_back(part.first + i);
+  }
+  // One active region of a simplex has theta = 1.
+  if (part.form == Form::stewart && active.size() < 2) active.clear();
+  return active;
+}
+
+ActiveSetRank WellPosedness::rank_at(const SolutionPoint& point) const {
+  const Parts& p = *parts_;
+  const auto held = p.held_at(point);
+  const Sides sides = p.sides_at(point, held);
+  ActiveSetRank result;
+  for (std::size_t j = 0; j < sides.slides.size(); ++j) {
+    if (sides.slides[j]) result.surfaces.push_back(static_cast<int>(j));
+  }
+  std::vector<double> selection(static_cast<std::size_t>(p.dcs.selection.numel()), 0.0);
+  Unknowns unknowns;
+  for (const DcsPart& part : p.dcs.parts) {
+    const auto active = p.undetermined(part, point, sides, selection);
+    const bool simplex = part.form == Form::stewart && !active.empty();
+    if (simplex) result.regions += static_cast<int>(active.size());
+    unknowns.selections.insert(unknowns.selections.end(), active.begin(), active.end());
+    unknowns.simplex_of.resize(unknowns.selections.size(), simplex ? unknowns.simplexes : -1);
+    unknowns.simplexes += simplex ? 1 : 0;
+  }
+  result.unknowns = static_cast<int>(unknowns.selections.size()) + unknowns.simplexes;
+  result.smallest_singular_value = std::numeric_limits<double>::infinity();
+  if (result.unknowns == 0) return result;
+  const auto gradients = p.gradients(std::vector<DM>{point.t, point.x, point.u, p.parameters, held, selection});
+  const Eigen::MatrixXd system = system_of(unknowns, matrix(gradients[0]), matrix(gradients[1]));
+  if (!system.allFinite()) {
+    result.smallest_singular_value = std::numeric_limits<double>::quiet_NaN();
+    return result;
+  }
+  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(system).singularValues();
+  result.smallest_singular_value = values(values.size() - 1);
+  result.rank = static_cast<int>((values.array() > rank_tolerance).count());
+  return result;
+}
+
+}  // namespace saltus::reformulation
