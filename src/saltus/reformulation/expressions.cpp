@@ -127,6 +127,59 @@ std::unordered_set<const void*> nodes_with(const SXElem& expression, const std::
   return found;
 }
 
+namespace {
+
+class Terms {
+ public:
+  Terms(const SXElem& expression, const std::unordered_set<const void*>& symbols)
+      : with_symbols_(nodes_with(expression, symbols)) {}
+
+  std::vector<SXElem> of(const SXElem& e) {
+    if (!has_symbols(e)) return {e};
+    const auto operation = static_cast<casadi_int>(e.op());
+    switch (operation) {
+      case casadi::OP_ADD:
+        return joined(of(e.dep(0)), of(e.dep(1)));
+      case casadi::OP_SUB:
+        return joined(of(e.dep(0)), each(of(e.dep(1)), [](const SXElem& term) { return -term; }));
+      case casadi::OP_NEG:
+      case casadi::OP_TWICE:
+        return each(of(e.dep(0)), [operation](const SXElem& term) { return SXElem::unary(operation, term); });
+      case casadi::OP_DIV:
+        if (has_symbols(e.dep(1))) return {e};
+        return each(of(e.dep(0)), [&](const SXElem& term) { return term / e.dep(1); });
+      case casadi::OP_MUL:
+        if (!has_symbols(e.dep(1))) return each(of(e.dep(0)), [&](const SXElem& term) { return term * e.dep(1); });
+        if (!has_symbols(e.dep(0))) return each(of(e.dep(1)), [&](const SXElem& term) { return e.dep(0) * term; });
+        return {e};
+      default:
+        return {e};
+    }
+  }
+
+ private:
+  using List = std::vector<SXElem>;
+
+  [[nodiscard]] bool has_symbols(const SXElem& e) const { return with_symbols_.contains(e.get()); }
+  static List joined(List a, const List& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  }
+  template <class Change>
+  static List each(List terms, Change&& change) {
+    for (SXElem& term : terms) term = change(term);
+    return terms;
+  }
+
+  std::unordered_set<const void*> with_symbols_;
+};
+
+}  // namespace
+
+std::vector<SXElem> additive_terms(const SXElem& expression, const std::unordered_set<const void*>& symbols) {
+  return Terms(expression, symbols).of(expression);
+}
+
 bool may_be_nonfinite(const SXElem& expression, const SX& constants) {
   std::unordered_set<const void*> fixed;
   for (const SXElem& symbol : constants.nonzeros()) fixed.insert(symbol.get());

@@ -38,6 +38,11 @@ class Replacement {
 [[nodiscard]] std::unordered_set<const void*> nodes_with(const SXElem& expression,
                                                          const std::unordered_set<const void*>& symbols);
 
+/// Terms whose sum is the expression, as fine as its structure allows: products are multiplied out where only one
+/// factor has some of the symbols. What has none of them is not taken apart.
+[[nodiscard]] std::vector<SXElem> additive_terms(const SXElem& expression,
+                                                 const std::unordered_set<const void*>& symbols);
+
 /// Whether branches of an expression can be NaN or infinite at finite values; operations on constants and `constants`
 /// (parameters) alone are taken to be finite.
 [[nodiscard]] bool may_be_nonfinite(const SXElem& expression, const SX& constants);

@@ -8,12 +8,8 @@
 
 #include <casadi/core/function.hpp>
 
-#include "saltus/reformulation/groups_internal.hpp"
-
-// Needs names that only sx_elem.hpp brings.
-#include <casadi/core/calculus.hpp>
-
 #include "saltus/base/contracts.hpp"
+#include "saltus/reformulation/groups_internal.hpp"
 
 namespace saltus::reformulation {
 namespace {
@@ -31,10 +27,10 @@ class SelectionNumbers {
     }
   }
   [[nodiscard]] int count() const { return count_; }
-  [[nodiscard]] std::unordered_set<const void*> parts_with_selections(const SXElem& expression) const {
-    std::unordered_set<const void*> symbols;
-    for (const auto& [symbol, number] : number_) symbols.insert(symbol);
-    return nodes_with(expression, symbols);
+  [[nodiscard]] std::unordered_set<const void*> symbols() const {
+    std::unordered_set<const void*> all;
+    for (const auto& [symbol, number] : number_) all.insert(symbol);
+    return all;
   }
   [[nodiscard]] std::vector<int> in(const SXElem& expression) const {
     std::set<int> found;
@@ -47,52 +43,6 @@ class SelectionNumbers {
  private:
   std::unordered_map<const void*, int> number_;
   int count_ = 0;
-};
-
-/// The summands of an expression that have selections, and the sum of those that have none.
-class Terms {
- public:
-  Terms(const SXElem& expression, const SelectionNumbers& numbers)
-      : with_selections_(numbers.parts_with_selections(expression)) {}
-
-  std::vector<SXElem> of(const SXElem& e) {
-    if (!has_selections(e)) return {e};
-    const auto operation = static_cast<casadi_int>(e.op());
-    switch (operation) {
-      case casadi::OP_ADD:
-        return joined(of(e.dep(0)), of(e.dep(1)));
-      case casadi::OP_SUB:
-        return joined(of(e.dep(0)), each(of(e.dep(1)), [](const SXElem& term) { return -term; }));
-      case casadi::OP_NEG:
-      case casadi::OP_TWICE:
-        return each(of(e.dep(0)), [operation](const SXElem& term) { return SXElem::unary(operation, term); });
-      case casadi::OP_DIV:
-        if (has_selections(e.dep(1))) return {e};
-        return each(of(e.dep(0)), [&](const SXElem& term) { return term / e.dep(1); });
-      case casadi::OP_MUL:
-        if (!has_selections(e.dep(1))) return each(of(e.dep(0)), [&](const SXElem& term) { return term * e.dep(1); });
-        if (!has_selections(e.dep(0))) return each(of(e.dep(1)), [&](const SXElem& term) { return e.dep(0) * term; });
-        return {e};
-      default:
-        return {e};
-    }
-  }
-
- private:
-  using List = std::vector<SXElem>;
-
-  [[nodiscard]] bool has_selections(const SXElem& e) const { return with_selections_.contains(e.get()); }
-  static List joined(List a, const List& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-  }
-  template <class Change>
-  static List each(List terms, Change&& change) {
-    for (SXElem& term : terms) term = change(term);
-    return terms;
-  }
-
-  std::unordered_set<const void*> with_selections_;
 };
 
 /// Connected components of numbers 0, …, count - 1.
@@ -117,6 +67,7 @@ class Components {
 
 FieldGroups additive_groups(const Unnested& unnested) {
   const SelectionNumbers numbers(unnested);
+  const auto symbols = numbers.symbols();
   const auto n_surfaces = static_cast<int>(unnested.surfaces.size());
   Components components(numbers.count());
   FieldGroups result;
@@ -124,10 +75,9 @@ FieldGroups additive_groups(const Unnested& unnested) {
   for (const SXElem& component : entries(unnested.f)) {
     const auto state = static_cast<int>(result.constant.size());
     result.constant.emplace_back(0.0);
-    Terms split(component, numbers);
     // Terms in the same selections are one.
     std::map<std::vector<int>, std::size_t> place_of;
-    for (const SXElem& term : split.of(component)) {
+    for (const SXElem& term : additive_terms(component, symbols)) {
       std::vector<int> in = numbers.in(term);
       if (in.empty()) {
         result.constant.back() += term;

@@ -2,17 +2,14 @@
 #include <map>
 #include <set>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <casadi/core/function.hpp>
 #include <fmt/format.h>
 
-#include "saltus/reformulation/unnesting_internal.hpp"
-
-// Needs names that only sx_elem.hpp brings.
-#include <casadi/core/calculus.hpp>
-
 #include "saltus/base/contracts.hpp"
 #include "saltus/reformulation/same_surface_internal.hpp"
+#include "saltus/reformulation/unnesting_internal.hpp"
 
 namespace saltus::reformulation {
 namespace {
@@ -376,16 +373,20 @@ SXElem Unnester::expanded(const SXElem& expression, const Sides& sides) {
 
 /// Term by term, so that what is nested in one does not split the others.
 SXElem Unnester::sum_of_terms(const SXElem& expression) {
+  std::vector<SXElem> terms{expression};
   if (!undecided(expression, {}).empty()) {
-    const auto operation = static_cast<casadi_int>(expression.op());
-    if (operation == casadi::OP_ADD || operation == casadi::OP_SUB) {
-      const SXElem left = sum_of_terms(expression.dep(0));
-      return SXElem::binary(operation, left, sum_of_terms(expression.dep(1)));
+    std::unordered_set<const void*> symbols;
+    for (const auto& [symbol, choice] : owner_) {
+      if (!choices_[at(choice)].held) symbols.insert(symbol);
     }
-    if (operation == casadi::OP_NEG) return -sum_of_terms(expression.dep(0));
+    terms = additive_terms(expression, symbols);
   }
-  branches_ = 0;
-  return expanded(expression, {});
+  SXElem sum = 0.0;
+  for (const SXElem& term : terms) {
+    branches_ = 0;
+    sum += expanded(term, {});
+  }
+  return sum;
 }
 
 void Unnester::take_field() {
