@@ -202,6 +202,13 @@ bool has_limit(const Result& result, double t, double nearby) {
   });
 }
 
+/// The first lap of a solution that spirals out of an intersection is passed in one step, from its closed form.
+bool begins_to_spiral(const Result& result, double t) {
+  return std::any_of(result.events.begin(), result.events.end(), [&](const Event& event) {
+    return event.t == t && event.reason.find("spirals out") != std::string::npos;
+  });
+}
+
 /// Whether the switches of a surface at t are part of an accumulation that the run passes, or in which it ends. One
 /// whose laps shrink fast is over where two surfaces are met together: sliding on both.
 bool in_accumulation(const Result& result, double t, std::size_t surface) {
@@ -280,6 +287,9 @@ std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& l
       if (later && in_last_laps && has_limit(result, rows.t[i + 1], 0.0)) {
         // What is left of the laps is extrapolated: no single mode leads there.
         if (!same_state(rows.x[i], rows.x[i + 1], 1e-5)) problem = "the limit is far from the last lap";
+      } else if (later && begins_to_spiral(result, rows.t[i])) {
+        // All four modes of the lap: the fields are constant to a millionth over it.
+        if (!same_state(rows.x[i], rows.x[i + 1], 1e-5)) problem = "the first lap of a spiral is long";
       } else if (later) {
         if (!same_where_listed(rows.mode[i], rows.mode[i + 1], listed)) problem = "the mode changes between rows";
         if (problem.empty()) {

@@ -11,8 +11,6 @@ namespace saltus::event_integrator {
 namespace {
 
 constexpr double epsilon = rounding_unit;
-/// Velocities below this fraction of their scale are rounding.
-constexpr double velocity_rounding = 1e-14;
 /// Derivatives looked at before psi is said to stay 0.
 constexpr int highest_order = 5;
 

@@ -17,6 +17,8 @@ struct Motion {
 
 /// Sign tests: a normal component below this fraction of its scale counts as 0 (switching.md section 8).
 inline constexpr double sign_tolerance = 1e-10;
+/// Velocities below this fraction of their scale are rounding.
+inline constexpr double velocity_rounding = 1e-14;
 
 /// All values are at one point (occasion.t, occasion.x); not finite where a field is undefined there and also just
 /// beside the surfaces, on the side that belongs to the selections.

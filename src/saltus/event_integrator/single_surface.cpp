@@ -135,6 +135,9 @@ void SingleSurface::fill(const ModeState& before, const Occasion& occasion, cons
   transition.unique = true;
   transition.other_choices.clear();
   transition.alternatives.clear();
+  transition.decision = -1;
+  transition.beyond_spiral.reset();
+  transition.meeting.reset();
   transition.reason.clear();
   append_reason(surroundings_.system, j, decision, before, occasion, transition.reason);
 }

@@ -141,7 +141,10 @@ bool Decider::check() {
     if (follows_selections && std::abs(velocity) <= sign_tolerance * scale) {
       // A tangency along sliding whose selections change: no derivative with selections held speaks for it.
       const double ahead = velocity_ahead(field, xdot, j);
-      motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
+      motion = {};
+      if (std::abs(ahead) > velocity_rounding * scale) {
+        motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
+      }
     }
     if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode, motion);
     transition_.zero_order[at(j)] = std::min(motion.order, 2);
