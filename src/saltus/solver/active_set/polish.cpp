@@ -1,0 +1,139 @@
+#include "saltus/solver/active_set/polish.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <Eigen/QR>
+
+namespace saltus::solver::active_set {
+namespace {
+
+using mpcc::ActiveSide;
+
+/// Newton's method ends when the residual is so small or does not fall any more.
+bool newton(mpcc::Problem& problem, const std::vector<ActiveSide>& sides, const PolishOptions& options,
+            Eigen::VectorXd& w) {
+  double best = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd trial = w;
+  for (int i = 0; i < options.iterations; ++i) {
+    const ActiveSystem system = active_system(problem, trial, sides, options.active);
+    const double size = system.residual.lpNorm<Eigen::Infinity>();
+    if (!(size < best)) break;
+    best = size;
+    w = trial;
+    if (size == 0.0) break;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+    // Rows that a pair and its neighbours share agree to rounding only: their difference is no direction.
+    factors.setThreshold(1e-10);
+    factors.compute(system.jacobian);
+    trial -= factors.solve(system.residual);
+    if (!trial.allFinite()) break;
+  }
+  return best <= options.tolerance;
+}
+
+/// Where one side of a biactive pair is less than `far` times the other, that side: both may be small in a solution.
+std::vector<ActiveSide> smaller_sides(mpcc::Problem& problem, const Eigen::VectorXd& w, std::vector<ActiveSide> sides,
+                                      double far) {
+  Eigen::VectorXd c(problem.rows());
+  problem.functions(w, c);
+  for (int i = 0; i < problem.pairs(); ++i) {
+    auto& side = sides[static_cast<std::size_t>(i)];
+    const double G = std::abs(c[problem.constraints() + i]);
+    const double H = std::abs(c[problem.constraints() + problem.pairs() + i]);
+    if (side != ActiveSide::biactive) continue;
+    if (G < far * H) side = ActiveSide::G;
+    if (H < far * G) side = ActiveSide::H;
+  }
+  return sides;
+}
+
+std::vector<ActiveSide> without_biactive(std::vector<ActiveSide> sides) {
+  std::replace(sides.begin(), sides.end(), ActiveSide::biactive, ActiveSide::none);
+  return sides;
+}
+
+}  // namespace
+
+ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, const std::vector<ActiveSide>& sides,
+                           double negligible) {
+  const int n_g = problem.constraints();
+  const int pairs = problem.pairs();
+  const auto& rows = problem.constraint_bounds();
+  const auto& box = problem.variable_bounds();
+  Eigen::VectorXd c(problem.rows());
+  Eigen::VectorXd entries(problem.jacobian_pattern().entries());
+  problem.functions(w, c);
+  problem.jacobian(w, entries);
+
+  enum class Role { none, own, by_bounds };
+  std::vector<Role> role(static_cast<std::size_t>(problem.rows()), Role::none);
+  std::vector<int> place(role.size(), -1);
+  std::vector<double> residual;
+  for (int row = 0; row < problem.rows(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    if (row < n_g) {
+      role[r] = rows.lower[row] == rows.upper[row] ? Role::own : Role::none;
+    } else {
+      const int side = row - n_g;
+      const ActiveSide zero = sides[static_cast<std::size_t>(side % pairs)];
+      const bool is_zero = zero == ActiveSide::biactive || zero == (side < pairs ? ActiveSide::G : ActiveSide::H);
+      const bool implied = problem.signs()[static_cast<std::size_t>(side)] == mpcc::Sign::implied;
+      if (is_zero) role[r] = implied ? Role::by_bounds : Role::own;
+    }
+    if (role[r] != Role::own) continue;
+    place[r] = static_cast<int>(residual.size());
+    residual.push_back(c[row] - (row < n_g ? rows.lower[row] : 0.0));
+  }
+  const auto& pattern = problem.jacobian_pattern();
+  std::vector<int> fixed(static_cast<std::size_t>(problem.variables()), 0);  // -1, 1: at its lower, upper bound
+  for (std::size_t e = 0; e < pattern.row.size(); ++e) {
+    const double slope = entries[static_cast<Eigen::Index>(e)];
+    if (role[static_cast<std::size_t>(pattern.row[e])] != Role::by_bounds || std::abs(slope) <= negligible) continue;
+    fixed[static_cast<std::size_t>(pattern.column[e])] = slope > 0.0 ? -1 : 1;
+  }
+  std::vector<int> fixed_variables;
+  for (int i = 0; i < problem.variables(); ++i) {
+    const bool is_constant = box.lower[i] == box.upper[i];
+    const int at = is_constant ? -1 : fixed[static_cast<std::size_t>(i)];
+    const double bound = at < 0 ? box.lower[i] : box.upper[i];
+    if (at == 0 || !std::isfinite(bound)) continue;
+    fixed_variables.push_back(i);
+    residual.push_back(w[i] - bound);
+  }
+  const auto equations = static_cast<Eigen::Index>(residual.size());
+  ActiveSystem system{Eigen::Map<Eigen::VectorXd>(residual.data(), equations),
+                      Eigen::MatrixXd::Zero(equations, problem.variables())};
+  for (std::size_t e = 0; e < pattern.row.size(); ++e) {
+    const int row = place[static_cast<std::size_t>(pattern.row[e])];
+    if (row >= 0) system.jacobian(row, pattern.column[e]) += entries[static_cast<Eigen::Index>(e)];
+  }
+  Eigen::Index row = equations - static_cast<Eigen::Index>(fixed_variables.size());
+  for (const int i : fixed_variables) system.jacobian(row++, i) = 1.0;
+  return system;
+}
+
+PolishOutcome polish(mpcc::Problem& problem, Eigen::VectorXd& w, const PolishOptions& options) {
+  const auto nearly_zero = mpcc::active_sides(problem, w, options.active);
+  if (std::find(nearly_zero.begin(), nearly_zero.end(), ActiveSide::none) != nearly_zero.end()) {
+    return PolishOutcome::no_active_set;
+  }
+  const std::vector<ActiveSide> guesses[] = {smaller_sides(problem, w, nearly_zero, 1e-3), nearly_zero,
+                                             smaller_sides(problem, w, nearly_zero, 1.0),
+                                             without_biactive(nearly_zero)};
+  PolishOutcome outcome = PolishOutcome::not_converged;
+  for (const auto& sides : guesses) {
+    Eigen::VectorXd found = w;
+    if (!newton(problem, sides, options, found)) continue;
+    if (mpcc::residuals(problem, found).infeasibility() <= options.tolerance) {
+      w = found;
+      return PolishOutcome::polished;
+    }
+    outcome = PolishOutcome::violated;
+  }
+  return outcome;
+}
+
+}  // namespace saltus::solver::active_set
