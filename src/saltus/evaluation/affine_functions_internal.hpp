@@ -6,10 +6,12 @@
 
 #include <casadi/core/sx.hpp>
 
-#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/model/model_function.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 
 namespace saltus::evaluation {
+
+using model::ModelFunction;
 
 /// The symbols of a model and the values of its parameters.
 struct ModelSymbols {

@@ -5,10 +5,12 @@
 #include <memory>
 #include <vector>
 
-#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/model/model_function.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
+
+using model::ModelFunction;
 
 class CellFunctions {
  public:

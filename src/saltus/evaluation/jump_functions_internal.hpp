@@ -4,10 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/model/model_function.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
+
+using model::ModelFunction;
 
 class JumpFunctions {
  public:

@@ -14,12 +14,14 @@
 #include "saltus/evaluation/cell_functions_internal.hpp"
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
-#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/model/model_function.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/evaluation/native_code.hpp"
 #include "saltus/evaluation/region_constants_internal.hpp"
 
 namespace saltus::evaluation {
+
+using model::ModelFunction;
 
 /// d phi_j / d (x, t). Of a function that is affine, and does not hold selections, it is a constant: evaluated once.
 struct Gradient {

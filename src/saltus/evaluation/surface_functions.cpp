@@ -7,9 +7,11 @@
 #include <set>
 #include <utility>
 
-#include "saltus/evaluation/model_function_internal.hpp"
+#include "saltus/model/model_function.hpp"
 
 namespace saltus::evaluation {
+
+using model::ModelFunction;
 namespace {
 
 using casadi::DM;

@@ -7,7 +7,7 @@
 #include <casadi/core/function.hpp>
 #include <casadi/core/sx.hpp>
 
-namespace saltus::evaluation {
+namespace saltus::model {
 
 class ModelFunction {
  public:
@@ -72,4 +72,4 @@ class ModelFunction {
   std::vector<double> work_;
 };
 
-}  // namespace saltus::evaluation
+}  // namespace saltus::model

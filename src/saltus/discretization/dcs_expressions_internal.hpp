@@ -1,0 +1,24 @@
+// What expressions of a Dcs become before they are evaluated.
+#pragma once
+
+#include <casadi/core/sx.hpp>
+
+#include "saltus/reformulation/dcs.hpp"
+
+namespace saltus::discretization {
+
+/// Controls replaced by their values during a simulation.
+[[nodiscard]] inline casadi::SX with_inputs(const reformulation::Dcs& dcs, const casadi::SX& expression) {
+  return dcs.u.numel() == 0 ? expression : casadi::SX::substitute(expression, dcs.u, casadi::SX::densify(dcs.input));
+}
+
+/// Lifted variables replaced by their products: row k of the lifting is beta_k less a product of earlier ones.
+[[nodiscard]] inline casadi::SX without_lifting(const reformulation::Dcs& dcs, casadi::SX expression) {
+  for (casadi_int k = dcs.lifted.numel(); k-- > 0;) {
+    const casadi::SX product = dcs.lifted(k) - dcs.lifting(k);
+    expression = casadi::SX::substitute(expression, dcs.lifted(k), product);
+  }
+  return expression;
+}
+
+}  // namespace saltus::discretization

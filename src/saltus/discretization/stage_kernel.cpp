@@ -1,0 +1,89 @@
+#include "saltus/discretization/stage_kernel.hpp"
+
+#include <array>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include <casadi/core/code_generator.hpp>
+
+#include "saltus/discretization/dcs_expressions_internal.hpp"
+#include "saltus/model/model_function.hpp"
+
+namespace saltus::discretization {
+
+using casadi::SX;
+
+struct StageKernel::Implementation {
+  std::vector<double> parameters;
+  std::size_t n_x = 0, n_selections = 0;
+  mutable model::ModelFunction everything, field, indicators;
+  mutable long evaluations = 0;
+};
+
+StageKernel::StageKernel(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+StageKernel::StageKernel(StageKernel&&) noexcept = default;
+StageKernel& StageKernel::operator=(StageKernel&&) noexcept = default;
+StageKernel::~StageKernel() = default;
+
+Expected<StageKernel> StageKernel::compile(const reformulation::Dcs& dcs, std::vector<double> parameters) {
+  try {
+    auto kernel = std::make_unique<Implementation>();
+    kernel->parameters = std::move(parameters);
+    const SX f = without_lifting(dcs, with_inputs(dcs, dcs.f));
+    const SX psi = with_inputs(dcs, dcs.indicator);
+    kernel->n_x = static_cast<std::size_t>(dcs.x.numel());
+    kernel->n_selections = static_cast<std::size_t>(dcs.selection.numel());
+    kernel->everything = model::ModelFunction("saltus_stage", {dcs.t, dcs.x, dcs.selection, dcs.held, dcs.p},
+                                              {f, psi, SX::jacobian(f, dcs.x), SX::jacobian(f, dcs.selection),
+                                               SX::jacobian(psi, dcs.x), SX::jacobian(psi, dcs.t)});
+    kernel->field = model::ModelFunction("saltus_stage_field", {dcs.t, dcs.x, dcs.selection, dcs.held, dcs.p}, {f});
+    kernel->indicators = model::ModelFunction("saltus_stage_indicators", {dcs.t, dcs.x, dcs.held, dcs.p}, {psi});
+    return StageKernel(std::move(kernel));
+  } catch (const std::exception& error) {
+    return tl::unexpected(Error{ErrorCode::invalid_model,
+                                std::string("the model's complementarity system cannot be compiled: ") + error.what(),
+                                "",
+                                {},
+                                {}});
+  }
+}
+
+std::size_t StageKernel::states() const { return implementation_->n_x; }
+std::size_t StageKernel::selections() const { return implementation_->n_selections; }
+long StageKernel::evaluations() const { return implementation_->evaluations; }
+
+void StageKernel::size(StageValues& values) const {
+  const std::size_t n_x = states(), n = selections();
+  values.f.resize(n_x);
+  values.indicator.resize(n);
+  values.f_x.resize(n_x * n_x);
+  values.f_selection.resize(n_x * n);
+  values.indicator_x.resize(n * n_x);
+  values.indicator_t.resize(n);
+}
+
+void StageKernel::evaluate(double t, const double* x, const double* selection, const double* held,
+                           StageValues& values) const {
+  auto& kernel = *implementation_;
+  ++kernel.evaluations;
+  const std::array<const double*, 5> in{&t, x, selection, held, kernel.parameters.data()};
+  const std::array<double*, 6> out{values.f.data(),           values.indicator.data(),   values.f_x.data(),
+                                   values.f_selection.data(), values.indicator_x.data(), values.indicator_t.data()};
+  kernel.everything(in, out);
+}
+
+void StageKernel::field(double t, const double* x, const double* selection, const double* held, double* f) const {
+  auto& kernel = *implementation_;
+  ++kernel.evaluations;
+  const std::array<const double*, 5> in{&t, x, selection, held, kernel.parameters.data()};
+  kernel.field(in, std::array<double*, 1>{f});
+}
+
+void StageKernel::indicators(double t, const double* x, const double* held, double* indicator) const {
+  auto& kernel = *implementation_;
+  const std::array<const double*, 4> in{&t, x, held, kernel.parameters.data()};
+  kernel.indicators(in, std::array<double*, 1>{indicator});
+}
+
+}  // namespace saltus::discretization

@@ -1,0 +1,58 @@
+// A dynamic complementarity system at one point, as plain functions of doubles. No CasADi in sight.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+
+namespace saltus::reformulation {
+struct Dcs;
+}
+
+namespace saltus::discretization {
+
+/// f, the indicators and their derivatives at one point; matrices by columns.
+struct StageValues {
+  std::vector<double> f;                 ///< n_x
+  std::vector<double> indicator;         ///< n_selections: psi_j, or g_i
+  std::vector<double> f_x;               ///< n_x by n_x
+  std::vector<double> f_selection;       ///< n_x by n_selections
+  std::vector<double> indicator_x;       ///< n_selections by n_x
+  std::vector<double> indicator_t;       ///< n_selections
+};
+
+/// All functions take t, x (n_x), the selections (n_selections) and what is held (n_held), and write to the caller's
+/// memory. Values that are not finite mark points where the model is undefined. The work space is inside: one kernel
+/// per thread.
+class StageKernel {
+ public:
+  /// `parameters` are the values of Dcs::p. Controls are replaced by their inputs, lifted variables by their products.
+  /// Fails (invalid_model) if the symbolic layer refuses an expression.
+  [[nodiscard]] static Expected<StageKernel> compile(const reformulation::Dcs& dcs, std::vector<double> parameters);
+  StageKernel(StageKernel&&) noexcept;
+  StageKernel& operator=(StageKernel&&) noexcept;
+  ~StageKernel();
+
+  [[nodiscard]] std::size_t states() const;
+  [[nodiscard]] std::size_t selections() const;
+
+  /// Makes `values` as large as evaluate() needs it.
+  void size(StageValues& values) const;
+  /// Everything of StageValues.
+  void evaluate(double t, const double* x, const double* selection, const double* held, StageValues& values) const;
+  /// f alone.
+  void field(double t, const double* x, const double* selection, const double* held, double* f) const;
+  /// The indicators alone.
+  void indicators(double t, const double* x, const double* held, double* indicator) const;
+  /// Evaluations of f so far, with derivatives or without.
+  [[nodiscard]] long evaluations() const;
+
+ private:
+  struct Implementation;
+  explicit StageKernel(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace saltus::discretization

@@ -1,0 +1,40 @@
+// Small dense linear systems of changing size in fixed memory.
+#pragma once
+
+#include <cstddef>
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+
+namespace saltus::fesd_integrator {
+
+/// A y = b by Gaussian elimination with row pivoting; by a complete orthogonal decomposition, that is the solution of
+/// least norm, where A is singular to rounding (weights that are not unique).
+class DenseSystem {
+ public:
+  void reserve(Eigen::Index n) {
+    memory_.resize(n * n);
+    copy_.resize(n * n);
+    right_.resize(n);
+    right_copy_.resize(n);
+  }
+  /// Sets the size, and everything to 0.
+  void reset(Eigen::Index n) {
+    n_ = n;
+    matrix().setZero();
+    right().setZero();
+  }
+  [[nodiscard]] Eigen::Map<Eigen::MatrixXd> matrix() { return {memory_.data(), n_, n_}; }
+  [[nodiscard]] Eigen::Map<Eigen::VectorXd> right() { return {right_.data(), n_}; }
+  /// Leaves the solution in right(); false if something is not finite. Cost: n^3 / 3.
+  [[nodiscard]] bool solve();
+
+ private:
+  [[nodiscard]] bool eliminate();
+
+  Eigen::Index n_ = 0;
+  Eigen::VectorXd memory_, copy_, right_, right_copy_;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal_;
+};
+
+}  // namespace saltus::fesd_integrator

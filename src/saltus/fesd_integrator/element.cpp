@@ -1,0 +1,305 @@
+#include "saltus/fesd_integrator/element.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/fesd_integrator/dense_system_internal.hpp"
+#include "saltus/fesd_integrator/element_polynomial_internal.hpp"
+
+namespace saltus::fesd_integrator {
+namespace {
+
+using discretization::TableauFamily;
+using Vector = Eigen::Map<Eigen::VectorXd>;
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
+using Eigen::Index;
+
+constexpr int most_iterations = 40;
+
+}  // namespace
+
+struct ElementSolver::Implementation {
+  const discretization::StageKernel& kernel;
+  discretization::ButcherTableau tableau;
+  ElementPolynomial polynomial;
+  Index n_x, n_s, n_psi;
+  bool explicit_method, left_limit, ends_at_last_stage;
+
+  DenseSystem system;
+  std::vector<discretization::StageValues> values;  // of the stages; one more for the end
+  Eigen::MatrixXd directions;                       // n_x by n_psi per stage: f_alpha of what slides
+  std::vector<Index> offset;                        // of the unknowns of each stage
+  std::vector<const ActiveSet*> sets;
+  Eigen::VectorXd end, row, mu;
+
+  Implementation(const discretization::StageKernel& kernel_in, discretization::ButcherTableau tableau_in)
+      : kernel(kernel_in), tableau(std::move(tableau_in)), polynomial(tableau) {
+    n_x = static_cast<Index>(kernel.states());
+    n_psi = static_cast<Index>(kernel.selections());
+    n_s = tableau.stages();
+    explicit_method = tableau.family == TableauFamily::explicit_rk;
+    left_limit = tableau.family == TableauFamily::lobatto_iiia;
+    ends_at_last_stage = tableau.ends_at_last_stage();
+    values.resize(static_cast<std::size_t>(n_s + 1));
+    for (auto& stage : values) kernel.size(stage);
+    directions.resize(n_x, n_psi * (n_s + 1));
+    offset.resize(static_cast<std::size_t>(n_s + 1));
+    sets.resize(static_cast<std::size_t>(n_s));
+    system.reserve(n_s * (n_x + n_psi));
+    end.resize(n_x);
+    row.resize(n_x);
+    mu.resize(n_psi);
+  }
+
+  [[nodiscard]] const ActiveSet& set(Index stage) const { return *sets[static_cast<std::size_t>(stage)]; }
+  /// Whether the selections of a stage are known: taken from the left end.
+  [[nodiscard]] bool known(Index stage) const { return left_limit && stage == 0; }
+  [[nodiscard]] Index unknowns(Index stage) const {
+    return known(stage) ? 0 : static_cast<Index>(set(stage).sliding().size());
+  }
+
+  void find_directions(Index stage, const discretization::StageValues& at) {
+    const ConstMatrix f_selection(at.f_selection.data(), n_x, n_psi);
+    Index column = stage * n_psi;
+    for (const Sliding& entry : set(std::min(stage, n_s - 1)).sliding()) {
+      directions.col(column) = f_selection.col(entry.selection);
+      if (entry.reference >= 0) directions.col(column) -= f_selection.col(entry.reference);
+      ++column;
+    }
+  }
+  [[nodiscard]] auto directions_of(Index stage) { return directions.middleCols(stage * n_psi, unknowns(stage)); }
+
+  /// Gradient of surface k of `active` into `row`.
+  void surface_row(const ActiveSet& active, std::size_t k, const discretization::StageValues& at) {
+    const ConstMatrix psi_x(at.indicator_x.data(), n_psi, n_x);
+    const Sliding& entry = active.sliding()[k];
+    row = psi_x.row(entry.selection).transpose();
+    if (entry.reference >= 0) row = psi_x.row(entry.reference).transpose() - row;
+  }
+
+  /// Equations of one Newton step; the unknowns of the selections are their changes times h, as in the states.
+  void assemble(const Element& element);
+  /// Adds a step; the largest change of a state, relative to the largest state.
+  [[nodiscard]] double update(Element& element);
+  [[nodiscard]] bool project(double t, const double* held, Element& element);
+};
+
+void ElementSolver::Implementation::assemble(const Element& element) {
+  system.reset(offset[static_cast<std::size_t>(n_s)]);
+  auto matrix = system.matrix();
+  auto right = system.right();
+  const ConstMatrix states(element.stage_states.data(), n_x, n_s);
+  const ConstVector x_0(element.x.data(), n_x);
+  const auto place = [&](Index stage) { return offset[static_cast<std::size_t>(stage)]; };
+  for (Index m = 0; m < n_s; ++m) {
+    auto residual = right.segment(place(m), n_x);
+    residual = x_0 - states.col(m);
+    for (Index l = 0; l < n_s; ++l) {
+      const double weight = element.h * tableau.A(m, l);
+      if (weight == 0.0) continue;
+      const auto& stage = values[static_cast<std::size_t>(l)];
+      residual += weight * ConstVector(stage.f.data(), n_x);
+      matrix.block(place(m), place(l), n_x, n_x) = -weight * ConstMatrix(stage.f_x.data(), n_x, n_x);
+      if (unknowns(l) > 0) {
+        matrix.block(place(m), place(l) + n_x, n_x, unknowns(l)) = -tableau.A(m, l) * directions_of(l);
+      }
+    }
+    for (Index i = 0; i < n_x; ++i) matrix(place(m) + i, place(m) + i) += 1.0;
+  }
+  for (Index m = 0; m < n_s; ++m) {
+    // The equations of the selections of stage m: at its own state, or one stage later.
+    const Index point = explicit_method && sets[0] == sets.back() ? m + 1 : m;
+    const auto& at = values[static_cast<std::size_t>(point)];
+    for (Index k = 0; k < unknowns(m); ++k) {
+      const Index equation = place(m) + n_x + k;
+      surface_row(set(m), static_cast<std::size_t>(k), at);
+      right(equation) = -set(m).surface(static_cast<std::size_t>(k), at.indicator.data());
+      if (point < n_s) {
+        matrix.block(equation, place(point), 1, n_x) = row.transpose();
+        continue;
+      }
+      for (Index l = 0; l < n_s; ++l) {
+        const auto& stage = values[static_cast<std::size_t>(l)];
+        matrix.block(equation, place(l), 1, n_x) =
+            element.h * tableau.b(l) * row.transpose() * ConstMatrix(stage.f_x.data(), n_x, n_x);
+        if (unknowns(l) > 0) {
+          matrix.block(equation, place(l) + n_x, 1, unknowns(l)) = tableau.b(l) * row.transpose() * directions_of(l);
+        }
+      }
+    }
+  }
+}
+
+double ElementSolver::Implementation::update(Element& element) {
+  Eigen::Map<Eigen::MatrixXd> states(element.stage_states.data(), n_x, n_s);
+  const auto step = system.right();
+  double change = 0.0;
+  for (Index m = 0; m < n_s; ++m) {
+    const Index begin = offset[static_cast<std::size_t>(m)];
+    change = std::max(change, step.segment(begin, n_x).cwiseAbs().maxCoeff());
+    states.col(m) += step.segment(begin, n_x);
+    double* all = element.stage_selections.data() + m * n_psi;
+    const auto& sliding = set(m).sliding();
+    for (Index k = 0; k < unknowns(m); ++k) {
+      const Sliding& entry = sliding[static_cast<std::size_t>(k)];
+      const double correction = step(begin + n_x + k) / element.h;
+      all[entry.selection] += correction;
+      if (entry.reference >= 0) all[entry.reference] -= correction;
+    }
+  }
+  const double size = states.cwiseAbs().maxCoeff();
+  return size > 0.0 ? change / size : change;
+}
+
+/// NOTE: without this the methods with c_s != 1 lose half their order on curved surfaces.
+bool ElementSolver::Implementation::project(double t, const double* held, Element& element) {
+  auto& at = values[static_cast<std::size_t>(n_s)];
+  const ActiveSet& active = set(n_s - 1);
+  const auto count = static_cast<Index>(active.sliding().size());
+  const double* selections = element.stage_selections.data() + (n_s - 1) * n_psi;
+  Vector x_1(element.end.data(), n_x);
+  double before = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    kernel.evaluate(t + element.h, element.end.data(), selections, held, at);
+    if (iteration == 0) find_directions(n_s, at);
+    const auto along = directions.middleCols(n_s * n_psi, count);
+    system.reset(count);
+    auto matrix = system.matrix();
+    auto right = system.right();
+    for (Index k = 0; k < count; ++k) {
+      surface_row(active, static_cast<std::size_t>(k), at);
+      for (Index l = 0; l < count; ++l) matrix(k, l) = row.dot(along.col(l));
+      right(k) = -active.surface(static_cast<std::size_t>(k), at.indicator.data());
+    }
+    if (!system.solve()) return false;
+    for (Index l = 0; l < count; ++l) x_1 += system.right()(l) * along.col(l);
+    double change = 0.0;
+    for (Index i = 0; i < n_x; ++i) {
+      double moved = 0.0;
+      for (Index l = 0; l < count; ++l) moved += system.right()(l) * along(i, l);
+      change = std::max(change, std::abs(moved));
+    }
+    const double size = x_1.cwiseAbs().maxCoeff();
+    if (change <= 1e-15 * size || (change <= 1e-12 * size && change >= 0.5 * before)) return true;
+    if (change <= 1e-9 * size && before <= 1e-4 * size) return true;
+    before = change;
+  }
+  return false;
+}
+
+ElementSolver::ElementSolver(const discretization::StageKernel& kernel, discretization::ButcherTableau tableau)
+    : implementation_(std::make_unique<Implementation>(kernel, std::move(tableau))) {}
+ElementSolver::ElementSolver(ElementSolver&&) noexcept = default;
+ElementSolver& ElementSolver::operator=(ElementSolver&&) noexcept = default;
+ElementSolver::~ElementSolver() = default;
+
+const discretization::ButcherTableau& ElementSolver::tableau() const { return implementation_->tableau; }
+
+ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::span<const ActiveSet> sets,
+                                            const double* held, Guess guess, Element& element) {
+  auto& self = *implementation_;
+  const auto n_x = static_cast<std::size_t>(self.n_x), n_s = static_cast<std::size_t>(self.n_s),
+             n_psi = static_cast<std::size_t>(self.n_psi);
+  SALTUS_ASSERT(sets.size() == 1 || sets.size() == n_s);
+  element.t = left.t;
+  element.h = h;
+  element.x = left.x;
+  element.stage_states.resize(n_x * n_s);
+  element.stage_slopes.resize(n_x * n_s);
+  element.stage_selections.resize(n_psi * n_s);
+  element.end.resize(n_x);
+  for (std::size_t m = 0; m < n_s; ++m) {
+    self.sets[m] = &sets[sets.size() == 1 ? 0 : m];
+    self.offset[m + 1] = self.offset[m] + self.n_x + self.unknowns(static_cast<Index>(m));
+    double* selections = element.stage_selections.data() + m * n_psi;
+    if (guess == Guess::left_end) {
+      std::copy(left.x.begin(), left.x.end(), element.stage_states.begin() + static_cast<std::ptrdiff_t>(m * n_x));
+      std::copy(left.selections.begin(), left.selections.end(), selections);
+    }
+    // Not at their bounds: there, derivatives of guarded branches are missing.
+    self.mu.head(static_cast<Index>(self.sets[m]->sliding().size())).setZero();
+    self.sets[m]->unknowns(selections, self.mu.data());
+    if (!self.known(static_cast<Index>(m))) {
+      for (std::size_t k = 0; k < self.sets[m]->sliding().size(); ++k) {
+        const bool region = self.sets[m]->sliding()[k].reference >= 0;
+        double& value = self.mu(static_cast<Index>(k));
+        value = region ? value : std::clamp(value, 1e-3, 1.0 - 1e-3);
+      }
+    }
+    self.sets[m]->selections(self.mu.data(), selections);
+  }
+  const auto slope_to_values = [&] {
+    for (std::size_t m = 0; m < n_s; ++m) {
+      self.kernel.evaluate(element.t + h * self.tableau.c(static_cast<Index>(m)),
+                           element.stage_states.data() + m * n_x, element.stage_selections.data() + m * n_psi, held,
+                           self.values[m]);
+      self.find_directions(static_cast<Index>(m), self.values[m]);
+    }
+    if (self.ends_at_last_stage && !self.explicit_method) return;
+    self.end = ConstVector(element.x.data(), self.n_x);
+    for (std::size_t m = 0; m < n_s; ++m) {
+      self.end += h * self.tableau.b(static_cast<Index>(m)) * ConstVector(self.values[m].f.data(), self.n_x);
+    }
+  };
+  const bool slides = !sets.front().sliding().empty();
+  const bool at_end = self.explicit_method && sets.size() == 1 && slides;
+  double before = std::numeric_limits<double>::infinity();
+  for (int iteration = 0;; ++iteration) {
+    if (iteration == most_iterations) return Outcome::not_converged;
+    slope_to_values();
+    if (at_end) {
+      self.kernel.evaluate(element.t + h, self.end.data(), element.stage_selections.data() + (n_s - 1) * n_psi, held,
+                           self.values[n_s]);
+    }
+    self.assemble(element);
+    if (!self.system.solve()) return Outcome::not_finite;
+    const double change = self.update(element);
+    if (!std::isfinite(change)) return Outcome::not_finite;
+    // Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are
+    // roundings.
+    if (change <= 1e-15 || (change <= 1e-9 && before <= 1e-3) || (change <= 1e-12 && change >= 0.25 * before)) break;
+    before = change;
+  }
+  for (std::size_t m = 0; m < n_s; ++m) {
+    self.kernel.field(element.t + h * self.tableau.c(static_cast<Index>(m)), element.stage_states.data() + m * n_x,
+                      element.stage_selections.data() + m * n_psi, held, element.stage_slopes.data() + m * n_x);
+  }
+  if (self.ends_at_last_stage && !self.explicit_method) {
+    std::copy_n(element.stage_states.end() - static_cast<std::ptrdiff_t>(n_x), n_x, element.end.begin());
+  } else {
+    Vector end(element.end.data(), self.n_x);
+    end = ConstVector(element.x.data(), self.n_x) +
+          h * ConstMatrix(element.stage_slopes.data(), self.n_x, self.n_s) * self.tableau.b;
+    if (sets.size() == 1 && slides && !self.project(element.t, held, element)) return Outcome::not_converged;
+  }
+  const ConstVector end(element.end.data(), self.n_x);
+  return end.allFinite() ? Outcome::solved : Outcome::not_finite;
+}
+
+void ElementSolver::interpolate(const Element& element, double theta, double* x) const {
+  implementation_->polynomial.evaluate(element, theta, x);
+}
+
+void ElementSolver::extrapolate(const Element& element, double h, Element& next) const {
+  const auto& self = *implementation_;
+  next.stage_states.resize(element.stage_states.size());
+  next.stage_selections = element.stage_selections;
+  for (Index m = 0; m < self.n_s; ++m) {
+    const double theta = 1.0 + self.tableau.c(m) * h / element.h;
+    self.polynomial.evaluate(element, theta, next.stage_states.data() + m * self.n_x);
+  }
+}
+
+const std::vector<double>& ElementSolver::watch_points() const { return implementation_->polynomial.watch_points(); }
+
+void ElementSolver::watch_state(const Element& element, std::size_t point, double* x) const {
+  implementation_->polynomial.watch_state(element, point, x);
+}
+
+}  // namespace saltus::fesd_integrator

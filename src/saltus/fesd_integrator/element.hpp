@@ -1,0 +1,73 @@
+// One finite element: the Runge-Kutta equations of a dynamic complementarity system in a given active set.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// Where an element begins: time, state, and the selections there in its own active set.
+struct Point {
+  double t = 0.0;
+  std::vector<double> x;           ///< n_x
+  std::vector<double> selections;  ///< all, the limit from the right
+};
+
+/// A solved element. Columns of matrices are stages.
+struct Element {
+  double t = 0.0;  ///< left end
+  double h = 0.0;
+  std::vector<double> x;             ///< left end
+  std::vector<double> stage_states;  ///< n_x by n_s
+  std::vector<double> stage_slopes;  ///< n_x by n_s: f at the stages
+  std::vector<double> stage_selections;  ///< n_selections by n_s
+  std::vector<double> end;           ///< n_x: right end, on the surfaces that slide
+};
+
+/// Solves, for given h and one active set per stage,
+///   x_m = x_0 + h sum_l a_ml f(t_l, x_l, alpha_l),   surfaces of the set of stage m = 0 at x_m,   m = 1 ... n_s
+/// for x_m and the selections that slide. Within an element of FESD all sets are the same, (37) of [nurkanovic2024];
+/// without switch detection each stage has its own. Exceptions:
+///   c_s != 1, one set: the end is projected, x_1 = x_0 + h sum_l b_l f_l + f_alpha mu, surfaces = 0 at x_1;
+///   Lobatto IIIA: the selections of the first stage are those of the element's left end, they are in no equation;
+///   explicit methods, one set: the surfaces are zero at the stage after, behind the last at the end (half-explicit).
+///
+/// Newton's method with exact derivatives, to rounding; steps of least norm where the selections are not unique.
+/// No allocation in solve() once elements have their size. One solver per thread.
+class ElementSolver {
+ public:
+  /// The kernel must outlive the solver.
+  ElementSolver(const discretization::StageKernel& kernel, discretization::ButcherTableau tableau);
+  ElementSolver(ElementSolver&&) noexcept;
+  ElementSolver& operator=(ElementSolver&&) noexcept;
+  ~ElementSolver();
+
+  enum class Outcome { solved, not_converged, not_finite };
+  /// `sets`: one, or one per stage. `held`: values of Dcs::held. The stage values in `element` are the first guess
+  /// if `warm`, else the left end is. Cost: n_Newton (n_s evaluations + (n_s (n_x + n_sliding))^3 / 3).
+  enum class Guess { left_end, stages };
+  [[nodiscard]] Outcome solve(const Point& left, double h, std::span<const ActiveSet> sets, const double* held,
+                              Guess guess, Element& element);
+  /// x(t + theta h): for collocation and Lobatto methods the polynomial of degree n_s with the slopes of the stages,
+  /// eq. (46) of [nurkanovic2024]; for explicit ones the cubic through both ends with the slopes there.
+  void interpolate(const Element& element, double theta, double* x) const;
+  /// Stage values of the element behind `element` of the same length, continued along its polynomial.
+  void extrapolate(const Element& element, double h, Element& next) const;
+
+  /// Ascending theta in [0, 1], both ends among them, where signs are looked at, and the states there.
+  [[nodiscard]] const std::vector<double>& watch_points() const;
+  void watch_state(const Element& element, std::size_t point, double* x) const;
+
+  [[nodiscard]] const discretization::ButcherTableau& tableau() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace saltus::fesd_integrator

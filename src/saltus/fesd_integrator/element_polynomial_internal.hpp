@@ -1,0 +1,36 @@
+// The state between the ends of an element.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/discretization/butcher_tableau.hpp"
+
+namespace saltus::fesd_integrator {
+
+struct Element;
+
+/// x(t + theta h) = x_0 + h sum_m B_m(theta) f_m, where B_m is the integral of the m-th Lagrange polynomial of the nodes
+/// c: the collocation polynomial, eq. (46) of [nurkanovic2024]. Of explicit methods, whose nodes coincide, the cubic
+/// through both ends with the slope at the first, and the one at the second that the first and last stage continue to.
+class ElementPolynomial {
+ public:
+  explicit ElementPolynomial(const discretization::ButcherTableau& tableau);
+  void evaluate(const Element& element, double theta, double* x) const;
+  [[nodiscard]] const std::vector<double>& watch_points() const { return watch_points_; }
+  void watch_state(const Element& element, std::size_t point, double* x) const;
+
+ private:
+  [[nodiscard]] double weight(Eigen::Index stage, double theta) const;
+
+  bool hermite_ = false;
+  double last_node_ = 1.0;
+  bool stages_on_polynomial_ = false;
+  Eigen::MatrixXd integrals_;  ///< coefficients of theta, theta^2, …; one column per stage
+  std::vector<double> watch_points_;
+  std::vector<int> watch_stage_;  ///< -1 left end, -2 right end, -3 somewhere else
+};
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,95 @@
+#include "saltus/fesd_integrator/projected_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saltus/fesd_integrator/dense_system_internal.hpp"
+
+namespace saltus::fesd_integrator {
+
+struct ProjectedField::Work {
+  DenseSystem system;
+  std::vector<double> unknown;
+};
+
+ProjectedField::ProjectedField(const discretization::StageKernel& kernel)
+    : kernel_(kernel), work_(std::make_unique<Work>()) {
+  kernel.size(values_);
+  const std::size_t n = kernel.selections();
+  work_->system.reserve(static_cast<Eigen::Index>(n));
+  work_->unknown.resize(n);
+}
+ProjectedField::ProjectedField(ProjectedField&&) noexcept = default;
+ProjectedField::~ProjectedField() = default;
+
+bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections) {
+  const auto& sliding = set.sliding();
+  const std::size_t count = sliding.size(), n_x = kernel_.states(), n = kernel_.selections();
+  double* unknown = work_->unknown.data();
+  set.unknowns(selections, unknown);
+  for (std::size_t k = 0; k < count; ++k) {
+    // Not at their bounds: there, derivatives of guarded branches are missing.
+    if (sliding[k].reference < 0) unknown[k] = std::clamp(unknown[k], 1e-3, 1.0 - 1e-3);
+  }
+  set.selections(unknown, selections);
+  double before = std::numeric_limits<double>::infinity();
+  constexpr int most_iterations = 30;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    kernel_.evaluate(t, x, selections, held, values_);
+    if (count == 0) return true;
+    auto& system = work_->system;
+    system.reset(static_cast<Eigen::Index>(count));
+    auto matrix = system.matrix();
+    auto right = system.right();
+    for (std::size_t k = 0; k < count; ++k) {
+      double rate = set.surface(k, values_.indicator_t.data());
+      for (std::size_t i = 0; i < n_x; ++i) {
+        const double gradient = set.surface(k, values_.indicator_x.data() + i * n);
+        if (gradient == 0.0) continue;
+        rate += gradient * values_.f[i];
+        for (std::size_t l = 0; l < count; ++l) {
+          const auto j = static_cast<std::size_t>(sliding[l].selection);
+          double along = values_.f_selection[j * n_x + i];
+          if (sliding[l].reference >= 0) {
+            along -= values_.f_selection[static_cast<std::size_t>(sliding[l].reference) * n_x + i];
+          }
+          matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) += gradient * along;
+        }
+      }
+      right(static_cast<Eigen::Index>(k)) = -rate;
+    }
+    if (!system.solve()) return false;
+    double change = 0.0;
+    for (std::size_t l = 0; l < count; ++l) {
+      const double step = system.right()(static_cast<Eigen::Index>(l));
+      unknown[l] += step;
+      change = std::max(change, std::abs(step));
+    }
+    set.selections(unknown, selections);
+    // Selections are of size 1: 1e-9 and quadratic convergence are rounding; or steps that no longer shrink.
+    if ((change <= 1e-9 && before <= 1e-3) || change <= 1e-15 || (change <= 1e-10 && change >= 0.25 * before)) {
+      kernel_.evaluate(t, x, selections, held, values_);
+      return true;
+    }
+    if (change > 1e6) return false;
+    before = change;
+  }
+  return false;
+}
+
+void ProjectedField::rates(std::vector<double>& rate, std::vector<double>& magnitude) const {
+  const std::size_t n_x = kernel_.states(), n = kernel_.selections();
+  rate.assign(values_.indicator_t.begin(), values_.indicator_t.end());
+  magnitude.resize(n);
+  for (std::size_t j = 0; j < n; ++j) magnitude[j] = std::abs(rate[j]);
+  for (std::size_t i = 0; i < n_x; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const double term = values_.indicator_x[i * n + j] * values_.f[i];
+      rate[j] += term;
+      magnitude[j] += std::abs(term);
+    }
+  }
+}
+
+}  // namespace saltus::fesd_integrator

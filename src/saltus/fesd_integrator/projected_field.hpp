@@ -1,0 +1,38 @@
+// The motion in an active set at a point, without an element: selections that keep the surfaces at zero.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// Solves d/dt (surfaces of the set) = 0 along f for the selections that slide,
+///   surface_x f(t, x, alpha) + surface_t = 0,
+/// by Newton's method from the values it is handed (steps of least norm where they are not unique).
+/// Why: these are functions of the point alone, as accurate as x is, where the stages' own are of the lower order of an
+/// index-2 variable; so the end of sliding is found with the order of the method.
+class ProjectedField {
+ public:
+  /// The kernel must outlive it.
+  explicit ProjectedField(const discretization::StageKernel& kernel);
+  ProjectedField(ProjectedField&&) noexcept;
+  ~ProjectedField();
+
+  /// @param selections  all of them; the sliding ones are found
+  /// @return false where Newton's method finds none. values() are those at the solution.
+  [[nodiscard]] bool solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections);
+  [[nodiscard]] const discretization::StageValues& values() const { return values_; }
+  /// Rates d psi / dt (or d g / dt) of all indicators along values().f, and the sums of the magnitudes of their terms.
+  void rates(std::vector<double>& rate, std::vector<double>& magnitude) const;
+
+ private:
+  const discretization::StageKernel& kernel_;
+  discretization::StageValues values_;
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,241 @@
+#include "saltus/fesd_integrator/transition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace saltus::fesd_integrator {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Rates and selections within this of their bounds are not decided by first derivatives. Events are located to about
+/// 1e-12; a selection that ends there is off by that, times the conditioning of its equation.
+constexpr double undecided = 1e-7;
+
+constexpr std::size_t most_patterns = 20000;
+
+}  // namespace
+
+Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
+    : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver) {
+  part_of_.resize(kernel.selections());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (int j = parts[p].first; j < parts[p].first + parts[p].count; ++j) part_of_[at(j)] = static_cast<int>(p);
+  }
+}
+
+/// Which functions are zero at the point, in groups that influence each other; signs of the others into `modes`.
+void Transition::find_groups(const Decision& decision, std::vector<int>& modes) {
+  const std::size_t n = kernel_.selections(), n_x = kernel_.states();
+  groups_.clear();
+  modes.assign(n, -1);
+  std::vector<double> middle(n, 0.5);
+  discretization::StageValues values;
+  kernel_.size(values);
+  kernel_.evaluate(decision.t, decision.x.data(), middle.data(), decision.held, values);
+  indicator_noise(values, decision.t, decision.x, noise_);
+  const auto forced = [&](int j) {
+    return std::find(decision.at_zero.begin(), decision.at_zero.end(), j) != decision.at_zero.end();
+  };
+  std::vector<int> members;
+  for (const Part& part : parts_) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int j = part.first; j < part.first + part.count; ++j) {
+      smallest = std::min(smallest, values.indicator[at(j)]);
+    }
+    const std::size_t begin = members.size();
+    for (int j = part.first; j < part.first + part.count; ++j) {
+      const double value = part.simplex ? values.indicator[at(j)] - smallest : values.indicator[at(j)];
+      const bool zero = std::abs(value) <= 4.0 * noise_[at(j)] || forced(j);
+      if (zero) members.push_back(j);
+      modes[at(j)] = zero && part.simplex ? 0 : value > 0.0 && !part.simplex ? 1 : -1;
+    }
+    if (part.simplex && members.size() == begin + 1) members.pop_back();  // one region: nothing to decide
+  }
+  if (members.empty()) return;
+
+  // Groups: i influences j where d(psi_j)/dt depends on selection i, at any of three points of the cube.
+  std::vector<int> group(members.size());
+  std::iota(group.begin(), group.end(), 0);
+  const auto join = [&](std::size_t a, std::size_t b) {
+    const int from = group[b], to = group[a];
+    std::replace(group.begin(), group.end(), from, to);
+  };
+  for (const double level : {0.5, 0.0, 1.0}) {
+    std::vector<double> selections(n);
+    for (std::size_t j = 0; j < n; ++j) selections[j] = modes[j] > 0 ? 1.0 : 0.0;
+    for (const int j : members) selections[at(j)] = level;
+    kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values);
+    for (std::size_t a = 0; a < members.size(); ++a) {
+      for (std::size_t b = 0; b < members.size(); ++b) {
+        if (group[a] == group[b]) continue;
+        const bool one_simplex =
+            part_of_[at(members[a])] == part_of_[at(members[b])] && parts_[at(part_of_[at(members[a])])].simplex;
+        bool influences = one_simplex;
+        for (std::size_t i = 0; i < n_x && !influences; ++i) {
+          influences = values.indicator_x[i * n + at(members[a])] * values.f_selection[at(members[b]) * n_x + i] != 0.0;
+        }
+        if (influences) join(a, b);
+      }
+    }
+  }
+  for (std::size_t a = 0; a < members.size(); ++a) {
+    if (std::find(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(a), group[a]) !=
+        group.begin() + static_cast<std::ptrdiff_t>(a)) {
+      continue;
+    }
+    Group& entry = groups_.emplace_back();
+    for (std::size_t b = a; b < members.size(); ++b) {
+      if (group[b] == group[a]) entry.members.push_back(members[b]);
+    }
+    entry.patterns = patterns_of(entry, decision);
+  }
+}
+
+std::vector<std::vector<int>> Transition::patterns_of(const Group& group, const Decision& decision) const {
+  std::vector<std::vector<int>> patterns{{}};
+  for (const int j : group.members) {
+    const bool region = parts_[at(part_of_[at(j)])].simplex;
+    std::vector<std::vector<int>> longer;
+    for (const auto& pattern : patterns) {
+      for (const int mode : {0, -1, 1}) {
+        if (region && mode == 1) continue;
+        longer.push_back(pattern);
+        longer.back().push_back(mode);
+      }
+      if (longer.size() > most_patterns) return {};
+    }
+    patterns = std::move(longer);
+  }
+  // Every simplex needs an active region.
+  std::erase_if(patterns, [&](const auto& pattern) {
+    for (std::size_t k = 0; k < pattern.size(); ++k) {
+      const int part = part_of_[at(group.members[k])];
+      if (!parts_[at(part)].simplex) continue;
+      bool active = false;
+      for (std::size_t l = 0; l < pattern.size(); ++l) {
+        active = active || (part_of_[at(group.members[l])] == part && pattern[l] == 0);
+      }
+      if (!active) return true;
+    }
+    return false;
+  });
+  const auto rank = [&](const auto& pattern) {
+    int changes = 0, sliding = 0;
+    for (std::size_t k = 0; k < pattern.size(); ++k) {
+      if (decision.before != nullptr) changes += decision.before->modes()[at(group.members[k])] != pattern[k] ? 1 : 0;
+      sliding += parts_[at(part_of_[at(group.members[k])])].simplex && pattern[k] == 0 ? 1 : 0;
+    }
+    return std::pair(changes, sliding);
+  };
+  std::stable_sort(patterns.begin(), patterns.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  return patterns;
+}
+
+/// How clearly the signs of a group hold just behind the point: > 0 they do, < 0 they do not, relative to the size of
+/// what is compared; the candidate gets its selections.
+double Transition::margin(const Decision& decision, const Group& group, Continuation& candidate) {
+  const auto& set = candidate.set;
+  std::vector<double> unknown(set.sliding().size(), 0.5);
+  candidate.selections.resize(kernel_.selections());
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    if (set.sliding()[k].reference >= 0) unknown[k] = 1.0 / static_cast<double>(set.sliding().size() + 1);
+  }
+  set.selections(unknown.data(), candidate.selections.data());
+  if (!projected_.solve(decision.t, decision.x.data(), set, decision.held, candidate.selections.data())) return -1.0;
+  projected_.rates(rate_, magnitude_);
+  double least = 1.0;
+  for (const Condition& condition : set.conditions()) {
+    if (std::find(group.members.begin(), group.members.end(), condition.selection) == group.members.end()) continue;
+    double value = set.value(condition, rate_.data(), candidate.selections.data());
+    if (condition.kind == Condition::Kind::side) {
+      double size = magnitude_[at(condition.selection)];
+      for (const int j : group.members) {
+        if (part_of_[at(j)] == part_of_[at(condition.selection)] && parts_[at(part_of_[at(j)])].simplex) {
+          size = std::max(size, magnitude_[at(j)]);
+        }
+      }
+      value = size > 0.0 ? value / size : 0.0;
+    }
+    if (!std::isfinite(value)) return -1.0;
+    least = std::min(least, value);
+  }
+  return least;
+}
+
+bool Transition::passes_trial(const Decision& decision, const Group& group, const Continuation& candidate) {
+  const Point left{decision.t, {decision.x.begin(), decision.x.end()}, candidate.selections};
+  const auto outcome = solver_.solve(left, decision.trial_length, {&candidate.set, 1}, decision.held,
+                                     ElementSolver::Guess::left_end, trial_);
+  if (outcome != ElementSolver::Outcome::solved) return false;
+  auto selections = candidate.selections;
+  Violation violation;
+  const auto answer = watch_.look(trial_, candidate.set, decision.held, selections, violation);
+  if (answer == Watch::Answer::not_finite) return false;
+  if (answer == Watch::Answer::holds || violation.theta > 0.25) return true;
+  const auto& members = group.members;
+  return std::find(members.begin(), members.end(), violation.condition.selection) == members.end();
+}
+
+std::vector<Continuation> Transition::continuations(const Decision& decision) {
+  std::vector<int> modes;
+  find_groups(decision, modes);
+  // A first guess at every group, so that each is asked with the others in place: what has the largest margin.
+  struct Option {
+    std::vector<int> pattern;
+    double margin = 0.0;
+  };
+  std::vector<std::vector<Option>> options(groups_.size());
+  const auto put = [](const Group& group, const std::vector<int>& pattern, std::vector<int>& into) {
+    for (std::size_t k = 0; k < pattern.size(); ++k) into[at(group.members[k])] = pattern[k];
+  };
+  std::vector<int> guess = modes;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    double best = -2.0;
+    for (const auto& pattern : groups_[g].patterns) {
+      auto trial = modes;
+      put(groups_[g], pattern, trial);
+      Continuation candidate{ActiveSet(parts_, trial), {}};
+      const double value = margin(decision, groups_[g], candidate);
+      if (value < -undecided) continue;
+      options[g].push_back({pattern, value});
+      if (value <= best) continue;
+      best = value;
+      put(groups_[g], pattern, guess);
+    }
+    if (options[g].empty()) return {};
+  }
+  std::vector<std::vector<std::vector<int>>> admissible(groups_.size());
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    for (const Option& option : options[g]) {
+      if (option.margin <= undecided) {
+        auto trial = guess;
+        put(groups_[g], option.pattern, trial);
+        Continuation candidate{ActiveSet(parts_, trial), {}};
+        if (margin(decision, groups_[g], candidate) < -undecided) continue;
+        if (!passes_trial(decision, groups_[g], candidate)) continue;
+      }
+      admissible[g].push_back(option.pattern);
+    }
+    if (admissible[g].empty()) return {};
+    put(groups_[g], admissible[g].front(), guess);
+  }
+  std::vector<Continuation> found;
+  const auto keep = [&](const std::vector<int>& chosen) {
+    Continuation candidate{ActiveSet(parts_, chosen), {}};
+    const Group none;
+    if (margin(decision, none, candidate) > 0.0) found.push_back(std::move(candidate));
+  };
+  keep(guess);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    for (std::size_t k = 1; k < admissible[g].size(); ++k) {
+      auto other = guess;
+      put(groups_[g], admissible[g][k], other);
+      keep(other);
+    }
+  }
+  return found;
+}
+
+}  // namespace saltus::fesd_integrator

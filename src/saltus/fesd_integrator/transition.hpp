@@ -1,0 +1,68 @@
+// The next active set at a point: by enumeration of the patterns that are possible there.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/element.hpp"
+#include "saltus/fesd_integrator/projected_field.hpp"
+#include "saltus/fesd_integrator/watch.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// A set that continues the solution, with the selections of its projected field.
+struct Continuation {
+  ActiveSet set;
+  std::vector<double> selections;
+};
+
+/// What is known of a point where a set ended.
+struct Decision {
+  double t = 0.0;
+  std::span<const double> x;
+  const double* held = nullptr;
+  const ActiveSet* before = nullptr;  ///< nullptr at a start
+  std::span<const int> at_zero{};     ///< selections whose indicator is zero there whatever its rounding
+  double trial_length = 0.0;          ///< of an element, where first derivatives do not decide
+};
+
+/// All sets that continue a solution from a point. Of the functions that are zero there, every pattern of signs and
+/// sliding (every set of active regions) is asked: with the selections of its projected field, do its signs hold just
+/// behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a short
+/// element does. Functions that do not influence each other are enumerated one by one.
+///
+/// The order of the answers: fewest changes from the set before; then, one function after the other, sliding, below,
+/// above (regions: fewest active ones, then their numbers).
+class Transition {
+ public:
+  Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver);
+
+  /// Empty if nothing continues. Cost: 3^m evaluations for m functions that influence each other, at most `most_patterns`.
+  [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision);
+
+ private:
+  struct Group {
+    std::vector<int> members;                ///< functions of the step form, or regions of a simplex
+    std::vector<std::vector<int>> patterns;  ///< modes of the members
+  };
+  void find_groups(const Decision& decision, std::vector<int>& modes);
+  [[nodiscard]] std::vector<std::vector<int>> patterns_of(const Group& group, const Decision& decision) const;
+  [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
+  [[nodiscard]] bool passes_trial(const Decision& decision, const Group& group, const Continuation& candidate);
+
+  const discretization::StageKernel& kernel_;
+  std::span<const Part> parts_;
+  ElementSolver& solver_;
+  ProjectedField projected_;
+  Watch watch_;
+  Element trial_;
+  std::vector<Group> groups_;
+  std::vector<int> part_of_;
+  std::vector<double> rate_, magnitude_, noise_;
+};
+
+}  // namespace saltus::fesd_integrator

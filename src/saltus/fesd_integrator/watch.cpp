@@ -1,0 +1,124 @@
+#include "saltus/fesd_integrator/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saltus/ode/bernstein.hpp"
+
+namespace saltus::fesd_integrator {
+namespace {
+
+/// Value at theta of the k-th Lagrange polynomial of these points.
+double lagrange(const std::vector<double>& points, std::size_t k, double theta) {
+  double product = 1.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i != k) product *= (theta - points[i]) / (points[k] - points[i]);
+  }
+  return product;
+}
+
+/// Roundings of a selection: those of a few operations, amplified by the solution of a small linear system.
+constexpr double selection_noise = 1e-12;
+
+}  // namespace
+
+void indicator_noise(const discretization::StageValues& values, double t, std::span<const double> x,
+                     std::vector<double>& noise) {
+  constexpr double roundings = 16.0 * std::numeric_limits<double>::epsilon();
+  const std::size_t n = values.indicator.size();
+  noise.resize(n);
+  double largest = 0.0;  // Newton's method is accurate relative to the largest state
+  for (const double component : x) largest = std::max(largest, std::abs(component));
+  for (std::size_t j = 0; j < n; ++j) {
+    double sum = std::abs(values.indicator_t[j] * t) + std::abs(values.indicator[j]);
+    for (std::size_t i = 0; i < x.size(); ++i) sum += std::abs(values.indicator_x[i * n + j]) * largest;
+    noise[j] = roundings * sum;
+  }
+}
+
+Watch::Watch(const discretization::StageKernel& kernel, const ElementSolver& solver)
+    : kernel_(kernel), solver_(solver), projected_(kernel), points_(solver.watch_points().size()) {
+  const auto& thetas = solver.watch_points();
+  for (const double node : ode::interpolation_nodes()) {
+    for (std::size_t k = 0; k < points_; ++k) to_nodes_.push_back(lagrange(thetas, k, node));
+  }
+  constexpr int samples = 200;
+  for (int i = 0; i <= samples; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < points_; ++k) sum += std::abs(lagrange(thetas, k, static_cast<double>(i) / samples));
+    lebesgue_ = std::max(lebesgue_, sum);
+  }
+  lebesgue_ *= 1.01;  // between the samples
+  indicators_.resize(points_ * kernel.selections());
+  selections_.resize(points_ * kernel.selections());
+  values_.resize(points_);
+  x_.resize(kernel.states());
+  kernel.size(left_);
+}
+
+double Watch::noise(const Condition& condition) const {
+  return condition.kind == Condition::Kind::side ? noise_[static_cast<std::size_t>(condition.selection)]
+                                                 : selection_noise;
+}
+
+double Watch::end_value(const ActiveSet& set, const Condition& condition) const {
+  const std::size_t last = (points_ - 1) * kernel_.selections();
+  return set.value(condition, indicators_.data() + last, selections_.data() + last);
+}
+
+Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const double* held,
+                          std::vector<double>& selections, Violation& earliest) {
+  const std::size_t n = kernel_.selections();
+  const auto& thetas = solver_.watch_points();
+  const bool slides = !set.sliding().empty();
+  // Gradients at the left end give the rounding level; between the ends of an element it is the same.
+  kernel_.evaluate(element.t, element.x.data(), selections.data(), held, left_);
+  indicator_noise(left_, element.t + element.h, element.x, noise_);
+  for (std::size_t i = 0; i < points_; ++i) {
+    const double t = element.t + thetas[i] * element.h;
+    double* at = selections_.data() + i * n;
+    std::copy(selections.begin(), selections.end(), at);
+    solver_.watch_state(element, i, x_.data());
+    if (slides) {
+      if (!projected_.solve(t, x_.data(), set, held, at)) return Answer::not_finite;
+      std::copy(at, at + n, selections.begin());
+    }
+    kernel_.indicators(t, x_.data(), held, indicators_.data() + i * n);
+  }
+  bool found = false;
+  earliest.theta = std::numeric_limits<double>::infinity();
+  for (const Condition& condition : set.conditions()) {
+    for (std::size_t i = 0; i < points_; ++i) {
+      values_[i] = set.value(condition, indicators_.data() + i * n, selections_.data() + i * n);
+      if (!std::isfinite(values_[i])) return Answer::not_finite;
+    }
+    first_change(condition, earliest, found);
+  }
+  return found ? Answer::violated : Answer::holds;
+}
+
+void Watch::first_change(const Condition& condition, Violation& earliest, bool& found) {
+  const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
+  if (0.5 * (*low + *high) > lebesgue_ * 0.5 * (*high - *low)) return;
+  const double level = noise(condition);
+  std::array<double, ode::event_nodes> nodes{};
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    for (std::size_t k = 0; k < points_; ++k) nodes[node] += to_nodes_[node * points_ + k] * values_[k];
+  }
+  nodes.front() = values_.front();
+  nodes.back() = values_.back();
+  const auto polynomial = ode::to_bernstein(nodes);
+  const int zero_order = std::abs(values_.front()) <= level ? 1 : 0;
+  if (ode::certainly_no_sign_change(polynomial, 1, zero_order, level)) return;
+  const auto change = ode::first_sign_change(polynomial, 1, zero_order, level);
+  if (!change || change->lower >= earliest.theta) return;
+  found = true;
+  constexpr double small = 1e-4;
+  const double at = std::clamp(change->upper, small, 1.0 - small);
+  earliest = {condition, change->upper,
+              (ode::evaluate(polynomial, at + small) - ode::evaluate(polynomial, at - small)) / (2.0 * small)};
+  if (change->upper == 0.0 || change->lower == 0.0) earliest.theta = change->upper <= 1e-12 ? 0.0 : change->upper;
+}
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,60 @@
+// Where in an element the signs of its active set end.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/element.hpp"
+#include "saltus/fesd_integrator/projected_field.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// A condition that does not hold behind `theta` of an element.
+struct Violation {
+  Condition condition;
+  double theta = 0.0;
+  double slope = 0.0;  ///< d value / d theta there
+};
+
+/// Rounding level of every indicator: a few roundings of its largest term.
+void indicator_noise(const discretization::StageValues& values, double t, std::span<const double> x,
+                     std::vector<double>& noise);
+
+/// Looks at the conditions of an active set in solved elements: at the points of the method, and between them along
+/// their interpolant, of which no sign change is missed.
+class Watch {
+ public:
+  Watch(const discretization::StageKernel& kernel, const ElementSolver& solver);
+
+  /// The earliest violation; a condition that is zero at the left end or at the right one, within rounding, holds
+  /// there. Selections that slide are those of the projected field.
+  /// @param selections  at the left end; left at those of the right end
+  /// Cost: an evaluation of the indicators per watch point, of f and derivatives while sliding.
+  enum class Answer { holds, violated, not_finite };
+  [[nodiscard]] Answer look(const Element& element, const ActiveSet& set, const double* held,
+                            std::vector<double>& selections, Violation& earliest);
+  /// Value of a condition at the right end of the element last looked at, and its rounding level.
+  [[nodiscard]] double end_value(const ActiveSet& set, const Condition& condition) const;
+  [[nodiscard]] double noise(const Condition& condition) const;
+
+ private:
+  void first_change(const Condition& condition, Violation& earliest, bool& found);
+
+  const discretization::StageKernel& kernel_;
+  const ElementSolver& solver_;
+  ProjectedField projected_;
+  std::size_t points_ = 0;
+  double lebesgue_ = 1.0;           ///< of the interpolation at the watch points
+  std::vector<double> to_nodes_;    ///< values at the nodes of ode::interpolation_nodes() from those at watch points
+  std::vector<double> indicators_;  ///< one row per watch point
+  std::vector<double> selections_;
+  std::vector<double> values_, x_, noise_;
+  discretization::StageValues left_;
+};
+
+}  // namespace saltus::fesd_integrator
