@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array shortcuts{
     until_shortcut,
-    Shortcut{"--method", "simulate.method", "METHOD", "event or smoothed (others come with later versions)"},
+    Shortcut{"--method", "simulate.method", "METHOD", "event, fesd, timestepping or smoothed"},
     Shortcut{"--rtol", "simulate.rtol", "R", "relative tolerance"},
     Shortcut{"--atol", "simulate.atol", "A", "absolute tolerance"},
     Shortcut{"--integrator", "simulate.event.integrator", "I", "dopri5, dop853 or radau5"},

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace saltus::fesd_integrator {
 namespace {
@@ -53,6 +55,8 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
     }
     if (part.simplex && members.size() == begin + 1) members.pop_back();  // one region: nothing to decide
   }
+  modes_at_zero_ = modes;
+  for (const int j : members) modes_at_zero_[at(j)] = 0;
   if (members.empty()) return;
 
   // Groups: i influences j where d(psi_j)/dt depends on selection i, at any of three points of the cube.

@@ -43,6 +43,8 @@ class Transition {
 
   /// Empty if nothing continues. Cost: 3^m evaluations for m functions that influence each other, at most `most_patterns`.
   [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision);
+  /// Of the last decision: the modes where everything that is zero there slides, or is active.
+  [[nodiscard]] const std::vector<int>& modes_at_zero() const { return modes_at_zero_; }
 
  private:
   struct Group {
@@ -62,6 +64,7 @@ class Transition {
   Element trial_;
   std::vector<Group> groups_;
   std::vector<int> part_of_;
+  std::vector<int> modes_at_zero_;
   std::vector<double> rate_, magnitude_, noise_;
 };
 

@@ -153,10 +153,7 @@ void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
   const auto* table = reader.table(entry.value, "the table [simulate]");
   if (table == nullptr) return;
   for (const auto& field : *table) {
-    const bool later = field.key == "fesd" || field.key == "timestepping";
-    if (later) {
-      reader.not_available(field.location, fmt::format("[simulate.{}]", field.key));
-    } else if (field.key == "inputs") {
+    if (field.key == "inputs") {
       read_inputs(reader, field, model);
     } else {
       read_options(reader, "", {field}, model);

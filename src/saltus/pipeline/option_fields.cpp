@@ -9,52 +9,10 @@
 
 #include <fmt/format.h>
 
+#include "saltus/pipeline/option_values_internal.hpp"
+
 namespace saltus::pipeline {
 namespace {
-
-using result::OptionRecord;
-using result::OptionValue;
-
-Error out_of_range(std::string_view expected, const OptionValue& found) {
-  return {ErrorCode::invalid_option, fmt::format("expected {}, found {}", expected, to_text(found)), "", {}, {}};
-}
-
-Error later(std::string_view what, std::string_view instead) {
-  return {ErrorCode::not_available,
-          fmt::format("{} is not available in this version; a later one brings it", what),
-          fmt::format("use {}", instead),
-          {},
-          {}};
-}
-
-/// The number a value states, whether it was written 1 or 1.0; NaN if it is none.
-double number_in(const OptionValue& value) {
-  if (const auto* real = std::get_if<double>(&value)) return *real;
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
-enum class Range { finite, positive, not_negative };
-
-constexpr std::string_view text(Range range) {
-  switch (range) {
-    case Range::finite:
-      return "a finite number";
-    case Range::positive:
-      return "a finite number > 0";
-    case Range::not_negative:
-      return "a finite number >= 0";
-  }
-  __builtin_unreachable();
-}
-
-Expected<double> number_within(Range range, const OptionValue& value) {
-  const double number = number_in(value);
-  const bool fits = std::isfinite(number) && (range != Range::positive || number > 0.0) &&
-                    (range != Range::not_negative || number >= 0.0);
-  if (!fits) return tl::unexpected(out_of_range(text(range), value));
-  return number;
-}
 
 // Access to a member, for reading and writing alike: the only place that names it.
 constexpr auto until = [](auto& o) -> auto& { return o.until; };
@@ -69,49 +27,14 @@ constexpr auto integrator = [](auto& o) -> auto& { return o.event.integrator; };
 constexpr auto epsilon = [](auto& o) -> auto& { return o.smoothed.epsilon; };
 constexpr auto selection = [](auto& o) -> auto& { return o.event.selection; };
 
-template <auto access, Range range>
-Expected<void> set_number(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  return number_within(range, value).map([&](double number) { access(options) = number; });
-}
-
-template <auto access>
-void record_number(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
-  record.emplace_back(key, access(options));
-}
-
 void record_until(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
   if (options.until) record.emplace_back(key, *options.until);
 }
 
-template <auto access>
-Expected<void> set_count(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  // Written 1e6 it is a real number, and still a count.
-  const double number = number_in(value);
-  if (!(number >= 1.0 && number <= 9e15 && number == std::floor(number))) {
-    return tl::unexpected(out_of_range("a whole number >= 1", value));
-  }
-  access(options) = static_cast<long>(number);
-  return {};
-}
-
-template <auto access>
-void record_count(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
-  record.emplace_back(key, std::int64_t{access(options)});
-}
-
-/// The spellings of an enum in the order of its enumerators; the first `available` of them run in this version.
-template <class Enum, std::size_t n>
-struct Choices {
-  std::string_view what;
-  std::array<std::string_view, n> names;
-  std::array<Enum, n> values;
-  std::size_t available;
-};
-
 constexpr Choices<Method, 4> methods{"method",
                                      {"event", "smoothed", "fesd", "timestepping"},
                                      {Method::event, Method::smoothed, Method::fesd, Method::timestepping},
-                                     2};
+                                     4};
 constexpr Choices<Integrator, 3> integrators{
     "integrator", {"dopri5", "dop853", "radau5"}, {Integrator::dopri5, Integrator::dop853, Integrator::radau5}, 3};
 constexpr Choices<Native, 3> natives{
@@ -121,33 +44,6 @@ constexpr Choices<Selection, 4> selections{
     {"active_dominant", "passive_dominant", "scaled", "report"},
     {Selection::active_dominant, Selection::passive_dominant, Selection::scaled, Selection::report},
     4};
-
-template <auto access, const auto& choices>
-Expected<void> set_choice(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  const std::vector<std::string> known(choices.names.begin(), choices.names.end());
-  const auto* word = std::get_if<std::string>(&value);
-  if (word == nullptr) return tl::unexpected(out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value));
-  const auto found = std::find(known.begin(), known.end(), *word);
-  if (found == known.end()) {
-    auto error = out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value);
-    if (!nearest_names(*word, known).empty()) error.remedy = suggest(*word, known);
-    return tl::unexpected(std::move(error));
-  }
-  const auto position = static_cast<std::size_t>(found - known.begin());
-  if (position >= choices.available) {
-    const std::vector<std::string> usable(known.begin(), known.begin() + static_cast<long>(choices.available));
-    return tl::unexpected(
-        later(fmt::format("{} \"{}\"", choices.what, *word), fmt::format("{}", fmt::join(usable, " or "))));
-  }
-  access(options) = choices.values[position];
-  return {};
-}
-
-template <auto access, const auto& choices>
-void record_choice(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
-  const auto* position = std::find(choices.values.begin(), choices.values.end(), access(options));
-  record.emplace_back(key, std::string(choices.names[static_cast<std::size_t>(position - choices.values.begin())]));
-}
 
 Expected<void> set_output_word(SimulateOptions& options, std::string_view, const OptionValue& value) {
   if (const auto* word = std::get_if<std::string>(&value); word == nullptr || *word != "steps") {
@@ -282,7 +178,8 @@ constexpr std::array fields{
                 set_number<until, Range::finite>, record_until},
     OptionField{"from", "a finite number", "Start of the simulation.", set_number<from, Range::finite>,
                 record_number<from>},
-    OptionField{"method", "event, smoothed", "How to integrate; fesd and timestepping come with later versions.",
+    OptionField{"method", "event, smoothed, fesd, timestepping",
+                "Event-driven; regularised; finite elements with switch detection; the same without it.",
                 set_choice<method, methods>, record_choice<method, methods>},
     OptionField{"rtol", "a finite number > 0", "Relative error tolerance of a step, per component of the state.",
                 set_number<rtol, Range::positive>, record_number<rtol>},
@@ -324,19 +221,10 @@ constexpr std::array fields{
                 set_number<epsilon, Range::positive>, record_number<epsilon>},
 };
 
-/// Tables of methods that later versions bring.
-bool is_of_later_method(std::string_view key) {
-  const auto table = key.substr(0, key.find('.'));
-  return table == "fesd" || table == "timestepping";
-}
-
 /// More rows than this do not fit into a result that anybody reads.
 constexpr double most_rows = 2e7;
 
 Error unknown_key(std::string_view key) {
-  if (is_of_later_method(key)) {
-    return later(fmt::format("[simulate.{}]", key.substr(0, key.find('.'))), "method = \"event\" or \"smoothed\"");
-  }
   const auto last = std::string(key.substr(key.rfind('.') + 1));
   Error error{ErrorCode::unknown_name, fmt::format("unknown option simulate.{}", key), "", {}, {}};
   std::vector<std::string> nearest = nearest_names(std::string(key), simulate_keys());
@@ -352,18 +240,26 @@ Error unknown_key(std::string_view key) {
 
 }  // namespace
 
-std::span<const OptionField> simulate_fields() { return fields; }
+std::span<const OptionField> simulate_fields() {
+  static const auto all = [] {
+    std::vector<OptionField> list(fields.begin(), fields.end());
+    const auto more = element_fields();
+    list.insert(list.end(), more.begin(), more.end());
+    return list;
+  }();
+  return all;
+}
 
 std::vector<std::string> simulate_keys() {
   std::vector<std::string> keys;
-  for (const auto& field : fields) {
+  for (const auto& field : simulate_fields()) {
     if (!field.key.ends_with('*')) keys.emplace_back(field.key);
   }
   return keys;
 }
 
 Expected<SimulateOptions> with_value(SimulateOptions options, std::string_view key, const OptionValue& value) {
-  for (const auto& field : fields) {
+  for (const auto& field : simulate_fields()) {
     const bool open = field.key.ends_with('*');
     const auto prefix = field.key.substr(0, field.key.size() - (open ? 1 : 0));
     const bool fits = open ? key.size() > prefix.size() && key.starts_with(prefix) : key == prefix;
@@ -375,7 +271,7 @@ Expected<SimulateOptions> with_value(SimulateOptions options, std::string_view k
 
 OptionRecord option_record(const SimulateOptions& options) {
   OptionRecord record;
-  for (const auto& field : fields) field.record(options, fmt::format("simulate.{}", field.key), record);
+  for (const auto& field : simulate_fields()) field.record(options, fmt::format("simulate.{}", field.key), record);
   return record;
 }
 

@@ -12,6 +12,7 @@
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/smoothed/regularise.hpp"
 #include "saltus/smoothed/restate.hpp"
 
@@ -198,6 +199,20 @@ Expected<Integrand> integrand(const model::System& system, const SimulateOptions
   });
 }
 
+std::string_view name(Method method) {
+  switch (method) {
+    case Method::event:
+      return "event";
+    case Method::fesd:
+      return "fesd";
+    case Method::timestepping:
+      return "timestepping";
+    case Method::smoothed:
+      return "smoothed";
+  }
+  __builtin_unreachable();
+}
+
 result::Result frame(const model::System& system, const SimulateOptions& options) {
   result::Result result;
   result.model.name = system.name;
@@ -205,7 +220,7 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   for (std::size_t i = 0; i < system.parameter_names.size(); ++i) {
     result.model.parameters.emplace_back(system.parameter_names[i], system.parameter_values[i]);
   }
-  result.method = options.method == Method::smoothed ? "smoothed" : "event";
+  result.method = name(options.method);
   result.states = system.state_names;
   result.controls = system.control_names;
   result.outputs = system.output_names;
@@ -221,15 +236,12 @@ result::Result frame(const model::System& system, const SimulateOptions& options
 
 Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
                                   const Observers& observers) {
-  if (options.method != Method::event && options.method != Method::smoothed) {
-    return tl::unexpected(Error{ErrorCode::not_available,
-                                "only the methods \"event\" and \"smoothed\" are available in this version",
-                                "use one of them; a later version brings the others",
-                                {},
-                                {}});
-  }
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
+  if (options.method == Method::fesd || options.method == Method::timestepping) {
+    return simulate_elements(system, options, std::move(integration_or->output.times),
+                             std::move(integration_or->initial_mode), frame(system, options), observers);
+  }
   auto begin = std::chrono::steady_clock::now();
   const auto integrand_or = integrand(system, options);
   if (!integrand_or) return tl::unexpected(integrand_or.error());

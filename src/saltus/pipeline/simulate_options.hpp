@@ -41,6 +41,37 @@ struct SmoothedOptions {
   double epsilon = 1e-6;  ///< half width of the layer around every surface, in the units of its switching function
 };
 
+enum class Scheme { radau_iia, gauss_legendre, lobatto_iiia, lobatto_iiic, explicit_rk };
+enum class Representation { integral, differential };
+enum class Reformulation { step, stewart };
+enum class CrossComplementarity { stage_stage, fe_stage, stage_fe, fe_fe, paper };
+enum class StepEquilibration {
+  none,
+  heuristic_mean,
+  heuristic_diff,
+  l2_relaxed,
+  l2_relaxed_scaled,
+  direct,
+  mlcp,
+  paper
+};
+
+/// [simulate.fesd], [simulate.timestepping]
+struct ElementOptions {
+  Scheme scheme = Scheme::radau_iia;
+  long stages = 2;
+  long steps = 100;   ///< simulation steps of equal length
+  long elements = 2;  ///< per simulation step
+  Representation representation = Representation::integral;
+  double step_bounds = 1.0;  ///< lengths of elements are within (1 - this, 1 + this) times their mean
+  double rho = 1.0;
+  double equilibration_scale = 1.0;
+  Reformulation reformulation = Reformulation::step;
+  CrossComplementarity cross_complementarity = CrossComplementarity::fe_stage;
+  StepEquilibration step_equilibration = StepEquilibration::direct;
+  std::optional<long> lifting = 2;  ///< most factors per product; nullopt: off
+};
+
 /// [simulate]; defaults as in interface.md. `until` has none: it must be given in the file or on the command line.
 struct SimulateOptions {
   std::optional<double> until;
@@ -55,6 +86,7 @@ struct SimulateOptions {
   std::vector<std::pair<std::string, int>> initial_mode;  ///< switching function -> -1, 0, 1
   EventOptions event;
   SmoothedOptions smoothed;
+  ElementOptions fesd, timestepping;
 };
 
 }  // namespace saltus::pipeline

@@ -1,0 +1,38 @@
+#include "saltus/fesd_integrator/facts.hpp"
+
+#include "saltus/reformulation/dcs.hpp"
+
+namespace saltus::fesd_integrator {
+
+Facts facts(const model::System& system, const reformulation::Dcs& dcs) {
+  Facts facts;
+  facts.n_x = static_cast<std::size_t>(system.x.numel());
+  facts.n_u = static_cast<std::size_t>(system.u.numel());
+  facts.n_y = static_cast<std::size_t>(system.outputs.numel());
+  facts.n_functions = system.switching.size();
+  facts.initial_state = system.initial_state;
+  for (const auto& part : dcs.parts) {
+    facts.parts.push_back({part.form == reformulation::Form::stewart, part.first, part.count});
+  }
+  for (const auto& column : system.columns) {
+    const auto& function = system.switching[static_cast<std::size_t>(column.function)];
+    facts.columns.push_back(
+        {column.name, column.function, column.orientation, function.role == model::SwitchingRole::listed});
+  }
+  for (const auto& group : system.mode_groups) {
+    if (group.first >= 0) facts.regions.push_back({group.first, group.mode_names});
+  }
+  for (const auto& symbol : dcs.held_symbols) {
+    const bool cell = symbol.kind == reformulation::HeldSymbol::Kind::cell;
+    facts.held.push_back({cell, cell ? system.cells[static_cast<std::size_t>(symbol.index)].table : nullptr,
+                          symbol.column, symbol.at_zero});
+  }
+  for (const auto& event : dcs.events) {
+    const int direction = event.direction == model::Direction::both ? 0 : event.direction == model::Direction::up ? 1 : -1;
+    facts.events.push_back({event.name, event.guards.numel() > 0, event.true_at_equality, direction,
+                            event.action == model::AtEvent::stop});
+  }
+  return facts;
+}
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,72 @@
+// Finite elements with switch detection: from an initial state through all switches and sliding phases to the end.
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
+namespace saltus::reformulation {
+struct Dcs;
+}
+
+namespace saltus::fesd_integrator {
+
+/// Checked by the pipeline: from < until, steps >= 1, elements >= 1 (2 with switch detection), 0 < step_bounds <= 1.
+struct IntegrationOptions {
+  enum class Switches {
+    detected,  ///< lengths of elements follow the switches
+    fixed,     ///< equal lengths, every stage with its own active set: the Runge-Kutta method of the inclusion
+  };
+  Switches switches = Switches::detected;
+  discretization::ButcherTableau tableau;
+  double from = 0.0;
+  double until = 1.0;
+  long steps = 100;
+  int elements = 2;
+  double step_bounds = 1.0;  ///< gamma: lengths within (1 - gamma, 1 + gamma) times their mean
+  long max_steps = 1000000;  ///< elements
+  long max_events = 100000;
+  /// Rows at these times instead of at the ends of all elements; ascending, inside [from, until].
+  enum class Rows { at_elements, at_times };
+  Rows rows = Rows::at_elements;
+  std::vector<double> times;
+  std::vector<std::pair<int, int>> initial_mode;  ///< index into System::switching -> forced mode at the start
+};
+
+struct Progress {
+  double t = 0.0;
+  long steps = 0;
+  long events = 0;
+};
+enum class Continue { yes, no };
+using StepObserver = std::function<Continue(const Progress&)>;
+
+/// The parts of a result that an engine computes; `final` is the last row.
+struct Integration {
+  result::Status status;
+  result::Final final;
+  std::vector<result::Event> events;
+  result::Trajectory trajectory;
+  result::Statistics statistics;  ///< steps: elements; rejected: simulation steps that were divided
+};
+
+/// Solves the equations of FESD, (37)-(41) of [nurkanovic2024], one simulation step of length T = (until - from) / steps
+/// after the other: square once the active set of every element is fixed, which is predicted and repaired. Within a
+/// simulation step the elements between two switches have equal lengths (exact step equilibration).
+/// Where sliding ends, psi is zero on both sides of the boundary and the equations leave its place open; it is closed by
+/// alpha = 0 or 1 there (alpha of the projected field), where d psi / dt of the other side is zero.
+/// @return everything computed up to the termination; never throws for numerical reasons. An Error only if the symbolic
+///         layer refuses an expression.
+/// Cost: per element a Newton iteration on n_s (n_x + n_sliding) unknowns; per switch some solutions of the elements
+///       before it.
+[[nodiscard]] Expected<Integration> integrate(const model::System& system, const reformulation::Dcs& dcs,
+                                              const IntegrationOptions& options, const StepObserver& observer = {});
+
+}  // namespace saltus::fesd_integrator

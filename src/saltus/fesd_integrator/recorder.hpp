@@ -1,0 +1,68 @@
+// Rows and events in the columns of the result.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saltus/discretization/point_functions.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/facts.hpp"
+#include "saltus/fesd_integrator/transition.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// Modes of System::switching at an active set, and the selections at a point.
+struct ModeView {
+  std::vector<int> mode;      ///< -1, 0, 1 by function; of a region 0 while it is active
+  std::vector<double> alpha;  ///< by function
+};
+
+class Recorder {
+ public:
+  /// Both must outlive it.
+  Recorder(const discretization::PointFunctions& functions, const Facts& facts);
+
+  void row(double t, const std::vector<double>& x, const ActiveSet& set, const std::vector<double>& selections,
+           const double* held);
+  /// The set changed at t, or was chosen at a start (`before` nullptr; then `at_zero` tells which selections are zero).
+  /// Two rows and an event if a listed function changed; at a start a row, and an event if one is at zero.
+  struct Side {
+    const ActiveSet* set = nullptr;
+    const std::vector<double>* selections = nullptr;
+    const double* held = nullptr;  ///< what is held on this side
+  };
+  /// `found`: all continuations; the first is where it goes on. Returns whether it was an event.
+  bool switched(double t, const std::vector<double>& x, const Side& before, const std::vector<Continuation>& found,
+                const double* held, std::string_view reason);
+  bool started(double t, const std::vector<double>& x, const std::vector<Continuation>& found, const double* held,
+               const std::vector<int>& at_zero);
+  void user(double t, const std::vector<double>& x, const Side& side, std::size_t event, std::string_view reason);
+
+  [[nodiscard]] ModeView view(const ActiveSet& set, const std::vector<double>& selections, const double* held) const;
+  [[nodiscard]] std::size_t events() const { return events_.size(); }
+  [[nodiscard]] bool ends_at(double t) const { return !trajectory_.t.empty() && trajectory_.t.back() == t; }
+  [[nodiscard]] result::Trajectory& trajectory() { return trajectory_; }
+  [[nodiscard]] std::vector<result::Event>& event_list() { return events_; }
+  [[nodiscard]] result::Final last() const;
+
+ private:
+  struct Columns {
+    result::Mode mode;
+    std::vector<double> alpha;
+    result::Regions regions;
+    std::vector<double> theta;
+  };
+  [[nodiscard]] Columns columns(const ActiveSet& set, const std::vector<double>& selections, const double* held) const;
+  void finish(result::Event& event, const Columns& after, const std::vector<Continuation>& found, const double* held,
+              std::string_view reason);
+
+  const discretization::PointFunctions& functions_;
+  const Facts& facts_;
+  result::Trajectory trajectory_;
+  std::vector<result::Event> events_;
+};
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,203 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/fesd_integrator/run_internal.hpp"
+
+namespace saltus::fesd_integrator {
+
+Run::Run(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions,
+         const Facts& facts, const IntegrationOptions& options, const StepObserver& observer)
+    : kernel_(kernel),
+      functions_(functions),
+      facts_(facts),
+      options_(options),
+      observer_(observer),
+      solver_(kernel, options.tableau),
+      watch_(kernel, solver_),
+      transition_(kernel, facts.parts, solver_),
+      projected_(kernel),
+      held_(functions, facts.held),
+      recorder_(functions, facts),
+      t_(options.from),
+      x_(facts.initial_state),
+      selections_(kernel.selections()),
+      nominal_((options.until - options.from) / static_cast<double>(options.steps)) {
+  chain_.elements.resize(static_cast<std::size_t>(options.elements));
+  chain_.left.resize(static_cast<std::size_t>(options.elements) + 1);
+  between_x_.resize(facts.n_x);
+}
+
+void Run::stop(result::Termination termination, std::string message) {
+  if (!status_) status_ = result::Status{termination, std::move(message), t_};
+}
+
+Integration Run::run() {
+  start();
+  const auto steps = static_cast<double>(options_.steps);
+  for (long k = 0; k < options_.steps && !stopped(); ++k) {
+    // From the ends, not by adding up: no drift in time.
+    const double end = k + 1 == options_.steps
+                           ? options_.until
+                           : options_.from + (options_.until - options_.from) * (static_cast<double>(k + 1) / steps);
+    while (!stopped() && t_ < end) {
+      const double change = held_.next_change(t_, end, x_.data());
+      advance(change);
+      if (!stopped() && !facts_.held.empty()) hold_behind();
+    }
+    if (stopped() || !observer_) continue;
+    const Progress progress{t_, static_cast<long>(statistics_.steps), static_cast<long>(recorder_.events())};
+    if (observer_(progress) == Continue::no) {
+      stop(result::Termination::stopped_by_user, fmt::format("stopped at t = {:.10g}", t_));
+    }
+  }
+  Integration integration;
+  if (recorder_.trajectory().t.empty() || !recorder_.ends_at(t_)) {
+    recorder_.row(t_, x_, set_, selections_, held_.data());
+  }
+  integration.status = status_.value_or(result::Status{result::Termination::completed, "", t_});
+  integration.status.time_reached = t_;
+  integration.final = recorder_.last();
+  integration.events = std::move(recorder_.event_list());
+  integration.trajectory = std::move(recorder_.trajectory());
+  statistics_.rhs_evaluations = kernel_.evaluations();
+  integration.statistics = statistics_;
+  return integration;
+}
+
+void Run::start() {
+  held_.set_behind(t_, nominal_, x_.data());
+  std::vector<int> below(kernel_.selections(), -1);
+  for (const Part& part : facts_.parts) {
+    if (part.simplex) below[static_cast<std::size_t>(part.first)] = 0;
+  }
+  set_ = ActiveSet(facts_.parts, below);
+  set_.selections(selections_.data(), selections_.data());
+  auto found = transition_.continuations(
+      {t_, x_, held_.data(), nullptr, {}, nominal_ / options_.elements / 128.0});
+  if (!options_.initial_mode.empty()) {
+    std::erase_if(found, [&](const Continuation& candidate) {
+      const auto view = recorder_.view(candidate.set, candidate.selections, held_.data());
+      return std::any_of(options_.initial_mode.begin(), options_.initial_mode.end(), [&](const auto& forced) {
+        return view.mode[static_cast<std::size_t>(forced.first)] != forced.second;
+      });
+    });
+  }
+  const ActiveSet at_zero(facts_.parts, transition_.modes_at_zero());
+  if (found.empty()) {
+    stop(result::Termination::no_admissible_mode,
+         options_.initial_mode.empty()
+             ? fmt::format("no mode continues the solution from the start at t = {:.10g}", t_)
+             : fmt::format("no mode with the forced initial_mode continues the solution from t = {:.10g}", t_));
+    return;
+  }
+  const auto zero = recorder_.view(at_zero, selections_, held_.data());
+  std::vector<int> functions;
+  for (std::size_t j = 0; j < zero.mode.size(); ++j) {
+    if (zero.mode[j] == 0) functions.push_back(static_cast<int>(j));
+  }
+  for (const auto& group : facts_.regions) {
+    // A region that is active alone is not on a surface.
+    const auto in_group = [&](int j) { return j >= group.first && j < group.first + static_cast<int>(group.names.size()); };
+    if (std::count_if(functions.begin(), functions.end(), in_group) == 1) std::erase_if(functions, in_group);
+  }
+  // All continuations of a start stand in the event, also those that the forced mode excludes.
+  set_ = found.front().set;
+  selections_ = found.front().selections;
+  recorder_.started(t_, x_, found, held_.data(), functions);
+  row_here();
+}
+
+bool Run::step_counts() {
+  ++statistics_.steps;
+  if (statistics_.steps < options_.max_steps) return true;
+  stop(result::Termination::iteration_limit,
+       fmt::format("max_steps = {} elements reached at t = {:.10g}; raise simulate.max_steps or take fewer steps",
+                   options_.max_steps, t_));
+  return false;
+}
+
+void Run::hold_behind() {
+  held_before_.assign(held_.data(), held_.data() + facts_.held.size());
+  if (held_.set_behind(t_, nominal_, x_.data()) == HeldValues::Change::none) return;
+  previous_.reset();
+  const ActiveSet before = set_;
+  const auto selections = selections_;
+  decide({}, "a function of time changed", before, selections, held_before_.data());
+}
+
+void Run::decide(std::vector<int> at_zero, std::string_view reason, const ActiveSet& before,
+                 const std::vector<double>& selections_before, const double* held_before) {
+  if (decided_at_ != t_) decisions_here_ = 0;
+  decided_at_ = t_;
+  constexpr int most_decisions = 20;
+  if (++decisions_here_ > most_decisions) {
+    stop(result::Termination::not_converged,
+         fmt::format("the modes at t = {:.10g} change without end; try other simulate.fesd.steps", t_));
+    return;
+  }
+  const auto found = transition_.continuations(
+      {t_, x_, held_.data(), &before, at_zero, nominal_ / options_.elements / 128.0});
+  if (found.empty()) {
+    stop(result::Termination::no_admissible_mode,
+         fmt::format("no mode continues the solution at t = {:.10g}; try method = \"event\"", t_));
+    return;
+  }
+  recorder_.switched(t_, x_, {&before, &selections_before, held_before}, found, held_.data(), reason);
+  set_ = found.front().set;
+  selections_ = found.front().selections;
+  previous_.reset();
+  if (static_cast<long>(recorder_.events()) >= options_.max_events) {
+    stop(result::Termination::iteration_limit,
+         fmt::format("max_events = {} reached at t = {:.10g}; raise simulate.max_events if they are meant",
+                     options_.max_events, t_));
+  }
+}
+
+void Run::emit_times(const Element* element, double until) {
+  if (options_.rows != IntegrationOptions::Rows::at_times) return;
+  for (; next_time_ < options_.times.size() && options_.times[next_time_] < until; ++next_time_) {
+    const double time = options_.times[next_time_];
+    solver_.interpolate(*element, (time - element->t) / element->h, between_x_.data());
+    if (!set_.sliding().empty() &&
+        !projected_.solve(time, between_x_.data(), set_, held_.data(), between_selections_.data())) {
+      between_selections_ = selections_;
+    }
+    recorder_.row(time, between_x_, set_, between_selections_, held_.data());
+  }
+}
+
+/// The row at the end of an element, unless an event has put it there.
+void Run::row_here() {
+  const bool asked = next_time_ < options_.times.size() && options_.times[next_time_] == t_;
+  if (asked) ++next_time_;
+  if (recorder_.ends_at(t_)) return;
+  if (asked || options_.rows == IntegrationOptions::Rows::at_elements) {
+    recorder_.row(t_, x_, set_, selections_, held_.data());
+  }
+}
+
+void Run::accept(const Element& element, const std::vector<double>& left, const std::vector<double>& right,
+                 double end) {
+  between_selections_ = left;
+  emit_times(&element, end);
+  t_ = end;
+  x_ = element.end;
+  selections_ = right;
+  static_cast<void>(step_counts());
+}
+
+void Run::accept_chain(std::size_t count, double end_time) {
+  for (std::size_t i = 0; i < count && !stopped(); ++i) {
+    const Element& element = chain_.elements[i];
+    accept(element, chain_.left[i], chain_.left[i + 1], i + 1 == count ? end_time : element.t + element.h);
+    if (i + 1 == count) break;
+    row_here();
+  }
+  previous_ = chain_.elements[count - 1];
+}
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,90 @@
+// One run: where it is, and how it goes on.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/discretization/point_functions.hpp"
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/element.hpp"
+#include "saltus/fesd_integrator/facts.hpp"
+#include "saltus/fesd_integrator/held_values.hpp"
+#include "saltus/fesd_integrator/integrate.hpp"
+#include "saltus/fesd_integrator/recorder.hpp"
+#include "saltus/fesd_integrator/transition.hpp"
+#include "saltus/fesd_integrator/watch.hpp"
+
+namespace saltus::fesd_integrator {
+
+class Run {
+ public:
+  Run(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions, const Facts& facts,
+      const IntegrationOptions& options, const StepObserver& observer);
+  [[nodiscard]] Integration run();
+
+ private:
+  /// Equal elements of one active set, solved one after the other.
+  struct Chain {
+    std::vector<Element> elements;
+    std::size_t count = 0;                  ///< solved
+    std::vector<std::vector<double>> left;  ///< selections at the left ends; of the right end of the last one behind
+  };
+  enum class Solved { all, violated, failed };
+  /// Elements of length h from here, up to the first that violates a condition.
+  [[nodiscard]] Solved solve_chain(int count, double h, Violation& violation);
+  /// Lengths such that `count` elements end where the condition does: h, or nullopt if it does not end there.
+  [[nodiscard]] std::optional<double> locate(int count, double guess, const Violation& violation, double longest);
+  struct Located {
+    int count = 0;
+    double h = 0.0;
+    Condition condition;
+  };
+  /// From the first violation of a trial to the chain that ends at the earliest switch; left in chain_.
+  [[nodiscard]] std::optional<Located> find_switch(int elements, double remaining, Violation violation,
+                                                   std::size_t element);
+
+  void start();
+  /// One simulation step, or what lies between two changes of what is held.
+  void advance(double end);
+  void accept_chain(std::size_t count, double end_time);
+  void accept(const Element& element, const std::vector<double>& left, const std::vector<double>& right, double end);
+  /// Decides how to go on here; `at_zero` as in Decision.
+  void decide(std::vector<int> at_zero, std::string_view reason, const ActiveSet& before,
+              const std::vector<double>& selections_before, const double* held_before);
+  void hold_behind();
+  void row_here();
+  void emit_times(const Element* element, double until);
+  void stop(result::Termination termination, std::string message);
+  [[nodiscard]] bool stopped() const { return status_.has_value(); }
+  [[nodiscard]] bool step_counts();
+
+  const discretization::StageKernel& kernel_;
+  const discretization::PointFunctions& functions_;
+  const Facts& facts_;
+  const IntegrationOptions& options_;
+  const StepObserver& observer_;
+  ElementSolver solver_;
+  Watch watch_;
+  Transition transition_;
+  ProjectedField projected_;
+  HeldValues held_;
+  Recorder recorder_;
+
+  double t_ = 0.0;
+  std::vector<double> x_, selections_;
+  ActiveSet set_;
+  double nominal_ = 0.0;  ///< length of a simulation step
+  Chain chain_;
+  std::optional<Element> previous_;  ///< the last element, if the next one continues it
+  int decisions_here_ = 0;
+  double decided_at_ = 0.0;
+  std::size_t next_time_ = 0;
+  std::vector<double> between_x_, between_selections_, held_before_;
+  result::Statistics statistics_;
+  std::optional<result::Status> status_;
+};
+
+}  // namespace saltus::fesd_integrator

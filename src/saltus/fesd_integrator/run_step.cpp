@@ -1,0 +1,215 @@
+// One simulation step: elements of equal length up to every switch.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "saltus/fesd_integrator/run_internal.hpp"
+
+namespace saltus::fesd_integrator {
+namespace {
+
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+/// A simulation step is divided at most so often; then the elements are below any time scale of the model.
+constexpr double shortest = 1e-12;
+
+}  // namespace
+
+Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
+  chain_.count = 0;
+  chain_.left[0] = selections_;
+  Point left{t_, x_, selections_};
+  for (int i = 0; i < count; ++i) {
+    auto& element = chain_.elements[static_cast<std::size_t>(i)];
+    auto guess = ElementSolver::Guess::left_end;
+    const Element* last = i > 0 ? &chain_.elements[static_cast<std::size_t>(i - 1)] : previous_ ? &*previous_ : nullptr;
+    if (last != nullptr && h <= 2.0 * last->h) {
+      solver_.extrapolate(*last, h, element);
+      guess = ElementSolver::Guess::stages;
+    }
+    auto outcome = solver_.solve(left, h, {&set_, 1}, held_.data(), guess, element);
+    if (outcome != ElementSolver::Outcome::solved && guess == ElementSolver::Guess::stages) {
+      outcome = solver_.solve(left, h, {&set_, 1}, held_.data(), ElementSolver::Guess::left_end, element);
+    }
+    if (outcome != ElementSolver::Outcome::solved) return Solved::failed;
+    auto& right = chain_.left[static_cast<std::size_t>(i) + 1];
+    right = left.selections;
+    chain_.count = static_cast<std::size_t>(i) + 1;
+    switch (watch_.look(element, set_, held_.data(), right, violation)) {
+      case Watch::Answer::not_finite:
+        return Solved::failed;
+      case Watch::Answer::violated:
+        return Solved::violated;
+      case Watch::Answer::holds:
+        break;
+    }
+    left.t = t_ + (i + 1) * h;
+    left.x = element.end;
+    left.selections = right;
+  }
+  return Solved::all;
+}
+
+std::optional<double> Run::locate(int count, double guess, const Violation& violation, double longest) {
+  // Secant steps from the root of the interpolant, inside the bracket (lower: the condition holds; upper: it does not).
+  double lower = 0.0, upper = std::numeric_limits<double>::infinity();
+  double h = guess, h_before = 0.0, value_before = 0.0;
+  double slope = violation.slope * count / guess;  // of the value over the common length
+  double best = std::numeric_limits<double>::infinity(), best_h = guess;
+  constexpr int most_iterations = 60;
+  for (int i = 0; i < most_iterations; ++i) {
+    // The other conditions are looked at afterwards.
+    Violation other;
+    Point left{t_, x_, selections_};
+    bool failed = false;
+    auto selections = selections_;
+    for (int k = 0; k < count; ++k) {
+      auto& element = chain_.elements[static_cast<std::size_t>(k)];
+      const bool warm = i > 0 || k > 0 || previous_;
+      if (i > 0) {
+        // stage values of the last try
+      } else if (k > 0) {
+        solver_.extrapolate(chain_.elements[static_cast<std::size_t>(k - 1)], h, element);
+      } else if (previous_) {
+        solver_.extrapolate(*previous_, h, element);
+      }
+      auto outcome = solver_.solve(left, h, {&set_, 1}, held_.data(),
+                                   warm ? ElementSolver::Guess::stages : ElementSolver::Guess::left_end, element);
+      if (outcome != ElementSolver::Outcome::solved) {
+        outcome = solver_.solve(left, h, {&set_, 1}, held_.data(), ElementSolver::Guess::left_end, element);
+      }
+      failed = outcome != ElementSolver::Outcome::solved ||
+               watch_.look(element, set_, held_.data(), selections, other) == Watch::Answer::not_finite;
+      if (failed) break;
+      left = {t_ + (k + 1) * h, element.end, selections};
+    }
+    if (failed) return std::nullopt;
+    const double value = watch_.end_value(set_, violation.condition), noise = watch_.noise(violation.condition);
+    if (!std::isfinite(value)) return std::nullopt;
+    if (std::abs(value) < best) {
+      best = std::abs(value);
+      best_h = h;
+    }
+    const bool resolved = upper - lower <= 4.0 * rounding * h;
+    if (std::abs(value) <= 0.25 * noise || resolved) return best_h == h || resolved ? std::optional(h) : std::nullopt;
+    (value > 0.0 ? lower : upper) = h;
+    if (i > 0 && h != h_before && value != value_before) slope = (value - value_before) / (h - h_before);
+    h_before = h;
+    value_before = value;
+    double next = slope < 0.0 ? h - value / slope : std::numeric_limits<double>::quiet_NaN();
+    const double inside_lower = lower, inside_upper = std::isfinite(upper) ? upper : std::min(2.0 * h, longest);
+    if (!(next > inside_lower && next < inside_upper)) {
+      if (!std::isfinite(upper) && h >= longest) return std::nullopt;  // it never ends
+      next = std::isfinite(upper) ? 0.5 * (lower + upper) : inside_upper;
+    }
+    if (next == h) return h;
+    if (std::abs(value) <= noise && i > 8) return h;
+    h = next;
+  }
+  return std::nullopt;
+}
+
+std::optional<Run::Located> Run::find_switch(int elements, double remaining, Violation violation,
+                                             std::size_t element) {
+  double tau = chain_.elements[element].h * (static_cast<double>(element) + violation.theta);
+  // Each round goes to a condition that ends earlier than the one before.
+  const std::size_t rounds = set_.conditions().size() + 2;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    int count = std::clamp(static_cast<int>(std::lround(elements * tau / remaining)), 1, elements - 1);
+    // Bounds of the lengths, on both sides of the switch.
+    const double mean = nominal_ / options_.elements;
+    while (count < elements - 1 && tau / count > (1.0 + options_.step_bounds) * mean) ++count;
+    const auto h = locate(count, tau / count, violation, remaining / count);
+    if (!h) return std::nullopt;
+    // The elements as they are now, all conditions: does another end before?
+    Violation other;
+    auto selections = selections_;
+    bool earlier = false;
+    chain_.left[0] = selections;
+    for (int k = 0; k < count && !earlier; ++k) {
+      const auto index = static_cast<std::size_t>(k);
+      const auto answer = watch_.look(chain_.elements[index], set_, held_.data(), selections, other);
+      chain_.left[index + 1] = selections;
+      if (answer == Watch::Answer::not_finite) return std::nullopt;
+      if (answer != Watch::Answer::violated) continue;
+      const double at = *h * (k + other.theta);
+      const bool same = other.condition.kind == violation.condition.kind &&
+                        other.condition.selection == violation.condition.selection;
+      if (at >= *h * count * (1.0 - 1e-12)) continue;  // at the same time
+      if (same && k + 1 == count && other.theta > 1.0 - 1e-9) continue;
+      earlier = true;
+      tau = at;
+      violation = other;
+    }
+    if (!earlier) {
+      chain_.count = static_cast<std::size_t>(count);
+      return Located{count, *h, violation.condition};
+    }
+    if (tau <= 0.0) return Located{0, 0.0, violation.condition};
+  }
+  return std::nullopt;
+}
+
+void Run::advance(double end) {
+  int elements = options_.elements;
+  double limit = end;  // of the part that is tried
+  while (!stopped() && t_ < end) {
+    const double remaining = limit - t_;
+    const double h = remaining / elements;
+    Violation violation;
+    const auto solved = solve_chain(elements, h, violation);
+    if (solved == Solved::all) {
+      accept_chain(static_cast<std::size_t>(elements), limit);
+      row_here();
+      elements = options_.elements;
+      limit = end;
+      continue;
+    }
+    std::optional<Located> located;
+    if (solved == Solved::violated) {
+      if (chain_.count == 1 && violation.theta == 0.0) {
+        located = Located{0, 0.0, violation.condition};
+      } else if (elements < 2) {
+        // More switches than elements can separate: the rest is a simulation step of its own.
+        ++statistics_.rejected;
+        elements = options_.elements;
+        continue;
+      } else {
+        located = find_switch(elements, remaining, violation, chain_.count - 1);
+      }
+    }
+    if (!located) {
+      ++statistics_.rejected;
+      elements = options_.elements;
+      limit = t_ + 0.5 * remaining;
+      previous_.reset();
+      if (0.5 * remaining <= shortest * nominal_ || !(limit > t_)) {
+        stop(result::Termination::not_converged,
+             fmt::format("the equations of an element have no solution that was found at t = {:.10g}; more "
+                         "simulate.fesd.steps, or method = \"event\"",
+                         t_));
+      }
+      continue;
+    }
+    if (located->count > 0) {
+      double at = t_ + located->count * located->h;
+      if (std::abs(limit - at) <= 1e-13 * nominal_) at = limit;
+      accept_chain(static_cast<std::size_t>(located->count), at);
+      elements = std::max(1, elements - located->count);
+      if (t_ >= limit) {
+        elements = options_.elements;
+        limit = end;
+      }
+    }
+    if (stopped()) return;
+    const ActiveSet before = set_;
+    const auto selections = selections_;
+    std::vector<int> at_zero;
+    if (located->condition.kind == Condition::Kind::side) at_zero.push_back(located->condition.selection);
+    decide(std::move(at_zero), "located by the elements before it", before, selections, held_.data());
+    row_here();
+  }
+}
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,148 @@
+// Options of the methods made of finite elements, one table for both.
+#include <array>
+#include <string>
+
+#include "saltus/pipeline/option_values_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+constexpr Choices<Scheme, 5> schemes{
+    "scheme",
+    {"radau_iia", "gauss_legendre", "lobatto_iiia", "lobatto_iiic", "explicit"},
+    {Scheme::radau_iia, Scheme::gauss_legendre, Scheme::lobatto_iiia, Scheme::lobatto_iiic, Scheme::explicit_rk},
+    5};
+constexpr Choices<Representation, 2> representations{
+    "representation", {"integral", "differential"}, {Representation::integral, Representation::differential}, 2};
+constexpr Choices<Reformulation, 2> reformulations{
+    "reformulation", {"step", "stewart"}, {Reformulation::step, Reformulation::stewart}, 2};
+constexpr Choices<CrossComplementarity, 5> cross_complementarities{
+    "cross_complementarity",
+    {"stage_stage", "fe_stage", "stage_fe", "fe_fe", "paper"},
+    {CrossComplementarity::stage_stage, CrossComplementarity::fe_stage, CrossComplementarity::stage_fe,
+     CrossComplementarity::fe_fe, CrossComplementarity::paper},
+    5};
+// The modes that determine the lengths of elements exactly come first: the others change them.
+constexpr Choices<StepEquilibration, 8> step_equilibrations{
+    "step_equilibration",
+    {"direct", "mlcp", "none", "heuristic_mean", "heuristic_diff", "l2_relaxed", "l2_relaxed_scaled", "paper"},
+    {StepEquilibration::direct, StepEquilibration::mlcp, StepEquilibration::none, StepEquilibration::heuristic_mean,
+     StepEquilibration::heuristic_diff, StepEquilibration::l2_relaxed, StepEquilibration::l2_relaxed_scaled,
+     StepEquilibration::paper},
+    2};
+
+/// The options of one of the two methods.
+constexpr auto of_fesd = [](auto& o) -> auto& { return o.fesd; };
+constexpr auto of_timestepping = [](auto& o) -> auto& { return o.timestepping; };
+
+template <auto part>
+constexpr auto scheme = [](auto& o) -> auto& { return part(o).scheme; };
+template <auto part>
+constexpr auto stages = [](auto& o) -> auto& { return part(o).stages; };
+template <auto part>
+constexpr auto steps = [](auto& o) -> auto& { return part(o).steps; };
+template <auto part>
+constexpr auto elements = [](auto& o) -> auto& { return part(o).elements; };
+template <auto part>
+constexpr auto representation = [](auto& o) -> auto& { return part(o).representation; };
+template <auto part>
+constexpr auto step_bounds = [](auto& o) -> auto& { return part(o).step_bounds; };
+template <auto part>
+constexpr auto rho = [](auto& o) -> auto& { return part(o).rho; };
+template <auto part>
+constexpr auto equilibration_scale = [](auto& o) -> auto& { return part(o).equilibration_scale; };
+template <auto part>
+constexpr auto reformulation = [](auto& o) -> auto& { return part(o).reformulation; };
+template <auto part>
+constexpr auto cross_complementarity = [](auto& o) -> auto& { return part(o).cross_complementarity; };
+template <auto part>
+constexpr auto step_equilibration = [](auto& o) -> auto& { return part(o).step_equilibration; };
+
+template <auto part>
+Expected<void> set_step_bounds(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  const double number = number_in(value);
+  if (!(number > 0.0 && number <= 1.0)) return tl::unexpected(out_of_range("a number > 0 and <= 1", value));
+  part(options).step_bounds = number;
+  return {};
+}
+
+template <auto part>
+Expected<void> set_lifting(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  if (const auto* word = std::get_if<std::string>(&value); word != nullptr && *word == "off") {
+    part(options).lifting.reset();
+    return {};
+  }
+  const double number = number_in(value);
+  if (!(number >= 2.0 && number <= 64.0 && number == std::floor(number))) {
+    return tl::unexpected(out_of_range("a whole number from 2 to 64 or \"off\"", value));
+  }
+  part(options).lifting = static_cast<long>(number);
+  return {};
+}
+
+template <auto part>
+void record_lifting(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (part(options).lifting) {
+    record.emplace_back(key, std::int64_t{*part(options).lifting});
+  } else {
+    record.emplace_back(key, std::string("off"));
+  }
+}
+
+template <auto part>
+constexpr std::array fields_of{
+    OptionField{"scheme", "radau_iia, gauss_legendre, lobatto_iiia, lobatto_iiic, explicit",
+                "Runge-Kutta method of the elements.", set_choice<scheme<part>, schemes>,
+                record_choice<scheme<part>, schemes>},
+    OptionField{"stages", "a whole number >= 1",
+                "Its stages: radau_iia and gauss_legendre have 1 to 9, the Lobatto methods 2 to 5, explicit 1 to 4.",
+                set_count<stages<part>>, record_count<stages<part>>},
+    OptionField{"steps", "a whole number >= 1", "Simulation steps, of equal length.", set_count<steps<part>>,
+                record_count<steps<part>>},
+    OptionField{"elements", "a whole number >= 1", "Elements in each; at least 2 with switch detection.",
+                set_count<elements<part>>, record_count<elements<part>>},
+    OptionField{"representation", "integral, differential",
+                "Unknowns of an element: stage states or stage slopes; the solutions are the same.",
+                set_choice<representation<part>, representations>, record_choice<representation<part>, representations>},
+    OptionField{"step_bounds", "a number > 0 and <= 1",
+                "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided.",
+                set_step_bounds<part>, record_number<step_bounds<part>>},
+    OptionField{"rho", "a finite number > 0", "Weight of the objective terms of step_equilibration.",
+                set_number<rho<part>, Range::positive>, record_number<rho<part>>},
+    OptionField{"equilibration_scale", "a finite number > 0", "Scale of step_equilibration = \"l2_relaxed_scaled\".",
+                set_number<equilibration_scale<part>, Range::positive>, record_number<equilibration_scale<part>>},
+    OptionField{"reformulation", "step, stewart", "How set-valued selections are written with complementarities.",
+                set_choice<reformulation<part>, reformulations>, record_choice<reformulation<part>, reformulations>},
+    OptionField{"cross_complementarity", "stage_stage, fe_stage, stage_fe, fe_fe, paper",
+                "Which products are summed up; the solutions are the same.",
+                set_choice<cross_complementarity<part>, cross_complementarities>,
+                record_choice<cross_complementarity<part>, cross_complementarities>},
+    OptionField{"step_equilibration", "direct, mlcp",
+                "What fixes the lengths of elements where nothing switches: both exact, with the same solutions.",
+                set_choice<step_equilibration<part>, step_equilibrations>,
+                record_choice<step_equilibration<part>, step_equilibrations>},
+    OptionField{"lifting", "a whole number >= 2, or \"off\"",
+                "Most factors in products of selections, longer ones are lifted; the solutions are the same.",
+                set_lifting<part>, record_lifting<part>},
+};
+
+}  // namespace
+
+std::span<const OptionField> element_fields() {
+  static const auto names = [] {
+    std::vector<std::string> list;
+    for (const std::string_view table : {"fesd", "timestepping"}) {
+      for (const auto& field : fields_of<of_fesd>) list.push_back(fmt::format("{}.{}", table, field.key));
+    }
+    return list;
+  }();
+  static const auto all = [] {
+    std::vector<OptionField> list(fields_of<of_fesd>.begin(), fields_of<of_fesd>.end());
+    list.insert(list.end(), fields_of<of_timestepping>.begin(), fields_of<of_timestepping>.end());
+    for (std::size_t i = 0; i < list.size(); ++i) list[i].key = names[i];
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,131 @@
+// How values of options are read, checked and recorded: what the tables of options are made of.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "saltus/pipeline/option_fields.hpp"
+
+namespace saltus::pipeline {
+
+using result::OptionRecord;
+using result::OptionValue;
+
+inline Error out_of_range(std::string_view expected, const OptionValue& found) {
+  return {ErrorCode::invalid_option, fmt::format("expected {}, found {}", expected, to_text(found)), "", {}, {}};
+}
+
+inline Error later(std::string_view what, std::string_view instead) {
+  return {ErrorCode::not_available,
+          fmt::format("{} is not available in this version; a later one brings it", what),
+          fmt::format("use {}", instead),
+          {},
+          {}};
+}
+
+/// The number a value states, whether it was written 1 or 1.0; NaN if it is none.
+inline double number_in(const OptionValue& value) {
+  if (const auto* real = std::get_if<double>(&value)) return *real;
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+enum class Range { finite, positive, not_negative };
+
+constexpr std::string_view text(Range range) {
+  switch (range) {
+    case Range::finite:
+      return "a finite number";
+    case Range::positive:
+      return "a finite number > 0";
+    case Range::not_negative:
+      return "a finite number >= 0";
+  }
+  __builtin_unreachable();
+}
+
+inline Expected<double> number_within(Range range, const OptionValue& value) {
+  const double number = number_in(value);
+  const bool fits = std::isfinite(number) && (range != Range::positive || number > 0.0) &&
+                    (range != Range::not_negative || number >= 0.0);
+  if (!fits) return tl::unexpected(out_of_range(text(range), value));
+  return number;
+}
+
+template <auto access, Range range>
+Expected<void> set_number(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  return number_within(range, value).map([&](double number) { access(options) = number; });
+}
+
+template <auto access>
+void record_number(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, access(options));
+}
+
+template <auto access>
+Expected<void> set_count(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  // Written 1e6 it is a real number, and still a count.
+  const double number = number_in(value);
+  if (!(number >= 1.0 && number <= 9e15 && number == std::floor(number))) {
+    return tl::unexpected(out_of_range("a whole number >= 1", value));
+  }
+  access(options) = static_cast<long>(number);
+  return {};
+}
+
+template <auto access>
+void record_count(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, std::int64_t{access(options)});
+}
+
+/// The spellings of an enum in the order of its enumerators; the first `available` of them run in this version.
+template <class Enum, std::size_t n>
+struct Choices {
+  std::string_view what;
+  std::array<std::string_view, n> names;
+  std::array<Enum, n> values;
+  std::size_t available;
+};
+
+template <auto access, const auto& choices>
+Expected<void> set_choice(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  const std::vector<std::string> known(choices.names.begin(), choices.names.end());
+  const auto* word = std::get_if<std::string>(&value);
+  if (word == nullptr) return tl::unexpected(out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value));
+  const auto found = std::find(known.begin(), known.end(), *word);
+  if (found == known.end()) {
+    auto error = out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value);
+    if (!nearest_names(*word, known).empty()) error.remedy = suggest(*word, known);
+    return tl::unexpected(std::move(error));
+  }
+  const auto position = static_cast<std::size_t>(found - known.begin());
+  if (position >= choices.available) {
+    const std::vector<std::string> usable(known.begin(), known.begin() + static_cast<long>(choices.available));
+    return tl::unexpected(
+        later(fmt::format("{} \"{}\"", choices.what, *word), fmt::format("{}", fmt::join(usable, " or "))));
+  }
+  access(options) = choices.values[position];
+  return {};
+}
+
+template <auto access, const auto& choices>
+void record_choice(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  const auto* position = std::find(choices.values.begin(), choices.values.end(), access(options));
+  record.emplace_back(key, std::string(choices.names[static_cast<std::size_t>(position - choices.values.begin())]));
+}
+
+/// [simulate.fesd] and [simulate.timestepping].
+[[nodiscard]] std::span<const OptionField> element_fields();
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,86 @@
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "saltus/fesd_integrator/integrate.hpp"
+#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/simulate_elements_internal.hpp"
+#include "saltus/reformulation/dcs.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+discretization::TableauFamily family(Scheme scheme) {
+  switch (scheme) {
+    case Scheme::radau_iia:
+      return discretization::TableauFamily::radau_iia;
+    case Scheme::gauss_legendre:
+      return discretization::TableauFamily::gauss_legendre;
+    case Scheme::lobatto_iiia:
+      return discretization::TableauFamily::lobatto_iiia;
+    case Scheme::lobatto_iiic:
+      return discretization::TableauFamily::lobatto_iiic;
+    case Scheme::explicit_rk:
+      return discretization::TableauFamily::explicit_rk;
+  }
+  __builtin_unreachable();
+}
+
+reformulation::ReformulationOptions reformulation_options(const ElementOptions& options) {
+  reformulation::ReformulationOptions wanted;
+  wanted.reformulation =
+      options.reformulation == Reformulation::step ? reformulation::Form::step : reformulation::Form::stewart;
+  wanted.lifting.reset();
+  if (options.lifting) wanted.lifting = static_cast<int>(*options.lifting);
+  return wanted;
+}
+
+}  // namespace
+
+Expected<result::Result> simulate_elements(const model::System& system, const SimulateOptions& options,
+                                           std::vector<double> times, std::vector<std::pair<int, int>> forced,
+                                           result::Result frame, const Observers& observers) {
+  using fesd_integrator::IntegrationOptions;
+  const auto begin = std::chrono::steady_clock::now();
+  const bool detected = options.method == Method::fesd;
+  const ElementOptions& wanted = detected ? options.fesd : options.timestepping;
+  auto tableau = discretization::butcher_tableau(family(wanted.scheme), static_cast<int>(wanted.stages));
+  if (!tableau) return tl::unexpected(tableau.error());
+  const auto dcs = reformulation::reformulate(system, reformulation_options(wanted));
+  if (!dcs) return tl::unexpected(dcs.error());
+
+  IntegrationOptions integration;
+  integration.switches = detected ? IntegrationOptions::Switches::detected : IntegrationOptions::Switches::fixed;
+  integration.tableau = std::move(*tableau);
+  integration.from = options.from;
+  integration.until = *options.until;
+  integration.steps = wanted.steps;
+  integration.elements = static_cast<int>(wanted.elements);
+  integration.step_bounds = wanted.step_bounds;
+  integration.max_steps = options.max_steps;
+  integration.max_events = options.max_events;
+  integration.initial_mode = std::move(forced);
+  if (!std::holds_alternative<EveryStep>(options.output)) {
+    integration.rows = IntegrationOptions::Rows::at_times;
+    integration.times = std::move(times);
+  }
+  fesd_integrator::StepObserver observer;
+  if (observers.on_step) {
+    observer = [&](const fesd_integrator::Progress& progress) {
+      const auto answer =
+          observers.on_step({progress.t, integration.from, integration.until, progress.steps, progress.events, 1, 1});
+      return answer == Proceed::on ? fesd_integrator::Continue::yes : fesd_integrator::Continue::no;
+    };
+  }
+  auto run = fesd_integrator::integrate(system, *dcs, integration, observer);
+  if (!run) return tl::unexpected(run.error());
+  frame.status = std::move(run->status);
+  frame.final = std::move(run->final);
+  frame.events = std::move(run->events);
+  frame.trajectory = std::move(run->trajectory);
+  frame.statistics = run->statistics;
+  frame.statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return frame;
+}
+
+}  // namespace saltus::pipeline
