@@ -78,8 +78,9 @@ class BadInput(tool.ToolTest):
     def test_later_commands_and_methods(self):
         for later in ("optimize", "order", "mpcc"):
             self.refused("a later one brings it", later, "crossing")
-        self.refused("a later one brings it", "simulate", "crossing", "--method", "fesd")
-        self.refused("a later one brings it", "simulate", "crossing", "--set", "simulate.fesd.stages=3")
+        self.refused("Radau IIA", "simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.stages=10")
+        self.refused("at least 2 elements", "simulate", "crossing", "--method", "fesd", "--set",
+                     "simulate.fesd.elements=1")
         self.refused("initial_mode has no meaning", "simulate", "spontaneous-switch", "--method", "smoothed", "--set",
                      "simulate.initial_mode.x=1")
         self.refused("--set simulate.smoothed.epsilon: error: expected a finite number > 0, found 0", "simulate",

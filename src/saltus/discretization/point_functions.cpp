@@ -56,11 +56,8 @@ Expected<PointFunctions> PointFunctions::compile(const reformulation::Dcs& dcs, 
   try {
     return PointFunctions(std::make_unique<Implementation>(dcs, std::move(parameters)));
   } catch (const std::exception& error) {
-    return tl::unexpected(Error{ErrorCode::invalid_model,
-                                std::string("the model's outputs cannot be compiled: ") + error.what(),
-                                "",
-                                {},
-                                {}});
+    return tl::unexpected(Error{
+        ErrorCode::invalid_model, std::string("the model's outputs cannot be compiled: ") + error.what(), "", {}, {}});
   }
 }
 

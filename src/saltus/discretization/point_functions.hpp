@@ -1,5 +1,5 @@
-// What a result shows of a dynamic complementarity system at a point: columns, outputs, inputs, user events; and what is
-// held within a simulation step.
+// What a result shows of a dynamic complementarity system at a point: columns, outputs, inputs, user events; and what
+// is held within a simulation step.
 #pragma once
 
 #include <cstddef>

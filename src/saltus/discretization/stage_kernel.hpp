@@ -15,12 +15,12 @@ namespace saltus::discretization {
 
 /// f, the indicators and their derivatives at one point; matrices by columns.
 struct StageValues {
-  std::vector<double> f;                 ///< n_x
-  std::vector<double> indicator;         ///< n_selections: psi_j, or g_i
-  std::vector<double> f_x;               ///< n_x by n_x
-  std::vector<double> f_selection;       ///< n_x by n_selections
-  std::vector<double> indicator_x;       ///< n_selections by n_x
-  std::vector<double> indicator_t;       ///< n_selections
+  std::vector<double> f;            ///< n_x
+  std::vector<double> indicator;    ///< n_selections: psi_j, or g_i
+  std::vector<double> f_x;          ///< n_x by n_x
+  std::vector<double> f_selection;  ///< n_x by n_selections
+  std::vector<double> indicator_x;  ///< n_selections by n_x
+  std::vector<double> indicator_t;  ///< n_selections
 };
 
 /// All functions take t, x (n_x), the selections (n_selections) and what is held (n_held), and write to the caller's

@@ -6,8 +6,8 @@
 
 #include <casadi/core/sx.hpp>
 
-#include "saltus/model/model_function.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/model/model_function.hpp"
 
 namespace saltus::evaluation {
 

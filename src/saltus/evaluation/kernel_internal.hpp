@@ -14,10 +14,10 @@
 #include "saltus/evaluation/cell_functions_internal.hpp"
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
-#include "saltus/model/model_function.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/evaluation/native_code.hpp"
 #include "saltus/evaluation/region_constants_internal.hpp"
+#include "saltus/model/model_function.hpp"
 
 namespace saltus::evaluation {
 

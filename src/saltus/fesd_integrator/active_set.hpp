@@ -48,7 +48,8 @@ class ActiveSet {
   void selections(const double* unknown, double* all) const;
   /// The unknown ones out of all.
   void unknowns(const double* all, double* unknown) const;
-  /// What is zero while entry k of sliding() slides: psi_j, or g_r - g_i; also for rows of derivatives (`stride` apart).
+  /// What is zero while entry k of sliding() slides: psi_j, or g_r - g_i; also for rows of derivatives (`stride`
+  /// apart).
   [[nodiscard]] double surface(std::size_t k, const double* indicator, std::size_t stride = 1) const {
     const Sliding& entry = sliding_[k];
     const double own = indicator[static_cast<std::size_t>(entry.selection) * stride];
@@ -72,8 +73,8 @@ class ActiveSet {
 
  private:
   std::vector<int> modes_;
-  std::vector<double> fixed_;     ///< selections where all unknown ones are 0
-  std::vector<int> references_;   ///< per selection: the reference of its simplex, -1 for a step selection
+  std::vector<double> fixed_;    ///< selections where all unknown ones are 0
+  std::vector<int> references_;  ///< per selection: the reference of its simplex, -1 for a step selection
   std::vector<Sliding> sliding_;
   std::vector<Condition> conditions_;
 };

@@ -36,16 +36,21 @@ bool DenseSystem::eliminate() {
   return true;
 }
 
-bool DenseSystem::solve() {
+bool DenseSystem::solve(double negligible) {
   if (n_ == 0) return true;
   copy_.head(n_ * n_) = memory_.head(n_ * n_);
   right_copy_.head(n_) = right_.head(n_);
   if (!copy_.head(n_ * n_).allFinite() || !right_copy_.head(n_).allFinite()) return false;
   if (eliminate()) return right().allFinite();
   orthogonal_.setThreshold(1e-12);
-  orthogonal_.compute(Eigen::Map<const Eigen::MatrixXd>(copy_.data(), n_, n_));
+  const Eigen::Map<const Eigen::MatrixXd> original(copy_.data(), n_, n_);
+  orthogonal_.compute(original);
   right() = orthogonal_.solve(right_copy_.head(n_));
-  return right().allFinite();
+  if (!right().allFinite()) return false;
+  // Consistent but for the threshold.
+  const double wanted = right_copy_.head(n_).cwiseAbs().maxCoeff();
+  const double missed = (original * right() - right_copy_.head(n_)).cwiseAbs().maxCoeff();
+  return missed <= 1e-9 * wanted + negligible;
 }
 
 }  // namespace saltus::fesd_integrator

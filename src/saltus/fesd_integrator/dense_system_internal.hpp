@@ -26,8 +26,9 @@ class DenseSystem {
   }
   [[nodiscard]] Eigen::Map<Eigen::MatrixXd> matrix() { return {memory_.data(), n_, n_}; }
   [[nodiscard]] Eigen::Map<Eigen::VectorXd> right() { return {right_.data(), n_}; }
-  /// Leaves the solution in right(); false if something is not finite. Cost: n^3 / 3.
-  [[nodiscard]] bool solve();
+  /// Leaves the solution in right(); false if something is not finite, or a singular system has none but for an error
+  /// beyond `negligible` (the rounding level of the right side). Cost: n^3 / 3.
+  [[nodiscard]] bool solve(double negligible);
 
  private:
   [[nodiscard]] bool eliminate();

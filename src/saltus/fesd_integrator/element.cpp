@@ -83,6 +83,8 @@ struct ElementSolver::Implementation {
     if (entry.reference >= 0) row = psi_x.row(entry.reference).transpose() - row;
   }
 
+  /// Rounding level of the equations: a few roundings of the largest state.
+  [[nodiscard]] double negligible(const Element& element) const { return 1e-13 * element.size; }
   /// Equations of one Newton step; the unknowns of the selections are their changes times h, as in the states.
   void assemble(const Element& element);
   /// Adds a step; the largest change of a state, relative to the largest state.
@@ -153,7 +155,7 @@ double ElementSolver::Implementation::update(Element& element) {
       if (entry.reference >= 0) all[entry.reference] -= correction;
     }
   }
-  const double size = states.cwiseAbs().maxCoeff();
+  const double size = std::max(element.size, states.cwiseAbs().maxCoeff());
   return size > 0.0 ? change / size : change;
 }
 
@@ -177,7 +179,7 @@ bool ElementSolver::Implementation::project(double t, const double* held, Elemen
       for (Index l = 0; l < count; ++l) matrix(k, l) = row.dot(along.col(l));
       right(k) = -active.surface(static_cast<std::size_t>(k), at.indicator.data());
     }
-    if (!system.solve()) return false;
+    if (!system.solve(negligible(element))) return false;
     for (Index l = 0; l < count; ++l) x_1 += system.right()(l) * along.col(l);
     double change = 0.0;
     for (Index i = 0; i < n_x; ++i) {
@@ -185,7 +187,7 @@ bool ElementSolver::Implementation::project(double t, const double* held, Elemen
       for (Index l = 0; l < count; ++l) moved += system.right()(l) * along(i, l);
       change = std::max(change, std::abs(moved));
     }
-    const double size = x_1.cwiseAbs().maxCoeff();
+    const double size = element.size;
     if (change <= 1e-15 * size || (change <= 1e-12 * size && change >= 0.5 * before)) return true;
     if (change <= 1e-9 * size && before <= 1e-4 * size) return true;
     before = change;
@@ -210,6 +212,7 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
   element.t = left.t;
   element.h = h;
   element.x = left.x;
+  element.size = std::max(left.size, ConstVector(left.x.data(), self.n_x).cwiseAbs().maxCoeff());
   element.stage_states.resize(n_x * n_s);
   element.stage_slopes.resize(n_x * n_s);
   element.stage_selections.resize(n_psi * n_s);
@@ -236,9 +239,8 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
   }
   const auto slope_to_values = [&] {
     for (std::size_t m = 0; m < n_s; ++m) {
-      self.kernel.evaluate(element.t + h * self.tableau.c(static_cast<Index>(m)),
-                           element.stage_states.data() + m * n_x, element.stage_selections.data() + m * n_psi, held,
-                           self.values[m]);
+      self.kernel.evaluate(element.t + h * self.tableau.c(static_cast<Index>(m)), element.stage_states.data() + m * n_x,
+                           element.stage_selections.data() + m * n_psi, held, self.values[m]);
       self.find_directions(static_cast<Index>(m), self.values[m]);
     }
     if (self.ends_at_last_stage && !self.explicit_method) return;
@@ -258,7 +260,7 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
                            self.values[n_s]);
     }
     self.assemble(element);
-    if (!self.system.solve()) return Outcome::not_finite;
+    if (!self.system.solve(self.negligible(element))) return Outcome::not_finite;
     const double change = self.update(element);
     if (!std::isfinite(change)) return Outcome::not_finite;
     // Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are
@@ -270,6 +272,8 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     self.kernel.field(element.t + h * self.tableau.c(static_cast<Index>(m)), element.stage_states.data() + m * n_x,
                       element.stage_selections.data() + m * n_psi, held, element.stage_slopes.data() + m * n_x);
   }
+  element.size =
+      std::max(element.size, ConstMatrix(element.stage_states.data(), self.n_x, self.n_s).cwiseAbs().maxCoeff());
   if (self.ends_at_last_stage && !self.explicit_method) {
     std::copy_n(element.stage_states.end() - static_cast<std::ptrdiff_t>(n_x), n_x, element.end.begin());
   } else {

@@ -16,17 +16,19 @@ struct Point {
   double t = 0.0;
   std::vector<double> x;           ///< n_x
   std::vector<double> selections;  ///< all, the limit from the right
+  double size = 0.0;               ///< of the states around: what roundings are relative to
 };
 
 /// A solved element. Columns of matrices are stages.
 struct Element {
   double t = 0.0;  ///< left end
   double h = 0.0;
-  std::vector<double> x;             ///< left end
-  std::vector<double> stage_states;  ///< n_x by n_s
-  std::vector<double> stage_slopes;  ///< n_x by n_s: f at the stages
+  double size = 0.0;                     ///< largest state of it and of those around
+  std::vector<double> x;                 ///< left end
+  std::vector<double> stage_states;      ///< n_x by n_s
+  std::vector<double> stage_slopes;      ///< n_x by n_s: f at the stages
   std::vector<double> stage_selections;  ///< n_selections by n_s
-  std::vector<double> end;           ///< n_x: right end, on the surfaces that slide
+  std::vector<double> end;               ///< n_x: right end, on the surfaces that slide
 };
 
 /// Solves, for given h and one active set per stage,

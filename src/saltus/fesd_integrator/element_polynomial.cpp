@@ -56,7 +56,8 @@ void ElementPolynomial::evaluate(const Element& element, double theta, double* x
     const double stretch = last_node_ > 0.0 ? 1.0 / last_node_ : 0.0;
     for (std::size_t i = 0; i < n_x; ++i) {
       const double end_slope = slopes[i] + stretch * (slopes[(n_s - 1) * n_x + i] - slopes[i]);
-      x[i] = element.x[i] + along * (element.end[i] - element.x[i]) + element.h * (left * slopes[i] + right * end_slope);
+      x[i] =
+          element.x[i] + along * (element.end[i] - element.x[i]) + element.h * (left * slopes[i] + right * end_slope);
     }
     return;
   }

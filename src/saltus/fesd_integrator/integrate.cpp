@@ -12,6 +12,13 @@ Expected<Integration> integrate(const model::System& system, const reformulation
   if (!kernel) return tl::unexpected(kernel.error());
   const auto functions = discretization::PointFunctions::compile(dcs, system.parameter_values);
   if (!functions) return tl::unexpected(functions.error());
+  if (functions->event_functions() > 0) {
+    return tl::unexpected(Error{ErrorCode::not_available,
+                                "[[events]] are not available with finite elements in this version",
+                                "use method = \"event\"",
+                                {},
+                                {}});
+  }
   const Facts known = facts(system, dcs);
   return Run(*kernel, *functions, known, options, observer).run();
 }

@@ -57,11 +57,11 @@ struct Integration {
   result::Statistics statistics;  ///< steps: elements; rejected: simulation steps that were divided
 };
 
-/// Solves the equations of FESD, (37)-(41) of [nurkanovic2024], one simulation step of length T = (until - from) / steps
-/// after the other: square once the active set of every element is fixed, which is predicted and repaired. Within a
-/// simulation step the elements between two switches have equal lengths (exact step equilibration).
-/// Where sliding ends, psi is zero on both sides of the boundary and the equations leave its place open; it is closed by
-/// alpha = 0 or 1 there (alpha of the projected field), where d psi / dt of the other side is zero.
+/// Solves the equations of FESD, (37)-(41) of [nurkanovic2024], one simulation step of length T = (until - from) /
+/// steps after the other: square once the active set of every element is fixed, which is predicted and repaired. Within
+/// a simulation step the elements between two switches have equal lengths (exact step equilibration). Where sliding
+/// ends, psi is zero on both sides of the boundary and the equations leave its place open; it is closed by alpha = 0 or
+/// 1 there (alpha of the projected field), where d psi / dt of the other side is zero.
 /// @return everything computed up to the termination; never throws for numerical reasons. An Error only if the symbolic
 ///         layer refuses an expression.
 /// Cost: per element a Newton iteration on n_s (n_x + n_sliding) unknowns; per switch some solutions of the elements

@@ -42,12 +42,15 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
     system.reset(static_cast<Eigen::Index>(count));
     auto matrix = system.matrix();
     auto right = system.right();
+    double size = 0.0;
     for (std::size_t k = 0; k < count; ++k) {
       double rate = set.surface(k, values_.indicator_t.data());
+      size = std::max(size, std::abs(rate));
       for (std::size_t i = 0; i < n_x; ++i) {
         const double gradient = set.surface(k, values_.indicator_x.data() + i * n);
         if (gradient == 0.0) continue;
         rate += gradient * values_.f[i];
+        size = std::max(size, std::abs(gradient * values_.f[i]));
         for (std::size_t l = 0; l < count; ++l) {
           const auto j = static_cast<std::size_t>(sliding[l].selection);
           double along = values_.f_selection[j * n_x + i];
@@ -59,7 +62,7 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
       }
       right(static_cast<Eigen::Index>(k)) = -rate;
     }
-    if (!system.solve()) return false;
+    if (!system.solve(1e-11 * size)) return false;
     double change = 0.0;
     for (std::size_t l = 0; l < count; ++l) {
       const double step = system.right()(static_cast<Eigen::Index>(l));
@@ -78,17 +81,11 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
   return false;
 }
 
-void ProjectedField::rates(std::vector<double>& rate, std::vector<double>& magnitude) const {
+void ProjectedField::rates(std::vector<double>& rate) const {
   const std::size_t n_x = kernel_.states(), n = kernel_.selections();
   rate.assign(values_.indicator_t.begin(), values_.indicator_t.end());
-  magnitude.resize(n);
-  for (std::size_t j = 0; j < n; ++j) magnitude[j] = std::abs(rate[j]);
   for (std::size_t i = 0; i < n_x; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      const double term = values_.indicator_x[i * n + j] * values_.f[i];
-      rate[j] += term;
-      magnitude[j] += std::abs(term);
-    }
+    for (std::size_t j = 0; j < n; ++j) rate[j] += values_.indicator_x[i * n + j] * values_.f[i];
   }
 }
 

@@ -25,8 +25,8 @@ class ProjectedField {
   /// @return false where Newton's method finds none. values() are those at the solution.
   [[nodiscard]] bool solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections);
   [[nodiscard]] const discretization::StageValues& values() const { return values_; }
-  /// Rates d psi / dt (or d g / dt) of all indicators along values().f, and the sums of the magnitudes of their terms.
-  void rates(std::vector<double>& rate, std::vector<double>& magnitude) const;
+  /// Rates d psi / dt (or d g / dt) of all indicators along values().f.
+  void rates(std::vector<double>& rate) const;
 
  private:
   const discretization::StageKernel& kernel_;

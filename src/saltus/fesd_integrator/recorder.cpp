@@ -152,7 +152,8 @@ bool Recorder::started(double t, const std::vector<double>& x, const std::vector
   for (const auto& group : facts_.regions) {
     for (std::size_t i = 0; i < group.names.size(); ++i) {
       const int function = group.first + static_cast<int>(i);
-      if (std::find(at_zero.begin(), at_zero.end(), function) != at_zero.end()) event.surfaces.push_back(group.names[i]);
+      if (std::find(at_zero.begin(), at_zero.end(), function) != at_zero.end())
+        event.surfaces.push_back(group.names[i]);
     }
   }
   if (event.surfaces.empty()) return false;

@@ -9,8 +9,8 @@
 
 namespace saltus::fesd_integrator {
 
-Run::Run(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions,
-         const Facts& facts, const IntegrationOptions& options, const StepObserver& observer)
+Run::Run(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions, const Facts& facts,
+         const IntegrationOptions& options, const StepObserver& observer)
     : kernel_(kernel),
       functions_(functions),
       facts_(facts),
@@ -20,6 +20,7 @@ Run::Run(const discretization::StageKernel& kernel, const discretization::PointF
       watch_(kernel, solver_),
       transition_(kernel, facts.parts, solver_),
       projected_(kernel),
+      fixed_(kernel, facts.parts, solver_),
       held_(functions, facts.held),
       recorder_(functions, facts),
       t_(options.from),
@@ -45,7 +46,11 @@ Integration Run::run() {
                            : options_.from + (options_.until - options_.from) * (static_cast<double>(k + 1) / steps);
     while (!stopped() && t_ < end) {
       const double change = held_.next_change(t_, end, x_.data());
-      advance(change);
+      if (options_.switches == IntegrationOptions::Switches::detected) {
+        advance(change);
+      } else {
+        advance_fixed(change);
+      }
       if (!stopped() && !facts_.held.empty()) hold_behind();
     }
     if (stopped() || !observer_) continue;
@@ -70,24 +75,23 @@ Integration Run::run() {
 
 void Run::start() {
   held_.set_behind(t_, nominal_, x_.data());
+  for (const double component : x_) size_ = std::max(size_, std::abs(component));
   std::vector<int> below(kernel_.selections(), -1);
   for (const Part& part : facts_.parts) {
     if (part.simplex) below[static_cast<std::size_t>(part.first)] = 0;
   }
   set_ = ActiveSet(facts_.parts, below);
   set_.selections(selections_.data(), selections_.data());
-  auto found = transition_.continuations(
-      {t_, x_, held_.data(), nullptr, {}, nominal_ / options_.elements / 128.0});
-  if (!options_.initial_mode.empty()) {
-    std::erase_if(found, [&](const Continuation& candidate) {
-      const auto view = recorder_.view(candidate.set, candidate.selections, held_.data());
-      return std::any_of(options_.initial_mode.begin(), options_.initial_mode.end(), [&](const auto& forced) {
-        return view.mode[static_cast<std::size_t>(forced.first)] != forced.second;
-      });
+  auto found =
+      transition_.continuations({t_, x_, held_.data(), nullptr, {}, size_, nominal_ / options_.elements / 128.0});
+  const auto chosen = std::find_if(found.begin(), found.end(), [&](const Continuation& candidate) {
+    const auto view = recorder_.view(candidate.set, candidate.selections, held_.data());
+    return std::all_of(options_.initial_mode.begin(), options_.initial_mode.end(), [&](const auto& forced) {
+      return view.mode[static_cast<std::size_t>(forced.first)] == forced.second;
     });
-  }
+  });
   const ActiveSet at_zero(facts_.parts, transition_.modes_at_zero());
-  if (found.empty()) {
+  if (chosen == found.end()) {
     stop(result::Termination::no_admissible_mode,
          options_.initial_mode.empty()
              ? fmt::format("no mode continues the solution from the start at t = {:.10g}", t_)
@@ -101,10 +105,12 @@ void Run::start() {
   }
   for (const auto& group : facts_.regions) {
     // A region that is active alone is not on a surface.
-    const auto in_group = [&](int j) { return j >= group.first && j < group.first + static_cast<int>(group.names.size()); };
+    const auto in_group = [&](int j) {
+      return j >= group.first && j < group.first + static_cast<int>(group.names.size());
+    };
     if (std::count_if(functions.begin(), functions.end(), in_group) == 1) std::erase_if(functions, in_group);
   }
-  // All continuations of a start stand in the event, also those that the forced mode excludes.
+  std::rotate(found.begin(), chosen, chosen + 1);
   set_ = found.front().set;
   selections_ = found.front().selections;
   recorder_.started(t_, x_, found, held_.data(), functions);
@@ -139,8 +145,8 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
          fmt::format("the modes at t = {:.10g} change without end; try other simulate.fesd.steps", t_));
     return;
   }
-  const auto found = transition_.continuations(
-      {t_, x_, held_.data(), &before, at_zero, nominal_ / options_.elements / 128.0});
+  const auto found =
+      transition_.continuations({t_, x_, held_.data(), &before, at_zero, size_, nominal_ / options_.elements / 128.0});
   if (found.empty()) {
     stop(result::Termination::no_admissible_mode,
          fmt::format("no mode continues the solution at t = {:.10g}; try method = \"event\"", t_));
@@ -187,6 +193,8 @@ void Run::accept(const Element& element, const std::vector<double>& left, const 
   t_ = end;
   x_ = element.end;
   selections_ = right;
+  // Halved with every element: what was large a long time ago has left no roundings.
+  size_ = std::max(0.5 * size_, element.size);
   static_cast<void>(step_counts());
 }
 

@@ -11,6 +11,7 @@
 #include "saltus/fesd_integrator/active_set.hpp"
 #include "saltus/fesd_integrator/element.hpp"
 #include "saltus/fesd_integrator/facts.hpp"
+#include "saltus/fesd_integrator/fixed_element.hpp"
 #include "saltus/fesd_integrator/held_values.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/recorder.hpp"
@@ -55,6 +56,8 @@ class Run {
   void decide(std::vector<int> at_zero, std::string_view reason, const ActiveSet& before,
               const std::vector<double>& selections_before, const double* held_before);
   void hold_behind();
+  /// The same with fixed lengths.
+  void advance_fixed(double end);
   void row_here();
   void emit_times(const Element* element, double until);
   void stop(result::Termination termination, std::string message);
@@ -70,12 +73,14 @@ class Run {
   Watch watch_;
   Transition transition_;
   ProjectedField projected_;
+  FixedElement fixed_;
   HeldValues held_;
   Recorder recorder_;
 
   double t_ = 0.0;
   std::vector<double> x_, selections_;
   ActiveSet set_;
+  double size_ = 0.0;     ///< of the largest state of late
   double nominal_ = 0.0;  ///< length of a simulation step
   Chain chain_;
   std::optional<Element> previous_;  ///< the last element, if the next one continues it

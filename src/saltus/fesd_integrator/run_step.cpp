@@ -19,7 +19,7 @@ constexpr double shortest = 1e-12;
 Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
   chain_.count = 0;
   chain_.left[0] = selections_;
-  Point left{t_, x_, selections_};
+  Point left{t_, x_, selections_, size_};
   for (int i = 0; i < count; ++i) {
     auto& element = chain_.elements[static_cast<std::size_t>(i)];
     auto guess = ElementSolver::Guess::left_end;
@@ -47,6 +47,7 @@ Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
     left.t = t_ + (i + 1) * h;
     left.x = element.end;
     left.selections = right;
+    left.size = element.size;
   }
   return Solved::all;
 }
@@ -61,7 +62,7 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
   for (int i = 0; i < most_iterations; ++i) {
     // The other conditions are looked at afterwards.
     Violation other;
-    Point left{t_, x_, selections_};
+    Point left{t_, x_, selections_, size_};
     bool failed = false;
     auto selections = selections_;
     for (int k = 0; k < count; ++k) {
@@ -82,7 +83,7 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
       failed = outcome != ElementSolver::Outcome::solved ||
                watch_.look(element, set_, held_.data(), selections, other) == Watch::Answer::not_finite;
       if (failed) break;
-      left = {t_ + (k + 1) * h, element.end, selections};
+      left = {t_ + (k + 1) * h, element.end, selections, element.size};
     }
     if (failed) return std::nullopt;
     const double value = watch_.end_value(set_, violation.condition), noise = watch_.noise(violation.condition);
@@ -110,8 +111,7 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
   return std::nullopt;
 }
 
-std::optional<Run::Located> Run::find_switch(int elements, double remaining, Violation violation,
-                                             std::size_t element) {
+std::optional<Run::Located> Run::find_switch(int elements, double remaining, Violation violation, std::size_t element) {
   double tau = chain_.elements[element].h * (static_cast<double>(element) + violation.theta);
   // Each round goes to a condition that ends earlier than the one before.
   const std::size_t rounds = set_.conditions().size() + 2;

@@ -1,6 +1,7 @@
 #include "saltus/fesd_integrator/transition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -36,7 +37,7 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
   discretization::StageValues values;
   kernel_.size(values);
   kernel_.evaluate(decision.t, decision.x.data(), middle.data(), decision.held, values);
-  indicator_noise(values, decision.t, decision.x, noise_);
+  indicator_noise(values, decision.t, decision.size, noise_);
   const auto forced = [&](int j) {
     return std::find(decision.at_zero.begin(), decision.at_zero.end(), j) != decision.at_zero.end();
   };
@@ -59,6 +60,8 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
   for (const int j : members) modes_at_zero_[at(j)] = 0;
   if (members.empty()) return;
 
+  // The size of a rate: of its largest terms for any selections, as f may cancel inside.
+  size_.assign(n, 0.0);
   // Groups: i influences j where d(psi_j)/dt depends on selection i, at any of three points of the cube.
   std::vector<int> group(members.size());
   std::iota(group.begin(), group.end(), 0);
@@ -71,6 +74,11 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
     for (std::size_t j = 0; j < n; ++j) selections[j] = modes[j] > 0 ? 1.0 : 0.0;
     for (const int j : members) selections[at(j)] = level;
     kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values);
+    for (std::size_t j = 0; j < n; ++j) {
+      double sum = std::abs(values.indicator_t[j]);
+      for (std::size_t i = 0; i < n_x; ++i) sum += std::abs(values.indicator_x[i * n + j] * values.f[i]);
+      size_[j] = std::max(size_[j], sum);
+    }
     for (std::size_t a = 0; a < members.size(); ++a) {
       for (std::size_t b = 0; b < members.size(); ++b) {
         if (group[a] == group[b]) continue;
@@ -103,7 +111,7 @@ std::vector<std::vector<int>> Transition::patterns_of(const Group& group, const 
     const bool region = parts_[at(part_of_[at(j)])].simplex;
     std::vector<std::vector<int>> longer;
     for (const auto& pattern : patterns) {
-      for (const int mode : {0, -1, 1}) {
+      for (const int mode : decision.before == nullptr ? std::array{1, -1, 0} : std::array{0, 1, -1}) {
         if (region && mode == 1) continue;
         longer.push_back(pattern);
         longer.back().push_back(mode);
@@ -148,16 +156,16 @@ double Transition::margin(const Decision& decision, const Group& group, Continua
   }
   set.selections(unknown.data(), candidate.selections.data());
   if (!projected_.solve(decision.t, decision.x.data(), set, decision.held, candidate.selections.data())) return -1.0;
-  projected_.rates(rate_, magnitude_);
+  projected_.rates(rate_);
   double least = 1.0;
   for (const Condition& condition : set.conditions()) {
     if (std::find(group.members.begin(), group.members.end(), condition.selection) == group.members.end()) continue;
     double value = set.value(condition, rate_.data(), candidate.selections.data());
     if (condition.kind == Condition::Kind::side) {
-      double size = magnitude_[at(condition.selection)];
+      double size = size_[at(condition.selection)];
       for (const int j : group.members) {
         if (part_of_[at(j)] == part_of_[at(condition.selection)] && parts_[at(part_of_[at(j)])].simplex) {
-          size = std::max(size, magnitude_[at(j)]);
+          size = std::max(size, size_[at(j)]);
         }
       }
       value = size > 0.0 ? value / size : 0.0;
@@ -169,17 +177,17 @@ double Transition::margin(const Decision& decision, const Group& group, Continua
 }
 
 bool Transition::passes_trial(const Decision& decision, const Group& group, const Continuation& candidate) {
-  const Point left{decision.t, {decision.x.begin(), decision.x.end()}, candidate.selections};
+  const Point left{decision.t, {decision.x.begin(), decision.x.end()}, candidate.selections, decision.size};
   const auto outcome = solver_.solve(left, decision.trial_length, {&candidate.set, 1}, decision.held,
                                      ElementSolver::Guess::left_end, trial_);
   if (outcome != ElementSolver::Outcome::solved) return false;
   auto selections = candidate.selections;
   Violation violation;
-  const auto answer = watch_.look(trial_, candidate.set, decision.held, selections, violation);
-  if (answer == Watch::Answer::not_finite) return false;
-  if (answer == Watch::Answer::holds || violation.theta > 0.25) return true;
-  const auto& members = group.members;
-  return std::find(members.begin(), members.end(), violation.condition.selection) == members.end();
+  // A switch late in the trial is the next one.
+  constexpr double just_behind = 0.25;
+  const auto answer = watch_.look(trial_, candidate.set, decision.held, selections, violation,
+                                  {group.members.data(), group.members.size()});
+  return answer == Watch::Answer::holds || (answer == Watch::Answer::violated && violation.theta > just_behind);
 }
 
 std::vector<Continuation> Transition::continuations(const Decision& decision) {

@@ -27,6 +27,7 @@ struct Decision {
   const double* held = nullptr;
   const ActiveSet* before = nullptr;  ///< nullptr at a start
   std::span<const int> at_zero{};     ///< selections whose indicator is zero there whatever its rounding
+  double size = 0.0;                  ///< of the states around, as in Point
   double trial_length = 0.0;          ///< of an element, where first derivatives do not decide
 };
 
@@ -35,13 +36,14 @@ struct Decision {
 /// behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a short
 /// element does. Functions that do not influence each other are enumerated one by one.
 ///
-/// The order of the answers: fewest changes from the set before; then, one function after the other, sliding, below,
-/// above (regions: fewest active ones, then their numbers).
+/// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
+/// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
 class Transition {
  public:
   Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver);
 
-  /// Empty if nothing continues. Cost: 3^m evaluations for m functions that influence each other, at most `most_patterns`.
+  /// Empty if nothing continues. Cost: 3^m evaluations for m functions that influence each other, at most
+  /// `most_patterns`.
   [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision);
   /// Of the last decision: the modes where everything that is zero there slides, or is active.
   [[nodiscard]] const std::vector<int>& modes_at_zero() const { return modes_at_zero_; }
@@ -65,7 +67,7 @@ class Transition {
   std::vector<Group> groups_;
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
-  std::vector<double> rate_, magnitude_, noise_;
+  std::vector<double> rate_, size_, noise_;
 };
 
 }  // namespace saltus::fesd_integrator

@@ -23,16 +23,14 @@ constexpr double selection_noise = 1e-12;
 
 }  // namespace
 
-void indicator_noise(const discretization::StageValues& values, double t, std::span<const double> x,
-                     std::vector<double>& noise) {
+void indicator_noise(const discretization::StageValues& values, double t, double size, std::vector<double>& noise) {
   constexpr double roundings = 16.0 * std::numeric_limits<double>::epsilon();
   const std::size_t n = values.indicator.size();
   noise.resize(n);
-  double largest = 0.0;  // Newton's method is accurate relative to the largest state
-  for (const double component : x) largest = std::max(largest, std::abs(component));
+  const std::size_t n_x = values.f.size();
   for (std::size_t j = 0; j < n; ++j) {
     double sum = std::abs(values.indicator_t[j] * t) + std::abs(values.indicator[j]);
-    for (std::size_t i = 0; i < x.size(); ++i) sum += std::abs(values.indicator_x[i * n + j]) * largest;
+    for (std::size_t i = 0; i < n_x; ++i) sum += std::abs(values.indicator_x[i * n + j]) * size;
     noise[j] = roundings * sum;
   }
 }
@@ -68,13 +66,13 @@ double Watch::end_value(const ActiveSet& set, const Condition& condition) const 
 }
 
 Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const double* held,
-                          std::vector<double>& selections, Violation& earliest) {
+                          std::vector<double>& selections, Violation& earliest, std::span<const int> only) {
   const std::size_t n = kernel_.selections();
   const auto& thetas = solver_.watch_points();
   const bool slides = !set.sliding().empty();
   // Gradients at the left end give the rounding level; between the ends of an element it is the same.
   kernel_.evaluate(element.t, element.x.data(), selections.data(), held, left_);
-  indicator_noise(left_, element.t + element.h, element.x, noise_);
+  indicator_noise(left_, element.t + element.h, element.size, noise_);
   for (std::size_t i = 0; i < points_; ++i) {
     const double t = element.t + thetas[i] * element.h;
     double* at = selections_.data() + i * n;
@@ -89,6 +87,7 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   bool found = false;
   earliest.theta = std::numeric_limits<double>::infinity();
   for (const Condition& condition : set.conditions()) {
+    if (!only.empty() && std::find(only.begin(), only.end(), condition.selection) == only.end()) continue;
     for (std::size_t i = 0; i < points_; ++i) {
       values_[i] = set.value(condition, indicators_.data() + i * n, selections_.data() + i * n);
       if (!std::isfinite(values_[i])) return Answer::not_finite;

@@ -22,8 +22,8 @@ struct Violation {
 };
 
 /// Rounding level of every indicator: a few roundings of its largest term.
-void indicator_noise(const discretization::StageValues& values, double t, std::span<const double> x,
-                     std::vector<double>& noise);
+/// `size` is that of the largest state around: Newton's method is accurate relative to it.
+void indicator_noise(const discretization::StageValues& values, double t, double size, std::vector<double>& noise);
 
 /// Looks at the conditions of an active set in solved elements: at the points of the method, and between them along
 /// their interpolant, of which no sign change is missed.
@@ -34,10 +34,11 @@ class Watch {
   /// The earliest violation; a condition that is zero at the left end or at the right one, within rounding, holds
   /// there. Selections that slide are those of the projected field.
   /// @param selections  at the left end; left at those of the right end
+  /// @param only        conditions of these selections, all if it is empty
   /// Cost: an evaluation of the indicators per watch point, of f and derivatives while sliding.
   enum class Answer { holds, violated, not_finite };
   [[nodiscard]] Answer look(const Element& element, const ActiveSet& set, const double* held,
-                            std::vector<double>& selections, Violation& earliest);
+                            std::vector<double>& selections, Violation& earliest, std::span<const int> only = {});
   /// Value of a condition at the right end of the element last looked at, and its rounding level.
   [[nodiscard]] double end_value(const ActiveSet& set, const Condition& condition) const;
   [[nodiscard]] double noise(const Condition& condition) const;

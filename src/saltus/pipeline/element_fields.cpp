@@ -36,27 +36,49 @@ constexpr auto of_fesd = [](auto& o) -> auto& { return o.fesd; };
 constexpr auto of_timestepping = [](auto& o) -> auto& { return o.timestepping; };
 
 template <auto part>
-constexpr auto scheme = [](auto& o) -> auto& { return part(o).scheme; };
+constexpr auto scheme = [](auto& o) -> auto& {
+  return part(o).scheme;
+};
 template <auto part>
-constexpr auto stages = [](auto& o) -> auto& { return part(o).stages; };
+constexpr auto stages = [](auto& o) -> auto& {
+  return part(o).stages;
+};
 template <auto part>
-constexpr auto steps = [](auto& o) -> auto& { return part(o).steps; };
+constexpr auto steps = [](auto& o) -> auto& {
+  return part(o).steps;
+};
 template <auto part>
-constexpr auto elements = [](auto& o) -> auto& { return part(o).elements; };
+constexpr auto elements = [](auto& o) -> auto& {
+  return part(o).elements;
+};
 template <auto part>
-constexpr auto representation = [](auto& o) -> auto& { return part(o).representation; };
+constexpr auto representation = [](auto& o) -> auto& {
+  return part(o).representation;
+};
 template <auto part>
-constexpr auto step_bounds = [](auto& o) -> auto& { return part(o).step_bounds; };
+constexpr auto step_bounds = [](auto& o) -> auto& {
+  return part(o).step_bounds;
+};
 template <auto part>
-constexpr auto rho = [](auto& o) -> auto& { return part(o).rho; };
+constexpr auto rho = [](auto& o) -> auto& {
+  return part(o).rho;
+};
 template <auto part>
-constexpr auto equilibration_scale = [](auto& o) -> auto& { return part(o).equilibration_scale; };
+constexpr auto equilibration_scale = [](auto& o) -> auto& {
+  return part(o).equilibration_scale;
+};
 template <auto part>
-constexpr auto reformulation = [](auto& o) -> auto& { return part(o).reformulation; };
+constexpr auto reformulation = [](auto& o) -> auto& {
+  return part(o).reformulation;
+};
 template <auto part>
-constexpr auto cross_complementarity = [](auto& o) -> auto& { return part(o).cross_complementarity; };
+constexpr auto cross_complementarity = [](auto& o) -> auto& {
+  return part(o).cross_complementarity;
+};
 template <auto part>
-constexpr auto step_equilibration = [](auto& o) -> auto& { return part(o).step_equilibration; };
+constexpr auto step_equilibration = [](auto& o) -> auto& {
+  return part(o).step_equilibration;
+};
 
 template <auto part>
 Expected<void> set_step_bounds(SimulateOptions& options, std::string_view, const OptionValue& value) {
@@ -103,7 +125,8 @@ constexpr std::array fields_of{
                 set_count<elements<part>>, record_count<elements<part>>},
     OptionField{"representation", "integral, differential",
                 "Unknowns of an element: stage states or stage slopes; the solutions are the same.",
-                set_choice<representation<part>, representations>, record_choice<representation<part>, representations>},
+                set_choice<representation<part>, representations>,
+                record_choice<representation<part>, representations>},
     OptionField{"step_bounds", "a number > 0 and <= 1",
                 "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided.",
                 set_step_bounds<part>, record_number<step_bounds<part>>},

@@ -298,6 +298,10 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
   if (!(options.rtol + options.atol > 0.0)) {
     return problem("atol", "rtol and atol are both 0", "one of them must be positive, e.g. rtol = 1e-8");
   }
+  if (options.method == Method::fesd && options.fesd.elements < 2) {
+    return problem("fesd.elements", "switch detection needs at least 2 elements in a simulation step",
+                   "choose elements = 2 or more, or method = \"timestepping\"");
+  }
   if (options.method == Method::smoothed && !options.initial_mode.empty()) {
     return problem("method", "initial_mode has no meaning for method \"smoothed\", which decides no modes",
                    "leave initial_mode out, or use method = \"event\"");

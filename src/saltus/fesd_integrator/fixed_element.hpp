@@ -1,0 +1,41 @@
+// An element without switch detection: every stage has its own active set.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/element.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// The Runge-Kutta equations of the complementarity system with the complementarities of every stage for itself and no
+/// others: time-stepping, of order 1 through switches whatever the method ([nurkanovic2024], section 3).
+///
+/// The sets are found by pivoting from those of the element before: a function on the wrong side changes to the other
+/// one, one that has done so before slides, one whose selection leaves [0, 1] goes to that side; regions likewise.
+/// Explicit methods have no unknown selections: the sign at a stage is that of its state.
+class FixedElement {
+ public:
+  /// All must outlive it.
+  FixedElement(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver);
+
+  /// `before`: the set of the last stage of the element before. False if no sets are found.
+  [[nodiscard]] bool solve(const Point& left, double h, const ActiveSet& before, const double* held, Element& element);
+  /// Of the last stage.
+  [[nodiscard]] const ActiveSet& end_set() const { return sets_.back(); }
+  [[nodiscard]] const std::vector<double>& end_selections() const { return end_selections_; }
+
+ private:
+  [[nodiscard]] bool pivot(std::size_t stage, const Element& element, const double* held);
+
+  const discretization::StageKernel& kernel_;
+  std::span<const Part> parts_;
+  ElementSolver& solver_;
+  std::vector<ActiveSet> sets_;
+  std::vector<std::vector<int>> modes_, flips_;
+  std::vector<double> indicators_, end_selections_;
+};
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,38 @@
+// Without switch detection: elements of equal length, every stage with its own active set.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/fesd_integrator/run_internal.hpp"
+
+namespace saltus::fesd_integrator {
+
+void Run::advance_fixed(double end) {
+  // A time event inside a step divides it: the parts keep the mean length at most.
+  const int count = std::max(1, static_cast<int>(std::ceil((end - t_) / nominal_ * options_.elements - 1e-9)));
+  const double begin = t_, h = (end - t_) / count;
+  for (int i = 0; i < count && !stopped(); ++i) {
+    const double right = i + 1 == count ? end : begin + (i + 1) * h;
+    if (!fixed_.solve({t_, x_, selections_, size_}, h, set_, held_.data(), chain_.elements[0])) {
+      stop(result::Termination::not_converged,
+           fmt::format("no active sets of the stages were found for the element at t = {:.10g}; more "
+                       "simulate.timestepping.steps, or method = \"fesd\"",
+                       t_));
+      return;
+    }
+    const ActiveSet before = set_;
+    const auto selections = selections_;
+    accept(chain_.elements[0], selections_, fixed_.end_selections(), right);
+    if (stopped()) return;
+    if (!(fixed_.end_set() == before)) {
+      recorder_.switched(t_, x_, {&before, &selections, held_.data()}, {{fixed_.end_set(), fixed_.end_selections()}},
+                         held_.data(), "seen at the end of an element");
+    }
+    set_ = fixed_.end_set();
+    selections_ = fixed_.end_selections();
+    row_here();
+  }
+}
+
+}  // namespace saltus::fesd_integrator
