@@ -78,7 +78,7 @@ class BadInput(tool.ToolTest):
     def test_later_commands_and_methods(self):
         for later in ("optimize", "order", "mpcc"):
             self.refused("a later one brings it", later, "crossing")
-        self.refused("Radau IIA", "simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.stages=10")
+        self.refused("radau_iia has 1 to 9 stages, not 10", "simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.stages=10")
         self.refused("at least 2 elements", "simulate", "crossing", "--method", "fesd", "--set",
                      "simulate.fesd.elements=1")
         self.refused("initial_mode has no meaning", "simulate", "spontaneous-switch", "--method", "smoothed", "--set",

@@ -205,7 +205,11 @@ void Run::advance(double end) {
     if (stopped()) return;
     const ActiveSet before = set_;
     const auto selections = selections_;
-    std::vector<int> at_zero;
+    std::vector<int> at_zero;  // what slides is on its surfaces, whatever its rounding
+    for (const Sliding& entry : before.sliding()) {
+      at_zero.push_back(entry.selection);
+      if (entry.reference >= 0) at_zero.push_back(entry.reference);
+    }
     if (located->condition.kind == Condition::Kind::side) at_zero.push_back(located->condition.selection);
     decide(std::move(at_zero), "located by the elements before it", before, selections, held_.data());
     row_here();

@@ -92,12 +92,22 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
       values_[i] = set.value(condition, indicators_.data() + i * n, selections_.data() + i * n);
       if (!std::isfinite(values_[i])) return Answer::not_finite;
     }
-    first_change(condition, earliest, found);
+    first_change(set, element.h, condition, earliest, found);
   }
   return found ? Answer::violated : Answer::holds;
 }
 
-void Watch::first_change(const Condition& condition, Violation& earliest, bool& found) {
+/// d value / dt of a condition on the side of its set at the left end.
+double Watch::left_rate(const ActiveSet& set, const Condition& condition) {
+  const std::size_t n = kernel_.selections();
+  rates_ = left_.indicator_t;
+  for (std::size_t i = 0; i < left_.f.size(); ++i) {
+    for (std::size_t j = 0; j < n; ++j) rates_[j] += left_.indicator_x[i * n + j] * left_.f[i];
+  }
+  return set.side(condition.selection, rates_.data());
+}
+
+void Watch::first_change(const ActiveSet& set, double h, const Condition& condition, Violation& earliest, bool& found) {
   const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
   if (0.5 * (*low + *high) > lebesgue_ * 0.5 * (*high - *low)) return;
   const double level = noise(condition);
@@ -108,7 +118,15 @@ void Watch::first_change(const Condition& condition, Violation& earliest, bool& 
   nodes.front() = values_.front();
   nodes.back() = values_.back();
   const auto polynomial = ode::to_bernstein(nodes);
-  const int zero_order = std::abs(values_.front()) <= level ? 1 : 0;
+  int zero_order = 0;
+  if (std::abs(values_.front()) <= level) {
+    // Behind the end of sliding psi begins with a double zero: the rate there tells, not the interpolant, whose error
+    // in the slope would be a dip near by.
+    constexpr double tangent = 1e-3;
+    const double largest = std::max(std::abs(*low), std::abs(*high));
+    const bool side = condition.kind == Condition::Kind::side;
+    zero_order = side && std::abs(left_rate(set, condition)) * h <= tangent * largest ? 2 : 1;
+  }
   if (ode::certainly_no_sign_change(polynomial, 1, zero_order, level)) return;
   const auto change = ode::first_sign_change(polynomial, 1, zero_order, level);
   if (!change || change->lower >= earliest.theta) return;

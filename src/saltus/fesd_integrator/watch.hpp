@@ -44,7 +44,8 @@ class Watch {
   [[nodiscard]] double noise(const Condition& condition) const;
 
  private:
-  void first_change(const Condition& condition, Violation& earliest, bool& found);
+  [[nodiscard]] double left_rate(const ActiveSet& set, const Condition& condition);
+  void first_change(const ActiveSet& set, double h, const Condition& condition, Violation& earliest, bool& found);
 
   const discretization::StageKernel& kernel_;
   const ElementSolver& solver_;
@@ -54,7 +55,7 @@ class Watch {
   std::vector<double> to_nodes_;    ///< values at the nodes of ode::interpolation_nodes() from those at watch points
   std::vector<double> indicators_;  ///< one row per watch point
   std::vector<double> selections_;
-  std::vector<double> values_, x_, noise_;
+  std::vector<double> values_, x_, noise_, rates_;
   discretization::StageValues left_;
 };
 

@@ -302,6 +302,14 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
     return problem("fesd.elements", "switch detection needs at least 2 elements in a simulation step",
                    "choose elements = 2 or more, or method = \"timestepping\"");
   }
+  for (const auto& [table, part] :
+       {std::pair("fesd", &options.fesd), std::pair("timestepping", &options.timestepping)}) {
+    constexpr long most_elements = 1000, most_steps = 1000000000;
+    if (part->elements > most_elements || part->stages > most_elements || part->steps > most_steps) {
+      return problem(fmt::format("{}.steps", table), fmt::format("[simulate.{}] asks for more than fits", table),
+                     fmt::format("at most {} steps of {} elements are possible", most_steps, most_elements));
+    }
+  }
   if (options.method == Method::smoothed && !options.initial_mode.empty()) {
     return problem("method", "initial_mode has no meaning for method \"smoothed\", which decides no modes",
                    "leave initial_mode out, or use method = \"event\"");

@@ -137,6 +137,7 @@ std::string method_text(const result::Result& result) {
       if (name != key) continue;
       if (const auto* word = std::get_if<std::string>(&value)) return *word;
       if (const auto* number = std::get_if<double>(&value)) return fmt::format(fmt::runtime(form), *number);
+      if (const auto* count = std::get_if<std::int64_t>(&value)) return fmt::format(fmt::runtime(form), *count);
     }
     return "";
   };
@@ -144,6 +145,11 @@ std::string method_text(const result::Result& result) {
   std::vector<std::string> details{smoothed ? value_of("simulate.smoothed.epsilon", "epsilon {:g}") : "",
                                    smoothed ? "radau5" : value_of("simulate.event.integrator", ""),
                                    value_of("simulate.rtol", "rtol {:g}"), value_of("simulate.atol", "atol {:g}")};
+  if (result.method == "fesd" || result.method == "timestepping") {
+    const auto key = fmt::format("simulate.{}.", result.method);
+    details = {value_of(key + "scheme", ""), value_of(key + "stages", "{} stages"),
+               value_of(key + "steps", "{} steps")};
+  }
   std::erase(details, "");
   return details.empty() ? result.method : fmt::format("{} ({})", result.method, fmt::join(details, ", "));
 }
