@@ -3,7 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <set>
+#include <random>
 #include <stdexcept>
 #include <string>
 
@@ -94,6 +94,85 @@ TEST(CatalogueAsDcs, StepFormWithTwoFactorsPerProduct) {
 /// The breaks of quarter-car's road occur in products with each other: 2^43 sign patterns.
 TEST(CatalogueAsDcs, StewartForm) {
   expect_catalogue({.reformulation = Form::stewart}, {{"quarter-car", "sign patterns"}});
+}
+
+/// A right-hand side with nonsmooth terms inside each other, of states and time.
+class RandomTerms {
+ public:
+  explicit RandomTerms(unsigned seed) : random_(seed) {}
+
+  std::string term(int depth) {
+    const auto below = [&] { return term(depth - 1); };
+    switch (depth <= 0 ? 10 + pick(3) : pick(12)) {
+      case 0:
+        return "max(" + below() + ", " + below() + ")";
+      case 1:
+        return "min(" + below() + ", " + below() + ")";
+      case 2:
+        return "abs(" + below() + ")";
+      case 3:
+        return "sign(" + below() + ")";
+      case 4:
+        return "step(" + below() + ")*(" + below() + ")";
+      case 5:
+        return "if(" + below() + " > " + below() + ", " + below() + ", " + below() + ")";
+      case 6:
+        return "if(" + below() + " > 0 and " + below() + " < 1, " + below() + ", 0.5)";
+      case 7:
+        return "(" + below() + ")*(" + below() + ")";
+      case 8:
+        return "(" + below() + " - " + below() + ")";
+      case 9:
+        return "road(" + below() + ")";
+      case 10:
+        return "(" + number() + " + " + number() + "*" + name() + ")";
+      case 11:
+        return "sin(t + " + number() + ")";
+      default:
+        return name();
+    }
+  }
+
+ private:
+  int pick(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
+  std::string number() { return std::to_string(0.1 * (1 + pick(30))); }
+  std::string name() { return std::vector<std::string>{"x", "y", "z"}[static_cast<std::size_t>(pick(3))]; }
+  std::mt19937 random_;
+};
+
+/// The same test as for the catalogue, on models that no person would write. Refused are those whose terms unfold into
+/// too many branches, and in Stewart's form those with too many functions in common products.
+TEST(RandomModelsAsDcs, HaveTheSameFieldOrAReason) {
+  int models = 0, stewart = 0, points = 0;
+  for (unsigned seed = 1; seed <= 80; ++seed) {
+    RandomTerms terms(seed);
+    const std::string text = "[model]\nname = \"random\"\n[states]\nx = 0.3\ny = -0.4\nz = 0.2\n[tables.road]\n" +
+                             std::string("x = [-1, 0, 1, 2]\ny = [0, 1, -0.5, 0.2]\nkind = \"") +
+                             (seed % 2 == 0 ? "linear" : "cubic") + "\"\n[dynamics]\nx = \"" + terms.term(3) +
+                             "\"\ny = \"" + terms.term(2) + " + " + terms.term(2) + "\"\nz = \"" + terms.term(1) +
+                             "\"\n[outputs]\nw = \"" + terms.term(2) + "\"\n";
+    const auto file = io::parse_model(text, "random.toml");
+    ASSERT_TRUE(file) << text << to_text(file.error());
+    const auto system = model::build(file->description);
+    if (!system) continue;  // unfolds into too many branches, or has nothing but constants somewhere
+    for (const ReformulationOptions& options :
+         {ReformulationOptions{Form::step, std::nullopt}, ReformulationOptions{Form::step, 2},
+          ReformulationOptions{Form::stewart, std::nullopt}}) {
+      const auto dcs = reformulate(*system, options);
+      if (!dcs) {
+        const std::string reason = dcs.error().message;
+        EXPECT_TRUE(reason.find("branches") != std::string::npos || reason.find("sign patterns") != std::string::npos)
+            << reason << "\n"
+            << text;
+        continue;
+      }
+      ++(options.reformulation == Form::step ? models : stewart);
+      points += compare(*system, *dcs, text);
+    }
+  }
+  EXPECT_GE(models, 100);
+  EXPECT_GE(stewart, 50);
+  EXPECT_GE(points, 3000);
 }
 
 }  // namespace
