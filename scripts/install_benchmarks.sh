@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Installs what benchmarks/compare measures Saltus against, and nothing that building or testing Saltus needs: SUNDIALS
-# and Siconos from Debian (as root), SciPy from PyPI into build/benchmarks/venv. Each of them is optional: what cannot
-# be installed becomes a row "not installed" of the comparison, never a failure. Safe to repeat.
+# and Siconos from Debian (as root), SciPy and nosnoc from PyPI into virtual environments in build/benchmarks. Each of
+# them is optional: what cannot be installed becomes a row "not installed" of the comparison, never a failure. Safe to repeat.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 venv=build/benchmarks/venv
 scipy_version=1.16.3
+nosnoc_version=0.2.0
 
 say() { printf '%s\n' "$*" >&2; }
 is_installed() { [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
@@ -23,13 +24,14 @@ install_debian_package() {
     say "apt-get could not install $package: going on without it"
 }
 
-install_scipy() {
-  "$venv/bin/python3" -c 'import scipy' 2>/dev/null && return 0
-  say "Installing SciPy $scipy_version into $venv …"
-  mkdir -p "$(dirname "$venv")"
-  { python3 -m venv "$venv" &&
-    "$venv/bin/python3" -m pip install --quiet --disable-pip-version-check "scipy==$scipy_version"; } >&2 ||
-    say "pip could not install SciPy: going on without it"
+install_from_pypi() {
+  local package=$1 version=$2 folder=$3
+  "$folder/bin/python3" -c "import $package" 2>/dev/null && return 0
+  say "Installing $package $version into $folder …"
+  mkdir -p "$(dirname "$folder")"
+  { python3 -m venv "$folder" &&
+    "$folder/bin/python3" -m pip install --quiet --disable-pip-version-check "$package==$version"; } >&2 ||
+    say "pip could not install $package: going on without it"
 }
 
 if command -v apt-get >/dev/null && [[ $(id -u) -eq 0 ]] &&
@@ -38,4 +40,5 @@ if command -v apt-get >/dev/null && [[ $(id -u) -eq 0 ]] &&
 fi
 install_debian_package libsundials-dev
 install_debian_package python3-siconos
-install_scipy
+install_from_pypi scipy "$scipy_version" "$venv"
+install_from_pypi nosnoc "$nosnoc_version" build/benchmarks/nosnoc-venv

@@ -33,7 +33,7 @@ class Help(tool.ToolTest):
             self.assertNotIn(later, text)
 
     def test_every_subcommand_ends_with_one_example(self):
-        for command in ("simulate", "compare", "check", "report", "models"):
+        for command in ("simulate", "compare", "order", "check", "report", "models"):
             text, _ = self.run_tool(command, "--help", code=0)
             lines = text.rstrip().splitlines()
             self.assertEqual(lines[-2], "Example:", text)
@@ -41,7 +41,7 @@ class Help(tool.ToolTest):
             self.assertIn(f"saltus {command}", lines[-1])
 
     def test_examples_run(self):
-        for command in ("check", "compare", "models", "simulate"):
+        for command in ("check", "compare", "models", "order", "simulate"):
             text, _ = self.run_tool(command, "--help", code=0)
             example = text.rstrip().splitlines()[-1].split(">")[0].split()
             self.run_tool(*example[1:], code=0)
@@ -76,7 +76,7 @@ class BadInput(tool.ToolTest):
         self.refused("--rtol", "simulate", "crossing", "--rtol")
 
     def test_later_commands_and_methods(self):
-        for later in ("optimize", "order", "mpcc"):
+        for later in ("optimize", "mpcc"):
             self.refused("a later one brings it", later, "crossing")
         self.refused("radau_iia has 1 to 9 stages, not 10", "simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.stages=10")
         self.refused("at least 2 elements", "simulate", "crossing", "--method", "fesd", "--set",

@@ -16,7 +16,7 @@ namespace saltus::cli {
 namespace {
 
 /// Subcommands that are planned and not there yet: refused by name, so that nobody looks for a typing error.
-constexpr std::array later_commands{"optimize", "order", "mpcc"};
+constexpr std::array later_commands{"optimize", "mpcc"};
 
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -63,7 +63,7 @@ ExitCode run(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("saltus {}", version));
   app.footer("Example:\n  saltus simulate stick-slip");
   app.get_formatter()->column_width(26);
-  const std::vector<Command> commands{add_simulate(app), add_compare(app), add_check(app),
+  const std::vector<Command> commands{add_simulate(app), add_compare(app), add_order(app),       add_check(app),
                                       add_models(app),   add_report(app),  add_options_page(app)};
   const auto chosen = [&](const Command& command) { return argc > 1 && command.name == argv[1]; };
   const auto command = std::find_if(commands.begin(), commands.end(), chosen);

@@ -62,12 +62,16 @@ Expected<result::Result> compute_all(const RunArguments& arguments, const ModelI
 class Stops {
  public:
   void look_at(const std::string& who, const result::Status& status) {
-    constexpr std::size_t most_said = 5;
-    if (is_done(status.termination) || ++stopped_ > most_said) return;
+    if (is_done(status.termination)) return;
     const bool says_when = status.message.find("t = ") != std::string::npos;
-    print_error(fmt::format("{}stopped early: {}{}{}{}", who, name(status.termination),
-                            says_when ? "" : fmt::format(" at t = {}", status.time_reached),
-                            status.message.empty() ? "" : ": ", status.message));
+    tell(fmt::format("{}stopped early: {}{}{}{}", who, name(status.termination),
+                     says_when ? "" : fmt::format(" at t = {}", status.time_reached),
+                     status.message.empty() ? "" : ": ", status.message));
+  }
+  /// A run of which only this is known.
+  void tell(const std::string& message) {
+    if (++stopped_ > most_said) return;
+    print_error(message);
     said_ = stopped_;
   }
   [[nodiscard]] ExitCode exit_code() const {
@@ -76,6 +80,7 @@ class Stops {
   }
 
  private:
+  static constexpr std::size_t most_said = 5;
   std::size_t stopped_ = 0;
   std::size_t said_ = 0;
 };
@@ -90,6 +95,15 @@ ExitCode report_stops(const result::Result& result) {
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (i != result.comparison->reference && runs[i].reason.empty()) {
         stops.look_at(fmt::format("{} ({}) ", runs[i].method, runs[i].variant), runs[i].status);
+      }
+    }
+  }
+  if (result.order) {
+    for (const auto& series : result.order->series) {
+      for (const auto& point : series.points) {
+        if (!point.reason.empty())
+          stops.tell(fmt::format("{} {}, {}, {} steps: {}", series.scheme, series.stages, series.method, point.steps,
+                                 point.reason));
       }
     }
   }

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/pipeline/observers_internal.hpp"
 #include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/recorded_internal.hpp"
 #include "saltus/result/comparison.hpp"
 
 namespace saltus::pipeline {
@@ -35,9 +38,17 @@ PlannedRun event_run(SimulateOptions options, Integrator integrator, std::string
 
 PlannedRun reference_run(const SimulateOptions& options) {
   auto tight = reference_options(options);
-  auto variant =
-      fmt::format("{}, rtol {:g}, atol {:g}", is_stiff(options) ? "radau5" : "dop853", tight.rtol, tight.atol);
+  auto variant = reference_name(tight);
   return {"event", std::move(variant), std::move(tight), ""};
+}
+
+/// "radau_iia 2, step, 100 steps"
+std::string elements_text(const SimulateOptions& options, const std::string& method) {
+  const auto record = option_record(options);
+  const auto number = [&](const char* key) { return recorded<std::int64_t>(record, method + key).value_or(0); };
+  return fmt::format("{} {}, {}, {} steps", recorded<std::string>(record, method + ".scheme").value_or(""),
+                     number(".stages"), recorded<std::string>(record, method + ".reformulation").value_or(""),
+                     number(".steps"));
 }
 
 /// The reference first.
@@ -54,8 +65,11 @@ std::vector<PlannedRun> plan(SimulateOptions options) {
     runs.push_back({std::move(name), std::move(variant), options, ""});
   };
   add(Method::smoothed, "smoothed", fmt::format("radau5, epsilon {:g}", options.smoothed.epsilon));
-  add(Method::fesd, "fesd", "");
-  add(Method::timestepping, "timestepping", "");
+  for (const auto form : {Reformulation::step, Reformulation::stewart}) {
+    options.fesd.reformulation = form;
+    add(Method::fesd, "fesd", elements_text(options, "fesd"));
+  }
+  add(Method::timestepping, "timestepping", elements_text(options, "timestepping"));
   return runs;
 }
 
@@ -74,20 +88,6 @@ ComparedRun row(const PlannedRun& planned, const result::Result& found, const re
   return run;
 }
 
-/// Every run of a comparison is one trajectory for those who watch.
-Observers numbered(const Observers& observers, long number, long runs, bool& stopped) {
-  Observers inner;
-  if (!observers.on_step) return inner;
-  inner.on_step = [&observers, &stopped, number, runs](StepRecord step) {
-    step.trajectory = number;
-    step.trajectories = runs;
-    const auto answer = observers.on_step(step);
-    stopped = stopped || answer == Proceed::stop;
-    return answer;
-  };
-  return inner;
-}
-
 }  // namespace
 
 SimulateOptions reference_options(SimulateOptions options) {
@@ -99,6 +99,11 @@ SimulateOptions reference_options(SimulateOptions options) {
   options.rtol = stiff ? 1e-12 : 1e-13;
   options.atol = stiff ? 1e-14 : 1e-15;
   return options;
+}
+
+std::string reference_name(const SimulateOptions& reference) {
+  return fmt::format("{}, rtol {:g}, atol {:g}", is_stiff(reference) ? "radau5" : "dop853", reference.rtol,
+                     reference.atol);
 }
 
 std::vector<double> switch_times(const result::Result& result) {
@@ -127,25 +132,24 @@ Expected<result::Result> compare(const model::System& system, const SimulateOpti
                                  const Observers& observers) {
   if (const auto problem = find_problem(options)) return tl::unexpected(problem->error);
   const auto planned = plan(options);
-  const auto count = static_cast<long>(planned.size());
-  bool stopped = false;
-  auto reference = simulate(system, planned.front().options, numbered(observers, 1, count, stopped));
+  Numbered watch(observers, static_cast<long>(planned.size()));
+  auto reference = simulate(system, planned.front().options, watch.next());
   if (!reference) return reference;
   result::Comparison comparison;
   comparison.runs.push_back(row(planned.front(), *reference, *reference));
-  for (long number = 2; number <= count; ++number) {
-    const auto& next = planned[static_cast<std::size_t>(number - 1)];
-    auto refusal = stopped ? std::string("stopped by the user before it began") : next.refusal;
+  for (std::size_t i = 1; i < planned.size(); ++i) {
+    const auto& next = planned[i];
+    const auto observed = watch.next();
+    auto refusal = watch.stopped() ? std::string("stopped by the user before it began") : next.refusal;
     if (refusal.empty()) {
-      const auto found = simulate(system, next.options, numbered(observers, number, count, stopped));
+      const auto found = simulate(system, next.options, observed);
       if (found) {
         comparison.runs.push_back(row(next, *found, *reference));
         continue;
       }
       refusal = found.error().message;
     }
-    ComparedRun run{next.method, next.variant, std::move(refusal), {}, {}, {}, {}, {}, {}, {}};
-    comparison.runs.push_back(std::move(run));
+    comparison.runs.push_back({next.method, next.variant, std::move(refusal), {}, {}, {}, {}, {}, {}, {}});
   }
   reference->command = "compare";
   reference->comparison = std::move(comparison);

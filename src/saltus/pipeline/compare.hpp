@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "saltus/base/error.hpp"
@@ -14,6 +15,9 @@ namespace saltus::pipeline {
 /// radau5 (a stiff one: the explicit methods would need its shortest time as step) radau5 with rtol 1e-12, atol 1e-14.
 /// Everything else as in `options`.
 [[nodiscard]] SimulateOptions reference_options(SimulateOptions options);
+
+/// "dop853, rtol 1e-13, atol 1e-15"
+[[nodiscard]] std::string reference_name(const SimulateOptions& reference);
 
 /// What `found` and `reference` have in common, as far as both got to their ends.
 struct Agreement {
