@@ -1,4 +1,7 @@
 // Shipped models whose solutions are not unique, with --branch all: every motion is found, and ends where it should.
+#include <cmath>
+#include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -59,6 +62,41 @@ TEST(ShippedBranches, StayOrSlide) {
   const double left = 36.0 - 1.0 / between(0.3463, -0.904, balance(0.4168, -1.4013));
   expect_branches("stay-or-slide",
                   {{{0, 0}, {0.0, 0.0}}, {{0, 1}, {0.0, between(-0.1174, 0.5849, balance(1.8276, -1.7031)) * left}}});
+}
+
+/// Ends of the branches of an event, by mode.
+std::map<std::vector<int>, std::vector<double>> branches_of(const Result& result, std::size_t event) {
+  std::map<std::vector<int>, std::vector<double>> ends;
+  for (const Result& branch : result.branches) {
+    if (branch.left_at.value().event == event) ends[branch.final.mode] = branch.final.x;
+  }
+  return ends;
+}
+
+// Leaves C9-4 and C10-4: one of the two that attract is followed, the other is a branch of the event.
+TEST(ShippedBranches, PartWaysAndSlideOrLeave) {
+  struct Fork {
+    std::string name;
+    std::vector<double> followed;  ///< end state
+    double x, y;                   ///< of the motion into x, y < 0
+    std::size_t branches;          ///< modes; staying on both is listed, not followed
+  };
+  for (const Fork& fork : {Fork{"part-ways", {3.5, 1.4}, -1.5, -0.6, 3},
+                           Fork{"slide-or-leave", {0.0, 1 - 1.2 * std::log(1.2)}, -2.625, -0.3, 4}}) {
+    const Simulator model = Simulator::from_catalogue(fork.name);
+    auto options = with(model.options(), fine);
+    options.event.trajectories = 64;
+    const Result result = model.run(options);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    ASSERT_EQ(result.events.size(), 2U);
+    EXPECT_NEAR(result.events[1].t, 1.0, 1e-12) << fork.name;
+    for (const std::size_t i : {0U, 1U}) EXPECT_NEAR(result.final.x[i], fork.followed[i], 1e-11) << fork.name;
+    const auto branches = branches_of(result, 1);
+    EXPECT_EQ(branches.size(), fork.branches) << fork.name;
+    const auto& other = branches.at({-1, -1});
+    EXPECT_NEAR(other[0], fork.x, 1e-11) << fork.name;
+    EXPECT_NEAR(other[1], fork.y, 1e-11) << fork.name;
+  }
 }
 
 // x' = sign(x) from 0: away to either side, or never.

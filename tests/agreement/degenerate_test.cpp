@@ -176,5 +176,69 @@ TEST(Degenerate, TheRelayRunsBackwardsAlongItsSliding) {
   }
 }
 
+/// Two belts, one behind the other, forwards (1) or backwards (-1) in time.
+Model two_belts(double sign, const std::vector<double>& x, const std::string& simulate) {
+  return {fmt::format("x1 = {:.17g}\nx2 = {:.17g}\nx3 = {:.17g}\n", x[0], x[1], x[2]), "x2 - 0.2\nx3 - 0.4\n",
+          fmt::format("x1 = \"{0}*((x2 + x3)/2 + x1*(x2 + 0.8)*(x3 + 0.6)*step(s1)*step(s2))\"\n"
+                      "x2 = \"{0}*(-x1 + if(s1 > 0, -1/(0.8 + x2), 1/(1.2 - x2)))\"\n"
+                      "x3 = \"{0}*(-x1 + if(s2 > 0, -1/(0.6 + x3), 1/(1.4 - x3)))\"\n",
+                      sign),
+          simulate};
+}
+
+/// Time in which sliding on both belts takes x1 from `from` to `to`: x1' = 0.3 + x1 (1 - x1)^2/4. Simpson's rule.
+double dwell(double from, double to) {
+  constexpr int halves = 2000;
+  const double h = (to - from) / (2 * halves);
+  double sum = 0.0;
+  for (int i = 0; i <= 2 * halves; ++i) {
+    const double x = from + i * h;
+    const double weight = i == 0 || i == 2 * halves ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+    sum += weight / (0.3 + x * (1 - x) * (1 - x) / 4);
+  }
+  return sum * h / 3;
+}
+
+// Backwards both belts repel. Forced to stay on both the solution goes back along the sliding.
+TEST(Degenerate, BothBeltsReversedAreSlidOnBackwards) {
+  in_every_scale(two_belts(-1, {0.8, 0.2, 0.4}, "until = 4\ninitial_mode = { s1 = 0, s2 = 0 }\n"),
+                 [](const Result& result) {
+                   expect_completed(result);
+                   EXPECT_TRUE(switches_of(result).empty());
+                   EXPECT_EQ(result.events.at(0).unique, false);
+                   EXPECT_EQ(result.final.mode, (std::vector<int>{0, 0}));
+                   EXPECT_NEAR(dwell(result.final.x[0], 0.8), 4.0, 1e-6);
+                   EXPECT_NEAR(result.final.alpha[0], (1 - result.final.x[0]) / 2, 1e-12);
+                   EXPECT_NEAR(result.final.alpha[1], (1 - result.final.x[0]) / 2, 1e-12);
+                   EXPECT_EQ(result.final.x[1], 0.2);
+                   EXPECT_EQ(result.final.x[2], 0.4);
+                 });
+}
+
+// Not forced it leaves both; the other motions leave one of them, or both to other sides.
+TEST(Degenerate, BothBeltsReversedCanBeLeftAnywhere) {
+  in_every_scale(two_belts(-1, {0.8, 0.2, 0.4}, "until = 1\n"), [](const Result& result) {
+    expect_completed(result);
+    ASSERT_EQ(result.events.size(), 1U);
+    EXPECT_EQ(result.events[0].unique, false);
+    EXPECT_EQ(result.final.mode, (std::vector<int>{1, 1}));
+    EXPECT_GE(result.events[0].alternatives.size(), 4U);
+  });
+}
+
+// Backwards along the slip up to just before the corner where both belts were left at 3.2542.
+TEST(Degenerate, TheSlipOfBothBeltsRunsBackwards) {
+  const std::vector<double> start{0.04, -0.01, -0.02};
+  for (const Accuracy& accuracy : {fine, Accuracy{pipeline::Integrator::radau5, 1e-12, 1e-14}}) {
+    const Result near_corner = simulated(two_belts(1, start, "until = 3.255\n"), 1.0, accuracy);
+    const Result later = simulated(two_belts(1, start, "until = 7\n"), 1.0, accuracy);
+    const Result back = simulated(two_belts(-1, later.final.x, "until = 3.745\n"), 1.0, accuracy);
+    expect_completed(back);
+    EXPECT_TRUE(switches_of(back).empty());
+    EXPECT_EQ(back.final.mode, (std::vector<int>{-1, -1}));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(back.final.x[i], near_corner.final.x[i], 1e-10) << i;
+  }
+}
+
 }  // namespace
 }  // namespace saltus::problems

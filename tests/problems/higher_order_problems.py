@@ -110,6 +110,69 @@ def ambiguous(model, until, fields, other_modes):
     return Explicit(model=model, solution=solution)
 
 
+def motions(f):
+    """Modes of two surfaces that some constant selections continue with, and these; f = {(k1, k2): (f1, f2)}.
+
+    Leaving both: both components point away. On one: those of its two fields have opposite signs (towards it or not),
+    and their mixture points away from the other surface.
+    """
+    found = []
+    for k in f:
+        if k[0] * f[k][0] > 0 and k[1] * f[k][1] > 0:
+            found.append((list(k), [mpf((k[0] + 1) // 2), mpf((k[1] + 1) // 2)]))
+    for on in (0, 1):
+        for side in (-1, 1):
+            below, above = (f[(k, side) if on == 0 else (side, k)] for k in (-1, 1))
+            if below[on] * above[on] >= 0:
+                continue
+            alpha = below[on] / (below[on] - above[on])
+            if side * ((1 - alpha) * below[1 - on] + alpha * above[1 - on]) > 0:
+                mode, selections = [side, side], [mpf((side + 1) // 2)] * 2
+                mode[on], selections[on] = 0, alpha
+                found.append((mode, selections))
+    return found
+
+
+def parting(model, product, chosen, until, final):
+    """From the origin, held there until t = 1; g1 = (t - 1)/4 s1 + s2 + product s1 s2, g2 = -s1/2 + s2 + s1 s2/5."""
+
+    def others(t, mode):
+        f = {(a, b): (mpf(t - 1) / 4 * a + b + product * a * b, mpf(-a) / 2 + b + mpf(a * b) / 5)
+             for a in (-1, 1) for b in (-1, 1)}
+        found = [dict(mode=k, alpha=alpha) for k, alpha in motions(f) if k != mode]
+        if mode == [0, 0]:
+            return found
+        # To stay on both, without attracting: s1 = s2 = 0, and where s2 = s1/2/(1 + s1/5) meets the other branch.
+        b = mpf(t - 1) / 4
+        s1 = -(b + mpf(1) / 2) / (b / 5 + product / 2)
+        roots = [mpf(0)] + ([s1] if abs(s1) < 1 else [])
+        return found + [dict(mode=[0, 0], alpha=[(1 + s) / 2, (1 + s / 2 / (1 + s / 5)) / 2]) for s in roots]
+
+    def solution():
+        origin = [mpf(0), mpf(0)]
+        left = [name for name, k in zip(("x", "y"), chosen) if k != 0]
+        assert chosen in [entry["mode"] for entry in others(1, None)]
+        events = [dict(t=mpf(0), kind="start", surfaces=["x", "y"], mode_before=None, mode_after=[0, 0], x=origin,
+                       unique=False, alternatives=others(0, [0, 0])),
+                  dict(t=mpf(1), kind="leave_sliding", surfaces=left, mode_before=[0, 0], mode_after=chosen, x=origin,
+                       unique=False, alternatives=others(1, chosen))]
+        x, alpha = final()
+        return dict(events=events, final=dict(t=mpf(until), x=x, mode=chosen, alpha=alpha))
+
+    return Explicit(model=model, solution=solution, initial_mode=dict(x=0, y=0))
+
+
+def part_ways():
+    return parting("part-ways", mpf(1) / 2, [1, 1], 3,
+                   lambda: ([mpf(4) / 8 + 3, mpf(7) / 5], [mpf(1), mpf(1)]))
+
+
+def slide_or_leave():
+    """On x = 0 behind t = 1: s1 = 1/(3/2 - (t - 1)/4), y' = 1 - 3 s1/10."""
+    return parting("slide-or-leave", mpf(-3) / 2, [0, 1], 2,
+                   lambda: ([mpf(0), 1 - mpf(6) / 5 * mpmath.log(mpf(6) / 5)], [mpf(9) / 10, mpf(1)]))
+
+
 def problems():
     yield twisting()
     yield super_twisting()
@@ -117,3 +180,5 @@ def problems():
                     [[0, 1], [1, 0], [-1, 1], [1, 1]])
     yield ambiguous("stay-or-slide", 36, [["0.4168", "1.8276", "-1.4013", "-1.7031"],
                                          ["0.3463", "-0.1174", "-0.904", "0.5849"]], [[0, 0], [0, 1]])
+    yield part_ways()
+    yield slide_or_leave()
