@@ -23,6 +23,8 @@ class FixedElement {
 
   /// `before`: the set of the last stage of the element before. False if no sets are found.
   [[nodiscard]] bool solve(const Point& left, double h, const ActiveSet& before, const double* held, Element& element);
+  /// Of the stages.
+  [[nodiscard]] std::span<const ActiveSet> sets() const { return sets_; }
   /// Of the last stage.
   [[nodiscard]] const ActiveSet& end_set() const { return sets_.back(); }
   [[nodiscard]] const std::vector<double>& end_selections() const { return end_selections_; }

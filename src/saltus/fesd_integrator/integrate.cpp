@@ -20,7 +20,15 @@ Expected<Integration> integrate(const model::System& system, const reformulation
                                 {}});
   }
   const Facts known = facts(system, dcs);
-  return Run(*kernel, *functions, known, options, observer).run();
+  if (!options.sensitivities) return Run(*kernel, *functions, known, options, observer, nullptr).run();
+  const auto tangent = discretization::TangentKernel::compile(dcs, system.parameter_values);
+  if (!tangent) return tl::unexpected(tangent.error());
+  SensitivityPropagation propagation(*tangent, options.tableau);
+  auto integration = Run(*kernel, *functions, known, options, observer, &propagation).run();
+  if (integration.status.termination == result::Termination::completed) {
+    integration.sensitivities = propagation.sensitivities(system.parameter_names);
+  }
+  return integration;
 }
 
 }  // namespace saltus::fesd_integrator

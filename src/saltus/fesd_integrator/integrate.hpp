@@ -2,12 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/result/result.hpp"
+#include "saltus/result/sensitivities.hpp"
 
 namespace saltus::model {
 struct System;
@@ -38,6 +40,7 @@ struct IntegrationOptions {
   Rows rows = Rows::at_elements;
   std::vector<double> times;
   std::vector<std::pair<int, int>> initial_mode;  ///< index into System::switching -> forced mode at the start
+  bool sensitivities = false;                     ///< asks for Integration::sensitivities
 };
 
 struct Progress {
@@ -55,6 +58,7 @@ struct Integration {
   std::vector<result::Event> events;
   result::Trajectory trajectory;
   result::Statistics statistics;  ///< steps: elements; rejected: simulation steps that were divided
+  std::optional<result::Sensitivities> sensitivities;  ///< of a completed run, if asked for
 };
 
 /// Solves the equations of FESD, (37)-(41) of [nurkanovic2024], one simulation step of length T = (until - from) /

@@ -10,12 +10,13 @@
 namespace saltus::fesd_integrator {
 
 Run::Run(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions, const Facts& facts,
-         const IntegrationOptions& options, const StepObserver& observer)
+         const IntegrationOptions& options, const StepObserver& observer, SensitivityPropagation* propagation)
     : kernel_(kernel),
       functions_(functions),
       facts_(facts),
       options_(options),
       observer_(observer),
+      propagation_(propagation),
       solver_(kernel, options.tableau),
       watch_(kernel, solver_),
       transition_(kernel, facts.parts, solver_),
@@ -198,7 +199,10 @@ void Run::accept(const Element& element, const std::vector<double>& left, const 
   static_cast<void>(step_counts());
 }
 
-void Run::accept_chain(std::size_t count, double end_time) {
+void Run::accept_chain(std::size_t count, double end_time, const Condition* closing) {
+  if (propagation_ != nullptr) {
+    propagation_->chain({chain_.elements.data(), count}, {chain_.left.data(), count + 1}, set_, held_.data(), closing);
+  }
   for (std::size_t i = 0; i < count && !stopped(); ++i) {
     const Element& element = chain_.elements[i];
     accept(element, chain_.left[i], chain_.left[i + 1], i + 1 == count ? end_time : element.t + element.h);

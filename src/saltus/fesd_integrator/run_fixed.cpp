@@ -23,6 +23,7 @@ void Run::advance_fixed(double end) {
     }
     const ActiveSet before = set_;
     const auto selections = selections_;
+    if (propagation_ != nullptr) propagation_->fixed_step(chain_.elements[0], fixed_.sets(), held_.data());
     accept(chain_.elements[0], selections_, fixed_.end_selections(), right);
     if (stopped()) return;
     if (!(fixed_.end_set() == before)) {

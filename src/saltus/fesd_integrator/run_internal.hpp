@@ -15,6 +15,7 @@
 #include "saltus/fesd_integrator/held_values.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/recorder.hpp"
+#include "saltus/fesd_integrator/sensitivities.hpp"
 #include "saltus/fesd_integrator/transition.hpp"
 #include "saltus/fesd_integrator/watch.hpp"
 
@@ -23,7 +24,7 @@ namespace saltus::fesd_integrator {
 class Run {
  public:
   Run(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions, const Facts& facts,
-      const IntegrationOptions& options, const StepObserver& observer);
+      const IntegrationOptions& options, const StepObserver& observer, SensitivityPropagation* propagation);
   [[nodiscard]] Integration run();
 
  private:
@@ -50,7 +51,8 @@ class Run {
   void start();
   /// One simulation step, or what lies between two changes of what is held.
   void advance(double end);
-  void accept_chain(std::size_t count, double end_time);
+  /// `closing`: the condition that is zero at the end; nullptr if the end is fixed.
+  void accept_chain(std::size_t count, double end_time, const Condition* closing);
   void accept(const Element& element, const std::vector<double>& left, const std::vector<double>& right, double end);
   /// Decides how to go on here; `at_zero` as in Decision.
   void decide(std::vector<int> at_zero, std::string_view reason, const ActiveSet& before,
@@ -69,6 +71,7 @@ class Run {
   const Facts& facts_;
   const IntegrationOptions& options_;
   const StepObserver& observer_;
+  SensitivityPropagation* propagation_;  ///< nullptr if nobody asks for sensitivities
   ElementSolver solver_;
   Watch watch_;
   Transition transition_;

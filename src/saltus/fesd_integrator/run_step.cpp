@@ -160,7 +160,7 @@ void Run::advance(double end) {
     Violation violation;
     const auto solved = solve_chain(elements, h, violation);
     if (solved == Solved::all) {
-      accept_chain(static_cast<std::size_t>(elements), limit);
+      accept_chain(static_cast<std::size_t>(elements), limit, nullptr);
       row_here();
       elements = options_.elements;
       limit = end;
@@ -195,7 +195,7 @@ void Run::advance(double end) {
     if (located->count > 0) {
       double at = t_ + located->count * located->h;
       if (std::abs(limit - at) <= 1e-13 * nominal_) at = limit;
-      accept_chain(static_cast<std::size_t>(located->count), at);
+      accept_chain(static_cast<std::size_t>(located->count), at, &located->condition);
       elements = std::max(1, elements - located->count);
       if (t_ >= limit) {
         elements = options_.elements;

@@ -1,0 +1,54 @@
+// First derivatives of a dynamic complementarity system with respect to everything, for sensitivities. No CasADi in
+// sight.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+
+namespace saltus::reformulation {
+struct Dcs;
+}
+
+namespace saltus::discretization {
+
+/// Values at one point and their derivatives; matrices by columns, rows first in the names' order. n columns of
+/// selections, n_p of parameters.
+struct TangentValues {
+  std::vector<double> f, f_t, f_x, f_selection, f_p;                     ///< n_x rows
+  std::vector<double> indicator, indicator_t, indicator_x, indicator_p;  ///< n rows: psi_j, or g_i
+  std::vector<double> rate_t, rate_x, rate_selection, rate_p;            ///< n rows: of indicator_x f + indicator_t
+};
+
+/// One kernel per thread: the work space is inside.
+class TangentKernel {
+ public:
+  /// `parameters` are the values of Dcs::p. Controls are replaced by their inputs, lifted variables by their products.
+  /// Fails (invalid_model) if the symbolic layer refuses an expression.
+  /// Cost: that of the second derivatives of the indicators.
+  [[nodiscard]] static Expected<TangentKernel> compile(const reformulation::Dcs& dcs, std::vector<double> parameters);
+  TangentKernel(TangentKernel&&) noexcept;
+  TangentKernel& operator=(TangentKernel&&) noexcept;
+  ~TangentKernel();
+
+  [[nodiscard]] std::size_t states() const;
+  [[nodiscard]] std::size_t selections() const;
+  [[nodiscard]] std::size_t parameters() const;
+  /// Whether what is held within a simulation step changes at times that depend on a state or on a parameter: then the
+  /// derivatives with respect to it miss the shift of these times.
+  [[nodiscard]] const std::vector<bool>& states_of_held() const;
+  [[nodiscard]] const std::vector<bool>& parameters_of_held() const;
+
+  /// Makes `values` as large as evaluate() needs it.
+  void size(TangentValues& values) const;
+  void evaluate(double t, const double* x, const double* selection, const double* held, TangentValues& values) const;
+
+ private:
+  struct Implementation;
+  explicit TangentKernel(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace saltus::discretization
