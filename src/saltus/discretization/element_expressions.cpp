@@ -259,8 +259,8 @@ std::vector<SelectionPair> selection_pairs(const Dcs& dcs) {
   std::vector<SelectionPair> pairs;
   for (const auto& part : dcs.parts) {
     for (int i = part.first; i < part.first + part.count; ++i) {
-      pairs.push_back({i, false, part.form});
-      if (part.form == Form::step) pairs.push_back({i, true, part.form});
+      pairs.push_back({i, false, part.form == Form::stewart});
+      if (part.form == Form::step) pairs.push_back({i, true, false});
     }
   }
   return pairs;

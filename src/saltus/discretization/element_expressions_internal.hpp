@@ -8,19 +8,12 @@
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/fesd_options.hpp"
+#include "saltus/discretization/fesd_problem.hpp"
 #include "saltus/discretization/local_function_internal.hpp"
 #include "saltus/discretization/variable_layout.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::discretization {
-
-/// One complementarity of the system, a _|_ lambda: alpha_j with lambda_n,j, 1 - alpha_j with lambda_p,j, or theta_i
-/// with lambda_i.
-struct SelectionPair {
-  int selection = 0;
-  bool complement = false;  ///< a = 1 - alpha_j
-  reformulation::Form form = reformulation::Form::step;
-};
 
 /// All pairs of a system, in the order of lambda: of step selection j first lambda_n,j, then lambda_p,j.
 [[nodiscard]] std::vector<SelectionPair> selection_pairs(const reformulation::Dcs& dcs);

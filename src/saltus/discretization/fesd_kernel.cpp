@@ -35,6 +35,7 @@ Expected<void> check(const FesdOptions& options) {
 FesdKernel::FesdKernel(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 FesdKernel::~FesdKernel() = default;
 const FesdOptions& FesdKernel::options() const { return implementation_->options; }
+const std::vector<SelectionPair>& FesdKernel::pairs() const { return implementation_->pairs; }
 long FesdKernel::operations() const {
   return implementation_->element.operations() + implementation_->boundary.operations();
 }

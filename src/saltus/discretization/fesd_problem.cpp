@@ -142,7 +142,7 @@ struct FesdProblem::Implementation {
     for (int k = 0; k < n_lambda; ++k) {
       const auto& pair = kernel.pairs[static_cast<std::size_t>(k)];
       const double value = indicator[pair.selection];
-      const bool is_lambda_n = pair.form == reformulation::Form::step && !pair.complement;
+      const bool is_lambda_n = !pair.is_region && !pair.complement;
       constants[kernel.left_size() - n_lambda + k] = std::max(is_lambda_n ? -value : value, 0.0);
     }
   }

@@ -18,6 +18,14 @@ struct Dcs;
 
 namespace saltus::discretization {
 
+/// One complementarity of the system, a _|_ lambda: alpha_j with lambda_n,j; 1 - alpha_j with lambda_p,j; theta_i with
+/// lambda_i.
+struct SelectionPair {
+  int selection = 0;
+  bool complement = false;  ///< a = 1 - alpha_j
+  bool is_region = false;   ///< a = theta_i
+};
+
 /// One element and the boundary between two, compiled: symbolic work and derivatives are done here, once, whatever the
 /// number of elements.
 class FesdKernel {
@@ -33,6 +41,8 @@ class FesdKernel {
   ~FesdKernel();
 
   [[nodiscard]] const FesdOptions& options() const;
+  /// All pairs, in the order of lambda: of step selection j first lambda_n,j, then lambda_p,j.
+  [[nodiscard]] const std::vector<SelectionPair>& pairs() const;
   /// Elementary operations of one evaluation of everything in an element and a boundary: it depends on the model and
   /// the scheme only.
   [[nodiscard]] long operations() const;

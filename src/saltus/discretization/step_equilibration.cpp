@@ -81,7 +81,7 @@ SX printed_switch_indicator(const std::vector<SelectionPair>& kinds, const Bound
   SX eta = 1.0;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const auto row = static_cast<casadi_int>(k);
-    if (kinds[k].form == reformulation::Form::stewart) {
+    if (kinds[k].is_region) {
       eta *= of_a(row) + of_lambda(row);
     } else if (!kinds[k].complement) {  // lambda_n here, lambda_p in the next row
       eta *= of_lambda(row) + of_lambda(row + 1);

@@ -20,6 +20,8 @@ struct Dcs;
 
 namespace saltus::fesd_integrator {
 
+class StepProblem;
+
 /// Checked by the pipeline: from < until, steps >= 1, elements >= 1 (2 with switch detection), 0 < step_bounds <= 1.
 struct IntegrationOptions {
   enum class Switches {
@@ -39,6 +41,8 @@ struct IntegrationOptions {
   enum class Rows { at_elements, at_times };
   Rows rows = Rows::at_elements;
   std::vector<double> times;
+  /// With switch detection: simulation steps solved by this, and not by predicting active sets; it must outlive the run.
+  StepProblem* step_problem = nullptr;
   std::vector<std::pair<int, int>> initial_mode;  ///< index into System::switching -> forced mode at the start
   bool sensitivities = false;                     ///< asks for Integration::sensitivities
 };

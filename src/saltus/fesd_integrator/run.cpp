@@ -47,7 +47,9 @@ Integration Run::run() {
                            : options_.from + (options_.until - options_.from) * (static_cast<double>(k + 1) / steps);
     while (!stopped() && t_ < end) {
       const double change = held_.next_change(t_, end, x_.data());
-      if (options_.switches == IntegrationOptions::Switches::detected) {
+      if (options_.step_problem != nullptr) {
+        advance_by_problem(change);
+      } else if (options_.switches == IntegrationOptions::Switches::detected) {
         advance(change);
       } else {
         advance_fixed(change);

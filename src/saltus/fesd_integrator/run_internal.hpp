@@ -21,6 +21,8 @@
 
 namespace saltus::fesd_integrator {
 
+struct ElementGuess;
+
 class Run {
  public:
   Run(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions, const Facts& facts,
@@ -60,6 +62,11 @@ class Run {
   void hold_behind();
   /// The same with fixed lengths.
   void advance_fixed(double end);
+  /// The same by the problem with complementarities of the whole step.
+  void advance_by_problem(double end);
+  [[nodiscard]] bool solve_guessed(const std::vector<ElementGuess>& guesses, std::vector<ActiveSet>& sets);
+  void selections_behind(const ElementGuess& guess, const ActiveSet& set, Point& left);
+  void accept_guessed(const std::vector<ElementGuess>& guesses, const std::vector<ActiveSet>& sets, double end);
   void row_here();
   void emit_times(const Element* element, double until);
   void stop(result::Termination termination, std::string message);

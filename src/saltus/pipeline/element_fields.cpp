@@ -1,6 +1,7 @@
 // Options of the methods made of finite elements, one table for both.
 #include <array>
 #include <string>
+#include <type_traits>
 
 #include "saltus/pipeline/option_values_internal.hpp"
 
@@ -22,18 +23,24 @@ constexpr Choices<CrossComplementarity, 5> cross_complementarities{
     {CrossComplementarity::stage_stage, CrossComplementarity::fe_stage, CrossComplementarity::stage_fe,
      CrossComplementarity::fe_fe, CrossComplementarity::paper},
     5};
-// The modes that determine the lengths of elements exactly come first: the others change them.
-constexpr Choices<StepEquilibration, 8> step_equilibrations{
-    "step_equilibration",
-    {"direct", "mlcp", "none", "heuristic_mean", "heuristic_diff", "l2_relaxed", "l2_relaxed_scaled", "paper"},
-    {StepEquilibration::direct, StepEquilibration::mlcp, StepEquilibration::none, StepEquilibration::heuristic_mean,
-     StepEquilibration::heuristic_diff, StepEquilibration::l2_relaxed, StepEquilibration::l2_relaxed_scaled,
-     StepEquilibration::paper},
-    2};
+// The modes that determine the lengths of elements exactly come first: with fixed lengths the others mean nothing.
+constexpr Choices<StepEquilibration, 8> equilibrations(std::size_t available) {
+  return {"step_equilibration",
+          {"direct", "mlcp", "none", "heuristic_mean", "heuristic_diff", "l2_relaxed", "l2_relaxed_scaled", "paper"},
+          {StepEquilibration::direct, StepEquilibration::mlcp, StepEquilibration::none,
+           StepEquilibration::heuristic_mean, StepEquilibration::heuristic_diff, StepEquilibration::l2_relaxed,
+           StepEquilibration::l2_relaxed_scaled, StepEquilibration::paper},
+          available};
+}
 
 /// The options of one of the two methods.
 constexpr auto of_fesd = [](auto& o) -> auto& { return o.fesd; };
 constexpr auto of_timestepping = [](auto& o) -> auto& { return o.timestepping; };
+
+template <auto part>
+constexpr bool is_fesd = std::is_same_v<std::remove_const_t<decltype(part)>, std::remove_const_t<decltype(of_fesd)>>;
+template <auto part>
+constexpr auto step_equilibrations = equilibrations(is_fesd<part> ? 8 : 2);
 
 template <auto part>
 constexpr auto scheme = [](auto& o) -> auto& {
@@ -140,10 +147,12 @@ constexpr std::array fields_of{
                 "Which products are summed up; the solutions are the same.",
                 set_choice<cross_complementarity<part>, cross_complementarities>,
                 record_choice<cross_complementarity<part>, cross_complementarities>},
-    OptionField{"step_equilibration", "direct, mlcp",
-                "What fixes the lengths of elements where nothing switches: both exact, with the same solutions.",
-                set_choice<step_equilibration<part>, step_equilibrations>,
-                record_choice<step_equilibration<part>, step_equilibrations>},
+    OptionField{"step_equilibration",
+                is_fesd<part> ? "direct, mlcp, none, heuristic_mean|diff, l2_relaxed[_scaled], paper" : "direct, mlcp",
+                is_fesd<part> ? "Lengths where nothing switches: the first two are exact, the others slow, for studies."
+                              : "Lengths are fixed: both mean the same.",
+                set_choice<step_equilibration<part>, step_equilibrations<part>>,
+                record_choice<step_equilibration<part>, step_equilibrations<part>>},
     OptionField{"lifting", "a whole number >= 2, or \"off\"",
                 "Most factors in products of selections, longer ones are lifted; the solutions are the same.",
                 set_lifting<part>, record_lifting<part>},

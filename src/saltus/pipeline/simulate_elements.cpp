@@ -2,7 +2,9 @@
 #include <optional>
 #include <utility>
 
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
+#include "saltus/fesd_integrator/step_problem.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/reformulation/dcs.hpp"
@@ -35,6 +37,60 @@ reformulation::ReformulationOptions reformulation_options(const ElementOptions& 
   return wanted;
 }
 
+discretization::StepEquilibration equilibration(StepEquilibration wanted) {
+  switch (wanted) {
+    case StepEquilibration::none:
+      return discretization::StepEquilibration::none;
+    case StepEquilibration::heuristic_mean:
+      return discretization::StepEquilibration::heuristic_mean;
+    case StepEquilibration::heuristic_diff:
+      return discretization::StepEquilibration::heuristic_diff;
+    case StepEquilibration::l2_relaxed:
+      return discretization::StepEquilibration::l2_relaxed;
+    case StepEquilibration::l2_relaxed_scaled:
+      return discretization::StepEquilibration::l2_relaxed_scaled;
+    case StepEquilibration::direct:
+      return discretization::StepEquilibration::direct;
+    case StepEquilibration::mlcp:
+      return discretization::StepEquilibration::mlcp;
+    case StepEquilibration::paper:
+      return discretization::StepEquilibration::paper;
+  }
+  __builtin_unreachable();
+}
+
+discretization::CrossComplementarity cross(CrossComplementarity wanted) {
+  switch (wanted) {
+    case CrossComplementarity::stage_stage:
+      return discretization::CrossComplementarity::stage_stage;
+    case CrossComplementarity::fe_stage:
+      return discretization::CrossComplementarity::fe_stage;
+    case CrossComplementarity::stage_fe:
+      return discretization::CrossComplementarity::stage_fe;
+    case CrossComplementarity::fe_fe:
+      return discretization::CrossComplementarity::fe_fe;
+    case CrossComplementarity::paper:
+      return discretization::CrossComplementarity::paper;
+  }
+  __builtin_unreachable();
+}
+
+discretization::FesdOptions fesd_options(const ElementOptions& wanted) {
+  return {.representation = wanted.representation == Representation::integral
+                                ? discretization::Representation::integral
+                                : discretization::Representation::differential,
+          .cross_complementarity = cross(wanted.cross_complementarity),
+          .step_equilibration = equilibration(wanted.step_equilibration),
+          .gamma_h = wanted.step_bounds,
+          .rho_h = wanted.rho,
+          .sigma_h = wanted.equilibration_scale};
+}
+
+/// Whether lengths are determined exactly, so that active sets can be predicted.
+bool is_exact(StepEquilibration wanted) {
+  return wanted == StepEquilibration::direct || wanted == StepEquilibration::mlcp;
+}
+
 }  // namespace
 
 Expected<result::Result> simulate_elements(const model::System& system, const SimulateOptions& options,
@@ -63,6 +119,16 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   if (!std::holds_alternative<EveryStep>(options.output)) {
     integration.rows = IntegrationOptions::Rows::at_times;
     integration.times = std::move(times);
+  }
+  std::optional<adapters::IpoptSolver> ipopt;
+  std::optional<fesd_integrator::StepProblem> step_problem;
+  if (detected && !is_exact(wanted.step_equilibration)) {
+    ipopt.emplace();
+    auto made = fesd_integrator::StepProblem::make(*dcs, system.parameter_values, integration.tableau,
+                                                   fesd_options(wanted), integration.elements, *ipopt);
+    if (!made) return tl::unexpected(made.error());
+    step_problem.emplace(std::move(*made));
+    integration.step_problem = &*step_problem;
   }
   fesd_integrator::StepObserver observer;
   if (observers.on_step) {

@@ -1,0 +1,95 @@
+// Simulation steps by their problem with complementarities; its elements are solved again with their active sets.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "saltus/fesd_integrator/run_internal.hpp"
+#include "saltus/fesd_integrator/step_problem.hpp"
+
+namespace saltus::fesd_integrator {
+namespace {
+
+/// A step without a solution is halved at most so often: each try costs hundreds of iterations.
+constexpr int most_halvings = 10;
+
+}  // namespace
+
+bool Run::solve_guessed(const std::vector<ElementGuess>& guesses, std::vector<ActiveSet>& sets) {
+  sets.clear();
+  chain_.left[0] = selections_;
+  Point left{t_, x_, selections_, size_};
+  for (std::size_t i = 0; i < guesses.size(); ++i) {
+    const auto& guess = guesses[i];
+    sets.emplace_back(facts_.parts, guess.modes);
+    auto& element = chain_.elements[i];
+    if (i == 0 || !(sets[i] == sets[i - 1])) selections_behind(guess, sets[i], left);
+    const auto outcome =
+        solver_.solve(left, guess.h, {&sets[i], 1}, held_.data(), ElementSolver::Guess::left_end, element);
+    Violation ignored;  // signs hold at the stages and at both ends, which is all the problem knows of
+    auto& right = chain_.left[i + 1];
+    right = left.selections;
+    if (outcome != ElementSolver::Outcome::solved ||
+        watch_.look(element, sets[i], held_.data(), right, ignored) == Watch::Answer::not_finite) {
+      return false;
+    }
+    left = {left.t + guess.h, element.end, right, element.size};
+  }
+  chain_.count = guesses.size();
+  return true;
+}
+
+/// The selections just behind a change of the active set.
+void Run::selections_behind(const ElementGuess& guess, const ActiveSet& set, Point& left) {
+  for (std::size_t j = 0; j < left.selections.size(); ++j) {
+    left.selections[j] = guess.selections(static_cast<Eigen::Index>(j), 0);
+  }
+  if (set.sliding().empty()) return;
+  between_selections_ = left.selections;
+  if (projected_.solve(left.t, left.x.data(), set, held_.data(), between_selections_.data())) {
+    left.selections = between_selections_;
+  }
+}
+
+void Run::accept_guessed(const std::vector<ElementGuess>& guesses, const std::vector<ActiveSet>& sets, double end) {
+  for (std::size_t i = 0; i < guesses.size() && !stopped(); ++i) {
+    const Element& element = chain_.elements[i];
+    if (!(sets[i] == set_)) {
+      const ActiveSet before = set_;
+      const auto selections = selections_;
+      Point behind{t_, x_, selections_, size_};
+      selections_behind(guesses[i], sets[i], behind);
+      recorder_.switched(t_, x_, {&before, &selections, held_.data()}, {{sets[i], behind.selections}}, held_.data(),
+                         "found by the problem of the step");
+      set_ = sets[i];
+      selections_ = behind.selections;
+    }
+    accept(element, selections_, chain_.left[i + 1], i + 1 == guesses.size() ? end : element.t + element.h);
+    row_here();
+  }
+}
+
+void Run::advance_by_problem(double end) {
+  double limit = end;
+  int halvings = 0;
+  std::vector<ActiveSet> sets;
+  while (!stopped() && t_ < end) {
+    const std::vector<double> held(held_.data(), held_.data() + facts_.held.size());
+    const StepSolution solution = options_.step_problem->solve({.t = t_, .length = limit - t_, .x = x_, .held = held});
+    if (!solution.elements.empty() && solve_guessed(solution.elements, sets)) {
+      accept_guessed(solution.elements, sets, limit);
+      limit = end;
+      halvings = 0;
+      continue;
+    }
+    ++statistics_.rejected;
+    limit = t_ + 0.5 * (limit - t_);
+    if (++halvings <= most_halvings) continue;
+    stop(solution.elements.empty() ? solution.termination : result::Termination::not_converged,
+         fmt::format(
+             "the problem with complementarities of the step at t = {:.10g} has no solution that was found ({}); "
+             "more simulate.fesd.steps, or step_equilibration = \"direct\"",
+             t_, solution.message));
+  }
+}
+
+}  // namespace saltus::fesd_integrator
