@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "saltus/event_integrator/small_internal.hpp"
@@ -11,11 +12,6 @@ namespace {
 
 /// Laps that must shrink before a sequence is believed to have a limit.
 constexpr std::size_t fewest_laps = 4;
-/// Laps whose durations give the ratio, at most: more average out the rounding of t where the ratio is near 1.
-constexpr std::size_t most_laps = 48;
-
-/// Jumps without a pattern that are looked at together.
-constexpr std::size_t many = 64;
 constexpr double hundredth = 0.01;
 
 double longest(const std::vector<double>& shortest, const std::vector<int>& jumps) {
@@ -46,11 +42,14 @@ void EventSeries::clear_laps() {
   std::fill(std::begin(laps_), std::end(laps_), std::size_t{0});
 }
 
-void EventSeries::add(double t, std::vector<int> jumps, const std::vector<double>& x) {
-  recent_.emplace_back(t, jumps);
-  if (recent_.size() > many) recent_.pop_front();
-  entries_.push_back({t, std::move(jumps), x});
-  if (entries_.size() > longest_period * (most_laps + 2)) entries_.pop_front();
+void EventSeries::add(double t, const std::vector<int>& jumps, const std::vector<double>& x) {
+  Recent& recent = recent_.append();
+  recent.t = t;
+  recent.jumps = jumps;
+  Entry& entry = entries_.append();
+  entry.t = t;
+  entry.jumps = jumps;
+  entry.x = x;
   for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
     const bool repeats = back(0).jumps == back(period).jumps;
     const bool shrinks =
@@ -62,6 +61,10 @@ void EventSeries::add(double t, std::vector<int> jumps, const std::vector<double
       ++laps_[period];
     }
   }
+}
+
+bool EventSeries::shrinks() const {
+  return std::any_of(std::begin(laps_), std::end(laps_), [](std::size_t laps) { return laps >= 2; });
 }
 
 std::vector<double> EventSeries::durations(std::size_t period, std::size_t skipped) const {
@@ -128,13 +131,16 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::
 std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double>& shortest) const {
   if (recent_.size() < many || entries_.empty()) return std::nullopt;
   std::vector<int> jumps;
-  for (const auto& [time, executed] : recent_) jumps.insert(jumps.end(), executed.begin(), executed.end());
+  for (std::size_t k = 0; k < recent_.size(); ++k) {
+    const auto& executed = recent_.back(k).jumps;
+    jumps.insert(jumps.end(), executed.begin(), executed.end());
+  }
   std::sort(jumps.begin(), jumps.end());
   jumps.erase(std::unique(jumps.begin(), jumps.end()), jumps.end());
-  const double t = recent_.back().first;
+  const double t = recent_.back(0).t;
   const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * longest(shortest, jumps));
-  if (t - recent_.front().first > static_cast<double>(many) * resolved) return std::nullopt;
-  return SeriesLimit{t, entries_.back().x, std::move(jumps), resolved, true};
+  if (t - recent_.front().t > static_cast<double>(many) * resolved) return std::nullopt;
+  return SeriesLimit{t, back(0).x, std::move(jumps), resolved, true};
 }
 
 std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortest) const {
@@ -146,6 +152,7 @@ std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortes
 
 std::optional<SeriesLimit> EventSeries::nearly() const {
   for (std::size_t period = 1; period <= longest_period && entries_.size() > 2 * period; ++period) {
+    if (back(0).jumps != back(period).jumps || back(period).jumps != back(2 * period).jumps) continue;
     const auto now = durations(period, 0);
     if (now.size() < 2) continue;
     // Of a shorter period that repeats, too, the longer ones are multiples.

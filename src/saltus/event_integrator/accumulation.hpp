@@ -1,10 +1,9 @@
 // Sequences of jumps, or of switches, with a limit: infinitely many in finite time (Zeno, spirals).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
-#include <deque>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace saltus::event_integrator {
@@ -18,6 +17,33 @@ struct SeriesLimit {
   bool rattling = false;    ///< no laps: jumps in any order, faster than their guards are resolved
 };
 
+/// The last items of a sequence, at most `capacity`. The storage of those that are gone is used again.
+template <class Item, std::size_t capacity>
+class LastItems {
+ public:
+  /// A new last item; its members hold what an earlier one has left there.
+  Item& append() {
+    last_ = (last_ + 1) % capacity;
+    if (last_ == items_.size()) items_.emplace_back();
+    size_ = std::min(size_ + 1, capacity);
+    return items_[last_];
+  }
+  /// `steps` before the last one, less than size().
+  [[nodiscard]] const Item& back(std::size_t steps) const { return items_[(last_ + capacity - steps) % capacity]; }
+  [[nodiscard]] const Item& front() const { return back(size_ - 1); }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  void clear() {
+    size_ = 0;
+    last_ = capacity - 1;
+  }
+
+ private:
+  std::vector<Item> items_;
+  std::size_t size_ = 0;
+  std::size_t last_ = capacity - 1;
+};
+
 /// Watches the times and states of jumps (or of switches, which are numbered likewise) for laps whose durations shrink
 /// geometrically. A lap is a cycle of jumps that repeats, of up to eight times.
 ///
@@ -28,7 +54,10 @@ struct SeriesLimit {
 class EventSeries {
  public:
   /// Jumps executed at t in this order, and the state behind them.
-  void add(double t, std::vector<int> jumps, const std::vector<double>& x);
+  void add(double t, const std::vector<int>& jumps, const std::vector<double>& x);
+  /// Whether the last event has closed a lap that was shorter than the one before: only then there may be a limit, but
+  /// for rattling.
+  [[nodiscard]] bool shrinks() const;
   /// @param shortest  by jump: laps not longer than this drown in the rounding of its guard; their sequence is
   ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
   ///                  hundredth of it, in any order, have their limit where they are.
@@ -52,7 +81,15 @@ class EventSeries {
     std::vector<double> x;
   };
   static constexpr std::size_t longest_period = 8;
-  [[nodiscard]] const Entry& back(std::size_t steps) const { return entries_[entries_.size() - 1 - steps]; }
+  struct Recent {
+    double t = 0.0;
+    std::vector<int> jumps;
+  };
+  /// Jumps without a pattern that are looked at together.
+  static constexpr std::size_t many = 64;
+  /// Laps whose durations give the ratio, at most: more average out the rounding of t where the ratio is near 1.
+  static constexpr std::size_t most_laps = 48;
+  [[nodiscard]] const Entry& back(std::size_t steps) const { return entries_.back(steps); }
   [[nodiscard]] std::optional<SeriesLimit> limit_of(std::size_t period, const std::vector<double>& shortest) const;
   [[nodiscard]] std::optional<SeriesLimit> end_of_rattling(const std::vector<double>& shortest) const;
   [[nodiscard]] std::vector<double> extrapolated(std::size_t period, double ratio) const;
@@ -60,10 +97,10 @@ class EventSeries {
   /// Durations of the laps behind the entry `skipped` laps ago, the last one first, as far as jumps repeat.
   [[nodiscard]] std::vector<double> durations(std::size_t period, std::size_t skipped) const;
 
-  std::deque<Entry> entries_;
-  std::deque<std::pair<double, std::vector<int>>> recent_;  ///< times and jumps of the last events, for rattling
-  double start_[longest_period + 1] = {};                   ///< of the shrinking sequence of each period
-  std::size_t laps_[longest_period + 1] = {};               ///< in it
+  LastItems<Entry, longest_period*(most_laps + 2)> entries_;
+  LastItems<Recent, many> recent_;             ///< for rattling
+  double start_[longest_period + 1] = {};      ///< of the shrinking sequence of each period
+  std::size_t laps_[longest_period + 1] = {};  ///< in it
 };
 
 }  // namespace saltus::event_integrator

@@ -67,6 +67,21 @@ double AffineForms::value(std::size_t i, double t, const double* x) const {
   return sum + form.offset;
 }
 
+ode::BernsteinCoefficients AffineForms::along(std::size_t i, const ode::DenseStep& step) const {
+  const Form& form = forms_[i];
+  ode::BernsteinCoefficients b{};
+  if (form.rate != 0.0) {
+    for (std::size_t j = 0; j < b.size(); ++j)
+      b[j] = form.rate * (step.t + step.h * static_cast<double>(j) / ode::event_degree);
+  }
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    const auto x = step.bernstein(terms_[k].column);
+    for (std::size_t j = 0; j < b.size(); ++j) b[j] += terms_[k].coefficient * x[j];
+  }
+  for (double& value : b) value += form.offset;
+  return b;
+}
+
 double AffineForms::terms(const Form& form, const StepBounds& bounds) const {
   double sum = std::abs(form.offset) + std::abs(form.rate) * std::max(std::abs(bounds.begin), std::abs(bounds.end));
   for (std::size_t k = form.first; k < form.first + form.count; ++k) {
@@ -77,11 +92,6 @@ double AffineForms::terms(const Form& form, const StepBounds& bounds) const {
 }
 
 double AffineForms::terms(std::size_t i, const StepBounds& bounds) const { return terms(forms_[i], bounds); }
-
-void AffineForms::append_states(std::size_t i, std::vector<std::size_t>& states) const {
-  const Form& form = forms_[i];
-  for (std::size_t k = form.first; k < form.first + form.count; ++k) states.push_back(terms_[k].column);
-}
 
 void AffineForms::group() {
   first_.assign(lower_.size() + 1, 0);

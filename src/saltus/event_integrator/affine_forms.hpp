@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/ode/bernstein.hpp"
+#include "saltus/ode/stepper.hpp"
 
 namespace saltus::event_integrator {
 
@@ -43,9 +45,9 @@ class AffineForms {
   /// Of a threshold: the state, and its factor.
   [[nodiscard]] std::size_t state(std::size_t i) const { return terms_[forms_[i].first].column; }
   [[nodiscard]] double factor(std::size_t i) const { return terms_[forms_[i].first].coefficient; }
-  /// The states of a form, appended.
-  void append_states(std::size_t i, std::vector<std::size_t>& states) const;
   [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
+  /// Bernstein coefficients of the form along a step.
+  [[nodiscard]] ode::BernsteinCoefficients along(std::size_t i, const ode::DenseStep& step) const;
   /// Sum of the sizes of the terms that a value is the sum of, at most this over the step: what its rounding follows
   /// from.
   [[nodiscard]] double terms(std::size_t i, const StepBounds& bounds) const;

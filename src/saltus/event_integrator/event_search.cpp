@@ -58,14 +58,6 @@ bool stays_far(const std::array<double, 5>& v, int sign) {
   return sign * c0 > std::abs(c1) + std::abs(c2) + 8.0 * tail;
 }
 
-/// d phi / d theta of an interpolant by a central difference: starts a Newton correction, no more.
-double slope_at(const ode::BernsteinCoefficients& coefficients, double theta) {
-  constexpr double width = 1e-4;
-  const double below = std::max(0.0, theta - width);
-  const double above = std::min(1.0, theta + width);
-  return (ode::evaluate(coefficients, above) - ode::evaluate(coefficients, below)) / (above - below);
-}
-
 }  // namespace
 
 EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
@@ -215,20 +207,11 @@ void EventSearch::evaluate(double t, const double* x, const std::vector<std::siz
 /// Samples of some functions at the nodes of [from, to], or at every stride-th of them.
 void EventSearch::sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which,
                          std::size_t stride) {
-  const bool by_forms = std::all_of(which.begin(), which.end(), [&](std::size_t i) { return forms_.has(i); });
-  columns_.clear();
-  if (by_forms) {
-    for (const std::size_t i : which) forms_.append_states(i, columns_);
-  }
   for (std::size_t node = 0; node < ode::event_nodes; node += stride) {
     const double theta = node_theta(from, to, node);
     const double t = step.t + theta * step.h;
-    if (by_forms) {
-      step.evaluate(theta, columns_, x_.data());
-    } else {
-      step.evaluate(theta, x_.data());
-      evaluate_parts(t, x_.data(), curved_parts_);
-    }
+    step.evaluate(theta, x_.data());
+    evaluate_parts(t, x_.data(), curved_parts_);
     double* samples = samples_.data() + node * functions_.size();
     for (const std::size_t i : which) {
       samples[i] = forms_.has(i) ? forms_.value(i, t, x_.data()) - functions_[i].offset : value(i, t, x_.data());
@@ -309,7 +292,11 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
   if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
   rescale(step.t, x_.data(), suspects_);
-  sample(step, 0.0, 1.0, suspects_);
+  sampled_.clear();
+  for (const std::size_t i : suspects_) {
+    if (!forms_.has(i)) sampled_.push_back(i);
+  }
+  if (!sampled_.empty()) sample(step, 0.0, 1.0, sampled_);
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
   if (outcome == SearchOutcome::hit) {
     find_candidates();
@@ -334,19 +321,27 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
   return false;
 }
 
-/// The first sign change of one function between two nodes' ends, from the samples.
+/// The first sign change of one function between two nodes' ends, from the samples or, along the whole step, its form.
 EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, double to, std::size_t i) {
   const auto& function = functions_[i];
   std::array<double, ode::event_nodes> values;
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
+  ode::BernsteinCoefficients coefficients;
+  const bool exact = forms_.has(i) && from == 0.0 && to == 1.0;
+  if (exact) {
+    coefficients = forms_.along(i, step);
+    for (double& b : coefficients) b -= function.offset;
+  } else {
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
+  }
   const auto is_number = [](double v) { return std::isfinite(v); };
-  if (!std::all_of(values.begin(), values.end(), is_number)) {
+  const auto& known = exact ? coefficients : values;
+  if (!std::all_of(known.begin(), known.end(), is_number)) {
     // The argument of a cell may be undefined where a branch that is not taken holds it; a step that looks beyond the
     // end of its region may find it defined there.
     const bool is_cell = function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower;
-    return {is_cell && !is_number(values.front()), {}};
+    return {is_cell && !is_number(known.front()), {}};
   }
-  const auto coefficients = ode::to_bernstein(values);
+  if (!exact) coefficients = ode::to_bernstein(values);
   int sign = function.sign;
   if (sign == 0) {  // a user function at zero: it gets the sign it moves to
     const auto first =
@@ -378,10 +373,12 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
   const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise);
   if (!change) return {};
   const double local = 0.5 * (change->lower + change->upper);
-  return {true, Hit{i, from + (to - from) * local, slope_at(coefficients, local) / ((to - from) * step.h), sign}};
+  return {true,
+          Hit{i, from + (to - from) * local, ode::derivative(coefficients, local) / ((to - from) * step.h), sign}};
 }
 
-/// The samples of [from, to] are taken; cuts the interval where an interpolant is not good enough.
+/// The samples of [from, to] are taken (of the whole step those of curved functions); cuts the interval where an
+/// interpolant is not good enough.
 SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit) {
   SearchOutcome outcome = SearchOutcome::none;
   bool resolved = true;

@@ -169,9 +169,9 @@ class EventSearch {
   std::vector<std::size_t> curved_;   ///< functions without an affine form
   Parts curved_parts_;
   std::vector<std::size_t> suspects_;    ///< of this step, ascending
+  std::vector<std::size_t> sampled_;     ///< of the suspects those without a form
   std::vector<std::size_t> candidates_;  ///< of this step, ascending
   std::vector<std::size_t> inspected_;   ///< at the start of a mode: those whose values matter there
-  std::vector<std::size_t> columns_;     ///< states to sample
   std::size_t users_ = 0;                ///< the user functions among functions_, and their end
   std::size_t users_end_ = 0;
   std::vector<std::size_t> of_surface_;  ///< n_psi: function of a surface outside the mode

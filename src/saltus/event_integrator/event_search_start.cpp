@@ -138,7 +138,8 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   accuracy_.assign(functions_.size(), 0.0);
   point_.resize(functions_.size());
   samples_.resize(functions_.size() * ode::event_nodes);
-  for (auto* list : {&suspects_, &candidates_, &special_, &curved_, &inspected_}) list->reserve(functions_.size());
+  for (auto* list : {&suspects_, &sampled_, &candidates_, &special_, &curved_, &inspected_})
+    list->reserve(functions_.size());
   inspected_.clear();
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const auto kind = functions_[i].kind;

@@ -86,6 +86,7 @@ class Run {
   bool enter(const Transition& transition);
   void begin_spiral();
   void note_tightening_switch();
+  void note_switch_rates();
   void follow_shrinking();
   void accumulate_switches();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
@@ -111,7 +112,7 @@ class Run {
   void drop_zeros(Landing& landing);
   void read_user_signs(const Landing& landing);
   [[nodiscard]] Motion motion_of(int function, const Landing& landing);
-  [[nodiscard]] Rate rate_along_field(int function, double t, const double* x, const double* slope) const;
+  [[nodiscard]] Rate rate_along_field(int function, double t, const double* x, const double* slope);
   bool release(const Located& located);
   void accumulate_jumps();
   void follow_limit(const SeriesLimit& limit);
@@ -167,6 +168,7 @@ class Run {
   Holding holding_;
   EventSeries jump_series_;
   EventSeries switch_laps_;                  ///< of switches, by surface and mode behind, while they tighten
+  std::vector<int> switch_labels_;           ///< of the switch in hand
   std::vector<double> shortest_switch_lap_;  ///< by the same: shorter laps drown in the rounding of psi
   std::vector<HeldGuard> last_guard_;        ///< by jump: the guard that was at zero when it was executed last
   std::vector<double> last_rate_;            ///< by jump: |dg/dt| then
@@ -176,6 +178,7 @@ class Run {
   double t_;
   std::vector<double> x_, slope_;
   std::vector<double> row_x_, row_slope_;
+  std::vector<double> gradient_;
   std::vector<std::size_t> continuous_;  ///< states that are not discrete
   double error_share_ = 1.0;             ///< the mean square over the continuous states to that over all, its root
   ModeState state_;

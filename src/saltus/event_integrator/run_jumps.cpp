@@ -56,8 +56,9 @@ Run::Landing Run::landing_at(const Located& located) const {
   return landing;
 }
 
-Run::Rate Run::rate_along_field(int function, double t, const double* x, const double* slope) const {
-  std::vector<double> row(x_.size());
+Run::Rate Run::rate_along_field(int function, double t, const double* x, const double* slope) {
+  auto& row = gradient_;
+  row.resize(x_.size());
   Rate rate;
   kernel_.gradient(function, t, x, state_.alpha.data(), row.data(), &rate.value);
   rate.terms = std::abs(rate.value);

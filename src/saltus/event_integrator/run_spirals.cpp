@@ -41,16 +41,23 @@ void put_on(const evaluation::ModelKernel& kernel, const std::vector<int>& label
 void Run::note_tightening_switch() {
   if (before_.mode == state_.mode) return;
   if (jumped_ || !series_.tightens()) return switch_laps_.clear();
-  std::vector<int> labels;
   bool holds = true;  // kinks do not hold a solution, and times pass
+  switch_labels_.clear();
   for_each_difference(before_.mode, state_.mode, [&](std::size_t j) {
     const auto role = surroundings_.system.switching[j].role;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
-    labels.push_back(label_of(static_cast<int>(j), state_.mode[j]));
+    switch_labels_.push_back(label_of(static_cast<int>(j), state_.mode[j]));
   });
   if (!holds) return switch_laps_.clear();
+  switch_laps_.add(t_, switch_labels_, x_);
+  // A limit asks for the rates of those switches only behind which laps have shrunk twice.
+  if (switch_laps_.shrinks()) note_switch_rates();
+}
+
+/// How short laps of the switch in hand may get.
+void Run::note_switch_rates() {
   kernel_.field(t_, x_.data(), before_.alpha.data(), row_slope_.data());
-  for (const int label : labels) {
+  for (const int label : switch_labels_) {
     // Where sliding begins or ends psi moves on the other side only.
     const Rate arriving = rate_along_field(surface_of(label), t_, x_.data(), row_slope_.data());
     const Rate leaving = rate_along_field(surface_of(label), t_, x_.data(), slope_.data());
@@ -62,7 +69,6 @@ void Run::note_tightening_switch() {
                  10.0 * (tolerances_.atol * leaving.slope + tolerances_.rtol * leaving.magnitude));
     shortest_switch_lap_[at(label)] = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
   }
-  switch_laps_.add(t_, std::move(labels), x_);
 }
 
 /// Laps that shrink by q have psi shrink by q or, where psi is tangent to its surface at the limit, q^2: an absolute

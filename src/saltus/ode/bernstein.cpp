@@ -31,12 +31,27 @@ BernsteinCoefficients to_bernstein(std::span<const double, event_nodes> values) 
   return coefficients;
 }
 
-double evaluate(const BernsteinCoefficients& coefficients, double theta) {
+namespace {
+
+/// Corner cutting down to two coefficients, those of the tangent at theta.
+std::array<double, 2> tangent(const BernsteinCoefficients& coefficients, double theta) {
   BernsteinCoefficients b = coefficients;
-  for (std::size_t level = b.size() - 1; level > 0; --level) {
+  for (std::size_t level = b.size() - 1; level > 1; --level) {
     for (std::size_t i = 0; i < level; ++i) b[i] = (1.0 - theta) * b[i] + theta * b[i + 1];
   }
-  return b[0];
+  return {b[0], b[1]};
+}
+
+}  // namespace
+
+double evaluate(const BernsteinCoefficients& coefficients, double theta) {
+  const auto [first, second] = tangent(coefficients, theta);
+  return (1.0 - theta) * first + theta * second;
+}
+
+double derivative(const BernsteinCoefficients& coefficients, double theta) {
+  const auto [first, second] = tangent(coefficients, theta);
+  return event_degree * (second - first);
 }
 
 }  // namespace saltus::ode

@@ -26,8 +26,9 @@ using BernsteinCoefficients = std::array<double, event_nodes>;
 /// single coefficients amplify errors of the values by up to 184, values of the polynomial by less than 3.
 [[nodiscard]] BernsteinCoefficients to_bernstein(std::span<const double, event_nodes> values);
 
-/// Value at theta (de Casteljau).
+/// Value, and derivative with respect to theta, at theta (de Casteljau).
 [[nodiscard]] double evaluate(const BernsteinCoefficients& coefficients, double theta);
+[[nodiscard]] double derivative(const BernsteinCoefficients& coefficients, double theta);
 
 /// A bracket [lower, upper] of one sign change: the value's sign is that at 0+ just below `lower`, the other above
 /// `upper`.

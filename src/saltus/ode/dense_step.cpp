@@ -64,37 +64,12 @@ void evaluate_slope(const double* coefficients, std::size_t n, double theta, dou
   }
 }
 
-/// `component(k)` is the k-th of the `count` components wanted.
-template <std::size_t degree, class Component>
-void evaluate_nearer(const double* coefficients, const double* end, std::size_t n, double theta, std::size_t count,
-                     Component component, double* __restrict x) {
+template <std::size_t degree>
+void evaluate_nearer(const double* coefficients, const double* end, std::size_t n, double theta, double* __restrict x) {
   if (theta <= 0.5) {
-    for (std::size_t k = 0; k < count; ++k) {
-      x[component(k)] = value_from_start<degree>(coefficients, n, component(k), theta);
-    }
+    for (std::size_t i = 0; i < n; ++i) x[i] = value_from_start<degree>(coefficients, n, i, theta);
   } else {
-    for (std::size_t k = 0; k < count; ++k) {
-      x[component(k)] = value_from_end<degree>(coefficients, end, n, component(k), theta);
-    }
-  }
-}
-
-template <class Component>
-void evaluate_components(Method method, const std::vector<double>& coefficients, const std::vector<double>& end,
-                         double theta, std::size_t count, Component component, double* x) {
-  const std::size_t n = end.size();
-  if (theta == 0.0 || theta == 1.0) {  // bit for bit, the sign of a zero included
-    const double* values = theta == 0.0 ? coefficients.data() : end.data();
-    for (std::size_t k = 0; k < count; ++k) x[component(k)] = values[component(k)];
-    return;
-  }
-  switch (method) {
-    case Method::dopri5:
-      return evaluate_nearer<4>(coefficients.data(), end.data(), n, theta, count, component, x);
-    case Method::dop853:
-      return evaluate_nearer<7>(coefficients.data(), end.data(), n, theta, count, component, x);
-    case Method::radau5:
-      return evaluate_nearer<3>(coefficients.data(), end.data(), n, theta, count, component, x);
+    for (std::size_t i = 0; i < n; ++i) x[i] = value_from_end<degree>(coefficients, end, n, i, theta);
   }
 }
 
@@ -114,7 +89,51 @@ void polynomial_bounds(const double* coefficients, const double* end, std::size_
   }
 }
 
+constexpr double binomial(std::size_t n, std::size_t k) {
+  double value = 1.0;
+  for (std::size_t j = 1; j <= k; ++j) value = value * static_cast<double>(n - k + j) / static_cast<double>(j);
+  return value;
+}
+
+/// Bernstein coefficients, of degree event_degree, of the products 1, s, s r, s^2 r, s^2 r^2, ... which the nested form
+/// is a sum of: s^a r^b is the sum of C(N - a - b, i - a) / C(N, i) times B_i.
+constexpr auto products = [] {
+  constexpr std::size_t degree = event_degree;
+  std::array<BernsteinCoefficients, degree> table{};
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    const std::size_t a = (k + 1) / 2;
+    const std::size_t b = k / 2;
+    for (std::size_t i = a; i + b <= degree; ++i) table[k][i] = binomial(degree - k, i - a) / binomial(degree, i);
+  }
+  return table;
+}();
+
+template <std::size_t degree>
+BernsteinCoefficients bernstein_form(const double* coefficients, std::size_t n, std::size_t i, double end) {
+  static_assert(degree < products.size());
+  BernsteinCoefficients b;
+  b.fill(coefficients[i]);
+  for (std::size_t k = 1; k <= degree; ++k) {
+    for (std::size_t j = 0; j < b.size(); ++j) b[j] += products[k][j] * coefficients[k * n + i];
+  }
+  b.back() = end;
+  return b;
+}
+
 }  // namespace
+
+BernsteinCoefficients DenseStep::bernstein(std::size_t i) const {
+  const auto n = static_cast<std::size_t>(n_);
+  switch (method_) {
+    case Method::dopri5:
+      return bernstein_form<4>(coefficients_.data(), n, i, end_[i]);
+    case Method::dop853:
+      return bernstein_form<7>(coefficients_.data(), n, i, end_[i]);
+    case Method::radau5:
+      return bernstein_form<3>(coefficients_.data(), n, i, end_[i]);
+  }
+  __builtin_unreachable();
+}
 
 void DenseStep::bounds(double* low, double* high) const {
   const auto n = static_cast<std::size_t>(n_);
@@ -129,13 +148,19 @@ void DenseStep::bounds(double* low, double* high) const {
 }
 
 void DenseStep::evaluate(double theta, double* x) const {
-  evaluate_components(
-      method_, coefficients_, end_, theta, end_.size(), [](std::size_t k) { return k; }, x);
-}
-
-void DenseStep::evaluate(double theta, std::span<const std::size_t> components, double* x) const {
-  evaluate_components(
-      method_, coefficients_, end_, theta, components.size(), [&](std::size_t k) { return components[k]; }, x);
+  const std::size_t n = end_.size();
+  if (theta == 0.0 || theta == 1.0) {  // bit for bit, the sign of a zero included
+    std::copy_n(theta == 0.0 ? coefficients_.data() : end_.data(), n, x);
+    return;
+  }
+  switch (method_) {
+    case Method::dopri5:
+      return evaluate_nearer<4>(coefficients_.data(), end_.data(), n, theta, x);
+    case Method::dop853:
+      return evaluate_nearer<7>(coefficients_.data(), end_.data(), n, theta, x);
+    case Method::radau5:
+      return evaluate_nearer<3>(coefficients_.data(), end_.data(), n, theta, x);
+  }
 }
 
 void DenseStep::derivative(double theta, double* xdot) const {

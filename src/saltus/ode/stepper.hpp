@@ -3,10 +3,10 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "saltus/base/function_ref.hpp"
+#include "saltus/ode/bernstein.hpp"
 
 namespace saltus::ode {
 
@@ -36,8 +36,9 @@ class DenseStep {
   double t = 0.0;
   double h = 0.0;
   void evaluate(double theta, double* x) const;  ///< n doubles
-  /// Only those components of x, bit for bit.
-  void evaluate(double theta, std::span<const std::size_t> components, double* x) const;
+  /// Bernstein coefficients of component i on [0, 1]; those at the ends are x_i(t) and x_i(t + h), bit for bit. The
+  /// others have a few roundings of the largest one. Cost: some fifty operations.
+  [[nodiscard]] BernsteinCoefficients bernstein(std::size_t i) const;
   void derivative(double theta, double* xdot) const;  ///< dx/dt of the polynomial, n doubles
   /// Bounds low_i <= x_i(t + theta h) <= high_i for all theta in [0, 1], n doubles each, up to rounding: the chord
   /// widened by the largest values of the other terms of the polynomial. Cost: a few operations per component.

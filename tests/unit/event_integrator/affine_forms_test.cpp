@@ -107,9 +107,31 @@ TEST_F(Forms, ThresholdsKnowTheirState) {
   EXPECT_EQ(forms.state(2), 0U);
   EXPECT_EQ(forms.factor(2), -1.0);
   for (const std::size_t i : {3U, 4U, 5U}) EXPECT_FALSE(forms.is_threshold(i));
-  std::vector<std::size_t> states;
-  for (const std::size_t i : {0U, 3U, 4U, 5U}) forms.append_states(i, states);
-  EXPECT_EQ(states, (Indices{0, 0, 1}));
+}
+
+TEST_F(Forms, AlongAStepAreTheirValues) {
+  const auto f = [](double t, const double* x, double* xdot) {
+    xdot[0] = x[1];
+    xdot[1] = t - x[0];
+  };
+  const std::vector<double> x{1.2, -0.4};
+  std::vector<double> slope(2);
+  f(0.5, x.data(), slope.data());
+  ode::Stepper stepper(ode::Method::dop853, 2);
+  ASSERT_EQ(stepper.attempt(f, 0.5, x.data(), slope.data(), 0.25, {}), ode::Attempt::finite);
+  ode::DenseStep step;
+  ASSERT_EQ(stepper.dense(f, step), ode::Attempt::finite);
+  std::vector<double> inside(2);
+  for (const std::size_t i : {0U, 2U, 3U, 4U}) {
+    const auto b = forms.along(i, step);
+    EXPECT_EQ(b.front(), forms.value(i, 0.5, x.data()));
+    EXPECT_EQ(b.back(), forms.value(i, 0.75, stepper.x_new()));
+    for (const double theta : {0.1, 0.5, 0.7}) {
+      step.evaluate(theta, inside.data());
+      // A few roundings of terms of the order of one.
+      EXPECT_NEAR(ode::evaluate(b, theta), forms.value(i, 0.5 + 0.25 * theta, inside.data()), 1e-14) << i;
+    }
+  }
 }
 
 TEST_F(Forms, ANeighbourhoodOfRoundingSizeIsReached) {

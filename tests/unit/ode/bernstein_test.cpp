@@ -106,5 +106,18 @@ TEST(Bernstein, values_are_correct_and_exact_at_the_ends) {
   }
 }
 
+TEST(Bernstein, derivative_is_that_of_powers) {
+  for (int degree = 1; degree <= event_degree; ++degree) {
+    std::array<double, event_nodes> values;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::pow(interpolation_nodes()[i] - 0.3, degree);
+    const auto coefficients = to_bernstein(values);
+    for (const double theta : {0.0, 0.2, 0.3, 0.75, 1.0}) {
+      // Differences of coefficients, times the degree.
+      EXPECT_NEAR(derivative(coefficients, theta), degree * std::pow(theta - 0.3, degree - 1),
+                  event_degree * 184 * 4 * epsilon);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace saltus::ode

@@ -204,6 +204,22 @@ TEST_P(DenseOutput, derivative_is_that_of_the_polynomial) {
   }
 }
 
+TEST_P(DenseOutput, bernstein_form_is_the_polynomial) {
+  const DenseStep dense = kepler_step(GetParam(), 0.3, 0.35);
+  std::vector<double> x(Kepler::n), start(Kepler::n), end(Kepler::n);
+  dense.evaluate(0.0, start.data());
+  dense.evaluate(1.0, end.data());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto b = dense.bernstein(i);
+    EXPECT_EQ(b.front(), start[i]);
+    EXPECT_EQ(b.back(), end[i]);
+    for (int k = 1; k < 32; ++k) {
+      dense.evaluate(k / 32.0, x.data());
+      EXPECT_NEAR(evaluate(b, k / 32.0), x[i], 16 * epsilon);  // of states of the order of one
+    }
+  }
+}
+
 TEST_P(DenseOutput, components_without_slope_are_constant) {
   const auto f = [](double t, const double* x, double* xdot) {
     xdot[0] = -x[0] + t;
