@@ -33,13 +33,14 @@ std::vector<double> ProjectedFields::corner_alpha(const std::vector<double>& bas
                                                   std::size_t corner) const {
   std::vector<double> alpha = base;
   for (std::size_t i = 0; i < group.size(); ++i) alpha[at(group[i])] = (corner >> i & 1U) != 0 ? 1.0 : 0.0;
-  std::vector<double> values(at(kernel_.event_functions()));
+  std::vector<double> values;
   // Inner functions have smaller indices: one ascending pass reads every nested sign with its inner ones settled.
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
-    if (contains(occasion_.at_zero, j)) continue;
     const auto& inner = kernel_.inner(j);
+    if (inner.empty() || contains(occasion_.at_zero, j)) continue;
     const auto in_group = [&](int i) { return contains(group, i); };
     if (std::none_of(inner.begin(), inner.end(), in_group)) continue;
+    values.resize(at(kernel_.event_functions()));
     kernel_.functions(occasion_.t, occasion_.x, alpha.data(), values.data());
     if (std::abs(values[at(j)]) > noise_[at(j)]) alpha[at(j)] = values[at(j)] > 0.0 ? 1.0 : 0.0;
   }
@@ -74,17 +75,19 @@ std::vector<double> ProjectedFields::velocities(const std::vector<double>& alpha
   const auto n = at(kernel_.states());
   std::vector<double> f(n);
   std::vector<double> row(n);
-  std::vector<double> x(occasion_.x, occasion_.x + n);
-  kernel_.field(occasion_.t, x.data(), alpha.data(), f.data());
+  std::vector<double> beside;
+  const double* x = occasion_.x;
+  kernel_.field(occasion_.t, x, alpha.data(), f.data());
   if (!is_finite(f)) {
-    x = point_beside(alpha);
-    kernel_.field(occasion_.t, x.data(), alpha.data(), f.data());
+    beside = point_beside(alpha);
+    x = beside.data();
+    kernel_.field(occasion_.t, x, alpha.data(), f.data());
   }
   std::vector<double> result;
   result.reserve(group.size());
   for (const int j : group) {
     double velocity = 0.0;
-    kernel_.gradient(j, occasion_.t, x.data(), alpha.data(), row.data(), &velocity);
+    kernel_.gradient(j, occasion_.t, x, alpha.data(), row.data(), &velocity);
     for (std::size_t i = 0; i < n; ++i) velocity += row[i] == 0.0 ? 0.0 : row[i] * f[i];
     result.push_back(velocity);
   }

@@ -278,6 +278,29 @@ bool jumps_away(const Surroundings& s, const Occasion& occasion, int j, ModeStat
   return true;
 }
 
+/// The mode where functions jump away from zero on surfaces inside them that are crossed; nullopt if none does.
+std::optional<Transition> cross_with_jump(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
+  std::optional<ModeState> behind;
+  Occasion rest;
+  int jumping = -1;
+  for (const int j : occasion.at_zero) {
+    if (s.kernel.inner(j).empty()) continue;
+    ModeState own = before;
+    if (!jumps_away(s, occasion, j, own)) continue;
+    jumping = j;
+    if (!behind) {
+      behind = before;
+      rest = occasion;
+    }
+    for (auto* surfaces : {&rest.at_zero, &rest.touched, &rest.exit_below, &rest.exit_above}) std::erase(*surfaces, j);
+    for (std::size_t k = 0; k < own.mode.size(); ++k) {
+      if (own.mode[k] != before.mode[k]) set_surface(*behind, static_cast<int>(k), own.mode[k], own.alpha[k]);
+    }
+  }
+  if (!behind) return std::nullopt;
+  return Decider(s, *behind, rest).run_crossing(jumping);
+}
+
 /// Sliding on functions that have a kink on the touched surfaces: goes on, or ends, with their new gradients behind the
 /// kinks. nullopt if other surfaces are touched, or if the new motion does not lead away from the kinks.
 std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
@@ -311,19 +334,7 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   if (before.higher && !occasion.start) return decide_from_higher_order(surroundings, before, occasion);
   const ReferenceScope references(surroundings.kernel, before);
   const ModeState exact = with_exact_selections(before);
-  ModeState behind = exact;
-  Occasion rest = occasion;
-  int jumping = -1;
-  for (const int j : occasion.at_zero) {
-    ModeState own = exact;
-    if (!jumps_away(surroundings, occasion, j, own)) continue;
-    jumping = j;
-    for (auto* surfaces : {&rest.at_zero, &rest.touched, &rest.exit_below, &rest.exit_above}) std::erase(*surfaces, j);
-    for (std::size_t k = 0; k < own.mode.size(); ++k) {
-      if (own.mode[k] != exact.mode[k]) set_surface(behind, static_cast<int>(k), own.mode[k], own.alpha[k]);
-    }
-  }
-  if (jumping >= 0) return Decider(surroundings, behind, rest).run_crossing(jumping);
+  if (auto crossed = cross_with_jump(surroundings, exact, occasion)) return std::move(*crossed);
   if (occasion.limit) {
     // Rounding of the limit decides what the fields do there one by one.
     if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
