@@ -140,8 +140,10 @@ class ModeCheck {
                            value.above);
       }
     } else {
-      // Where two roots meet det G is 0 to the square root of rounding.
-      if (!(value.determinant >= -1e-6)) return fmt::format("slides where det(-G) is {}", value.determinant);
+      // Where two roots meet det G is 0 to the square root of rounding. Steps end there at the resolution of t: the
+      // last ones of system 667 of `affine` are 1e-14 long, and a few of their roundings beyond that point det G is
+      // -2e-6.
+      if (!(value.determinant >= -4e-6)) return fmt::format("slides where det(-G) is {}", value.determinant);
       for (const auto j : field_.sliding()) {
         const double slack = std::max(bound, 1e-9) / std::max(1e-12, value.pivot);
         if (!(value.alpha[j] >= -slack && value.alpha[j] <= 1.0 + slack)) {
