@@ -12,13 +12,6 @@ Expected<Integration> integrate(const model::System& system, const reformulation
   if (!kernel) return tl::unexpected(kernel.error());
   const auto functions = discretization::PointFunctions::compile(dcs, system.parameter_values);
   if (!functions) return tl::unexpected(functions.error());
-  if (functions->event_functions() > 0) {
-    return tl::unexpected(Error{ErrorCode::not_available,
-                                "[[events]] are not available with finite elements in this version",
-                                "use method = \"event\"",
-                                {},
-                                {}});
-  }
   const Facts known = facts(system, dcs);
   if (!options.sensitivities) return Run(*kernel, *functions, known, options, observer, nullptr).run();
   const auto tangent = discretization::TangentKernel::compile(dcs, system.parameter_values);

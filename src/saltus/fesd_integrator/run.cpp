@@ -24,6 +24,7 @@ Run::Run(const discretization::StageKernel& kernel, const discretization::PointF
       fixed_(kernel, facts.parts, solver_),
       held_(functions, facts.held),
       recorder_(functions, facts),
+      user_events_(functions, facts.events),
       t_(options.from),
       x_(facts.initial_state),
       selections_(kernel.selections()),
@@ -116,6 +117,9 @@ void Run::start() {
   std::rotate(found.begin(), chosen, chosen + 1);
   set_ = found.front().set;
   selections_ = found.front().selections;
+  if (!user_events_.empty()) {
+    static_cast<void>(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), std::nullopt));
+  }
   recorder_.started(t_, x_, found, held_.data(), functions);
   row_here();
 }
@@ -159,6 +163,9 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
   set_ = found.front().set;
   selections_ = found.front().selections;
   previous_.reset();
+  if (!user_events_.empty()) {
+    fire(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), std::nullopt), t_, x_, selections_);
+  }
   if (static_cast<long>(recorder_.events()) >= options_.max_events) {
     stop(result::Termination::iteration_limit,
          fmt::format("max_events = {} reached at t = {:.10g}; raise simulate.max_events if they are meant",
@@ -166,15 +173,11 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
   }
 }
 
-void Run::emit_times(const Element* element, double until) {
+void Run::emit_times(const Element* element, const std::vector<double>& selections, double until) {
   if (options_.rows != IntegrationOptions::Rows::at_times) return;
   for (; next_time_ < options_.times.size() && options_.times[next_time_] < until; ++next_time_) {
     const double time = options_.times[next_time_];
-    solver_.interpolate(*element, (time - element->t) / element->h, between_x_.data());
-    if (!set_.sliding().empty() &&
-        !projected_.solve(time, between_x_.data(), set_, held_.data(), between_selections_.data())) {
-      between_selections_ = selections_;
-    }
+    event_state(*element, selections, (time - element->t) / element->h);
     recorder_.row(time, between_x_, set_, between_selections_, held_.data());
   }
 }
@@ -191,14 +194,19 @@ void Run::row_here() {
 
 void Run::accept(const Element& element, const std::vector<double>& left, const std::vector<double>& right,
                  double end) {
-  between_selections_ = left;
-  emit_times(&element, end);
+  if (user_events_.empty()) {
+    emit_times(&element, left, end);
+  } else if (!record_user_events(element, left, end)) {
+    return;
+  }
   t_ = end;
   x_ = element.end;
   selections_ = right;
   // Halved with every element: what was large a long time ago has left no roundings.
   size_ = std::max(0.5 * size_, element.size);
-  static_cast<void>(step_counts());
+  if (!step_counts() || user_events_.empty()) return;
+  // Functions at zero at the start have a sign from now on.
+  fire(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), std::nullopt), t_, x_, selections_);
 }
 
 void Run::accept_chain(std::size_t count, double end_time, const Condition* closing) {

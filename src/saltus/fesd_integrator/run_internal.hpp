@@ -17,6 +17,7 @@
 #include "saltus/fesd_integrator/recorder.hpp"
 #include "saltus/fesd_integrator/sensitivities.hpp"
 #include "saltus/fesd_integrator/transition.hpp"
+#include "saltus/fesd_integrator/user_events.hpp"
 #include "saltus/fesd_integrator/watch.hpp"
 
 namespace saltus::fesd_integrator {
@@ -68,7 +69,21 @@ class Run {
   void selections_behind(const ElementGuess& guess, const ActiveSet& set, Point& left);
   void accept_guessed(const std::vector<ElementGuess>& guesses, const std::vector<ActiveSet>& sets, double end);
   void row_here();
-  void emit_times(const Element* element, double until);
+  void emit_times(const Element* element, const std::vector<double>& selections, double until);
+  struct EventZero {
+    std::size_t function = 0;
+    double theta = 0.0;
+  };
+  [[nodiscard]] std::optional<EventZero> first_event_zero(const Element& element, const std::vector<double>& selections,
+                                                          double from);
+  void event_state(const Element& element, const std::vector<double>& selections, double theta);
+  [[nodiscard]] double refined_event(const Element& element, const std::vector<double>& selections,
+                                     const EventZero& zero, std::vector<double>& x, std::vector<double>& at);
+  /// User events and output times of an element that is accepted; false if an event stops the run.
+  [[nodiscard]] bool record_user_events(const Element& element, const std::vector<double>& left, double end);
+  /// Records events; true if one of them stops the run.
+  bool fire(const std::vector<std::size_t>& fired, double t, const std::vector<double>& x,
+            const std::vector<double>& selections);
   void stop(result::Termination termination, std::string message);
   [[nodiscard]] bool stopped() const { return status_.has_value(); }
   [[nodiscard]] bool step_counts();
@@ -86,6 +101,7 @@ class Run {
   FixedElement fixed_;
   HeldValues held_;
   Recorder recorder_;
+  UserEvents user_events_;
 
   double t_ = 0.0;
   std::vector<double> x_, selections_;
@@ -97,6 +113,8 @@ class Run {
   int decisions_here_ = 0;
   double decided_at_ = 0.0;
   std::size_t next_time_ = 0;
+  std::vector<double> event_values_;
+  Element shorter_;
   std::vector<double> between_x_, between_selections_, held_before_;
   result::Statistics statistics_;
   std::optional<result::Status> status_;

@@ -1,0 +1,74 @@
+// The second engine against the references of the catalogue: event times, kinds, surfaces, modes, end state. It shares
+// nothing with the event engine but the model.
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "agreement/reference_checks.hpp"
+#include "problems/references.hpp"
+#include "problems/simulator.hpp"
+
+namespace saltus::problems {
+namespace {
+
+using pipeline::Reformulation;
+
+/// What finite elements with switch detection are not for, and why.
+const std::map<std::string, std::string> beyond_the_method{
+    {"filippov-spiral", "switches accumulate"},
+    {"super-twisting", "switches accumulate, and the field has no derivative on the surface"},
+    {"frozen-hysteresis", "not unique"},
+    {"stay-or-leave", "not unique"},
+    {"stay-or-slide", "not unique"},
+    {"spontaneous-switch", "not unique"},
+    {"smoothed-pss", "stiff"},
+};
+
+/// Where Stewart's form has other solutions, or none of a size that could be solved.
+const std::map<std::string, std::string> not_in_stewart_form{
+    {"two-belts", "four regions meet where both surfaces slide: the multipliers are not those of the step form"},
+    {"quarter-car", "a product of the selections of forty surfaces"},
+};
+
+struct FesdCase {
+  ReferenceProblem problem;
+  Reformulation form;
+};
+
+void PrintTo(const FesdCase& c, std::ostream* out) { PrintTo(c.problem, out); }
+
+/// Models without [[jumps]], whose solutions are unique, in both forms.
+std::vector<FesdCase> cases() {
+  std::vector<FesdCase> list;
+  for (const ReferenceProblem& problem : references()) {
+    const bool jumps = Simulator::from_reference(problem).has_jumps();
+    if (jumps || beyond_the_method.contains(problem.model)) continue;
+    list.push_back({problem, Reformulation::step});
+    if (!not_in_stewart_form.contains(problem.model)) list.push_back({problem, Reformulation::stewart});
+  }
+  return list;
+}
+
+class Fesd : public testing::TestWithParam<FesdCase> {};
+
+TEST_P(Fesd, AgreesToEightDigits) {
+  const Simulator model = Simulator::from_reference(GetParam().problem);
+  pipeline::SimulateOptions options = model.options();
+  options.method = pipeline::Method::fesd;
+  options.fesd.stages = 5;
+  options.fesd.steps = 800;
+  options.fesd.reformulation = GetParam().form;
+  expect_reference(model.run(options), GetParam().problem, 1e-8);
+}
+
+INSTANTIATE_TEST_SUITE_P(References, Fesd, testing::ValuesIn(cases()), [](const auto& info) {
+  return test_name(info.param.problem) + (info.param.form == Reformulation::step ? "_step" : "_stewart");
+});
+
+TEST(FesdReferences, MostOfTheCatalogueIsCompared) { EXPECT_GE(cases().size(), 70u); }
+
+}  // namespace
+}  // namespace saltus::problems
