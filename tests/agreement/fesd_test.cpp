@@ -64,8 +64,8 @@ TEST_P(Fesd, AgreesToEightDigits) {
   expect_reference(model.run(options), GetParam().problem, 1e-8);
 }
 
-INSTANTIATE_TEST_SUITE_P(References, Fesd, testing::ValuesIn(cases()), [](const auto& info) {
-  return test_name(info.param.problem) + (info.param.form == Reformulation::step ? "_step" : "_stewart");
+INSTANTIATE_TEST_SUITE_P(References, Fesd, testing::ValuesIn(cases()), [](const auto& c) {
+  return test_name(c.param.problem) + (c.param.form == Reformulation::step ? "_step" : "_stewart");
 });
 
 TEST(FesdReferences, MostOfTheCatalogueIsCompared) { EXPECT_GE(cases().size(), 70u); }

@@ -221,6 +221,7 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     self.sets[m] = &sets[sets.size() == 1 ? 0 : m];
     self.offset[m + 1] = self.offset[m] + self.n_x + self.unknowns(static_cast<Index>(m));
     double* selections = element.stage_selections.data() + m * n_psi;
+    if (self.known(static_cast<Index>(m))) std::copy(left.selections.begin(), left.selections.end(), selections);
     if (guess == Guess::left_end) {
       std::copy(left.x.begin(), left.x.end(), element.stage_states.begin() + static_cast<std::ptrdiff_t>(m * n_x));
       std::copy(left.selections.begin(), left.selections.end(), selections);
