@@ -1,7 +1,7 @@
 // The second engine against the references of the catalogue: event times, kinds, surfaces, modes, end state. It shares
 // nothing with the event engine but the model.
+#include <algorithm>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -20,10 +20,6 @@ using pipeline::Reformulation;
 const std::map<std::string, std::string> beyond_the_method{
     {"filippov-spiral", "switches accumulate"},
     {"super-twisting", "switches accumulate, and the field has no derivative on the surface"},
-    {"frozen-hysteresis", "not unique"},
-    {"stay-or-leave", "not unique"},
-    {"stay-or-slide", "not unique"},
-    {"spontaneous-switch", "not unique"},
     {"smoothed-pss", "stiff"},
 };
 
@@ -45,7 +41,9 @@ std::vector<FesdCase> cases() {
   std::vector<FesdCase> list;
   for (const ReferenceProblem& problem : references()) {
     const bool jumps = Simulator::from_reference(problem).has_jumps();
-    if (jumps || beyond_the_method.contains(problem.model)) continue;
+    const bool unique = std::all_of(problem.events.begin(), problem.events.end(),
+                                    [](const ReferenceEvent& event) { return event.unique == true; });
+    if (jumps || !unique || beyond_the_method.contains(problem.model)) continue;
     list.push_back({problem, Reformulation::step});
     if (!not_in_stewart_form.contains(problem.model)) list.push_back({problem, Reformulation::stewart});
   }
