@@ -31,4 +31,16 @@ void read_statistics(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_member(json, path, "wall_seconds", statistics.wall_seconds);
 }
 
+Json sensitivities_json(const result::Sensitivities& sensitivities) {
+  return {{"x0", sensitivities.x0}, {"p", sensitivities.p}, {"parameters", sensitivities.parameters}};
+}
+
+void read_sensitivities(JsonReader& reader, const Json& json, const std::string& path,
+                        std::optional<result::Sensitivities>& sensitivities) {
+  sensitivities.emplace();
+  reader.read_member(json, path, "x0", sensitivities->x0);
+  reader.read_member(json, path, "p", sensitivities->p);
+  reader.read_member(json, path, "parameters", sensitivities->parameters);
+}
+
 }  // namespace saltus::io

@@ -225,6 +225,9 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   }
   read_part(reader, json, path, "statistics", read_statistics, result.statistics);
   read_part(reader, json, path, "options", read_options, result.options);
+  if (json.is_object() && json.contains("sensitivities")) {
+    read_part(reader, json, path, "sensitivities", read_sensitivities, result.sensitivities);
+  }
   if (json.is_object() && json.contains("comparison")) {
     read_part(reader, json, path, "comparison", read_comparison, result.comparison);
   }

@@ -102,6 +102,11 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   check_length(reader, path + "/final/mode", result.final.mode, columns);
   check_length(reader, path + "/final/alpha", result.final.alpha, columns);
   check_length(reader, path + "/final/outputs", result.final.outputs, result.outputs.size());
+  if (result.sensitivities) {
+    const auto& [x0, p, parameters] = *result.sensitivities;
+    check_rows(reader, path + "/sensitivities/x0", x0, result.states.size(), result.states.size());
+    check_rows(reader, path + "/sensitivities/p", p, result.states.size(), parameters.size());
+  }
   for (std::size_t i = 0; i < result.events.size(); ++i) {
     check_event_lengths(reader, result.events[i], fmt::format("{}/events/{}", path, i), result.states.size(), columns);
   }

@@ -143,6 +143,7 @@ Json whole_json(const result::Result& result) {
   json["surfaces"] = std::move(surfaces);
   json["statistics"] = statistics_json(result.statistics);
   json["options"] = options_json(result.options);
+  if (result.sensitivities) json["sensitivities"] = sensitivities_json(*result.sensitivities);
   if (result.comparison) json["comparison"] = comparison_json(*result.comparison);
   if (result.order) json["order"] = order_json(*result.order);
   if (result.left_at) {

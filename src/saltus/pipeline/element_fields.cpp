@@ -119,6 +119,23 @@ void record_lifting(const SimulateOptions& options, std::string_view key, Option
 }
 
 template <auto part>
+Expected<void> set_sensitivities(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  const auto* word = std::get_if<std::string>(&value);  // of the command line
+  const auto* truth = std::get_if<bool>(&value);
+  const bool yes = truth != nullptr ? *truth : word != nullptr && *word == "true";
+  if (!yes && truth == nullptr && (word == nullptr || *word != "false")) {
+    return tl::unexpected(out_of_range("true or false", value));
+  }
+  part(options).sensitivities = yes;
+  return {};
+}
+
+template <auto part>
+void record_sensitivities(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, part(options).sensitivities);
+}
+
+template <auto part>
 constexpr std::array fields_of{
     OptionField{"scheme", "radau_iia, gauss_legendre, lobatto_iiia, lobatto_iiic, explicit",
                 "Runge-Kutta method of the elements.", set_choice<scheme<part>, schemes>,
@@ -156,6 +173,9 @@ constexpr std::array fields_of{
     OptionField{"lifting", "a whole number >= 2, or \"off\"",
                 "Most factors in products of selections, longer ones are lifted; the solutions are the same.",
                 set_lifting<part>, record_lifting<part>},
+    OptionField{"sensitivities", "true, false",
+                "Derivatives of the end state with respect to initial state and parameters, of the discretisation.",
+                set_sensitivities<part>, record_sensitivities<part>},
 };
 
 }  // namespace

@@ -116,6 +116,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   integration.max_steps = options.max_steps;
   integration.max_events = options.max_events;
   integration.initial_mode = std::move(forced);
+  integration.sensitivities = wanted.sensitivities;
   if (!std::holds_alternative<EveryStep>(options.output)) {
     integration.rows = IntegrationOptions::Rows::at_times;
     integration.times = std::move(times);
@@ -145,6 +146,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   frame.events = std::move(run->events);
   frame.trajectory = std::move(run->trajectory);
   frame.statistics = run->statistics;
+  frame.sensitivities = std::move(run->sensitivities);
   frame.statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return frame;
 }

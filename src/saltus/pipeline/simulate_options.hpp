@@ -70,6 +70,7 @@ struct ElementOptions {
   CrossComplementarity cross_complementarity = CrossComplementarity::fe_stage;
   StepEquilibration step_equilibration = StepEquilibration::direct;
   std::optional<long> lifting = 2;  ///< most factors per product; nullopt: off
+  bool sensitivities = false;       ///< derivatives of the end state
 };
 
 /// [simulate]; defaults as in interface.md. `until` has none: it must be given in the file or on the command line.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -80,6 +81,24 @@ std::string comparison_table(const result::Result& result, const result::Compari
   if (!stops.empty()) text += "stopped early\n" + stops;
   if (!refusals.empty()) text += "not run\n" + refusals;
   return text;
+}
+
+std::string sensitivity_table(const result::Result& result, const result::Sensitivities& sensitivities) {
+  constexpr std::size_t most = 8;
+  const std::size_t states = std::min(most, result.states.size());
+  const std::size_t parameters = std::min(most, sensitivities.parameters.size());
+  Row head{"d / d"};
+  for (std::size_t j = 0; j < states; ++j) head.push_back(result.states[j] + "(0)");
+  for (std::size_t j = 0; j < parameters; ++j) head.push_back(sensitivities.parameters[j]);
+  std::vector<Row> rows{head};
+  const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "–"; };
+  for (std::size_t i = 0; i < states; ++i) {
+    Row row{result.states[i]};
+    for (std::size_t j = 0; j < states; ++j) row.push_back(number(sensitivities.x0[i][j]));
+    for (std::size_t j = 0; j < parameters; ++j) row.push_back(number(sensitivities.p[i][j]));
+    rows.push_back(std::move(row));
+  }
+  return "sensitivities of the end state\n" + aligned(rows);
 }
 
 std::string order_table(const result::Result& result, const result::OrderStudy& order) {

@@ -207,6 +207,7 @@ std::string to_table(const result::Result& result) {
                     : fmt::format("{} at t = {:.12g}", name(result.status.termination), result.status.time_reached));
   if (!result.status.message.empty()) text += paragraph("", result.status.message);
   text += end_state(result);
+  if (result.sensitivities) text += sensitivity_table(result, *result.sensitivities);
   text += event_table(result);
   text += branch_table(result);
   const auto& statistics = result.statistics;

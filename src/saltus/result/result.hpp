@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "saltus/result/comparison.hpp"
+#include "saltus/result/sensitivities.hpp"
 #include "saltus/result/statistics.hpp"
 #include "saltus/result/status.hpp"
 
@@ -158,6 +159,8 @@ struct Result {
   Statistics statistics;
   OptionRecord options;
   std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)
+
+  std::optional<Sensitivities> sensitivities;  ///< of the end state, if asked for
 
   /// Of `compare` and `order`, whose reference run the rest of the result is.
   std::optional<Comparison> comparison;
