@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/model/builder.hpp"
+#include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::robustness {
 namespace {
@@ -84,6 +86,24 @@ result::Result Model::run(const Accuracy& accuracy, const std::vector<double>& s
   result.events = std::move(run.events);
   result.trajectory = std::move(run.trajectory);
   result.statistics = run.statistics;
+  return result;
+}
+
+result::Result Model::run(const Elements& elements) const {
+  fesd_integrator::IntegrationOptions options;
+  auto tableau = discretization::butcher_tableau(discretization::TableauFamily::radau_iia, elements.stages);
+  const auto form = elements.form == Reformulation::step ? reformulation::Form::step : reformulation::Form::stewart;
+  const auto dcs = reformulation::reformulate(parts_->system, {.reformulation = form, .lifting = std::nullopt});
+  if (!tableau || !dcs) throw std::runtime_error("not reformulated");
+  options.tableau = std::move(*tableau);
+  options.until = end_time;
+  options.steps = elements.steps;
+  auto run = fesd_integrator::integrate(parts_->system, *dcs, options);
+  if (!run) throw std::runtime_error(to_text(run.error()));
+  result::Result result;
+  result.status = std::move(run->status);
+  result.final = std::move(run->final);
+  result.events = std::move(run->events);
   return result;
 }
 

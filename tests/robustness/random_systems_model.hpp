@@ -14,6 +14,13 @@ struct Accuracy {
   Integrator integrator = Integrator::dopri5;
   double rtol = 1e-8;  ///< atol = rtol / 100
 };
+enum class Reformulation { step, stewart };
+/// Finite elements with switch detection: Radau IIA with so many stages, two elements in each of so many steps.
+struct Elements {
+  Reformulation form = Reformulation::step;
+  int stages = 4;
+  long steps = 800;
+};
 /// The simulations start at 0 and end here.
 inline constexpr double end_time = 10.0;
 
@@ -26,6 +33,8 @@ class Model {
 
   /// Simulates with default options, rows at the steps.
   [[nodiscard]] result::Result run(const Accuracy& accuracy, const std::vector<double>& start) const;
+  /// The same by the other engine.
+  [[nodiscard]] result::Result run(const Elements& elements) const;
   /// Switching functions on which something jumps: the others make no events and slide nowhere.
   [[nodiscard]] const std::vector<bool>& listed() const;
   /// Whether two of the random surfaces turned out to be one.
