@@ -11,6 +11,7 @@
 #include "saltus/cli/terminal.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/reformulation/dcs.hpp"
 #include "saltus/smoothed/regularise.hpp"
 
 namespace saltus::cli {
@@ -159,8 +160,12 @@ std::string inclusion_text(const model::System& system) {
 /// Which methods can run the model.
 std::string methods_text(const model::System& system) {
   const auto regularisation = smoothed::regularise(system, pipeline::SmoothedOptions{}.epsilon);
-  if (regularisation) return "\nmethods: event, smoothed\n";
-  return fmt::format("\nmethods: event\n  {}\n", regularisation.error().message);
+  const auto dcs = reformulation::reformulate(system);
+  std::string text =
+      fmt::format("\nmethods: event{}{}\n", regularisation ? ", smoothed" : "", dcs ? ", fesd, timestepping" : "");
+  if (!regularisation) text += fmt::format("  smoothed: {}\n", regularisation.error().message);
+  if (!dcs) text += fmt::format("  fesd, timestepping: {}\n", dcs.error().message);
+  return text;
 }
 
 std::string events_text(const model::System& system) {

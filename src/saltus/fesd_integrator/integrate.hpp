@@ -41,8 +41,12 @@ struct IntegrationOptions {
   enum class Rows { at_elements, at_times };
   Rows rows = Rows::at_elements;
   std::vector<double> times;
-  /// With switch detection: simulation steps solved by this, and not by predicting active sets; it must outlive the run.
+  /// With switch detection: simulation steps solved by this, and not by predicting active sets; it must outlive the
+  /// run.
   StepProblem* step_problem = nullptr;
+  /// Else: makes what solves a simulation step for which no active sets are found (nullptr: cannot be made); called
+  /// when that happens first, the problem must outlive the run. Not used with sensitivities: its points have none.
+  std::function<StepProblem*()> fallback;
   std::vector<std::pair<int, int>> initial_mode;  ///< index into System::switching -> forced mode at the start
   bool sensitivities = false;                     ///< asks for Integration::sensitivities
 };

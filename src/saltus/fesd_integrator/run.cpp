@@ -49,7 +49,7 @@ Integration Run::run() {
     while (!stopped() && t_ < end) {
       const double change = held_.next_change(t_, end, x_.data());
       if (options_.step_problem != nullptr) {
-        advance_by_problem(change);
+        advance_by_problem(*options_.step_problem, change);
       } else if (options_.switches == IntegrationOptions::Switches::detected) {
         advance(change);
       } else {
@@ -154,6 +154,10 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
   }
   const auto found =
       transition_.continuations({t_, x_, held_.data(), &before, at_zero, size_, nominal_ / options_.elements / 128.0});
+  if (found.empty() && can_fall_back()) {
+    undecided_ = true;
+    return;
+  }
   if (found.empty()) {
     stop(result::Termination::no_admissible_mode,
          fmt::format("no mode continues the solution at t = {:.10g}; try method = \"event\"", t_));

@@ -23,6 +23,7 @@
 namespace saltus::fesd_integrator {
 
 struct ElementGuess;
+class StepProblem;
 
 class Run {
  public:
@@ -64,7 +65,14 @@ class Run {
   /// The same with fixed lengths.
   void advance_fixed(double end);
   /// The same by the problem with complementarities of the whole step.
-  void advance_by_problem(double end);
+  void advance_by_problem(StepProblem& problem, double end);
+  void advance_by_problem(StepProblem& problem, double end, int halvings_allowed);
+  /// Without selections there are no active sets to find.
+  [[nodiscard]] bool can_fall_back() const {
+    return options_.fallback && propagation_ == nullptr && kernel_.selections() > 0;
+  }
+  /// By the problem, because no active sets were found; stops with this where that is of no help.
+  void fall_back(double end, result::Termination termination, std::string message);
   [[nodiscard]] bool solve_guessed(const std::vector<ElementGuess>& guesses, std::vector<ActiveSet>& sets);
   void selections_behind(const ElementGuess& guess, const ActiveSet& set, Point& left);
   void accept_guessed(const std::vector<ElementGuess>& guesses, const std::vector<ActiveSet>& sets, double end);
@@ -112,6 +120,7 @@ class Run {
   std::optional<Element> previous_;  ///< the last element, if the next one continues it
   int decisions_here_ = 0;
   double decided_at_ = 0.0;
+  bool undecided_ = false;  ///< no mode was found to go on with: left to the fallback
   std::size_t next_time_ = 0;
   std::vector<double> event_values_;
   Element shorter_;

@@ -1,5 +1,7 @@
 // Simulation steps by their problem with complementarities; its elements are solved again with their active sets.
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,6 +13,8 @@ namespace {
 
 /// A step without a solution is halved at most so often: each try costs hundreds of iterations.
 constexpr int most_halvings = 10;
+/// Where active sets have failed there is seldom a solution at all.
+constexpr int most_halvings_of_fallback = 2;
 
 }  // namespace
 
@@ -68,13 +72,26 @@ void Run::accept_guessed(const std::vector<ElementGuess>& guesses, const std::ve
   }
 }
 
-void Run::advance_by_problem(double end) {
+void Run::fall_back(double end, result::Termination termination, std::string message) {
+  StepProblem* problem = can_fall_back() ? options_.fallback() : nullptr;
+  if (problem == nullptr) {
+    stop(termination, std::move(message) + "; more simulate.fesd.steps, or method = \"event\"");
+    return;
+  }
+  previous_.reset();
+  advance_by_problem(*problem, end, most_halvings_of_fallback);
+  previous_.reset();
+}
+
+void Run::advance_by_problem(StepProblem& problem, double end) { advance_by_problem(problem, end, most_halvings); }
+
+void Run::advance_by_problem(StepProblem& problem, double end, int halvings_allowed) {
   double limit = end;
   int halvings = 0;
   std::vector<ActiveSet> sets;
   while (!stopped() && t_ < end) {
     const std::vector<double> held(held_.data(), held_.data() + facts_.held.size());
-    const StepSolution solution = options_.step_problem->solve({.t = t_, .length = limit - t_, .x = x_, .held = held});
+    const StepSolution solution = problem.solve({.t = t_, .length = limit - t_, .x = x_, .held = held});
     if (!solution.elements.empty() && solve_guessed(solution.elements, sets)) {
       accept_guessed(solution.elements, sets, limit);
       limit = end;
@@ -83,12 +100,12 @@ void Run::advance_by_problem(double end) {
     }
     ++statistics_.rejected;
     limit = t_ + 0.5 * (limit - t_);
-    if (++halvings <= most_halvings) continue;
+    if (++halvings <= halvings_allowed) continue;
     stop(solution.elements.empty() ? solution.termination : result::Termination::not_converged,
          fmt::format(
              "the problem with complementarities of the step at t = {:.10g} has no solution that was found ({}); "
-             "more simulate.fesd.steps, or step_equilibration = \"direct\"",
-             t_, solution.message));
+             "more simulate.fesd.steps, or method = \"event\"",
+             t_, solution.message.empty() ? "its elements cannot be solved again" : solution.message));
   }
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -155,6 +156,13 @@ void Run::advance(double end) {
   int elements = options_.elements;
   double limit = end;  // of the part that is tried
   while (!stopped() && t_ < end) {
+    if (std::exchange(undecided_, false)) {
+      fall_back(end, result::Termination::no_admissible_mode,
+                fmt::format("no mode continues the solution at t = {:.10g}", t_));
+      elements = options_.elements;
+      limit = end;
+      continue;
+    }
     const double remaining = limit - t_;
     const double h = remaining / elements;
     Violation violation;
@@ -185,10 +193,9 @@ void Run::advance(double end) {
       limit = t_ + 0.5 * remaining;
       previous_.reset();
       if (0.5 * remaining <= shortest * nominal_ || !(limit > t_)) {
-        stop(result::Termination::not_converged,
-             fmt::format("the equations of an element have no solution that was found at t = {:.10g}; more "
-                         "simulate.fesd.steps, or method = \"event\"",
-                         t_));
+        fall_back(end, result::Termination::not_converged,
+                  fmt::format("the equations of an element have no solution that was found at t = {:.10g}", t_));
+        limit = end;
       }
       continue;
     }

@@ -91,6 +91,14 @@ bool is_exact(StepEquilibration wanted) {
   return wanted == StepEquilibration::direct || wanted == StepEquilibration::mlcp;
 }
 
+Error no_sensitivities() {
+  return {ErrorCode::invalid_option,
+          "sensitivities need the lengths of elements as functions of the initial state",
+          "step_equilibration = \"direct\" or \"mlcp\", or no sensitivities",
+          {},
+          {}};
+}
+
 }  // namespace
 
 Expected<result::Result> simulate_elements(const model::System& system, const SimulateOptions& options,
@@ -123,13 +131,21 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   }
   std::optional<adapters::IpoptSolver> ipopt;
   std::optional<fesd_integrator::StepProblem> step_problem;
-  if (detected && !is_exact(wanted.step_equilibration)) {
+  const auto make_problem = [&]() -> Expected<fesd_integrator::StepProblem*> {
+    if (step_problem) return &*step_problem;
     ipopt.emplace();
     auto made = fesd_integrator::StepProblem::make(*dcs, system.parameter_values, integration.tableau,
                                                    fesd_options(wanted), integration.elements, *ipopt);
     if (!made) return tl::unexpected(made.error());
-    step_problem.emplace(std::move(*made));
-    integration.step_problem = &*step_problem;
+    return &step_problem.emplace(std::move(*made));
+  };
+  if (detected && !is_exact(wanted.step_equilibration)) {
+    if (wanted.sensitivities) return tl::unexpected(no_sensitivities());
+    auto made = make_problem();
+    if (!made) return tl::unexpected(made.error());
+    integration.step_problem = *made;
+  } else if (detected) {
+    integration.fallback = [&] { return make_problem().value_or(nullptr); };
   }
   fesd_integrator::StepObserver observer;
   if (observers.on_step) {

@@ -1,0 +1,35 @@
+"""Methods fesd and timestepping at the command line; their accuracy has its tests in tests/agreement and tests/order."""
+
+import json
+
+import tool
+
+
+class Elements(tool.ToolTest):
+    def test_check_says_which_models_they_cover(self):
+        self.assertIn("methods: event, smoothed, fesd, timestepping", self.run_tool("check", "stick-slip", code=0)[0])
+        self.assertIn("fesd, timestepping: finite elements with switch detection do not cover models with [[jumps]]",
+                      " ".join(self.run_tool("check", "bouncing-ball", code=0)[0].split()))
+
+    def test_stages_whose_modes_go_round_in_circles_are_searched(self):
+        self.run_tool("simulate", "stick-slip", "--method", "timestepping", "--quiet", "--out", "r.json", "--set",
+                      "simulate.timestepping.scheme=gauss_legendre", "--set", "simulate.timestepping.steps=50", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        # Of order 1: near the solution, not at it.
+        self.assertLess(abs(result["final"]["x"][0] - 0.6289), 0.1)
+
+    def test_a_step_without_active_sets_is_tried_as_a_problem_with_complementarities(self):
+        # sqrt(|x|) has no derivative where the model starts: neither finds a solution, and both say so.
+        _, errors = self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet", "--out", "r.json", code=3)
+        self.assertIn("problem with complementarities of the step at t = 0", " ".join(errors.split()))
+        status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
+        self.assertIn(status["termination"], ("evaluation_failed", "not_converged"))
+
+    def test_lengths_without_an_exact_rule_have_no_sensitivities(self):
+        _, errors = self.run_tool("simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.sensitivities=true",
+                                  "--set", "simulate.fesd.step_equilibration=heuristic_mean", code=2)
+        self.assertIn("step_equilibration", errors)
+
+
+if __name__ == "__main__":
+    tool.main()
