@@ -148,12 +148,28 @@ std::vector<std::vector<int>> Transition::patterns_of(const Group& group, const 
 /// How clearly the signs of a group hold just behind the point: > 0 they do, < 0 they do not, relative to the size of
 /// what is compared; the candidate gets its selections.
 double Transition::margin(const Decision& decision, const Group& group, Continuation& candidate) {
-  const auto& set = candidate.set;
-  std::vector<double> unknown(set.sliding().size(), 0.5);
-  candidate.selections.resize(kernel_.selections());
+  const auto& sliding = candidate.set.sliding();
+  std::vector<double> unknown(sliding.size(), 0.5);
   for (std::size_t k = 0; k < unknown.size(); ++k) {
-    if (set.sliding()[k].reference >= 0) unknown[k] = 1.0 / static_cast<double>(set.sliding().size() + 1);
+    if (sliding[k].reference >= 0) unknown[k] = 1.0 / static_cast<double>(sliding.size() + 1);
   }
+  const double from_middle = margin_from(unknown, decision, group, candidate);
+  // The selections of several surfaces solve a multi-affine system with several roots: also from near the corners.
+  constexpr std::size_t most_sliding = 4;
+  if (from_middle >= -undecided || sliding.size() < 2 || sliding.size() > most_sliding) return from_middle;
+  for (unsigned corner = 0; corner < 1U << sliding.size(); ++corner) {
+    for (std::size_t k = 0; k < unknown.size(); ++k) unknown[k] = (corner >> k & 1U) != 0 ? 0.85 : 0.15;
+    const double value = margin_from(unknown, decision, group, candidate);
+    if (value >= -undecided) return value;
+  }
+  return from_middle;
+}
+
+/// The same with the selections that Newton's method finds from `unknown`.
+double Transition::margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
+                               Continuation& candidate) {
+  const auto& set = candidate.set;
+  candidate.selections.resize(kernel_.selections());
   set.selections(unknown.data(), candidate.selections.data());
   if (!projected_.solve(decision.t, decision.x.data(), set, decision.held, candidate.selections.data())) return -1.0;
   projected_.rates(rate_);
@@ -234,10 +250,11 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     put(groups_[g], admissible[g].front(), guess);
   }
   std::vector<Continuation> found;
+  Group all;
+  for (const Group& group : groups_) all.members.insert(all.members.end(), group.members.begin(), group.members.end());
   const auto keep = [&](const std::vector<int>& chosen) {
     Continuation candidate{ActiveSet(parts_, chosen), {}};
-    const Group none;
-    if (margin(decision, none, candidate) > 0.0) found.push_back(std::move(candidate));
+    if (margin(decision, all, candidate) >= -undecided) found.push_back(std::move(candidate));
   };
   keep(guess);
   for (std::size_t g = 0; g < groups_.size(); ++g) {

@@ -56,6 +56,8 @@ class Transition {
   void find_groups(const Decision& decision, std::vector<int>& modes);
   [[nodiscard]] std::vector<std::vector<int>> patterns_of(const Group& group, const Decision& decision) const;
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
+  [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
+                                   Continuation& candidate);
   [[nodiscard]] bool passes_trial(const Decision& decision, const Group& group, const Continuation& candidate);
 
   const discretization::StageKernel& kernel_;
