@@ -9,6 +9,7 @@
 #include <casadi/core/calculus.hpp>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/model/finite_operations.hpp"
 #include "saltus/model/tape_internal.hpp"
 
 namespace saltus::model {
@@ -28,25 +29,6 @@ bool is_polynomial_operation(int operation) {
     case casadi::OP_NE:
     case casadi::OP_EQ:
     case casadi::OP_IF_ELSE_ZERO:
-      return true;
-    default:
-      return false;
-  }
-}
-
-/// Operations that give finite results for finite arguments of moderate size.
-bool stays_finite(int operation) {
-  switch (operation) {
-    case casadi::OP_ADD:
-    case casadi::OP_SUB:
-    case casadi::OP_MUL:
-    case casadi::OP_NEG:
-    case casadi::OP_SQ:
-    case casadi::OP_TWICE:
-    case casadi::OP_SIN:
-    case casadi::OP_COS:
-    case casadi::OP_ATAN:
-    case casadi::OP_TANH:
       return true;
     default:
       return false;

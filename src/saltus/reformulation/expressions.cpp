@@ -8,6 +8,7 @@
 #include <casadi/core/calculus.hpp>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/model/finite_operations.hpp"
 
 namespace saltus::reformulation {
 namespace {
@@ -39,23 +40,8 @@ void visit_from_below(const SXElem& root, Done&& is_done, Visit&& visit) {
 }
 
 bool stays_finite(const SXElem& expression) {
-  switch (expression.op()) {
-    case casadi::OP_ADD:
-    case casadi::OP_SUB:
-    case casadi::OP_MUL:
-    case casadi::OP_NEG:
-    case casadi::OP_SQ:
-    case casadi::OP_TWICE:
-    case casadi::OP_SIN:
-    case casadi::OP_COS:
-    case casadi::OP_ATAN:
-    case casadi::OP_TANH:
-      return true;
-    case casadi::OP_DIV:
-      return expression.dep(1).is_constant();
-    default:
-      return false;
-  }
+  if (expression.op() == casadi::OP_DIV) return expression.dep(1).is_constant();
+  return model::stays_finite(static_cast<int>(expression.op()));
 }
 
 }  // namespace
