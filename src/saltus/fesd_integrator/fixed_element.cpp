@@ -14,7 +14,6 @@ FixedElement::FixedElement(const discretization::StageKernel& kernel, std::span<
   sets_.resize(stages);
   modes_.resize(stages);
   flips_.resize(stages);
-  touched_.resize(stages);
   first_stage_ = solver.tableau().family == discretization::TableauFamily::lobatto_iiia ? 1 : 0;
   indicators_.resize(kernel.selections());
   end_selections_.resize(kernel.selections());
@@ -65,7 +64,7 @@ bool FixedElement::pivot(std::size_t stage, const Element& element, const double
     if (!is_violated(stage, condition, element)) continue;
     const auto j = static_cast<std::size_t>(condition.selection);
     changed = true;
-    ++touched_[stage][j];
+    touched_[j] = true;
     const Part& part = part_of(condition.selection);
     if (condition.kind == Condition::Kind::side) {
       const bool again = ++flips_[stage][j] > 1 && !explicit_method;
@@ -75,7 +74,7 @@ bool FixedElement::pivot(std::size_t stage, const Element& element, const double
       }
       for (int i = part.first; i < part.first + part.count; ++i) {
         const auto region = static_cast<std::size_t>(i);
-        if (modes[region] == 0) ++touched_[stage][region];
+        if (modes[region] == 0) touched_[region] = true;
         if (!again) modes[region] = -1;
       }
       modes[j] = 0;
@@ -129,10 +128,8 @@ FixedElement::Search FixedElement::by_enumeration(const Point& left, double h, c
   long combinations = 1;
   constexpr long most_combinations = 20000;  // some tenths of a second for one element
   for (std::size_t m = first_stage_; m < sets_.size(); ++m) {
-    for (std::size_t j = 0; j < touched_[m].size(); ++j) {
-      const bool touched =
-          std::any_of(touched_.begin(), touched_.end(), [&](const auto& stage) { return stage[j] > 0; });
-      if (!touched) continue;
+    for (std::size_t j = 0; j < touched_.size(); ++j) {
+      if (!touched_[j]) continue;
       const bool region = part_of(static_cast<int>(j)).simplex;
       Choice choice{m, static_cast<int>(j), region ? std::vector{0, -1} : std::vector{-1, 0, 1}};
       // As before first.
@@ -169,11 +166,11 @@ FixedElement::Search FixedElement::by_enumeration(const Point& left, double h, c
 }
 
 bool FixedElement::solve(const Point& left, double h, const ActiveSet& before, const double* held, Element& element) {
+  touched_.assign(before.modes().size(), false);
   for (std::size_t m = 0; m < sets_.size(); ++m) {
     sets_[m] = before;
     modes_[m] = before.modes();
     flips_[m].assign(modes_[m].size(), 0);
-    touched_[m].assign(modes_[m].size(), 0);
   }
   if (by_pivoting(left, h, held, element) == Search::stuck &&
       by_enumeration(left, h, before, held, element) == Search::stuck) {

@@ -50,9 +50,9 @@ class FixedElement {
   ElementSolver& solver_;
   std::vector<ActiveSet> sets_;
   std::vector<std::vector<int>> modes_;
-  std::vector<std::vector<int>> flips_;    ///< per stage and selection: how often it was on the wrong side
-  std::vector<std::vector<int>> touched_;  ///< likewise: changes of any kind
-  std::size_t first_stage_ = 0;            ///< whose set is in the equations
+  std::vector<std::vector<int>> flips_;  ///< per stage and selection: how often it was on the wrong side
+  std::vector<bool> touched_;            ///< per selection: pivoting has changed it at some stage
+  std::size_t first_stage_ = 0;          ///< whose set is in the equations
   std::vector<double> indicators_, end_selections_;
   double rounding_ = 0.0;
 };
