@@ -1,7 +1,6 @@
 // The event-driven engine: from an initial state through all switches and sliding phases to the end.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "saltus/event_integrator/recording.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/ode/stepper.hpp"
+#include "saltus/result/progress.hpp"
 #include "saltus/result/result.hpp"
 #include "saltus/switching/intersection.hpp"
 
@@ -51,13 +51,9 @@ struct IntegrationOptions {
   ThinLayers layers;  ///< inside them tolerances are tightened to what they bear
 };
 
-struct Progress {
-  double t = 0.0;
-  long steps = 0;
-  long events = 0;
-};
-enum class Continue { yes, no };
-using StepObserver = std::function<Continue(const Progress&)>;
+using result::Continue;
+using result::Progress;
+using result::StepObserver;
 
 /// The parts of a result that an engine computes; `final` is the last row.
 struct Integration {

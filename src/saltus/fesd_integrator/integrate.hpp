@@ -8,6 +8,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/result/progress.hpp"
 #include "saltus/result/result.hpp"
 #include "saltus/result/sensitivities.hpp"
 
@@ -51,13 +52,9 @@ struct IntegrationOptions {
   bool sensitivities = false;                     ///< asks for Integration::sensitivities
 };
 
-struct Progress {
-  double t = 0.0;
-  long steps = 0;
-  long events = 0;
-};
-enum class Continue { yes, no };
-using StepObserver = std::function<Continue(const Progress&)>;
+using result::Continue;
+using result::Progress;
+using result::StepObserver;
 
 /// The parts of a result that an engine computes; `final` is the last row.
 struct Integration {

@@ -13,6 +13,7 @@
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
+#include "saltus/pipeline/step_observer_internal.hpp"
 #include "saltus/smoothed/regularise.hpp"
 #include "saltus/smoothed/restate.hpp"
 
@@ -251,14 +252,7 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
 
   auto integration = *integration_or;
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
-    event_integrator::StepObserver observer;
-    if (observers.on_step) {
-      observer = [&](const event_integrator::Progress& progress) {
-        const auto answer = observers.on_step({progress.t, integration.from, integration.until, progress.steps,
-                                               progress.events, count.number, count.known});
-        return answer == Proceed::on ? event_integrator::Continue::yes : event_integrator::Continue::no;
-      };
-    }
+    const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;
     auto run =
         integrand_or->restated(event_integrator::integrate(*kernel, integrand_or->system(), integration, observer));

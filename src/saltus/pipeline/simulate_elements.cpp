@@ -7,6 +7,7 @@
 #include "saltus/fesd_integrator/step_problem.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
+#include "saltus/pipeline/step_observer_internal.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::pipeline {
@@ -147,14 +148,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   } else if (detected) {
     integration.fallback = [&] { return make_problem().value_or(nullptr); };
   }
-  fesd_integrator::StepObserver observer;
-  if (observers.on_step) {
-    observer = [&](const fesd_integrator::Progress& progress) {
-      const auto answer =
-          observers.on_step({progress.t, integration.from, integration.until, progress.steps, progress.events, 1, 1});
-      return answer == Proceed::on ? fesd_integrator::Continue::yes : fesd_integrator::Continue::no;
-    };
-  }
+  const auto observer = step_observer(observers, {integration.from, integration.until});
   auto run = fesd_integrator::integrate(system, *dcs, integration, observer);
   if (!run) return tl::unexpected(run.error());
   frame.status = std::move(run->status);

@@ -1,0 +1,20 @@
+// What an engine tells while it runs.
+#pragma once
+
+#include <functional>
+
+namespace saltus::result {
+
+/// After accepted steps: how far it is.
+struct Progress {
+  double t = 0.0;
+  long steps = 0;
+  long events = 0;
+};
+
+enum class Continue { yes, no };
+
+/// `no` stops the run with `stopped_by_user`; an empty one is not asked.
+using StepObserver = std::function<Continue(const Progress&)>;
+
+}  // namespace saltus::result
