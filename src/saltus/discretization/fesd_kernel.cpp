@@ -41,7 +41,8 @@ long FesdKernel::operations() const {
 }
 
 Expected<std::shared_ptr<FesdKernel>> FesdKernel::compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
-                                                          const ButcherTableau& tableau, const FesdOptions& options) {
+                                                          const ButcherTableau& tableau, const FesdOptions& options,
+                                                          evaluation::NativeCode native) {
   if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
   try {
     auto built = element_expressions(dcs, tableau, options);
@@ -64,8 +65,14 @@ Expected<std::shared_ptr<FesdKernel>> FesdKernel::compile(const reformulation::D
     SX indicator = dcs.indicator;
     if (dcs.u.numel() > 0) indicator = SX::substitute(indicator, dcs.u, SX::densify(dcs.input));
     kernel->indicators =
-        VectorFunction("saltus_indicators", {dcs.t, dcs.x, SX::vertcat({dcs.p, dcs.held})}, {indicator});
-    kernel->switches = VectorFunction("saltus_switches", {built->boundary_inputs}, {built->eta, built->printed_eta});
+        model::ModelFunction("saltus_indicators", {dcs.t, dcs.x, SX::vertcat({dcs.p, dcs.held})}, {indicator});
+    kernel->switches =
+        model::ModelFunction("saltus_switches", {built->boundary_inputs}, {built->eta, built->printed_eta});
+    std::vector<model::ModelFunction*> functions{&kernel->indicators, &kernel->switches};
+    kernel->element.join(kernel->native, functions);
+    kernel->boundary.join(kernel->native, functions);
+    auto started = kernel->native.start(native, std::move(functions));
+    if (!started) return tl::unexpected(started.error());
     return std::shared_ptr<FesdKernel>(new FesdKernel(std::move(kernel)));
   } catch (const std::exception& error) {
     return refusal(ErrorCode::invalid_model,

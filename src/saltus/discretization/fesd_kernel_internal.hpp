@@ -22,8 +22,9 @@ struct FesdKernel::Implementation {
   LocalFunction element;
   LocalFunction boundary;
   mpcc::Bounds boundary_bounds;
-  VectorFunction indicators;  ///< (t, x, parameters) -> indicators
-  VectorFunction switches;    ///< (inputs of the boundary) -> eta, printed eta
+  model::ModelFunction indicators;  ///< (t, x, parameters) -> indicators
+  model::ModelFunction switches;    ///< (inputs of the boundary) -> eta, printed eta
+  evaluation::NativeFunctions native;
 
   [[nodiscard]] int left_size() const { return states + (depends_on_time ? 1 : 0) + static_cast<int>(pairs.size()); }
 };

@@ -1,6 +1,7 @@
 #include "saltus/discretization/fesd_problem.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -134,7 +135,8 @@ struct FesdProblem::Implementation {
   void set_left_lambda() {
     const int n_selections = layout.element.selection.size;
     Eigen::VectorXd indicator(n_selections);
-    kernel.indicators({&step.t, step.x.data(), parameters.data()}, {indicator.data()});
+    kernel.native.call(kernel.indicators, std::array<const double*, 3>{&step.t, step.x.data(), parameters.data()},
+                       std::array<double*, 1>{indicator.data()});
     for (const auto& [first, count] : kernel.simplices) {
       indicator.segment(first, count).array() -= indicator.segment(first, count).minCoeff();
     }
@@ -168,7 +170,8 @@ struct FesdProblem::Implementation {
       const auto& z = boundaries.gather(n - 1, w, constants);
       double eta = 0.0;
       double printed_eta = 0.0;
-      kernel.switches({z.data()}, {&eta, &printed_eta});
+      kernel.native.call(kernel.switches, std::array<const double*, 1>{z.data()},
+                         std::array<double*, 2>{&eta, &printed_eta});
       etas[n - 1] = printed ? printed_eta : eta;
     }
     return etas;

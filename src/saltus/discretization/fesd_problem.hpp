@@ -10,6 +10,7 @@
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/fesd_options.hpp"
 #include "saltus/discretization/variable_layout.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/mpcc/problem.hpp"
 
 namespace saltus::reformulation {
@@ -30,14 +31,13 @@ struct SelectionPair {
 /// number of elements.
 class FesdKernel {
  public:
-  /// Fails (invalid_option) for weights and gamma_h outside their ranges, (not_available) for Lobatto IIIA, and
-  /// (invalid_model) if the symbolic layer refuses an expression. Cost: that of building second derivatives of n_s
-  /// copies of the model.
+  /// Fails (invalid_option) for weights and gamma_h outside their ranges, (not_available) for Lobatto IIIA,
+  /// (invalid_model) if the symbolic layer refuses an expression, and as StageKernel if native code cannot be had.
+  /// Cost: that of building second derivatives of n_s copies of the model.
   /// @param parameters  values of Dcs::p; controls are replaced by their inputs
-  [[nodiscard]] static Expected<std::shared_ptr<FesdKernel>> compile(const reformulation::Dcs& dcs,
-                                                                     std::vector<double> parameters,
-                                                                     const ButcherTableau& tableau,
-                                                                     const FesdOptions& options);
+  [[nodiscard]] static Expected<std::shared_ptr<FesdKernel>> compile(
+      const reformulation::Dcs& dcs, std::vector<double> parameters, const ButcherTableau& tableau,
+      const FesdOptions& options, evaluation::NativeCode native = evaluation::NativeCode::off);
   ~FesdKernel();
 
   [[nodiscard]] const FesdOptions& options() const;

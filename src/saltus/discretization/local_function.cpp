@@ -1,3 +1,4 @@
+#include <array>
 #include <utility>
 
 #include "saltus/discretization/local_function_internal.hpp"
@@ -22,22 +23,6 @@ SX column_of(const std::vector<SX>& scalars) { return scalars.empty() ? SX(0, 1)
 
 }  // namespace
 
-VectorFunction::VectorFunction(const std::string& name, const std::vector<SX>& in, const std::vector<SX>& out) {
-  std::vector<SX> dense;
-  for (const auto& expression : out) dense.push_back(SX::densify(expression));
-  function_ = casadi::Function(name, in, dense);
-  arguments_.resize(function_.sz_arg());
-  results_.resize(function_.sz_res());
-  integers_.resize(function_.sz_iw());
-  work_.resize(function_.sz_w());
-}
-
-void VectorFunction::operator()(const std::vector<const double*>& in, const std::vector<double*>& out) {
-  for (std::size_t i = 0; i < in.size(); ++i) arguments_[i] = in[i];
-  for (std::size_t i = 0; i < out.size(); ++i) results_[i] = out[i];
-  function_(arguments_.data(), results_.data(), integers_.data(), work_.data(), 0);
-}
-
 LocalFunction::LocalFunction(const std::string& name, const SX& z, const SX& parameters,
                              const LocalExpressions& expressions)
     : variables_(static_cast<int>(z.numel())),
@@ -57,23 +42,27 @@ LocalFunction::LocalFunction(const std::string& name, const SX& z, const SX& par
   const SX hessian = SX::tril(SX::hessian(factor * expressions.objective + SX::dot(y, rows), z));
   jacobian_pattern_ = pattern_of(jacobian);
   hessian_pattern_ = pattern_of(hessian);
-  values_ = VectorFunction(name, {z, parameters}, {expressions.objective, rows});
-  gradient_ = VectorFunction(name + "_gradient", {z, parameters}, {gradient});
-  jacobian_ = VectorFunction(name + "_jacobian", {z, parameters}, {entries_of(jacobian)});
-  hessian_ = VectorFunction(name + "_hessian", {z, parameters, factor, y}, {entries_of(hessian)});
+  values_ = model::ModelFunction(name, {z, parameters}, {expressions.objective, rows});
+  gradient_ = model::ModelFunction(name + "_gradient", {z, parameters}, {gradient});
+  jacobian_ = model::ModelFunction(name + "_jacobian", {z, parameters}, {entries_of(jacobian)});
+  hessian_ = model::ModelFunction(name + "_hessian", {z, parameters, factor, y}, {entries_of(hessian)});
 }
 
 void LocalFunction::values(const double* z, const double* parameters, double* objective, double* rows) {
-  values_({z, parameters}, {objective, rows});
+  native_->call(values_, std::array<const double*, 2>{z, parameters}, std::array<double*, 2>{objective, rows});
 }
 void LocalFunction::gradient(const double* z, const double* parameters, double* gradient) {
-  gradient_({z, parameters}, {gradient});
+  native_->call(gradient_, std::array<const double*, 2>{z, parameters}, std::array<double*, 1>{gradient});
 }
 void LocalFunction::jacobian(const double* z, const double* parameters, double* values) {
-  jacobian_({z, parameters}, {values});
+  native_->call(jacobian_, std::array<const double*, 2>{z, parameters}, std::array<double*, 1>{values});
 }
 void LocalFunction::hessian(const double* z, const double* parameters, double factor, const double* y, double* values) {
-  hessian_({z, parameters, &factor, y}, {values});
+  native_->call(hessian_, std::array<const double*, 4>{z, parameters, &factor, y}, std::array<double*, 1>{values});
+}
+void LocalFunction::join(evaluation::NativeFunctions& native, std::vector<model::ModelFunction*>& functions) {
+  native_ = &native;
+  functions.insert(functions.end(), {&values_, &gradient_, &jacobian_, &hessian_});
 }
 long LocalFunction::operations() const {
   return values_.operations() + gradient_.operations() + jacobian_.operations() + hessian_.operations();

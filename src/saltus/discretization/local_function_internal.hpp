@@ -4,29 +4,13 @@
 #include <string>
 #include <vector>
 
-#include <casadi/core/function.hpp>
 #include <casadi/core/sx.hpp>
 
+#include "saltus/evaluation/native_functions.hpp"
+#include "saltus/model/model_function.hpp"
 #include "saltus/mpcc/problem.hpp"
 
 namespace saltus::discretization {
-
-/// A CasADi function of several dense vectors, called with raw pointers; every result is a dense vector.
-class VectorFunction {
- public:
-  VectorFunction() = default;
-  VectorFunction(const std::string& name, const std::vector<casadi::SX>& in, const std::vector<casadi::SX>& out);
-  void operator()(const std::vector<const double*>& in, const std::vector<double*>& out);
-  /// Elementary operations of one evaluation.
-  [[nodiscard]] long operations() const { return static_cast<long>(function_.n_instructions()); }
-
- private:
-  casadi::Function function_;
-  std::vector<const double*> arguments_;
-  std::vector<double*> results_;
-  std::vector<casadi_int> integers_;
-  std::vector<double> work_;
-};
 
 /// What an element, or the boundary between two, adds to a problem: an objective and rows (g, G, H) over local
 /// variables z and parameters. All of g are equations g = 0.
@@ -55,6 +39,8 @@ class LocalFunction {
   LocalFunction() = default;
   LocalFunction(const std::string& name, const casadi::SX& z, const casadi::SX& parameters,
                 const LocalExpressions& expressions);
+  /// Adds its functions to those that are to become native code together; `native` and this stay where they are.
+  void join(evaluation::NativeFunctions& native, std::vector<model::ModelFunction*>& functions);
 
   [[nodiscard]] int variables() const { return variables_; }
   [[nodiscard]] int equations() const { return equations_; }
@@ -78,7 +64,8 @@ class LocalFunction {
   std::vector<mpcc::Sign> signs_;
   mpcc::Pattern jacobian_pattern_;
   mpcc::Pattern hessian_pattern_;
-  VectorFunction values_, gradient_, jacobian_, hessian_;
+  model::ModelFunction values_, gradient_, jacobian_, hessian_;
+  evaluation::NativeFunctions* native_ = nullptr;
 };
 
 }  // namespace saltus::discretization

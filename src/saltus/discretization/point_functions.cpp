@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "saltus/discretization/dcs_expressions_internal.hpp"
+#include "saltus/evaluation/native_functions.hpp"
 #include "saltus/model/model_function.hpp"
 
 namespace saltus::discretization {
@@ -17,16 +18,17 @@ struct PointFunctions::Implementation {
   std::vector<double> parameters;
   ModelFunction alpha, outputs, inputs, held_arguments, event_values;
   std::vector<ModelFunction> conditions;  ///< one per event; null for expressions
+  evaluation::NativeFunctions native;     // without conditions: they are asked for at events only
   std::size_t event_functions = 0;
 
   Implementation(const reformulation::Dcs& dcs, std::vector<double> values) : parameters(std::move(values)) {
     const std::vector<SX> point{dcs.t, dcs.x, dcs.selection, dcs.held, dcs.p};
-    alpha = ModelFunction("alpha", {dcs.selection, dcs.held}, {dcs.alpha});
-    outputs = ModelFunction("outputs", point, {with_inputs(dcs, dcs.outputs)});
-    inputs = ModelFunction("inputs", {dcs.t, dcs.held, dcs.p}, {dcs.input});
+    alpha = ModelFunction("saltus_alpha", {dcs.selection, dcs.held}, {dcs.alpha});
+    outputs = ModelFunction("saltus_outputs", point, {with_inputs(dcs, dcs.outputs)});
+    inputs = ModelFunction("saltus_inputs", {dcs.t, dcs.held, dcs.p}, {dcs.input});
     std::vector<SX> arguments;
     for (const auto& symbol : dcs.held_symbols) arguments.push_back(with_inputs(dcs, symbol.argument));
-    held_arguments = ModelFunction("held_arguments", {dcs.t, dcs.x, dcs.held, dcs.p},
+    held_arguments = ModelFunction("saltus_held_arguments", {dcs.t, dcs.x, dcs.held, dcs.p},
                                    {arguments.empty() ? SX(0, 1) : SX::vertcat(arguments)});
     std::vector<SX> functions;
     for (const auto& event : dcs.events) {
@@ -42,7 +44,7 @@ struct PointFunctions::Implementation {
     }
     const SX all = functions.empty() ? SX(0, 1) : SX::vertcat(functions);
     event_functions = static_cast<std::size_t>(all.numel());
-    event_values = ModelFunction("event_values", point, {all});
+    event_values = ModelFunction("saltus_event_values", point, {all});
   }
 };
 
@@ -52,9 +54,14 @@ PointFunctions::PointFunctions(PointFunctions&&) noexcept = default;
 PointFunctions& PointFunctions::operator=(PointFunctions&&) noexcept = default;
 PointFunctions::~PointFunctions() = default;
 
-Expected<PointFunctions> PointFunctions::compile(const reformulation::Dcs& dcs, std::vector<double> parameters) {
+Expected<PointFunctions> PointFunctions::compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
+                                                 evaluation::NativeCode native) {
   try {
-    return PointFunctions(std::make_unique<Implementation>(dcs, std::move(parameters)));
+    auto functions = std::make_unique<Implementation>(dcs, std::move(parameters));
+    auto started = functions->native.start(native, {&functions->alpha, &functions->outputs, &functions->inputs,
+                                                    &functions->held_arguments, &functions->event_values});
+    if (!started) return tl::unexpected(started.error());
+    return PointFunctions(std::move(functions));
   } catch (const std::exception& error) {
     return tl::unexpected(Error{
         ErrorCode::invalid_model, std::string("the model's outputs cannot be compiled: ") + error.what(), "", {}, {}});
@@ -62,32 +69,36 @@ Expected<PointFunctions> PointFunctions::compile(const reformulation::Dcs& dcs, 
 }
 
 void PointFunctions::alpha(const double* selection, const double* held, double* alpha) const {
-  implementation_->alpha(std::array<const double*, 2>{selection, held}, std::array<double*, 1>{alpha});
+  implementation_->native.call(implementation_->alpha, std::array<const double*, 2>{selection, held},
+                               std::array<double*, 1>{alpha});
 }
 
 void PointFunctions::outputs(double t, const double* x, const double* selection, const double* held,
                              double* values) const {
-  implementation_->outputs(std::array<const double*, 5>{&t, x, selection, held, implementation_->parameters.data()},
-                           std::array<double*, 1>{values});
+  implementation_->native.call(implementation_->outputs,
+                               std::array<const double*, 5>{&t, x, selection, held, implementation_->parameters.data()},
+                               std::array<double*, 1>{values});
 }
 
 void PointFunctions::inputs(double t, const double* held, double* values) const {
-  implementation_->inputs(std::array<const double*, 3>{&t, held, implementation_->parameters.data()},
-                          std::array<double*, 1>{values});
+  implementation_->native.call(implementation_->inputs,
+                               std::array<const double*, 3>{&t, held, implementation_->parameters.data()},
+                               std::array<double*, 1>{values});
 }
 
 void PointFunctions::held_arguments(double t, const double* x, const double* held, double* arguments) const {
-  implementation_->held_arguments(std::array<const double*, 4>{&t, x, held, implementation_->parameters.data()},
-                                  std::array<double*, 1>{arguments});
+  implementation_->native.call(implementation_->held_arguments,
+                               std::array<const double*, 4>{&t, x, held, implementation_->parameters.data()},
+                               std::array<double*, 1>{arguments});
 }
 
 std::size_t PointFunctions::event_functions() const { return implementation_->event_functions; }
 
 void PointFunctions::event_values(double t, const double* x, const double* selection, const double* held,
                                   double* values) const {
-  implementation_->event_values(
-      std::array<const double*, 5>{&t, x, selection, held, implementation_->parameters.data()},
-      std::array<double*, 1>{values});
+  implementation_->native.call(implementation_->event_values,
+                               std::array<const double*, 5>{&t, x, selection, held, implementation_->parameters.data()},
+                               std::array<double*, 1>{values});
 }
 
 bool PointFunctions::condition(std::size_t event, double t, const double* x, const double* selection,

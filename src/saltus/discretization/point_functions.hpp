@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
 
 namespace saltus::reformulation {
 struct Dcs;
@@ -17,7 +18,8 @@ namespace saltus::discretization {
 /// Plain functions of doubles, as in StageKernel.
 class PointFunctions {
  public:
-  [[nodiscard]] static Expected<PointFunctions> compile(const reformulation::Dcs& dcs, std::vector<double> parameters);
+  [[nodiscard]] static Expected<PointFunctions> compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
+                                                        evaluation::NativeCode native = evaluation::NativeCode::off);
   PointFunctions(PointFunctions&&) noexcept;
   PointFunctions& operator=(PointFunctions&&) noexcept;
   ~PointFunctions();

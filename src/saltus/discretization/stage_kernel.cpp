@@ -5,9 +5,8 @@
 #include <string>
 #include <utility>
 
-#include <casadi/core/code_generator.hpp>
-
 #include "saltus/discretization/dcs_expressions_internal.hpp"
+#include "saltus/evaluation/native_functions.hpp"
 #include "saltus/model/model_function.hpp"
 
 namespace saltus::discretization {
@@ -17,7 +16,8 @@ using casadi::SX;
 struct StageKernel::Implementation {
   std::vector<double> parameters;
   std::size_t n_x = 0, n_selections = 0;
-  mutable model::ModelFunction everything, field, indicators;
+  mutable model::ModelFunction everything, values, indicators;
+  mutable evaluation::NativeFunctions native;
   mutable long evaluations = 0;
 };
 
@@ -26,7 +26,8 @@ StageKernel::StageKernel(StageKernel&&) noexcept = default;
 StageKernel& StageKernel::operator=(StageKernel&&) noexcept = default;
 StageKernel::~StageKernel() = default;
 
-Expected<StageKernel> StageKernel::compile(const reformulation::Dcs& dcs, std::vector<double> parameters) {
+Expected<StageKernel> StageKernel::compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
+                                           evaluation::NativeCode native) {
   try {
     auto kernel = std::make_unique<Implementation>();
     kernel->parameters = std::move(parameters);
@@ -37,8 +38,11 @@ Expected<StageKernel> StageKernel::compile(const reformulation::Dcs& dcs, std::v
     kernel->everything = model::ModelFunction("saltus_stage", {dcs.t, dcs.x, dcs.selection, dcs.held, dcs.p},
                                               {f, psi, SX::jacobian(f, dcs.x), SX::jacobian(f, dcs.selection),
                                                SX::jacobian(psi, dcs.x), SX::jacobian(psi, dcs.t)});
-    kernel->field = model::ModelFunction("saltus_stage_field", {dcs.t, dcs.x, dcs.selection, dcs.held, dcs.p}, {f});
+    kernel->values =
+        model::ModelFunction("saltus_stage_values", {dcs.t, dcs.x, dcs.selection, dcs.held, dcs.p}, {f, psi});
     kernel->indicators = model::ModelFunction("saltus_stage_indicators", {dcs.t, dcs.x, dcs.held, dcs.p}, {psi});
+    auto started = kernel->native.start(native, {&kernel->everything, &kernel->values, &kernel->indicators});
+    if (!started) return tl::unexpected(started.error());
     return StageKernel(std::move(kernel));
   } catch (const std::exception& error) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
@@ -70,20 +74,28 @@ void StageKernel::evaluate(double t, const double* x, const double* selection, c
   const std::array<const double*, 5> in{&t, x, selection, held, kernel.parameters.data()};
   const std::array<double*, 6> out{values.f.data(),           values.indicator.data(),   values.f_x.data(),
                                    values.f_selection.data(), values.indicator_x.data(), values.indicator_t.data()};
-  kernel.everything(in, out);
+  kernel.native.call(kernel.everything, in, out);
+}
+
+void StageKernel::values(double t, const double* x, const double* selection, const double* held,
+                         StageValues& values) const {
+  auto& kernel = *implementation_;
+  ++kernel.evaluations;
+  const std::array<const double*, 5> in{&t, x, selection, held, kernel.parameters.data()};
+  kernel.native.call(kernel.values, in, std::array<double*, 2>{values.f.data(), values.indicator.data()});
 }
 
 void StageKernel::field(double t, const double* x, const double* selection, const double* held, double* f) const {
   auto& kernel = *implementation_;
   ++kernel.evaluations;
   const std::array<const double*, 5> in{&t, x, selection, held, kernel.parameters.data()};
-  kernel.field(in, std::array<double*, 1>{f});
+  kernel.native.call(kernel.values, in, std::array<double*, 2>{f, nullptr});
 }
 
 void StageKernel::indicators(double t, const double* x, const double* held, double* indicator) const {
   auto& kernel = *implementation_;
   const std::array<const double*, 4> in{&t, x, held, kernel.parameters.data()};
-  kernel.indicators(in, std::array<double*, 1>{indicator});
+  kernel.native.call(kernel.indicators, in, std::array<double*, 1>{indicator});
 }
 
 }  // namespace saltus::discretization

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
 
 namespace saltus::reformulation {
 struct Dcs;
@@ -29,8 +30,10 @@ struct StageValues {
 class StageKernel {
  public:
   /// `parameters` are the values of Dcs::p. Controls are replaced by their inputs, lifted variables by their products.
-  /// Fails (invalid_model) if the symbolic layer refuses an expression.
-  [[nodiscard]] static Expected<StageKernel> compile(const reformulation::Dcs& dcs, std::vector<double> parameters);
+  /// Fails (invalid_model) if the symbolic layer refuses an expression, (not_available) if native code is insisted on
+  /// and cannot be had.
+  [[nodiscard]] static Expected<StageKernel> compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
+                                                     evaluation::NativeCode native = evaluation::NativeCode::off);
   StageKernel(StageKernel&&) noexcept;
   StageKernel& operator=(StageKernel&&) noexcept;
   ~StageKernel();
@@ -42,6 +45,8 @@ class StageKernel {
   void size(StageValues& values) const;
   /// Everything of StageValues.
   void evaluate(double t, const double* x, const double* selection, const double* held, StageValues& values) const;
+  /// f and the indicators of StageValues; their derivatives stay as they are.
+  void values(double t, const double* x, const double* selection, const double* held, StageValues& values) const;
   /// f alone.
   void field(double t, const double* x, const double* selection, const double* held, double* f) const;
   /// The indicators alone.

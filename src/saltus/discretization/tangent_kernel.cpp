@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "saltus/discretization/dcs_expressions_internal.hpp"
+#include "saltus/evaluation/native_functions.hpp"
 #include "saltus/model/model_function.hpp"
 
 namespace saltus::discretization {
@@ -17,6 +18,7 @@ struct TangentKernel::Implementation {
   std::size_t n_x = 0, n_selections = 0;
   std::vector<bool> states_of_held, parameters_of_held;
   mutable model::ModelFunction everything;
+  mutable evaluation::NativeFunctions native;
 };
 
 namespace {
@@ -39,7 +41,8 @@ TangentKernel::TangentKernel(TangentKernel&&) noexcept = default;
 TangentKernel& TangentKernel::operator=(TangentKernel&&) noexcept = default;
 TangentKernel::~TangentKernel() = default;
 
-Expected<TangentKernel> TangentKernel::compile(const reformulation::Dcs& dcs, std::vector<double> parameters) {
+Expected<TangentKernel> TangentKernel::compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
+                                               evaluation::NativeCode native) {
   try {
     auto kernel = std::make_unique<Implementation>();
     kernel->parameters = std::move(parameters);
@@ -55,6 +58,8 @@ Expected<TangentKernel> TangentKernel::compile(const reformulation::Dcs& dcs, st
         {f, SX::jacobian(f, dcs.t), SX::jacobian(f, dcs.x), SX::jacobian(f, dcs.selection), SX::jacobian(f, dcs.p), psi,
          SX::jacobian(psi, dcs.t), SX::jacobian(psi, dcs.x), SX::jacobian(psi, dcs.p), SX::jacobian(rate, dcs.t),
          SX::jacobian(rate, dcs.x), SX::jacobian(rate, dcs.selection), SX::jacobian(rate, dcs.p)});
+    auto started = kernel->native.start(native, {&kernel->everything});
+    if (!started) return tl::unexpected(started.error());
     return TangentKernel(std::move(kernel));
   } catch (const std::exception& error) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
@@ -91,8 +96,8 @@ void TangentKernel::size(TangentValues& values) const {
 void TangentKernel::evaluate(double t, const double* x, const double* selection, const double* held,
                              TangentValues& values) const {
   auto& kernel = *implementation_;
-  kernel.everything(
-      std::array<const double*, 5>{&t, x, selection, held, kernel.parameters.data()},
+  kernel.native.call(
+      kernel.everything, std::array<const double*, 5>{&t, x, selection, held, kernel.parameters.data()},
       std::array<double*, 13>{values.f.data(), values.f_t.data(), values.f_x.data(), values.f_selection.data(),
                               values.f_p.data(), values.indicator.data(), values.indicator_t.data(),
                               values.indicator_x.data(), values.indicator_p.data(), values.rate_t.data(),

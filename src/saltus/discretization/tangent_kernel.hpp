@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
 
 namespace saltus::reformulation {
 struct Dcs;
@@ -26,9 +27,11 @@ struct TangentValues {
 class TangentKernel {
  public:
   /// `parameters` are the values of Dcs::p. Controls are replaced by their inputs, lifted variables by their products.
-  /// Fails (invalid_model) if the symbolic layer refuses an expression.
+  /// Fails (invalid_model) if the symbolic layer refuses an expression, (not_available) if native code is insisted on
+  /// and cannot be had.
   /// Cost: that of the second derivatives of the indicators.
-  [[nodiscard]] static Expected<TangentKernel> compile(const reformulation::Dcs& dcs, std::vector<double> parameters);
+  [[nodiscard]] static Expected<TangentKernel> compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
+                                                       evaluation::NativeCode native = evaluation::NativeCode::off);
   TangentKernel(TangentKernel&&) noexcept;
   TangentKernel& operator=(TangentKernel&&) noexcept;
   ~TangentKernel();

@@ -1,7 +1,6 @@
 // What a ModelKernel holds: the model's expressions, and the functions that were made of them.
 #pragma once
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,7 +14,7 @@
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/evaluation/native_code.hpp"
+#include "saltus/evaluation/native_functions.hpp"
 #include "saltus/evaluation/region_constants_internal.hpp"
 #include "saltus/model/model_function.hpp"
 
@@ -68,11 +67,7 @@ struct ModelKernel::Implementation {
   Motion* motion = &free;
   FieldUse field_use;  ///< its motion is `motion`
 
-  NativeCode native = NativeCode::off;
-  double operations = 0.0;    ///< interpreted so far
-  double next_attempt = 0.0;  ///< to find or compile native code, in operations
-  std::string source;         ///< C source, once it was needed
-  std::optional<NativeLibrary> library;
+  NativeFunctions native;  ///< the functions that every step needs
 
   explicit Implementation(const model::System& system);
   casadi::SX phi_row(int j) const { return phi(j); }
@@ -84,19 +79,11 @@ struct ModelKernel::Implementation {
   [[nodiscard]] Expected<Motion> compile_held(const std::vector<int>& functions) const;
   void compile_conditions(const model::System& system);
 
-  /// Functions that native code replaces.
-  [[nodiscard]] std::array<ModelFunction*, 6> native_functions() {
-    return {&free.field, &free.constants, &functions, &scales, &output_function, &input_function};
-  }
   [[nodiscard]] Expected<void> start_native(NativeCode wanted);
-  void write_source();
-  void use(NativeLibrary loaded);
-  void look_for_native();
+  void take_direct_field();
   /// An interpreted call is about to be made.
   void count(const ModelFunction& function) {
-    if (native != NativeCode::automatic) return;
-    operations += static_cast<double>(function.operations());
-    if (operations >= next_attempt) look_for_native();
+    if (native.count(function)) take_direct_field();
   }
 };
 

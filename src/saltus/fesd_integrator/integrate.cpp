@@ -8,13 +8,13 @@ namespace saltus::fesd_integrator {
 
 Expected<Integration> integrate(const model::System& system, const reformulation::Dcs& dcs,
                                 const IntegrationOptions& options, const StepObserver& observer) {
-  const auto kernel = discretization::StageKernel::compile(dcs, system.parameter_values);
+  const auto kernel = discretization::StageKernel::compile(dcs, system.parameter_values, options.native);
   if (!kernel) return tl::unexpected(kernel.error());
-  const auto functions = discretization::PointFunctions::compile(dcs, system.parameter_values);
+  const auto functions = discretization::PointFunctions::compile(dcs, system.parameter_values, options.native);
   if (!functions) return tl::unexpected(functions.error());
   const Facts known = facts(system, dcs);
   if (!options.sensitivities) return Run(*kernel, *functions, known, options, observer, nullptr).run();
-  const auto tangent = discretization::TangentKernel::compile(dcs, system.parameter_values);
+  const auto tangent = discretization::TangentKernel::compile(dcs, system.parameter_values, options.native);
   if (!tangent) return tl::unexpected(tangent.error());
   SensitivityPropagation propagation(*tangent, options.tableau);
   auto integration = Run(*kernel, *functions, known, options, observer, &propagation).run();

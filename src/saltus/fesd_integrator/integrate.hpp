@@ -8,6 +8,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/result/progress.hpp"
 #include "saltus/result/result.hpp"
 #include "saltus/result/sensitivities.hpp"
@@ -49,7 +50,8 @@ struct IntegrationOptions {
   /// when that happens first, the problem must outlive the run. Not used with sensitivities: its points have none.
   std::function<StepProblem*()> fallback;
   std::vector<std::pair<int, int>> initial_mode;  ///< index into System::switching -> forced mode at the start
-  bool sensitivities = false;                     ///< asks for Integration::sensitivities
+  evaluation::NativeCode native = evaluation::NativeCode::off;  ///< of everything that is evaluated
+  bool sensitivities = false;                                   ///< asks for Integration::sensitivities
 };
 
 using result::Continue;
@@ -72,7 +74,7 @@ struct Integration {
 /// ends, psi is zero on both sides of the boundary and the equations leave its place open; it is closed by alpha = 0 or
 /// 1 there (alpha of the projected field), where d psi / dt of the other side is zero.
 /// @return everything computed up to the termination; never throws for numerical reasons. An Error only if the symbolic
-///         layer refuses an expression.
+///         layer refuses an expression, or native code is insisted on and cannot be had.
 /// Cost: per element a Newton iteration on n_s (n_x + n_sliding) unknowns; per switch some solutions of the elements
 ///       before it.
 [[nodiscard]] Expected<Integration> integrate(const model::System& system, const reformulation::Dcs& dcs,

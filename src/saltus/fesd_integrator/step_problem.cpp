@@ -18,8 +18,8 @@ StepProblem::StepProblem(std::shared_ptr<discretization::FesdKernel> kernel, int
 Expected<StepProblem> StepProblem::make(const reformulation::Dcs& dcs, std::vector<double> parameters,
                                         const discretization::ButcherTableau& tableau,
                                         const discretization::FesdOptions& options, int elements,
-                                        solver::NlpSolver& solver) {
-  auto kernel = discretization::FesdKernel::compile(dcs, std::move(parameters), tableau, options);
+                                        solver::NlpSolver& solver, evaluation::NativeCode native) {
+  auto kernel = discretization::FesdKernel::compile(dcs, std::move(parameters), tableau, options, native);
   if (!kernel) return tl::unexpected(kernel.error());
   return StepProblem(std::move(*kernel), elements, solver);
 }

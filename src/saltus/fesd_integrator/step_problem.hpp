@@ -44,7 +44,8 @@ class StepProblem {
   [[nodiscard]] static Expected<StepProblem> make(const reformulation::Dcs& dcs, std::vector<double> parameters,
                                                   const discretization::ButcherTableau& tableau,
                                                   const discretization::FesdOptions& options, int elements,
-                                                  solver::NlpSolver& solver);
+                                                  solver::NlpSolver& solver,
+                                                  evaluation::NativeCode native = evaluation::NativeCode::off);
   [[nodiscard]] StepSolution solve(const discretization::StepData& step);
 
  private:

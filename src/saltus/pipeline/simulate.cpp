@@ -18,6 +18,19 @@
 #include "saltus/smoothed/restate.hpp"
 
 namespace saltus::pipeline {
+
+evaluation::NativeCode native_code(Native native) {
+  switch (native) {
+    case Native::automatic:
+      return evaluation::NativeCode::automatic;
+    case Native::on:
+      return evaluation::NativeCode::on;
+    case Native::off:
+      return evaluation::NativeCode::off;
+  }
+  __builtin_unreachable();
+}
+
 namespace {
 
 using event_integrator::IntegrationOptions;
@@ -143,18 +156,6 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
   if (!scaling) return tl::unexpected(scaling.error());
   integration.scaling = std::move(*scaling);
   return integration;
-}
-
-evaluation::NativeCode native_code(Native native) {
-  switch (native) {
-    case Native::automatic:
-      return evaluation::NativeCode::automatic;
-    case Native::on:
-      return evaluation::NativeCode::on;
-    case Native::off:
-      return evaluation::NativeCode::off;
-  }
-  __builtin_unreachable();
 }
 
 /// What is integrated: the system itself, or its regularisation.

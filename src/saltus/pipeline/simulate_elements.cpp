@@ -125,6 +125,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   integration.max_steps = options.max_steps;
   integration.max_events = options.max_events;
   integration.initial_mode = std::move(forced);
+  integration.native = native_code(options.native);
   integration.sensitivities = wanted.sensitivities;
   if (!std::holds_alternative<EveryStep>(options.output)) {
     integration.rows = IntegrationOptions::Rows::at_times;
@@ -135,8 +136,9 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   const auto make_problem = [&]() -> Expected<fesd_integrator::StepProblem*> {
     if (step_problem) return &*step_problem;
     ipopt.emplace();
-    auto made = fesd_integrator::StepProblem::make(*dcs, system.parameter_values, integration.tableau,
-                                                   fesd_options(wanted), integration.elements, *ipopt);
+    auto made =
+        fesd_integrator::StepProblem::make(*dcs, system.parameter_values, integration.tableau, fesd_options(wanted),
+                                           integration.elements, *ipopt, native_code(options.native));
     if (!made) return tl::unexpected(made.error());
     return &step_problem.emplace(std::move(*made));
   };

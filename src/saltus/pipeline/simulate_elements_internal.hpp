@@ -1,9 +1,12 @@
 // Simulation by finite elements, with switch detection and without.
 #pragma once
 
+#include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/pipeline/simulate.hpp"
 
 namespace saltus::pipeline {
+
+[[nodiscard]] evaluation::NativeCode native_code(Native native);
 
 /// Methods fesd and timestepping: reformulates the system, integrates it, and fills the parts of `frame` that depend on
 /// it. `times`: of the rows, empty for every element; `forced`: index into System::switching and mode.
