@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -5,43 +6,87 @@
 
 namespace saltus::fesd_integrator {
 
+/// Matrix and right side as they are; false if something in them is not finite.
+bool DenseSystem::keep_copy() {
+  double sum = 0.0;  // finite if everything is, or if it overflows
+  for (Eigen::Index j = 0; j < n_; ++j) {
+    const double* from = memory_.data() + j * n_;
+    double* to = copy_.data() + j * n_;
+    double largest = 0.0;
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      const double size = std::abs(from[i]);
+      to[i] = from[i];
+      largest = std::max(largest, size);
+      sum += size;
+    }
+    column_sizes_(j) = largest;
+  }
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    right_copy_(i) = right_(i);
+    sum += std::abs(right_(i));
+  }
+  return std::isfinite(sum) || (copy_.head(n_ * n_).allFinite() && right_copy_.head(n_).allFinite());
+}
+
 bool DenseSystem::eliminate() {
   // A pivot at the rounding level of its column is that of a singular matrix; 1e-13 leaves three digits to rounding.
   constexpr double singular = 1e-13;
-  auto a = matrix();
-  auto b = right();
   for (Eigen::Index k = 0; k < n_; ++k) {
+    double* column = memory_.data() + k * n_;
     Eigen::Index pivot = k;
-    const double largest = a.col(k).tail(n_ - k).cwiseAbs().maxCoeff(&pivot);
-    const double column = Eigen::Map<const Eigen::MatrixXd>(copy_.data(), n_, n_).col(k).cwiseAbs().maxCoeff();
-    if (!(largest > singular * column)) return false;
-    pivot += k;
+    double largest = std::abs(column[k]);
+    for (Eigen::Index i = k + 1; i < n_; ++i) {
+      if (std::abs(column[i]) > largest) {
+        largest = std::abs(column[i]);
+        pivot = i;
+      }
+    }
+    if (!(largest > singular * column_sizes_(k))) return false;
+    pivots_[static_cast<std::size_t>(k)] = pivot;
     if (pivot != k) {
-      a.row(k).swap(a.row(pivot));
-      std::swap(b(k), b(pivot));
+      for (Eigen::Index j = 0; j < n_; ++j) std::swap(memory_[j * n_ + k], memory_[j * n_ + pivot]);
     }
-    const double inverse = 1.0 / a(k, k);
-    for (Eigen::Index i = k + 1; i < n_; ++i) a(i, k) *= inverse;
+    const double inverse = 1.0 / column[k];
+    for (Eigen::Index i = k + 1; i < n_; ++i) column[i] *= inverse;
     for (Eigen::Index j = k + 1; j < n_; ++j) {
-      const double factor = a(k, j);
+      double* other = memory_.data() + j * n_;
+      const double factor = other[k];
       if (factor == 0.0) continue;
-      for (Eigen::Index i = k + 1; i < n_; ++i) a(i, j) -= a(i, k) * factor;
+      for (Eigen::Index i = k + 1; i < n_; ++i) other[i] -= column[i] * factor;
     }
-    for (Eigen::Index i = k + 1; i < n_; ++i) b(i) -= a(i, k) * b(k);
-  }
-  for (Eigen::Index k = n_ - 1; k >= 0; --k) {
-    b(k) /= a(k, k);
-    for (Eigen::Index i = 0; i < k; ++i) b(i) -= a(i, k) * b(k);
   }
   return true;
 }
 
+void DenseSystem::substitute() {
+  double* b = right_.data();
+  for (Eigen::Index k = 0; k < n_; ++k) {
+    const Eigen::Index pivot = pivots_[static_cast<std::size_t>(k)];
+    if (pivot != k) std::swap(b[k], b[pivot]);
+  }
+  for (Eigen::Index k = 0; k < n_; ++k) {
+    const double* column = memory_.data() + k * n_;
+    const double factor = b[k];
+    if (factor == 0.0) continue;
+    for (Eigen::Index i = k + 1; i < n_; ++i) b[i] -= column[i] * factor;
+  }
+  for (Eigen::Index k = n_ - 1; k >= 0; --k) {
+    const double* column = memory_.data() + k * n_;
+    b[k] /= column[k];
+    for (Eigen::Index i = 0; i < k; ++i) b[i] -= column[i] * b[k];
+  }
+}
+
+bool DenseSystem::solve_again() {
+  substitute();
+  return right().allFinite();
+}
+
 bool DenseSystem::solve(double negligible) {
   if (n_ == 0) return true;
-  copy_.head(n_ * n_) = memory_.head(n_ * n_);
-  right_copy_.head(n_) = right_.head(n_);
-  if (!copy_.head(n_ * n_).allFinite() || !right_copy_.head(n_).allFinite()) return false;
-  if (eliminate()) return right().allFinite();
+  if (!keep_copy()) return false;
+  factorised_ = eliminate();
+  if (factorised_) return solve_again();
   orthogonal_.setThreshold(1e-12);
   const Eigen::Map<const Eigen::MatrixXd> original(copy_.data(), n_, n_);
   orthogonal_.compute(original);

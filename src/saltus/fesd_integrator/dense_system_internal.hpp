@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/QR>
@@ -17,10 +18,13 @@ class DenseSystem {
     copy_.resize(n * n);
     right_.resize(n);
     right_copy_.resize(n);
+    column_sizes_.resize(n);
+    pivots_.resize(static_cast<std::size_t>(n));
   }
   /// Sets the size, and everything to 0.
   void reset(Eigen::Index n) {
     n_ = n;
+    factorised_ = false;
     matrix().setZero();
     right().setZero();
   }
@@ -29,12 +33,20 @@ class DenseSystem {
   /// Leaves the solution in right(); false if something is not finite, or a singular system has none but for an error
   /// beyond `negligible` (the rounding level of the right side). Cost: n^3 / 3.
   [[nodiscard]] bool solve(double negligible);
+  /// The same for another right() and the matrix that was solved for last, if that was regular. Cost: n^2.
+  [[nodiscard]] bool is_factorised() const { return factorised_; }
+  [[nodiscard]] bool solve_again();
 
  private:
+  [[nodiscard]] bool keep_copy();
   [[nodiscard]] bool eliminate();
+  void substitute();
 
   Eigen::Index n_ = 0;
+  bool factorised_ = false;
   Eigen::VectorXd memory_, copy_, right_, right_copy_;
+  Eigen::VectorXd column_sizes_;      ///< largest entry of each column of the matrix as it was given
+  std::vector<Eigen::Index> pivots_;  ///< rows that were exchanged, in turn
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal_;
 };
 

@@ -86,28 +86,69 @@ struct ElementSolver::Implementation {
   /// Rounding level of the equations: a few roundings of the largest state.
   [[nodiscard]] double negligible(const Element& element) const { return 1e-13 * element.size; }
   /// Equations of one Newton step; the unknowns of the selections are their changes times h, as in the states.
-  void assemble(const Element& element);
+  void assemble_matrix(const Element& element);
+  void assemble_right(const Element& element);
+  /// Where the equations of the selections of a stage hold: at its own state, or one stage later.
+  [[nodiscard]] Index point_of(Index stage) const {
+    return explicit_method && sets[0] == sets.back() ? stage + 1 : stage;
+  }
+  /// f and the indicators at the stages, with derivatives or without.
+  enum class Parts { everything, values };
+  void evaluate(const Element& element, const double* held, Parts parts);
   /// Adds a step; the largest change of a state, relative to the largest state.
   [[nodiscard]] double update(Element& element);
   [[nodiscard]] bool project(double t, const double* held, Element& element);
 };
 
-void ElementSolver::Implementation::assemble(const Element& element) {
-  system.reset(offset[static_cast<std::size_t>(n_s)]);
-  auto matrix = system.matrix();
-  auto right = system.right();
-  const ConstMatrix states(element.stage_states.data(), n_x, n_s);
-  const ConstVector x_0(element.x.data(), n_x);
-  const auto place = [&](Index stage) { return offset[static_cast<std::size_t>(stage)]; };
+void ElementSolver::Implementation::evaluate(const Element& element, const double* held, Parts parts) {
   for (Index m = 0; m < n_s; ++m) {
-    auto residual = right.segment(place(m), n_x);
-    residual = x_0 - states.col(m);
+    auto& at = values[static_cast<std::size_t>(m)];
+    const double t = element.t + element.h * tableau.c(m);
+    const double* state = element.stage_states.data() + m * n_x;
+    const double* selections = element.stage_selections.data() + m * n_psi;
+    if (parts == Parts::values) {
+      kernel.values(t, state, selections, held, at);
+    } else {
+      kernel.evaluate(t, state, selections, held, at);
+      find_directions(m, at);
+    }
+  }
+}
+
+void ElementSolver::Implementation::assemble_right(const Element& element) {
+  auto right = system.right();
+  for (Index m = 0; m < n_s; ++m) {
+    const Index place = offset[static_cast<std::size_t>(m)];
+    double* residual = right.data() + place;
+    const double* state = element.stage_states.data() + m * n_x;
+    for (Index i = 0; i < n_x; ++i) residual[i] = element.x[static_cast<std::size_t>(i)] - state[i];
     for (Index l = 0; l < n_s; ++l) {
       const double weight = element.h * tableau.A(m, l);
       if (weight == 0.0) continue;
-      const auto& stage = values[static_cast<std::size_t>(l)];
-      residual += weight * ConstVector(stage.f.data(), n_x);
-      matrix.block(place(m), place(l), n_x, n_x) = -weight * ConstMatrix(stage.f_x.data(), n_x, n_x);
+      const double* f = values[static_cast<std::size_t>(l)].f.data();
+      for (Index i = 0; i < n_x; ++i) residual[i] += weight * f[i];
+    }
+    const auto& at = values[static_cast<std::size_t>(point_of(m))];
+    for (Index k = 0; k < unknowns(m); ++k) {
+      residual[n_x + k] = -set(m).surface(static_cast<std::size_t>(k), at.indicator.data());
+    }
+  }
+}
+
+void ElementSolver::Implementation::assemble_matrix(const Element& element) {
+  system.reset(offset[static_cast<std::size_t>(n_s)]);
+  auto matrix = system.matrix();
+  const Index rows = matrix.rows();
+  const auto place = [&](Index stage) { return offset[static_cast<std::size_t>(stage)]; };
+  for (Index m = 0; m < n_s; ++m) {
+    for (Index l = 0; l < n_s; ++l) {
+      const double weight = element.h * tableau.A(m, l);
+      if (weight == 0.0) continue;
+      const double* f_x = values[static_cast<std::size_t>(l)].f_x.data();
+      double* block = matrix.data() + place(l) * rows + place(m);
+      for (Index j = 0; j < n_x; ++j, f_x += n_x, block += rows) {
+        for (Index i = 0; i < n_x; ++i) block[i] = -weight * f_x[i];
+      }
       if (unknowns(l) > 0) {
         matrix.block(place(m), place(l) + n_x, n_x, unknowns(l)) = -tableau.A(m, l) * directions_of(l);
       }
@@ -115,13 +156,11 @@ void ElementSolver::Implementation::assemble(const Element& element) {
     for (Index i = 0; i < n_x; ++i) matrix(place(m) + i, place(m) + i) += 1.0;
   }
   for (Index m = 0; m < n_s; ++m) {
-    // The equations of the selections of stage m: at its own state, or one stage later.
-    const Index point = explicit_method && sets[0] == sets.back() ? m + 1 : m;
+    const Index point = point_of(m);
     const auto& at = values[static_cast<std::size_t>(point)];
     for (Index k = 0; k < unknowns(m); ++k) {
       const Index equation = place(m) + n_x + k;
       surface_row(set(m), static_cast<std::size_t>(k), at);
-      right(equation) = -set(m).surface(static_cast<std::size_t>(k), at.indicator.data());
       if (point < n_s) {
         matrix.block(equation, place(point), 1, n_x) = row.transpose();
         continue;
@@ -238,35 +277,35 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     }
     self.sets[m]->selections(self.mu.data(), selections);
   }
-  const auto slope_to_values = [&] {
-    for (std::size_t m = 0; m < n_s; ++m) {
-      self.kernel.evaluate(element.t + h * self.tableau.c(static_cast<Index>(m)), element.stage_states.data() + m * n_x,
-                           element.stage_selections.data() + m * n_psi, held, self.values[m]);
-      self.find_directions(static_cast<Index>(m), self.values[m]);
-    }
-    if (self.ends_at_last_stage && !self.explicit_method) return;
-    self.end = ConstVector(element.x.data(), self.n_x);
-    for (std::size_t m = 0; m < n_s; ++m) {
-      self.end += h * self.tableau.b(static_cast<Index>(m)) * ConstVector(self.values[m].f.data(), self.n_x);
-    }
-  };
   const bool slides = !sets.front().sliding().empty();
   const bool at_end = self.explicit_method && sets.size() == 1 && slides;
   double before = std::numeric_limits<double>::infinity();
+  bool factorised = false;  // the matrix of the step before serves once more
   for (int iteration = 0;; ++iteration) {
     if (iteration == most_iterations) return Outcome::not_converged;
-    slope_to_values();
+    using Parts = Implementation::Parts;
+    self.evaluate(element, held, factorised ? Parts::values : Parts::everything);
     if (at_end) {
+      self.end = ConstVector(element.x.data(), self.n_x);
+      for (std::size_t m = 0; m < n_s; ++m) {
+        self.end += h * self.tableau.b(static_cast<Index>(m)) * ConstVector(self.values[m].f.data(), self.n_x);
+      }
       self.kernel.evaluate(element.t + h, self.end.data(), element.stage_selections.data() + (n_s - 1) * n_psi, held,
                            self.values[n_s]);
     }
-    self.assemble(element);
-    if (!self.system.solve(self.negligible(element))) return Outcome::not_finite;
+    if (!factorised) self.assemble_matrix(element);
+    self.assemble_right(element);
+    if (!(factorised ? self.system.solve_again() : self.system.solve(self.negligible(element)))) {
+      return Outcome::not_finite;
+    }
     const double change = self.update(element);
     if (!std::isfinite(change)) return Outcome::not_finite;
     // Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are
-    // roundings.
-    if (change <= 1e-15 || (change <= 1e-9 && before <= 1e-3) || (change <= 1e-12 && change >= 0.25 * before)) break;
+    // roundings. With the matrix of the step before, a step leaves 2 change / before of itself.
+    const bool quadratic = factorised ? change * change <= 1e-17 * before : change <= 1e-9 && before <= 1e-3;
+    if (change <= 1e-15 || quadratic || (change <= 1e-12 && change >= 0.25 * before)) break;
+    constexpr double near = 1e-4;
+    factorised = !factorised && change <= near && !at_end && self.system.is_factorised();
     before = change;
   }
   for (std::size_t m = 0; m < n_s; ++m) {

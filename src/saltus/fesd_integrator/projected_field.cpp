@@ -72,7 +72,7 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
     set.selections(unknown, selections);
     // Selections are of size 1: 1e-9 and quadratic convergence are rounding; or steps that no longer shrink.
     if ((change <= 1e-9 && before <= 1e-3) || change <= 1e-15 || (change <= 1e-10 && change >= 0.25 * before)) {
-      kernel_.evaluate(t, x, selections, held, values_);
+      if (change > 1e-15) kernel_.evaluate(t, x, selections, held, values_);
       return true;
     }
     if (change > 1e6) return false;

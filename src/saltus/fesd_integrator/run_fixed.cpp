@@ -14,21 +14,21 @@ void Run::advance_fixed(double end) {
   const double begin = t_, h = (end - t_) / count;
   for (int i = 0; i < count && !stopped(); ++i) {
     const double right = i + 1 == count ? end : begin + (i + 1) * h;
-    if (!fixed_.solve({t_, x_, selections_, size_}, h, set_, held_.data(), chain_.elements[0])) {
+    if (!fixed_.solve(begin_here(), h, set_, held_.data(), chain_.elements[0])) {
       stop(result::Termination::not_converged,
            fmt::format("no active sets of the stages were found for the element at t = {:.10g}; more "
                        "simulate.timestepping.steps, or method = \"fesd\"",
                        t_));
       return;
     }
-    const ActiveSet before = set_;
-    const auto selections = selections_;
+    set_before_ = set_;
+    selections_before_ = selections_;
     if (propagation_ != nullptr) propagation_->fixed_step(chain_.elements[0], fixed_.sets(), held_.data());
     accept(chain_.elements[0], selections_, fixed_.end_selections(), right);
     if (stopped()) return;
-    if (!(fixed_.end_set() == before)) {
-      recorder_.switched(t_, x_, {&before, &selections, held_.data()}, {{fixed_.end_set(), fixed_.end_selections()}},
-                         held_.data(), "seen at the end of an element");
+    if (!(fixed_.end_set() == set_before_)) {
+      recorder_.switched(t_, x_, {&set_before_, &selections_before_, held_.data()},
+                         {{fixed_.end_set(), fixed_.end_selections()}}, held_.data(), "seen at the end of an element");
     }
     set_ = fixed_.end_set();
     selections_ = fixed_.end_selections();

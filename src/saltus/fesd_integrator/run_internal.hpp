@@ -77,6 +77,14 @@ class Run {
   void selections_behind(const ElementGuess& guess, const ActiveSet& set, Point& left);
   void accept_guessed(const std::vector<ElementGuess>& guesses, const std::vector<ActiveSet>& sets, double end);
   void row_here();
+  /// The point where the run is, as the left end of an element.
+  [[nodiscard]] Point& begin_here() {
+    left_.t = t_;
+    left_.x = x_;
+    left_.selections = selections_;
+    left_.size = size_;
+    return left_;
+  }
   void emit_times(const Element* element, const std::vector<double>& selections, double until);
   struct EventZero {
     std::size_t function = 0;
@@ -114,6 +122,10 @@ class Run {
   double t_ = 0.0;
   std::vector<double> x_, selections_;
   ActiveSet set_;
+  /// Of the element that is solved, and of the one before it; members, so that steps do not allocate.
+  Point left_;
+  ActiveSet set_before_;
+  std::vector<double> selections_before_;
   double size_ = 0.0;     ///< of the largest state of late
   double nominal_ = 0.0;  ///< length of a simulation step
   Chain chain_;

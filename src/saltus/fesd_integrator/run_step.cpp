@@ -20,7 +20,7 @@ constexpr double shortest = 1e-12;
 Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
   chain_.count = 0;
   chain_.left[0] = selections_;
-  Point left{t_, x_, selections_, size_};
+  Point& left = begin_here();
   for (int i = 0; i < count; ++i) {
     auto& element = chain_.elements[static_cast<std::size_t>(i)];
     auto guess = ElementSolver::Guess::left_end;
