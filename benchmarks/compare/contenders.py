@@ -70,7 +70,7 @@ def succeeds(*command):
         return False
 
 
-def build(folder):
+def build(folder, programs=("compare_saltus", "compare_hand", "compare_cvode")):
     """Configures and builds the programs; returns the folder they lie in."""
     prefix = sorted(ROOT.glob(".venv/lib/python3*/site-packages/casadi/cmake"))
     if not (folder / "CMakeCache.txt").exists():
@@ -78,7 +78,7 @@ def build(folder):
                         "-DSALTUS_BENCHMARKS=ON", f"-DCMAKE_PREFIX_PATH={';'.join(map(str, prefix))}"], check=True)
     targets = subprocess.run(["cmake", "--build", folder, "--target", "help"], capture_output=True, text=True,
                              check=True).stdout
-    wanted = [name for name in ("compare_saltus", "compare_hand", "compare_cvode") if f"{name}:" in targets]
+    wanted = [name for name in programs if f"{name}:" in targets]
     subprocess.run(["cmake", "--build", folder, "-j", "1", "--target", *wanted], check=True)
     return folder / "benchmarks" / "compare"
 

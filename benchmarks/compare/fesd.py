@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Saltus' method fesd against PyPI's nosnoc: the same models, schemes and simulation steps, in one run.
 
-    python3 benchmarks/compare/fesd.py --tool build/bin/saltus      writes benchmarks/results/fesd.md and fesd.csv
+    python3 benchmarks/compare/fesd.py                      writes benchmarks/results/fesd.md and fesd.csv
+    python3 benchmarks/compare/fesd.py --keep-nosnoc        measures Saltus anew, keeps the rest
 
 Success of every simulation step, error of the end state against tests/problems/references.json, CPU time per step
 without what is done once per model. nosnoc gets a virtual environment of its own (scripts/install_benchmarks.sh); where
@@ -13,10 +14,8 @@ import csv
 import json
 import os
 import pathlib
-import statistics
 import subprocess
 import sys
-import tempfile
 
 import contenders
 import table
@@ -26,7 +25,9 @@ NOSNOC = contenders.BUILD / "nosnoc-venv" / "bin" / "python3"
 # Simulation steps of two elements: an element is a tenth of a slip phase of stick-slip, a twentieth of a turn of the
 # relay's fast mode, a time constant of the fastest gene of IRMA.
 PROBLEMS = {"irma": (1000.0, 500), "stick-slip": (40.0, 200), "relay-feedback": (10.0, 400)}
-SCHEMES = (("radau_iia", 2), ("radau_iia", 3), ("gauss_legendre", 2))
+# nosnoc's own number of stages in both forms; and four stages, which at these steps are enough for 1e-8.
+SCHEMES = (("radau_iia", 2), ("radau_iia", 4))
+VARIANTS = ("shipped", "fast")
 COLUMNS = ("problem", "form", "scheme", "steps", "contender", "failed", "error", "seconds_per_step", "build_seconds")
 
 
@@ -48,92 +49,111 @@ def run_nosnoc(problem, form, scheme, stages, variant, timeout):
             "build_seconds": run["build_seconds"]}
 
 
-def simulate(tool, problem, settings):
-    """The result of one run; a status other than completed is no error here."""
-    with tempfile.TemporaryDirectory() as folder:
-        out = pathlib.Path(folder) / "r.json"
-        sets = [word for key, value in settings.items() for word in ("--set", f"simulate.{key}={value}")]
-        subprocess.run([tool, "simulate", problem, "--quiet", "--out", out, *sets], check=False, capture_output=True)
-        return json.loads(out.read_text())
-
-
-def run_saltus(tool, problem, form, scheme, stages, repeats=5):
+def run_saltus(program, problem, form, scheme, stages, seconds=0.5):
     until, steps = PROBLEMS[problem]
-    common = {"method": "fesd", "output.points": 2, "fesd.scheme": scheme, "fesd.stages": stages,
-              "fesd.reformulation": form, "fesd.elements": 2}
-    results = [simulate(tool, problem, {**common, "fesd.steps": steps}) for _ in range(repeats)]
-    # One step tells what building costs.
-    single = [simulate(tool, problem, {**common, "fesd.steps": 1, "until": until / steps}) for _ in range(repeats)]
-    once = statistics.median(run["statistics"]["wall_seconds"] for run in single)
-    whole = statistics.median(run["statistics"]["wall_seconds"] for run in results)
-    result = results[0]
-    done = result["status"]["termination"] == "completed"
-    return {"failed": 0 if done else result["status"]["termination"], "x": result["final"]["x"],
-            "seconds_per_step": (whole - once) / (steps - 1), "build_seconds": once}
+    command = [program, contenders.ROOT / "models" / f"{problem}.toml", form, scheme, stages, steps, until, seconds]
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "XDG_CACHE_HOME": str(contenders.CACHE)}
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, env=environment, check=True)
+    run = json.loads(done.stdout)
+    return {"failed": 0 if run["status"] == "completed" else run["status"], "x": run["x"],
+            "seconds_per_step": run["seconds_per_step"], "build_seconds": run["build_seconds"]}
 
 
-def rows(tool, timeout):
+def lines():
+    """Problem, scheme, stages, form; what is measured first costs least."""
+    for scheme, stages in SCHEMES:
+        for problem in sorted(PROBLEMS, key=lambda name: PROBLEMS[name][1]):
+            # 128 regions of seven thresholds are none of the forms in which nosnoc states IRMA.
+            both = problem != "irma" and stages == SCHEMES[0][1]
+            for form in ("step", "stewart") if both else ("step",):
+                yield problem, scheme, stages, form
+
+
+def measured_row(row, run, exact):
+    try:
+        found = run()
+    except subprocess.TimeoutExpired as late:
+        return {**row, "failed": f"more than {late.timeout:g} s"}
+    except subprocess.CalledProcessError as failure:
+        return {**row, "failed": (failure.stderr.strip().splitlines() or ["failed"])[-1]}
+    error = max(abs(a - b) for a, b in zip(found.pop("x"), exact[row["problem"]], strict=True))
+    return {**row, **found, "error": error}
+
+
+def rows(program, timeout, kept):
+    """One by one; `kept`: rows of nosnoc measured before, by key."""
     exact = references()
     installed = contenders.succeeds(NOSNOC, "-c", "import nosnoc")
-    for problem, (_, steps) in PROBLEMS.items():
-        for scheme, stages in SCHEMES:
-            for form in ("step", "stewart"):
-                line_up = {"Saltus": lambda: run_saltus(tool, problem, form, scheme, stages)}
-                # 128 regions of seven thresholds are none of the forms in which nosnoc states IRMA.
-                if problem != "irma" or form == "step":
-                    for variant in ("shipped", "fast"):
-                        line_up[f"nosnoc, {variant}"] = (
-                            lambda v=variant: run_nosnoc(problem, form, scheme, stages, v, timeout))
-                for name, run in line_up.items():
-                    row = {"problem": problem, "form": form, "scheme": f"{scheme} {stages}", "steps": steps,
-                           "contender": name}
-                    print(*row.values(), file=sys.stderr, flush=True)
-                    if name != "Saltus" and not installed:
-                        yield {**row, "failed": "not installed"}
-                        continue
-                    try:
-                        found = run()
-                    except subprocess.TimeoutExpired:
-                        yield {**row, "failed": f"more than {timeout:g} s"}
-                        continue
-                    except subprocess.CalledProcessError as failure:
-                        yield {**row, "failed": failure.stderr.strip().splitlines()[-1]}
-                        continue
-                    error = max(abs(a - b) for a, b in zip(found.pop("x"), exact[problem], strict=True))
-                    yield {**row, **found, "error": error}
+    for problem, scheme, stages, form in lines():
+        line_up = {"Saltus": lambda: run_saltus(program, problem, form, scheme, stages)}
+        for variant in VARIANTS:
+            line_up[f"nosnoc, {variant}"] = lambda v=variant: run_nosnoc(problem, form, scheme, stages, v, timeout)
+        for name, run in line_up.items():
+            row = {"problem": problem, "form": form, "scheme": f"{scheme} {stages}", "steps": PROBLEMS[problem][1],
+                   "contender": name}
+            print(*row.values(), file=sys.stderr, flush=True)
+            if name != "Saltus" and key(row) in kept:
+                yield kept[key(row)]
+            elif name != "Saltus" and not installed:
+                yield {**row, "failed": "not installed"}
+            else:
+                yield measured_row(row, run, exact)
 
 
-def page(measured):
-    lines = []
-    saltus = {}
+def key(row):
+    return tuple(str(row[column]) for column in ("problem", "form", "scheme", "steps", "contender"))
+
+
+def stored_rows(file):
+    """Rows of an earlier run, with numbers where there were any."""
+    if not file.exists():
+        return []
+    numbers = ("error", "seconds_per_step", "build_seconds")
+    with file.open(newline="", encoding="utf-8") as stream:
+        return [{name: float(value) if name in numbers else value for name, value in row.items() if value != ""}
+                for row in csv.DictReader(stream)]
+
+
+def page(measured, loads):
+    body = []
+    saltus = {row_line(row): row.get("seconds_per_step") for row in measured if row["contender"] == "Saltus"}
     for row in measured:
-        key = (row["problem"], row["form"], row["scheme"])
-        time = row.get("seconds_per_step")
-        if row["contender"] == "Saltus":
-            saltus[key] = time
-        ratio = time / saltus[key] if time and saltus.get(key) and row["contender"] != "Saltus" else None
-        lines.append([row["problem"], row["form"], row["scheme"], str(row["steps"]), row["contender"],
-                      str(row["failed"]), f"{row['error']:.1e}" if "error" in row else "–",
-                      f"{1e3 * time:.3g}" if time else "–", f"{ratio:.0f}" if ratio else ""])
+        time, own = row.get("seconds_per_step"), saltus.get(row_line(row))
+        ratio = time / own if time and own and row["contender"] != "Saltus" else None
+        body.append([row["problem"], row["form"], row["scheme"], str(row["steps"]), row["contender"],
+                     str(row["failed"]), f"{row['error']:.1e}" if "error" in row else "–",
+                     f"{1e3 * time:.3g}" if time else "–", f"{ratio:.0f}" if ratio else ""])
     head = ["problem", "form", "scheme", "steps", "", "failed steps", "error", "ms per step", "ratio"]
-    lines.insert(0, ["---"] * len(head))
     return ("# FESD: Saltus and nosnoc\n\nMade by `benchmarks/compare/fesd.py`; how to read it: "
-            "[benchmarks/README.md](../README.md).\n\n" + table.markdown([head, *lines]))
+            "[benchmarks/README.md](../README.md). Processes that wanted to run meanwhile (load average before and "
+            f"behind): {loads[0]:.1f}, {loads[1]:.1f}.\n\n" + table.markdown([head, ["---"] * len(head), *body]))
+
+
+def row_line(row):
+    return key({**row, "contender": ""})
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--tool", type=pathlib.Path, required=True, help="the saltus tool of a release build")
-    parser.add_argument("--timeout", type=float, default=600.0, help="seconds per run of nosnoc (default 600)")
+    parser.add_argument("--program", type=pathlib.Path, help="compare_fesd (default: built in build/benchmarks)")
+    parser.add_argument("--timeout", type=float, default=900.0, help="seconds per run of nosnoc (default 900)")
+    parser.add_argument("--keep-nosnoc", action="store_true", help="take the rows of nosnoc from the earlier fesd.csv")
     parser.add_argument("--output", type=pathlib.Path, default=contenders.ROOT / "benchmarks" / "results")
     options = parser.parse_args()
-    measured = list(rows(options.tool.resolve(), options.timeout))
     options.output.mkdir(parents=True, exist_ok=True)
-    with (options.output / "fesd.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
-        writer.writerows(measured)
-    (options.output / "fesd.md").write_text(page(measured), encoding="utf-8")
+    file = options.output / "fesd.csv"
+    kept = {key(row): row for row in stored_rows(file) if options.keep_nosnoc and row["contender"] != "Saltus"}
+    program = options.program or contenders.build(contenders.BUILD / "cmake", ("compare_fesd",)) / "compare_fesd"
+    load_before = os.getloadavg()[2]
+    measured = []
+    for row in rows(program.resolve(), options.timeout, kept):
+        measured.append(row)
+        with file.open("w", newline="", encoding="utf-8") as stream:  # what is measured is kept, whatever follows
+            writer = csv.DictWriter(stream, COLUMNS)
+            writer.writeheader()
+            writer.writerows(measured)
+    text = page(measured, (load_before, os.getloadavg()[2]))
+    (options.output / "fesd.md").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
