@@ -31,10 +31,11 @@ struct Gradient {
 /// xdot = f, free or with guards held, and what follows from it.
 struct Motion {
   casadi::SX f;
-  ModelFunction field;           ///< of t, x and the constants
-  ModelFunction constants;       ///< of p and alpha
-  DirectField direct = nullptr;  ///< the field as native code, once there is some
-  ModelFunction pressure;        ///< of the holds; null without
+  ModelFunction field;               ///< of t, x and the constants
+  ModelFunction constants;           ///< of p and alpha
+  DirectField direct = nullptr;      ///< the field as native code, once there is some
+  std::optional<NativeSteps> steps;  ///< likewise, where the field is small
+  ModelFunction pressure;            ///< of the holds; null without
   std::vector<std::vector<bool>> depends;
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
   std::map<std::pair<int, int>, casadi::SX> lie_expressions;
@@ -80,10 +81,11 @@ struct ModelKernel::Implementation {
   void compile_conditions(const model::System& system);
 
   [[nodiscard]] Expected<void> start_native(NativeCode wanted);
-  void take_direct_field();
+  void take_native_field();
+  [[nodiscard]] bool has_small_field() const;
   /// An interpreted call is about to be made.
   void count(const ModelFunction& function) {
-    if (native.count(function)) take_direct_field();
+    if (native.count(function)) take_native_field();
   }
 };
 

@@ -25,6 +25,7 @@ void ModelKernel::prepare_field(const double* alpha, FieldConstants& constants) 
   constants.alpha.assign(alpha, alpha + self.n_psi);
   constants.motion = self.field_use.motion = self.motion;
   constants.direct = self.motion->direct;
+  constants.steps = self.motion->steps ? &*self.motion->steps : nullptr;
   constants.use = &self.field_use;
   self.count(function);
   function(std::array<const double*, 2>{self.parameters.data(), alpha},

@@ -1,14 +1,22 @@
 // Which functions of a kernel run as native code, and the shortcut to one of them.
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "saltus/evaluation/kernel_internal.hpp"
+#include "saltus/evaluation/native_steps_internal.hpp"
 
 namespace saltus::evaluation {
 namespace {
 
 std::string name_of_direct(const casadi::Function& field) { return field.name() + "_direct"; }
+
+/// States, and operations of the field, up to which the stages of steps are compiled with the field inside: they hold
+/// it 54 times, which takes the compiler about as long as everything else does at these limits, and what is around the
+/// field matters less the larger it is.
+constexpr int most_states_of_steps = 8;
+constexpr long most_operations_of_steps = 48;
 
 /// f once more, with arguments in place of tables of them: the compiler then drops the tests for missing ones, which
 /// take longer than the arithmetic of a small model.
@@ -28,16 +36,30 @@ std::string direct_field(const casadi::Function& field) {
 
 }  // namespace
 
+bool ModelKernel::Implementation::has_small_field() const {
+  return 0 < x.numel() && x.numel() <= most_states_of_steps && free.field.operations() <= most_operations_of_steps;
+}
+
 Expected<void> ModelKernel::Implementation::start_native(NativeCode wanted) {
+  const auto& field = free.field.function();
+  std::string appended = direct_field(field);
+  if (has_small_field()) appended += stages_source(name_of_direct(field), static_cast<int>(x.numel()));
   auto started =
       native.start(wanted, {&free.field, &free.constants, &functions, &scales, &output_function, &input_function},
-                   direct_field(free.field.function()));
-  if (started) take_direct_field();
+                   std::move(appended));
+  if (started) take_native_field();
   return started;
 }
 
-void ModelKernel::Implementation::take_direct_field() {
+/// Nothing as long as everything is interpreted.
+void ModelKernel::Implementation::take_native_field() {
   free.direct = reinterpret_cast<DirectField>(native.symbol(name_of_direct(free.field.function())));
+  if (free.direct == nullptr || !has_small_field()) return;
+  const auto stages = [&](const std::string& name) {
+    return reinterpret_cast<ode::StagesFunction>(native.symbol(name));
+  };
+  free.steps = NativeSteps{{stages(field_stages.dopri5), stages(field_stages.dop853)},
+                           {stages(sliding_stages.dopri5), stages(sliding_stages.dop853)}};
 }
 
 }  // namespace saltus::evaluation

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/evaluation/native_steps.hpp"
 #include "saltus/model/cells.hpp"
 
 namespace saltus::model {
@@ -67,10 +68,14 @@ struct FieldUse {
 /// What a right-hand side needs of its parameters and selections; filled by ModelKernel::prepare_field.
 struct FieldConstants {
   std::vector<double> values;
-  std::vector<double> alpha;     ///< what they were made of
-  const void* motion = nullptr;  ///< free or held
-  DirectField direct = nullptr;  ///< of that motion, if there was native code
-  FieldUse* use = nullptr;       ///< of the kernel
+  std::vector<double> alpha;           ///< what they were made of
+  const void* motion = nullptr;        ///< free or held
+  DirectField direct = nullptr;        ///< of that motion, if there was native code
+  const NativeSteps* steps = nullptr;  ///< likewise
+  FieldUse* use = nullptr;             ///< of the kernel
+
+  /// Whether `steps` are those of the motion in force.
+  [[nodiscard]] bool has_steps() const { return steps != nullptr && use->motion == motion; }
 };
 
 /// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons

@@ -54,9 +54,9 @@ bool Locator::take(double h) {
     search_.evaluate(start_.t, start_.x, search_.candidates(), trial_.values);
     return is_finite_at(trial_);
   }
-  const auto f = [this](double t, const double* x, double* xdot) { field_(t, x, xdot); };
   trial_.h = h;
-  if (stepper_.attempt(f, start_.t, start_.x, start_.slope, h, tolerances_) == ode::Attempt::undefined) return false;
+  if (field_.attempt(stepper_, start_.t, start_.x, start_.slope, h, tolerances_) == ode::Attempt::undefined)
+    return false;
   trial_.x.assign(stepper_.x_new(), stepper_.x_new() + n_);
   const bool projected = field_.project(start_.t + h, trial_.x.data());
   if (projected && explicit_) {

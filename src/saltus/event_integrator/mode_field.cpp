@@ -86,8 +86,31 @@ void ModeField::gradients(double t, const double* x) {
     }
     coordinate_[row] = only_column(rows_, static_cast<Eigen::Index>(row));
     constant_row_[row] = kernel_.is_affine(j) && kernel_.inner(j).empty();
-    if (sliding_.size() == 1) row_square_ = rows_.squaredNorm();
+    if (sliding_.size() != 1) continue;
+    row_square_ = rows_.squaredNorm();
+    sliding_constants_ = {
+        constants_[0].values.data(), constants_[1].values.data(), rows_.data(), rates_[0], row_square_, coordinate_[0]};
   }
+}
+
+ode::Attempt ModeField::attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
+                                const ode::Tolerances& tolerances) {
+  const auto f = [this](double t_stage, const double* x_stage, double* xdot) { (*this)(t_stage, x_stage, xdot); };
+  const auto stages = native_stages();
+  if (stepper.stages_function(stages.functions) == nullptr) return stepper.attempt(f, t, x, slope, h, tolerances);
+  const long before = stepper.evaluations();
+  const auto outcome = stepper.attempt(f, t, x, slope, h, tolerances, stages);
+  constants_[0].use->evaluations += (is_single() ? 2 : 1) * (stepper.evaluations() - before);
+  return outcome;
+}
+
+ode::RightHandSideStages ModeField::native_stages() const {
+  if (solve_ == SlidingSolve::none) {
+    if (!constants_[0].has_steps()) return {};
+    return {constants_[0].steps->field, constants_[0].values.data()};
+  }
+  if (!is_single() || !constant_row_[0] || !constants_[0].has_steps()) return {};
+  return {constants_[0].steps->sliding, &sliding_constants_};
 }
 
 double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f) const {

@@ -10,6 +10,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/higher_order.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/ode/stepper.hpp"
 #include "saltus/switching/bilinear_root.hpp"
 #include "saltus/switching/selection_newton.hpp"
 
@@ -55,7 +56,10 @@ class ModeField {
     if (solve_ != SlidingSolve::none) return slide(t, x, xdot);
     kernel_.prepared_field(t, x, constants_[0], xdot);
   }
-  /// Selections of the last evaluation, n_psi.
+  /// Stepper::attempt along this field, by native stages where there are some. Behind an evaluation in the mode.
+  ode::Attempt attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
+                       const ode::Tolerances& tolerances);
+  /// Selections of the last evaluation (those of attempts do not count), n_psi.
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   /// Exit functions at a point, one per sliding surface.
   void exits(double t, const double* x, ExitValues* values);
@@ -74,6 +78,7 @@ class ModeField {
   bool project(double t, double* x);
 
  private:
+  [[nodiscard]] ode::RightHandSideStages native_stages() const;
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
   void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]; not for one affine surface
   void gradients(double t, const double* x);
@@ -127,6 +132,7 @@ class ModeField {
   std::vector<double> condition_;                                  ///< by row: of a coupled selection
   std::vector<bool> constant_row_;                                 ///< gradient known once and for all in this mode
   std::vector<int> coordinate_;                                    ///< the only nonzero column of a row, or -1
+  evaluation::SlidingConstants sliding_constants_;                 ///< of one surface with a constant gradient
   Eigen::MatrixXd rows_;                                           ///< J, m x n_x
   double row_square_ = 0.0;                                        ///< |J|^2 of one sliding surface
   Eigen::VectorXd rates_, residual_;                               ///< d psi_I/dt, m

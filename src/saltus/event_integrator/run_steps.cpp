@@ -44,7 +44,7 @@ void Run::row_inside(double t) {
 void Run::rows_by_steps(double t_new) {
   const auto& times = options_.output.times;
   const auto take = [&](double t) {
-    return stepper_.attempt(right_hand_side(), t_, x_.data(), slope_.data(), t - t_, tolerances_);
+    return field_.attempt(stepper_, t_, x_.data(), slope_.data(), t - t_, tolerances_);
   };
   for (; next_output_ < times.size() && times[next_output_] < t_new; ++next_output_) {
     const double t = times[next_output_];
@@ -166,7 +166,7 @@ Run::Step Run::attempt() {
   const bool to_the_limit = t_ + h_try_ * (1.0 + 4.0 * rounding_unit) >= limit;
   const double t_new = to_the_limit ? limit : t_ + h_try_;
   const double h = t_new - t_;
-  if (stepper_.attempt(right_hand_side(), t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
+  if (field_.attempt(stepper_, t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
     return shorten(0.25) ? Step::shortened : undefined_step();
   }
   if (const double error = error_norm(); !(error <= 1.0)) {

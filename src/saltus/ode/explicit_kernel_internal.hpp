@@ -116,8 +116,13 @@ struct ExplicitKernel {
     const bool finite = evaluate_stages<Tableau, 1, Size>(step, work, std::make_index_sequence<last - 1>{}) &&
                         evaluate_stage<Tableau, last, Size>(step, work, work.x_new);
     if (!finite) return false;
-    error_norm = Pair::template error_norm<Size>(step, {tolerances, step.start, step.x_new}, work.argument);
+    find_error_norm(step, tolerances, work.argument, error_norm);
     return true;
+  }
+
+  static void find_error_norm(const ExplicitStep& step, const Tolerances& tolerances, double* work,
+                              double& error_norm) {
+    error_norm = Pair::template error_norm<Size>(step, {tolerances, step.start, step.x_new}, work);
   }
 
   static bool dense(const ExplicitStep& step, const StageWork& work, double* coefficients) {
@@ -151,7 +156,7 @@ struct ExplicitKernel {
   }
 
   static constexpr ExplicitMethod method{
-      take, Pair::template bounds<Size>, Pair::template mean_slopes<Size>, dense, stability_ratio,
+      take, find_error_norm,      Pair::template bounds<Size>, Pair::template mean_slopes<Size>, dense, stability_ratio,
       last, Tableau::dense_stages};
 };
 

@@ -73,15 +73,33 @@ ExplicitStep Stepper::explicit_step() const {
   return {t_, h_, start_.size(), start_.data(), x_new_.data(), stages_.data()};
 }
 
+StagesFunction Stepper::stages_function(const StagesFunctions& functions) const {
+  switch (method_) {
+    case Method::dopri5:
+      return functions.dopri5;
+    case Method::dop853:
+      return functions.dop853;
+    case Method::radau5:
+      return nullptr;
+  }
+  __builtin_unreachable();
+}
+
 Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
-                         const Tolerances& tolerances) {
+                         const Tolerances& tolerances, const RightHandSideStages& stages) {
   const auto n = static_cast<std::size_t>(n_);
   for (std::size_t i = 0; i < n; ++i) start_[i] = x[i];
   for (std::size_t i = 0; i < n; ++i) stages_[i] = slope[i];
   t_ = t;
   h_ = h;
   if (!all_finite(stages_.data(), n)) return Attempt::undefined;
-  if (explicit_ != nullptr) {
+  if (const StagesFunction take = stages_function(stages.functions); take != nullptr) {
+    const int evaluated = take(t, h, start_.data(), stages.data, stages_.data(), x_new_.data());
+    evaluations_ += evaluated < 0 ? -1 - evaluated : evaluated;
+    if (evaluated < 0) return Attempt::undefined;
+    explicit_->error_norm({t, h, n, start_.data(), x_new_.data(), stages_.data()}, tolerances, argument_.data(),
+                          error_norm_);
+  } else if (explicit_ != nullptr) {
     const StageWork work{f, evaluations_, x_new_.data(), stages_.data(), argument_.data()};
     // Not explicit_step(): reading back at once what has just been written costs more than a stage's sum.
     const ExplicitStep step{t, h, n, start_.data(), x_new_.data(), stages_.data()};

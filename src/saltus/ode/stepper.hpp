@@ -7,6 +7,7 @@
 
 #include "saltus/base/function_ref.hpp"
 #include "saltus/ode/bernstein.hpp"
+#include "saltus/ode/stages_function.hpp"
 
 namespace saltus::ode {
 
@@ -76,9 +77,13 @@ class Stepper {
   /// x and slope are copied first: they may be x_new() and slope_new() of the attempt before.
   /// With radau5 the same start may be tried with other lengths; a start at the end of the last attempt continues it
   /// (its polynomial gives starting values, its Jacobian is kept while that pays).
+  /// @param stages  f's stages in one function, if there is one: used in place of f, with the same result bit for bit
   /// @return `undefined` at the first stage that is not finite, without evaluating the others.
   Attempt attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
-                  const Tolerances& tolerances);
+                  const Tolerances& tolerances, const RightHandSideStages& stages = {});
+
+  /// Which of the functions attempt() uses, null if none.
+  [[nodiscard]] StagesFunction stages_function(const StagesFunctions& functions) const;
 
   /// Largest component of the local error estimate over atol + rtol max(|x|, |x_new|); <= 1 is acceptable, infinite if
   /// it overflows, never NaN. Valid after a finite attempt.

@@ -1,0 +1,23 @@
+// The stages of an explicit step by one function, made for one right-hand side: nothing is called between them.
+#pragma once
+
+namespace saltus::ode {
+
+/// As Stepper::attempt evaluates them, bit for bit: from x, h and k_1, which is there, the stages k_2, k_3, … up to the
+/// one at x_new, n doubles each, and x_new. `data` is what the function was made to know of its right-hand side.
+/// @return the number of stages evaluated; less than 0, -1 less that number, where one or its argument is not finite
+using StagesFunction = int (*)(double t, double h, const double* x, const void* data, double* stages, double* x_new);
+
+/// One for each method; null where there is none.
+struct StagesFunctions {
+  StagesFunction dopri5 = nullptr;
+  StagesFunction dop853 = nullptr;
+};
+
+/// Those of a right-hand side, with their data.
+struct RightHandSideStages {
+  StagesFunctions functions;
+  const void* data = nullptr;
+};
+
+}  // namespace saltus::ode
