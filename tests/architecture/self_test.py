@@ -11,7 +11,7 @@ TABLE = tomllib.loads((Path(__file__).parent / "dependencies.toml").read_text(en
 GOOD = {
     "CMakeLists.txt": "saltus_module(base)\nsaltus_module(expression LINKS base)\n"
     "saltus_module(model HEAVY_HEADERS LINKS base expression PUBLIC_LIBRARIES casadi::casadi)\n"
-    "saltus_module(evaluation LINKS base model\n  PRIVATE_LIBRARIES casadi::casadi)\nsaltus_module(ode LINKS base)\n",
+    "saltus_module(evaluation LINKS base model ode\n  PRIVATE_LIBRARIES casadi::casadi)\nsaltus_module(ode LINKS base)\n",
     "src/saltus/base/error.hpp": "#pragma once\n",
     "src/saltus/ode/stepper.cpp": '#include "saltus/ode/stepper.hpp"\n#include "saltus/base/error.hpp"\n',
     "src/saltus/model/system.hpp": '#include <casadi/core/sx.hpp>\n#include "saltus/expression/parser.hpp"\n',
@@ -116,7 +116,7 @@ class SelfTest(unittest.TestCase):
         self.assert_links_complain(bad, "links model, which the table forbids")
 
     def test_link_that_is_missing(self):
-        bad = GOOD["CMakeLists.txt"].replace("LINKS base model\n", "LINKS base\n")
+        bad = GOOD["CMakeLists.txt"].replace("LINKS base model ode\n", "LINKS base ode\n")
         self.assert_links_complain(bad, "does not link model")
 
     def test_folder_without_target(self):
