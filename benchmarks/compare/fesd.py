@@ -81,7 +81,7 @@ def measured_row(row, run, exact):
 
 
 def rows(program, timeout, kept):
-    """One by one; `kept`: rows of nosnoc measured before, by key."""
+    """One by one; `kept`: rows of nosnoc measured before, by key, if it is not to run again."""
     exact = references()
     installed = contenders.succeeds(NOSNOC, "-c", "import nosnoc")
     for problem, scheme, stages, form in lines():
@@ -92,8 +92,8 @@ def rows(program, timeout, kept):
             row = {"problem": problem, "form": form, "scheme": f"{scheme} {stages}", "steps": PROBLEMS[problem][1],
                    "contender": name}
             print(*row.values(), file=sys.stderr, flush=True)
-            if name != "Saltus" and key(row) in kept:
-                yield kept[key(row)]
+            if name != "Saltus" and kept is not None:
+                yield kept.get(key(row), {**row, "failed": "not measured"})
             elif name != "Saltus" and not installed:
                 yield {**row, "failed": "not installed"}
             else:
@@ -114,7 +114,7 @@ def stored_rows(file):
                 for row in csv.DictReader(stream)]
 
 
-def page(measured, loads):
+def page(measured, loads, remark):
     body = []
     saltus = {row_line(row): row.get("seconds_per_step") for row in measured if row["contender"] == "Saltus"}
     for row in measured:
@@ -126,7 +126,7 @@ def page(measured, loads):
     head = ["problem", "form", "scheme", "steps", "", "failed steps", "error", "ms per step", "ratio"]
     return ("# FESD: Saltus and nosnoc\n\nMade by `benchmarks/compare/fesd.py`; how to read it: "
             "[benchmarks/README.md](../README.md). Processes that wanted to run meanwhile (load average before and "
-            f"behind): {loads[0]:.1f}, {loads[1]:.1f}.\n\n" + table.markdown([head, ["---"] * len(head), *body]))
+            f"behind): {loads[0]:.1f}, {loads[1]:.1f}.{remark}\n\n" + table.markdown([head, ["---"] * len(head), *body]))
 
 
 def row_line(row):
@@ -142,17 +142,18 @@ def main():
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     file = options.output / "fesd.csv"
-    kept = {key(row): row for row in stored_rows(file) if options.keep_nosnoc and row["contender"] != "Saltus"}
+    stored = {key(row): row for row in stored_rows(file) if row["contender"] != "Saltus"}
     program = options.program or contenders.build(contenders.BUILD / "cmake", ("compare_fesd",)) / "compare_fesd"
     load_before = os.getloadavg()[2]
     measured = []
-    for row in rows(program.resolve(), options.timeout, kept):
+    for row in rows(program.resolve(), options.timeout, stored if options.keep_nosnoc else None):
         measured.append(row)
         with file.open("w", newline="", encoding="utf-8") as stream:  # what is measured is kept, whatever follows
             writer = csv.DictWriter(stream, COLUMNS)
             writer.writeheader()
             writer.writerows(measured)
-    text = page(measured, (load_before, os.getloadavg()[2]))
+    remark = " The rows of nosnoc are those of an earlier run." if options.keep_nosnoc else ""
+    text = page(measured, (load_before, os.getloadavg()[2]), remark)
     (options.output / "fesd.md").write_text(text, encoding="utf-8")
 
 
