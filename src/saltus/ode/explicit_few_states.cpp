@@ -1,6 +1,6 @@
-// Compiled without vector instructions: f writes one component after the other, and reading two of them at once has to
-// wait until both are in the cache, longer than a stage takes otherwise (dopri5, 3 states: 120 instead of 70 ns a
-// step).
+// Compiled without vector instructions but those of lanes_internal.hpp: f writes one component after the other, and
+// reading two of them at once has to wait until both are in the cache, longer than a stage takes otherwise (dopri5, 3
+// states: 120 instead of 70 ns a step).
 #include <array>
 #include <type_traits>
 #include <utility>
@@ -10,10 +10,10 @@
 namespace saltus::ode {
 namespace {
 
-template <class Pair, std::size_t... less>
+template <class Method, std::size_t... less>
 const ExplicitMethod& method_for(std::size_t n, std::index_sequence<less...>) {
   static constexpr std::array<const ExplicitMethod*, sizeof...(less)> methods{
-      &ExplicitKernel<Pair, std::integral_constant<std::size_t, less + 1>>::method...};
+      &ExplicitKernel<Method, std::integral_constant<std::size_t, less + 1>>::method...};
   return *methods[n - 1];
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "saltus/ode/explicit_method_internal.hpp"
+#include "saltus/ode/lanes_internal.hpp"
 #include "saltus/ode/stage_sums_internal.hpp"
 #include "saltus/ode/step_checks_internal.hpp"
 
@@ -63,17 +64,19 @@ inline bool evaluate_stages(const ExplicitStep& step, const StageWork& work, std
 /// slides or rests has no error and must not buy the others a larger one. NaN if a component is (overflow), which a
 /// comparison would pass over.
 template <const auto& rows, std::size_t row, class Size>
-inline double largest_error(const ExplicitStep& step, const ErrorScale& scale, double* __restrict ratio) {
+inline double largest_error(const ExplicitStep& step, const Tolerances& tolerances) {
   const std::size_t n = size_of<Size>(step);
   const double* stages = step.stages;
   const double h = step.h;
-  for (std::size_t i = 0; i < n; ++i) ratio[i] = std::abs(h * stage_sum<rows, row>(stages, n, i)) / scale(i);
   double largest = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (std::isnan(ratio[i])) return ratio[i];
-    largest = std::max(largest, ratio[i]);
-  }
-  return largest;
+  double sum = 0.0;
+  for_lanes(n, [&]<class Value>(Lanes<Value>, std::size_t i) {
+    const Value scale = error_scale(tolerances, load<Value>(step.start + i), load<Value>(step.x_new + i));
+    const Value ratio = absolute(h * stage_sum<rows, row, Value>(stages, n, i)) / scale;
+    largest = larger(largest, largest_lane(ratio));
+    sum += sum_of_lanes(ratio);
+  });
+  return std::isnan(sum) ? sum : largest;
 }
 
 /// Coefficients 0 to 3 of the nested form: the cubic Hermite interpolant of both ends.
@@ -106,23 +109,18 @@ inline void dense_rows(const ExplicitStep& step, double* result, std::index_sequ
   (dense_row<Tableau, row, Size>(step, result + row * size_of<Size>(step)), ...);
 }
 
-/// The functions of one method; `Pair` has its Tableau, error_norm, bounds, mean_slopes and stability_limit.
-template <class Pair, class Size>
+/// The functions of one method; `Method` has its Tableau, error_norm, bounds, mean_slopes and stability_limit.
+template <class Method, class Size>
 struct ExplicitKernel {
-  using Tableau = typename Pair::Tableau;
+  using Tableau = typename Method::Tableau;
   static constexpr std::size_t last = Tableau::stages - 1;
 
   static bool take(const ExplicitStep& step, const StageWork& work, const Tolerances& tolerances, double& error_norm) {
     const bool finite = evaluate_stages<Tableau, 1, Size>(step, work, std::make_index_sequence<last - 1>{}) &&
                         evaluate_stage<Tableau, last, Size>(step, work, work.x_new);
     if (!finite) return false;
-    find_error_norm(step, tolerances, work.argument, error_norm);
+    error_norm = Method::template error_norm<Size>(step, tolerances);
     return true;
-  }
-
-  static void find_error_norm(const ExplicitStep& step, const Tolerances& tolerances, double* work,
-                              double& error_norm) {
-    error_norm = Pair::template error_norm<Size>(step, {tolerances, step.start, step.x_new}, work);
   }
 
   static bool dense(const ExplicitStep& step, const StageWork& work, double* coefficients) {
@@ -152,12 +150,17 @@ struct ExplicitKernel {
     }
     constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
     if (!(states > rounding * rounding * size)) return 0.0;
-    return std::abs(step.h) * std::sqrt(slopes / states) / Pair::stability_limit;
+    return std::abs(step.h) * std::sqrt(slopes / states) / Method::stability_limit;
   }
 
-  static constexpr ExplicitMethod method{
-      take, find_error_norm,      Pair::template bounds<Size>, Pair::template mean_slopes<Size>, dense, stability_ratio,
-      last, Tableau::dense_stages};
+  static constexpr ExplicitMethod method{take,
+                                         Method::template error_norm<Size>,
+                                         Method::template bounds<Size>,
+                                         Method::template mean_slopes<Size>,
+                                         dense,
+                                         stability_ratio,
+                                         last,
+                                         Tableau::dense_stages};
 };
 
 }  // namespace saltus::ode

@@ -31,8 +31,8 @@ struct ExplicitMethod {
   /// The stages behind the first one up to that at x_new, and the error norm (NaN where it overflows); false at the
   /// first stage that is not finite.
   bool (*take)(const ExplicitStep& step, const StageWork& work, const Tolerances& tolerances, double& error_norm);
-  /// The error norm alone, of a step whose stages are there; `work` is n doubles.
-  void (*error_norm)(const ExplicitStep& step, const Tolerances& tolerances, double* work, double& error_norm);
+  /// The error norm alone, of a step whose stages are there.
+  double (*error_norm)(const ExplicitStep& step, const Tolerances& tolerances);
   void (*bounds)(const ExplicitStep& step, double* low, double* high);
   void (*mean_slopes)(const ExplicitStep& step, double* low, double* high);
   /// Coefficients of the dense output; false if a further stage is not finite, and then those of the cubic.

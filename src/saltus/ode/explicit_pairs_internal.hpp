@@ -1,7 +1,6 @@
 // The embedded pairs: their error norms, and the bounds of their steps.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -16,33 +15,37 @@ struct Dopri5 {
   static constexpr double stability_limit = 3.25;  ///< of code DOPRI5
 
   template <class Size>
-  static double error_norm(const ExplicitStep& step, const ErrorScale& scale, double* ratio) {
-    return largest_error<Tableau::error, 0, Size>(step, scale, ratio);
+  static double error_norm(const ExplicitStep& step, const Tolerances& tolerances) {
+    return largest_error<Tableau::error, 0, Size>(step, tolerances);
   }
 
   /// Of the nested form of the dense output of one component: x + theta (difference + (1 - theta) (bend + theta (twist
   /// + (1 - theta) h last))).
+  template <class Value>
   struct Nested {
-    double difference, bend, twist, last;
+    Value start, end, difference, bend, twist, last;
   };
-  static Nested nested(const ExplicitStep& step, std::size_t n, std::size_t i) {
-    const double difference = step.x_new[i] - step.start[i];
-    const double bend = step.h * step.stages[i] - difference;
-    const double twist = difference - step.h * step.stages[(Tableau::stages - 1) * n + i] - bend;
-    return {difference, bend, twist, stage_sum<Tableau::dense, 0>(step.stages, n, i)};
+  template <class Value>
+  static Nested<Value> nested(const ExplicitStep& step, std::size_t n, std::size_t i) {
+    const Value start = load<Value>(step.start + i);
+    const Value end = load<Value>(step.x_new + i);
+    const Value difference = end - start;
+    const Value bend = step.h * load<Value>(step.stages + i) - difference;
+    const Value twist = difference - step.h * load<Value>(step.stages + (Tableau::stages - 1) * n + i) - bend;
+    return {start, end, difference, bend, twist, stage_sum<Tableau::dense, 0, Value>(step.stages, n, i)};
   }
 
   /// The chord, widened by the largest values of the other terms.
   template <class Size>
   static void bounds(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
     const std::size_t n = size_of<Size>(step);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Nested terms = nested(step, n, i);
-      const double width =
-          std::abs(terms.bend) / 4.0 + std::abs(terms.twist) * (4.0 / 27.0) + std::abs(step.h * terms.last) / 16.0;
-      low[i] = std::min(step.start[i], step.x_new[i]) - width;
-      high[i] = std::max(step.start[i], step.x_new[i]) + width;
-    }
+    for_lanes(n, [&]<class Value>(Lanes<Value>, std::size_t i) {
+      const auto terms = nested<Value>(step, n, i);
+      const Value width =
+          absolute(terms.bend) / 4.0 + absolute(terms.twist) * (4.0 / 27.0) + absolute(step.h * terms.last) / 16.0;
+      store(low + i, smaller(terms.start, terms.end) - width);
+      store(high + i, larger(terms.start, terms.end) + width);
+    });
   }
 
   /// (p(theta) - x) / (theta h) = d + (1 - theta) (bend + theta (twist + (1 - theta) h last)) / h with the chord's
@@ -50,14 +53,14 @@ struct Dopri5 {
   template <class Size>
   static void mean_slopes(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
     const std::size_t n = size_of<Size>(step);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Nested terms = nested(step, n, i);
-      const double slope = step.stages[i];
-      const double chord = terms.difference / step.h;
-      const double width = std::abs(terms.twist / step.h) / 4.0 + std::abs(terms.last) * (4.0 / 27.0);
-      low[i] = std::min(slope, chord) - width;
-      high[i] = std::max(slope, chord) + width;
-    }
+    for_lanes(n, [&]<class Value>(Lanes<Value>, std::size_t i) {
+      const auto terms = nested<Value>(step, n, i);
+      const Value slope = load<Value>(step.stages + i);
+      const Value chord = terms.difference / step.h;
+      const Value width = absolute(terms.twist / step.h) / 4.0 + absolute(terms.last) * (4.0 / 27.0);
+      store(low + i, smaller(slope, chord) - width);
+      store(high + i, larger(slope, chord) + width);
+    });
   }
 };
 
@@ -69,9 +72,9 @@ struct Dop853 {
   /// The estimate of order 5, damped where it is small against a tenth of the one of order 3: Hairer, Norsett & Wanner,
   /// (10.17) of chapter II, with the largest component in place of their mean.
   template <class Size>
-  static double error_norm(const ExplicitStep& step, const ErrorScale& scale, double* ratio) {
-    const double fifth = largest_error<Tableau::error, 0, Size>(step, scale, ratio);
-    const double third = largest_error<Tableau::error, 1, Size>(step, scale, ratio);
+  static double error_norm(const ExplicitStep& step, const Tolerances& tolerances) {
+    const double fifth = largest_error<Tableau::error, 0, Size>(step, tolerances);
+    const double third = largest_error<Tableau::error, 1, Size>(step, tolerances);
     if (fifth == 0.0) return 0.0;
     const double ratio_of_both = 0.1 * (third / fifth);
     return fifth / std::sqrt(1.0 + ratio_of_both * ratio_of_both);
@@ -86,17 +89,17 @@ struct Dop853 {
   static void bounds(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
     const std::size_t n = size_of<Size>(step);
     const double h = step.h;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double begin = step.start[i];
-      const double end = step.x_new[i];
-      const double difference = end - begin;
-      double width = std::abs(h * step.stages[i] - difference);
+    for_lanes(n, [&]<class Value>(Lanes<Value>, std::size_t i) {
+      const Value begin = load<Value>(step.start + i);
+      const Value end = load<Value>(step.x_new + i);
+      const Value difference = end - begin;
+      Value width = absolute(h * load<Value>(step.stages + i) - difference);
       for (std::size_t stage = first_good; stage < Tableau::stages; ++stage) {
-        width = std::max(width, std::abs(h * step.stages[stage * n + i] - difference));
+        width = larger(width, absolute(h * load<Value>(step.stages + stage * n + i) - difference));
       }
-      low[i] = std::min(begin, end) - width;
-      high[i] = std::max(begin, end) + width;
-    }
+      store(low + i, smaller(begin, end) - width);
+      store(high + i, larger(begin, end) + width);
+    });
   }
 
   // The mean of p' over [0, theta], p' interpolated at the nodes of stages 1, 4, 8, 10, 11, 12, has weights of sum 1,
@@ -105,17 +108,18 @@ struct Dop853 {
   template <class Size>
   static void mean_slopes(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
     const std::size_t n = size_of<Size>(step);
-    for (std::size_t i = 0; i < n; ++i) {
-      double least = step.stages[i];
-      double largest = least;
+    for_lanes(n, [&]<class Value>(Lanes<Value>, std::size_t i) {
+      Value least = load<Value>(step.stages + i);
+      Value largest = least;
       for (std::size_t stage = first_good; stage < Tableau::stages; ++stage) {
-        least = std::min(least, step.stages[stage * n + i]);
-        largest = std::max(largest, step.stages[stage * n + i]);
+        const Value slope = load<Value>(step.stages + stage * n + i);
+        least = smaller(least, slope);
+        largest = larger(largest, slope);
       }
-      const double width = 0.5 * (largest - least);
-      low[i] = least - width;
-      high[i] = largest + width;
-    }
+      const Value width = 0.5 * (largest - least);
+      store(low + i, least - width);
+      store(high + i, largest + width);
+    });
   }
 };
 

@@ -233,7 +233,6 @@ bool Radau5::difference(const RadauTrial& trial, Eigen::Index column, double inc
 /// The estimate (IV.8.19), largest component in units of its scale. Not filtered once more (IV.8.20) where it asks for
 /// a rejection: that passes over fast transients, and an event engine has to see what happens in them.
 double Radau5::estimate(const RadauTrial& trial, const double* x_new) {
-  const ErrorScale scale{trial.tolerances, trial.x, x_new};
   const auto& e = Tableau::error;
   for (Eigen::Index i = 0; i < n_; ++i) {
     right_[i] = trial.slope[i] + (e[0] * z_(i, 0) + e[1] * z_(i, 1) + e[2] * z_(i, 2)) / trial.h;
@@ -241,7 +240,7 @@ double Radau5::estimate(const RadauTrial& trial, const double* x_new) {
   solution_ = real_.solve(right_);
   double largest = 0.0;
   for (Eigen::Index i = 0; i < n_; ++i) {
-    const double ratio = std::abs(solution_[i]) / scale(static_cast<std::size_t>(i));
+    const double ratio = std::abs(solution_[i]) / error_scale(trial.tolerances, trial.x[i], x_new[i]);
     if (std::isnan(ratio)) return std::numeric_limits<double>::infinity();
     largest = std::max(largest, ratio);
   }

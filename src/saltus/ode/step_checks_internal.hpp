@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "saltus/ode/lanes_internal.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::ode {
@@ -22,17 +23,13 @@ inline bool all_finite(const double* values, std::size_t n) {
   return (carries >> 63) == 0;
 }
 
-struct ErrorScale {
-  Tolerances tolerances;
-  const double* x;
-  const double* x_new;
-
-  double operator()(std::size_t i) const {
-    // A component that is 0 on both sides with atol = 0 has no scale: its error is 0 or far too large, but 0 / 0 is
-    // not.
-    return std::max(tolerances.atol + tolerances.rtol * std::max(std::abs(x[i]), std::abs(x_new[i])),
-                    std::numeric_limits<double>::min());
-  }
-};
+/// What an error of a component, or of a pair of them, is measured in.
+template <class Value>
+inline Value error_scale(const Tolerances& tolerances, Value x, Value x_new) {
+  // A component that is 0 on both sides with atol = 0 has no scale: its error is 0 or far too large, but 0 / 0 is
+  // not.
+  const Value scale = tolerances.atol + tolerances.rtol * larger(absolute(x), absolute(x_new));
+  return larger(scale, Value{} + std::numeric_limits<double>::min());
+}
 
 }  // namespace saltus::ode

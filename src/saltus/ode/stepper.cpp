@@ -97,8 +97,7 @@ Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const doubl
     const int evaluated = take(t, h, start_.data(), stages.data, stages_.data(), x_new_.data());
     evaluations_ += evaluated < 0 ? -1 - evaluated : evaluated;
     if (evaluated < 0) return Attempt::undefined;
-    explicit_->error_norm({t, h, n, start_.data(), x_new_.data(), stages_.data()}, tolerances, argument_.data(),
-                          error_norm_);
+    error_norm_ = explicit_->error_norm({t, h, n, start_.data(), x_new_.data(), stages_.data()}, tolerances);
   } else if (explicit_ != nullptr) {
     const StageWork work{f, evaluations_, x_new_.data(), stages_.data(), argument_.data()};
     // Not explicit_step(): reading back at once what has just been written costs more than a stage's sum.
