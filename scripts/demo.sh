@@ -11,10 +11,15 @@ cmake --build --preset demo --parallel "$(nproc)"
 tool=build/release/bin/saltus
 mkdir -p demo
 simulate() {
-  printf '\n$ %s\n' "$tool simulate $1 --out demo/$1.json --report demo/$1.html"
-  "$tool" simulate "$1" --out "demo/$1.json" --report "demo/$1.html"
+  local model=$1 name=$1
+  shift
+  [ $# -eq 0 ] || name=$model-$2
+  printf '\n$ %s\n' "$tool simulate $model${*:+ $*} --out demo/$name.json --report demo/$name.html"
+  "$tool" simulate "$model" "$@" --out "demo/$name.json" --report "demo/$name.html"
 }
 for model in rotating-oscillator relay-feedback stick-slip; do
   simulate "$model"
 done
+# Multipliers and lengths of finite elements: its report has a card for them.
+simulate sliding --method fesd --set simulate.fesd.steps=10
 printf '\nReport: %s\n' "$PWD/demo/stick-slip.html"

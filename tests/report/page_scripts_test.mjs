@@ -8,7 +8,7 @@ const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
       "format.js", "series.js", "panels.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
-      "branches.js", "intersection.js"
+      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
@@ -302,4 +302,59 @@ test("branches are one path with a gap behind each, without those outside the wi
   const path = saltus.branchPath(branches, ({trajectory}) => [trajectory.t, trajectory.x[0]], [0, 5], 100);
   assert.deepEqual(path, [[1, 2, 3, null, 2, 4, null], [5, 6, 7, null, 8, 9, null]]);
   assert.deepEqual(saltus.branchPath([], () => [], [0, 5], 100), []);
+});
+
+/** Two elements of two stages: sliding ends at t = 1, where alpha jumps and lambda does not. */
+const elements = {
+  points: 4,
+  t: [0, 0.25, 1, 1, 1, 1.5, 3, 3],
+  selections: [{name: "a", form: "step"}],
+  lambda: [[0, 0, 0, 0, 0, 0.5, 2, 2]],
+  selection: [[0.5, 0.6, 0.9, 0.9, 1, 1, 1, 1]],
+};
+
+test("elements of a window are those that it touches", () => {
+  assert.deepEqual(saltus.elementsInWindow(elements, [0, 3]), [0, 2]);
+  assert.deepEqual(saltus.elementsInWindow(elements, [1.2, 2]), [1, 2]);
+  assert.deepEqual(saltus.elementsInWindow(elements, [0.1, 0.2]), [0, 1]);
+});
+
+test("a selection jumps between elements, a multiplier is continuous", () => {
+  const alpha = saltus.elementCurve(elements, elements.selection[0], [0, 2]);
+  assert.deepEqual(alpha.jumps, {x: [1, 1, null], y: [0.9, 1, null]});
+  assert.deepEqual(alpha.y.filter((value) => value === null).length, 1);
+  const lambda = saltus.elementCurve(elements, elements.lambda[0], [0, 2]);
+  assert.deepEqual(lambda.jumps.x, []);
+  assert.deepEqual(lambda.x, elements.t);
+});
+
+test("psi is the difference of the two multipliers of a step function", () => {
+  const psi = {...elements, lambda: [[-1, -0.5, 0, 0, 0, 0.5, 2, 2]]};
+  const {multipliers: [p, n], fraction} = saltus.multiplierCurves(psi, 0);
+  assert.deepEqual(p.values, [0, 0, 0, 0, 0, 0.5, 2, 2]);
+  assert.deepEqual(n.values.map(Math.abs), [1, 0.5, 0, 0, 0, 0, 0, 0]);
+  assert.equal(fraction.name, "α(a)");
+  const stewart = saltus.multiplierCurves({...elements, selections: [{name: "a > 0", form: "stewart"}]}, 0);
+  assert.equal(stewart.multipliers.length, 1);
+  assert.equal(stewart.fraction.name, "θ(a > 0)");
+});
+
+test("stages and lengths of elements", () => {
+  assert.deepEqual(saltus.stagePoints(elements, elements.selection[0], [1, 2]), {x: [1.5, 3], y: [1, 1]});
+  assert.deepEqual(saltus.lengthSteps(elements, [0, 2]), {x: [0, 1, 1, 3], y: [1, 1, 2, 2]});
+});
+
+test("the selection that slides is shown first", () => {
+  assert.equal(saltus.firstSelection({selection: [[0, 0], [0, 1], [0, 0.5]]}), 2);
+  assert.equal(saltus.firstSelection({selection: [[0, 0], [0, 1]]}), 1);
+  assert.equal(saltus.firstSelection({selection: [[0, 0]]}), 0);
+});
+
+test("entries of a matrix are shaded by logarithm", () => {
+  assert.equal(saltus.heat(-100, 100), 1);
+  assert.equal(saltus.heat(1, 100), 0.5);
+  assert.equal(saltus.heat(1e-9, 100), 0);
+  assert.equal(saltus.heat(0, 100), 0);
+  assert.equal(saltus.heat(null, 100), 0);
+  assert.equal(saltus.heat(0, 0), 0);
 });

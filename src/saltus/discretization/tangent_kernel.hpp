@@ -23,6 +23,17 @@ struct TangentValues {
   std::vector<double> rate_t, rate_x, rate_selection, rate_p;            ///< n rows: of indicator_x f + indicator_t
 };
 
+/// The direction f_selection v of a projection along selections v, and its derivatives; n_x rows.
+struct DirectionValues {
+  std::vector<double> f_selection, by_t, by_x, by_selection, by_p;
+};
+
+/// Derivatives of the arguments of what is held within a simulation step, one row each; each argument depends on the
+/// values of those before it.
+struct HeldTangent {
+  std::vector<double> by_t, by_x, by_held, by_p;
+};
+
 /// One kernel per thread: the work space is inside.
 class TangentKernel {
  public:
@@ -39,14 +50,17 @@ class TangentKernel {
   [[nodiscard]] std::size_t states() const;
   [[nodiscard]] std::size_t selections() const;
   [[nodiscard]] std::size_t parameters() const;
-  /// Whether what is held within a simulation step changes at times that depend on a state or on a parameter: then the
-  /// derivatives with respect to it miss the shift of these times.
-  [[nodiscard]] const std::vector<bool>& states_of_held() const;
-  [[nodiscard]] const std::vector<bool>& parameters_of_held() const;
+  /// Number of symbols that are held within a simulation step.
+  [[nodiscard]] std::size_t held() const;
 
   /// Makes `values` as large as evaluate() needs it.
   void size(TangentValues& values) const;
   void evaluate(double t, const double* x, const double* selection, const double* held, TangentValues& values) const;
+  /// `along`: changes of the selections, v. Makes `values` as large as needed.
+  void direction(double t, const double* x, const double* selection, const double* held, const double* along,
+                 DirectionValues& values) const;
+  /// How the times move at which something held changes: argument(t, x, p) = the bound that it reaches.
+  void held_tangent(double t, const double* x, const double* held, HeldTangent& values) const;
 
  private:
   struct Implementation;

@@ -97,6 +97,34 @@ MatrixXd ElementTangent::projected_selections(const ActiveSet& set, const discre
   return -changes * solve(surfaces_of(set, matrix), surfaces_of(set, rate));
 }
 
+/// The end is x_1 = x_b + D mu, x_b = x_0 + h sum b_l f_l, where the direction D = f_alpha is that at x_b and the last
+/// stage's selections: d x_1 = (1 + (D mu)_x) d x_b + D d mu + (D mu)_alpha d alpha_s + (D mu)_t d t + (D mu)_p d p.
+/// The rows of the end are those of x_b up to here.
+void ElementTangent::add_projection(System& system, const Element& element, const ActiveSet& set, const double* held,
+                                    const Directions& go) {
+  const Index lengths = system.end + n_x_, count = system.matrix.rows() - lengths;
+  Eigen::VectorXd before = ConstVector(element.x.data(), n_x_);
+  before += element.h * ConstMatrix(element.stage_slopes.data(), n_x_, n_s_) * tableau_.b;
+  const double* selections = element.stage_selections.data() + (n_s_ - 1) * n_;
+  const MatrixXd& changes = system.basis.back();
+  const double t = element.t + element.h;
+  evaluate(t, before.data(), selections, set, held, left_);
+  const MatrixXd along = ConstMatrix(left_.f_selection.data(), n_x_, n_) * changes;
+  const Eigen::VectorXd moved = ConstVector(element.end.data(), n_x_) - before;
+  const Eigen::VectorXd mu = changes * solve(along, moved);
+  kernel_.direction(t, before.data(), inside_.data(), held, mu.data(), direction_);
+  const MatrixXd turned = MatrixXd::Identity(n_x_, n_x_) + ConstMatrix(direction_.by_x.data(), n_x_, n_x_);
+  auto stages = system.matrix.block(system.end, 0, n_x_, system.end);
+  stages = (turned * stages).eval();
+  auto right = system.right.middleRows(system.end, n_x_);
+  right = (turned * right).eval();
+  right += ConstVector(direction_.by_t.data(), n_x_) * (go.t + go.h);
+  right += ConstMatrix(direction_.by_p.data(), n_x_, n_p_) * go.p;
+  system.matrix.block(system.end, system.place.back() + n_x_, n_x_, changes.cols()) -=
+      ConstMatrix(direction_.by_selection.data(), n_x_, n_) * changes;
+  system.matrix.block(system.end, lengths, n_x_, count) = -along;
+}
+
 MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> sets, const std::vector<double>& left,
                              const double* held, const Directions& go) {
   const bool one_set = sets.size() == 1;
@@ -169,8 +197,7 @@ MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> 
   }
   add_quadrature(system.end, [&](Index l) { return tableau_.b(l); });
   if (projected) {
-    const ConstMatrix by_selection(right_.f_selection.data(), n_x_, n_);
-    system.matrix.block(system.end, lengths, n_x_, size - lengths) = -by_selection * system.basis.back();
+    add_projection(system, element, sets[0], held, go);
     add_surfaces(lengths, system.end, sets[0], right_, 1.0);
   }
   return solve(system.matrix, system.right).middleRows(system.end, n_x_);

@@ -41,6 +41,8 @@ class ElementTangent {
   using Matrix = Eigen::MatrixXd;
 
   struct System;
+  void add_projection(System& system, const Element& element, const ActiveSet& set, const double* held,
+                      const Directions& go);
   void evaluate(double t, const double* x, const double* selections, const ActiveSet& set, const double* held,
                 discretization::TangentValues& at);
   [[nodiscard]] Matrix basis(const ActiveSet& set) const;
@@ -57,6 +59,7 @@ class ElementTangent {
   Index n_x_, n_, n_p_, n_s_;
   std::vector<discretization::TangentValues> values_;  ///< of the stages
   discretization::TangentValues left_, right_;
+  discretization::DirectionValues direction_;
   std::vector<double> inside_;
 };
 

@@ -3,6 +3,25 @@
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::fesd_integrator {
+namespace {
+
+std::string region_name(const model::System& system, const reformulation::Dcs& dcs, const reformulation::DcsPart& part,
+                        int region) {
+  if (part.mode_group >= 0) {
+    const auto& group = system.mode_groups[static_cast<std::size_t>(part.mode_group)];
+    const std::string& mode = group.mode_names[static_cast<std::size_t>(region)];
+    return group.name.empty() ? mode : group.name + "." + mode;
+  }
+  std::string sides;
+  for (std::size_t j = 0; j < part.surfaces.size(); ++j) {
+    if (j > 0) sides += ", ";
+    const bool above = part.signs(region, static_cast<Eigen::Index>(j)) > 0;
+    sides += dcs.surfaces[static_cast<std::size_t>(part.surfaces[j])].name + (above ? " > 0" : " < 0");
+  }
+  return sides;
+}
+
+}  // namespace
 
 Facts facts(const model::System& system, const reformulation::Dcs& dcs) {
   Facts facts;
@@ -12,7 +31,16 @@ Facts facts(const model::System& system, const reformulation::Dcs& dcs) {
   facts.n_functions = system.switching.size();
   facts.initial_state = system.initial_state;
   for (const auto& part : dcs.parts) {
-    facts.parts.push_back({part.form == reformulation::Form::stewart, part.first, part.count});
+    const bool simplex = part.form == reformulation::Form::stewart;
+    facts.parts.push_back({simplex, part.first, part.count});
+    for (int i = 0; i < part.count; ++i) {
+      if (simplex) {
+        facts.selections.push_back({region_name(system, dcs, part, i), result::SelectionForm::stewart});
+      } else {
+        const int surface = part.surfaces[static_cast<std::size_t>(i)];
+        facts.selections.push_back({dcs.surfaces[static_cast<std::size_t>(surface)].name, result::SelectionForm::step});
+      }
+    }
   }
   for (const auto& column : system.columns) {
     const auto& function = system.switching[static_cast<std::size_t>(column.function)];

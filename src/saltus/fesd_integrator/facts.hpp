@@ -52,6 +52,8 @@ struct Facts {
   std::vector<Part> parts;
   std::vector<ColumnFact> columns;
   std::vector<RegionFact> regions;
+  /// Names of selections: of the surface; in Stewart's form of the region, its mode or its sides ("a > 0, b < 0").
+  std::vector<result::ElementSelection> selections;
   std::vector<HeldFact> held;
   std::vector<EventFact> events;
   std::vector<double> initial_state;

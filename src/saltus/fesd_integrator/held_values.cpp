@@ -65,6 +65,7 @@ double HeldValues::refined(std::size_t symbol, int bound, double lower, double u
 
 double HeldValues::next_change(double t, double end, const double* x) {
   double first = end;
+  next_changing_.reset();
   constexpr int pieces = 4;
   const auto& nodes = ode::interpolation_nodes();
   for (int piece = 0; piece < pieces && first == end && !facts_.empty(); ++piece) {
@@ -87,7 +88,9 @@ double HeldValues::next_change(double t, double end, const double* x) {
         const double lower = begin + std::max(0.0, change->lower - 1e-3) * length;
         const double upper = begin + std::min(1.0, change->upper + 1e-3) * length;
         const double at = refined(k, bound, std::max(lower, t), upper, x);
-        if (at > t) first = std::min(first, at);
+        if (!(at > t) || at > first || (at == first && next_changing_)) continue;
+        first = at;
+        next_changing_ = k;
       }
     }
   }

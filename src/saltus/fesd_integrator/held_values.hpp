@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "saltus/discretization/point_functions.hpp"
@@ -23,6 +24,8 @@ class HeldValues {
   /// The first time in (t, end] at which one of the arguments leaves its sign or its cell; `end` if none does. Signs
   /// between the points where they are looked at are those of interpolants of degree 8 in a quarter of the interval.
   [[nodiscard]] double next_change(double t, double end, const double* x);
+  /// What that is; nullopt if none does. Of several at the same time the first.
+  [[nodiscard]] std::optional<std::size_t> next_changing() const { return next_changing_; }
 
  private:
   [[nodiscard]] double distance(std::size_t symbol, int bound) const;
@@ -34,6 +37,7 @@ class HeldValues {
   std::vector<double> values_, arguments_, next_;
   std::vector<double> signs_;  ///< of the arguments of selections
   std::vector<long> cells_;
+  std::optional<std::size_t> next_changing_;
 };
 
 }  // namespace saltus::fesd_integrator

@@ -9,6 +9,7 @@
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/result/elements.hpp"
 #include "saltus/result/progress.hpp"
 #include "saltus/result/result.hpp"
 #include "saltus/result/sensitivities.hpp"
@@ -52,6 +53,7 @@ struct IntegrationOptions {
   std::vector<std::pair<int, int>> initial_mode;  ///< index into System::switching -> forced mode at the start
   evaluation::NativeCode native = evaluation::NativeCode::off;  ///< of everything that is evaluated
   bool sensitivities = false;                                   ///< asks for Integration::sensitivities
+  bool record_elements = false;                                 ///< asks for Integration::elements
 };
 
 using result::Continue;
@@ -66,6 +68,7 @@ struct Integration {
   result::Trajectory trajectory;
   result::Statistics statistics;  ///< steps: elements; rejected: simulation steps that were divided
   std::optional<result::Sensitivities> sensitivities;  ///< of a completed run, if asked for
+  std::optional<result::Elements> elements;            ///< if asked for; an element that an event stops is not in it
 };
 
 /// Solves the equations of FESD, (37)-(41) of [nurkanovic2024], one simulation step of length T = (until - from) /

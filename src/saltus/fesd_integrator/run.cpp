@@ -24,6 +24,8 @@ Run::Run(const discretization::StageKernel& kernel, const discretization::PointF
       fixed_(kernel, facts.parts, solver_),
       held_(functions, facts.held),
       recorder_(functions, facts),
+      element_recorder_(options.record_elements ? std::optional<ElementRecorder>({kernel, facts, options.tableau})
+                                                : std::nullopt),
       user_events_(functions, facts.events),
       t_(options.from),
       x_(facts.initial_state),
@@ -48,6 +50,11 @@ Integration Run::run() {
                            : options_.from + (options_.until - options_.from) * (static_cast<double>(k + 1) / steps);
     while (!stopped() && t_ < end) {
       const double change = held_.next_change(t_, end, x_.data());
+      time_event_.reset();
+      // At the end of the run nothing follows that could feel it.
+      if (const auto changing = held_.next_changing(); changing && change < options_.until) {
+        time_event_ = {change, *changing};
+      }
       if (options_.step_problem != nullptr) {
         advance_by_problem(*options_.step_problem, change);
       } else if (options_.switches == IntegrationOptions::Switches::detected) {
@@ -72,6 +79,7 @@ Integration Run::run() {
   integration.final = recorder_.last();
   integration.events = std::move(recorder_.event_list());
   integration.trajectory = std::move(recorder_.trajectory());
+  if (element_recorder_) integration.elements = element_recorder_->take();
   statistics_.rhs_evaluations = kernel_.evaluations();
   integration.statistics = statistics_;
   return integration;
@@ -136,6 +144,9 @@ bool Run::step_counts() {
 void Run::hold_behind() {
   held_before_.assign(held_.data(), held_.data() + facts_.held.size());
   if (held_.set_behind(t_, nominal_, x_.data()) == HeldValues::Change::none) return;
+  if (propagation_ != nullptr && t_ < options_.until) {
+    propagation_->held_changed(t_, x_.data(), selections_.data(), held_before_.data(), held_.data());
+  }
   previous_.reset();
   const ActiveSet before = set_;
   const auto selections = selections_;
@@ -203,6 +214,7 @@ void Run::accept(const Element& element, const std::vector<double>& left, const 
   } else if (!record_user_events(element, left, end)) {
     return;
   }
+  if (element_recorder_) element_recorder_->add(element, left, right, end, held_.data());
   t_ = end;
   x_ = element.end;
   selections_ = right;
@@ -215,7 +227,8 @@ void Run::accept(const Element& element, const std::vector<double>& left, const 
 
 void Run::accept_chain(std::size_t count, double end_time, const Condition* closing) {
   if (propagation_ != nullptr) {
-    propagation_->chain({chain_.elements.data(), count}, {chain_.left.data(), count + 1}, set_, held_.data(), closing);
+    propagation_->chain({chain_.elements.data(), count}, {chain_.left.data(), count + 1}, set_, held_.data(), closing,
+                        changing_at(end_time));
   }
   for (std::size_t i = 0; i < count && !stopped(); ++i) {
     const Element& element = chain_.elements[i];

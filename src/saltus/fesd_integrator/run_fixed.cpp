@@ -12,6 +12,9 @@ void Run::advance_fixed(double end) {
   // A time event inside a step divides it: the parts keep the mean length at most.
   const int count = std::max(1, static_cast<int>(std::ceil((end - t_) / nominal_ * options_.elements - 1e-9)));
   const double begin = t_, h = (end - t_) / count;
+  if (propagation_ != nullptr) {
+    propagation_->begin_fixed_steps(count, {end, x_.data(), held_.data(), changing_at(end)});
+  }
   for (int i = 0; i < count && !stopped(); ++i) {
     const double right = i + 1 == count ? end : begin + (i + 1) * h;
     if (!fixed_.solve(begin_here(), h, set_, held_.data(), chain_.elements[0])) {

@@ -10,6 +10,7 @@
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/active_set.hpp"
 #include "saltus/fesd_integrator/element.hpp"
+#include "saltus/fesd_integrator/element_recorder.hpp"
 #include "saltus/fesd_integrator/facts.hpp"
 #include "saltus/fesd_integrator/fixed_element.hpp"
 #include "saltus/fesd_integrator/held_values.hpp"
@@ -117,7 +118,17 @@ class Run {
   FixedElement fixed_;
   HeldValues held_;
   Recorder recorder_;
+  std::optional<ElementRecorder> element_recorder_;
   UserEvents user_events_;
+
+  /// Where what is held changes next, if that ends the part of a simulation step that is under way.
+  struct TimeEvent {
+    double t = 0.0;
+    std::size_t changing = 0;
+  };
+  [[nodiscard]] std::optional<std::size_t> changing_at(double end) const {
+    return time_event_ && time_event_->t == end ? std::optional(time_event_->changing) : std::nullopt;
+  }
 
   double t_ = 0.0;
   std::vector<double> x_, selections_;
@@ -133,6 +144,7 @@ class Run {
   int decisions_here_ = 0;
   double decided_at_ = 0.0;
   bool undecided_ = false;  ///< no mode was found to go on with: left to the fallback
+  std::optional<TimeEvent> time_event_;
   std::size_t next_time_ = 0;
   std::vector<double> event_values_;
   Element shorter_;

@@ -43,4 +43,40 @@ void read_sensitivities(JsonReader& reader, const Json& json, const std::string&
   reader.read_member(json, path, "parameters", sensitivities->parameters);
 }
 
+Json elements_json(const result::Elements& elements) {
+  Json selections = Json::array();
+  for (const auto& selection : elements.selections) {
+    selections.push_back({{"name", selection.name}, {"form", name(selection.form)}});
+  }
+  return {{"points", elements.points},
+          {"selections", std::move(selections)},
+          {"t", elements.t},
+          {"lambda", elements.lambda},
+          {"selection", elements.selection}};
+}
+
+void read_elements(JsonReader& reader, const Json& json, const std::string& path,
+                   std::optional<result::Elements>& elements) {
+  elements.emplace();
+  std::int64_t points = 0;
+  reader.read_member(json, path, "points", points);
+  elements->points = static_cast<std::size_t>(std::max<std::int64_t>(points, 0));
+  if (const auto* selections = reader.member(json, path, "selections")) {
+    read_list(reader, *selections, path + "/selections", elements->selections,
+              [](JsonReader& inner, const Json& entry, const std::string& here) {
+                result::ElementSelection selection;
+                std::string form;
+                inner.read_member(entry, here, "name", selection.name);
+                inner.read_member(entry, here, "form", form);
+                const auto known = result::selection_form_named(form);
+                if (!known) inner.fail(here + "/form", fmt::format("'{}' is no form of a selection", form));
+                selection.form = known.value_or(result::SelectionForm::step);
+                return selection;
+              });
+  }
+  reader.read_member(json, path, "t", elements->t);
+  reader.read_member(json, path, "lambda", elements->lambda);
+  reader.read_member(json, path, "selection", elements->selection);
+}
+
 }  // namespace saltus::io

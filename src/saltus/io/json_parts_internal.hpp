@@ -6,6 +6,7 @@
 
 #include "saltus/io/json_reader_internal.hpp"
 #include "saltus/result/comparison.hpp"
+#include "saltus/result/elements.hpp"
 #include "saltus/result/sensitivities.hpp"
 
 namespace saltus::io {
@@ -18,6 +19,7 @@ template <class Value>
 [[nodiscard]] Json status_json(const result::Status& status);
 [[nodiscard]] Json statistics_json(const result::Statistics& statistics);
 [[nodiscard]] Json sensitivities_json(const result::Sensitivities& sensitivities);
+[[nodiscard]] Json elements_json(const result::Elements& elements);
 [[nodiscard]] Json comparison_json(const result::Comparison& comparison);
 [[nodiscard]] Json order_json(const result::OrderStudy& order);
 
@@ -25,6 +27,8 @@ void read_status(JsonReader& reader, const Json& json, const std::string& path, 
 void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics);
 void read_sensitivities(JsonReader& reader, const Json& json, const std::string& path,
                         std::optional<result::Sensitivities>& sensitivities);
+void read_elements(JsonReader& reader, const Json& json, const std::string& path,
+                   std::optional<result::Elements>& elements);
 void read_comparison(JsonReader& reader, const Json& json, const std::string& path,
                      std::optional<result::Comparison>& comparison);
 void read_order(JsonReader& reader, const Json& json, const std::string& path,

@@ -228,6 +228,9 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   if (json.is_object() && json.contains("sensitivities")) {
     read_part(reader, json, path, "sensitivities", read_sensitivities, result.sensitivities);
   }
+  if (json.is_object() && json.contains("elements")) {
+    read_part(reader, json, path, "elements", read_elements, result.elements);
+  }
   if (json.is_object() && json.contains("comparison")) {
     read_part(reader, json, path, "comparison", read_comparison, result.comparison);
   }

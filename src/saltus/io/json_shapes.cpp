@@ -85,6 +85,17 @@ void check_regions(JsonReader& reader, const std::string& path, const result::Re
   }
 }
 
+void check_elements(JsonReader& reader, const std::string& path, const result::Elements& elements) {
+  const std::size_t times = elements.t.size();
+  if (elements.points < 2 || times % elements.points != 0) {
+    reader.fail(path + "/points", fmt::format("expected the number of points of each element, and {} times are a "
+                                              "multiple of it; found {}",
+                                              times, elements.points));
+  }
+  check_rows(reader, path + "/lambda", elements.lambda, times, elements.selections.size());
+  check_rows(reader, path + "/selection", elements.selection, times, elements.selections.size());
+}
+
 }  // namespace
 
 void check_shapes(JsonReader& reader, const std::string& path, const result::Result& result) {
@@ -107,6 +118,7 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
     check_rows(reader, path + "/sensitivities/x0", x0, result.states.size(), result.states.size());
     check_rows(reader, path + "/sensitivities/p", p, result.states.size(), parameters.size());
   }
+  if (result.elements) check_elements(reader, path + "/elements", *result.elements);
   for (std::size_t i = 0; i < result.events.size(); ++i) {
     check_event_lengths(reader, result.events[i], fmt::format("{}/events/{}", path, i), result.states.size(), columns);
   }

@@ -144,6 +144,7 @@ Json whole_json(const result::Result& result) {
   json["statistics"] = statistics_json(result.statistics);
   json["options"] = options_json(result.options);
   if (result.sensitivities) json["sensitivities"] = sensitivities_json(*result.sensitivities);
+  if (result.elements) json["elements"] = elements_json(*result.elements);
   if (result.comparison) json["comparison"] = comparison_json(*result.comparison);
   if (result.order) json["order"] = order_json(*result.order);
   if (result.left_at) {

@@ -92,6 +92,9 @@ bool is_exact(StepEquilibration wanted) {
   return wanted == StepEquilibration::direct || wanted == StepEquilibration::mlcp;
 }
 
+/// Selections at stages; of larger runs the result has none, it would consist of little else.
+constexpr double most_recorded_values = 1e5;
+
 Error no_sensitivities() {
   return {ErrorCode::invalid_option,
           "sensitivities need the lengths of elements as functions of the initial state",
@@ -127,6 +130,9 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   integration.initial_mode = std::move(forced);
   integration.native = native_code(options.native);
   integration.sensitivities = wanted.sensitivities;
+  const double values = static_cast<double>(wanted.steps) * static_cast<double>(wanted.elements * wanted.stages) *
+                        static_cast<double>(dcs->selection.numel());
+  integration.record_elements = values > 0.0 && values <= most_recorded_values;
   if (!std::holds_alternative<EveryStep>(options.output)) {
     integration.rows = IntegrationOptions::Rows::at_times;
     integration.times = std::move(times);
@@ -159,6 +165,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   frame.trajectory = std::move(run->trajectory);
   frame.statistics = run->statistics;
   frame.sensitivities = std::move(run->sensitivities);
+  frame.elements = std::move(run->elements);
   frame.statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return frame;
 }

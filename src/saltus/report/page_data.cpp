@@ -175,6 +175,35 @@ json trajectory_data(const result::Result& result, std::size_t limit) {
           {"regions", region_bands(result)}};
 }
 
+/// Of the first columns; a page shows one selection after the other, but carries all of them.
+json elements_data(const std::optional<result::Elements>& elements) {
+  if (!elements) return nullptr;
+  std::vector<std::size_t> rows(elements->t.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
+  json::array_t selections;
+  for (const auto& [name, form] : head(elements->selections, columns_in_page)) {
+    selections.emplace_back(json{{"name", name}, {"form", result::name(form)}});
+  }
+  const std::size_t width = selections.size();
+  return {{"points", elements->points},
+          {"t", elements->t},
+          {"selections", std::move(selections)},
+          {"lambda", columns(elements->lambda, rows, width)},
+          {"selection", columns(elements->selection, rows, width)}};
+}
+
+json sensitivities_data(const std::optional<result::Sensitivities>& sensitivities) {
+  if (!sensitivities) return nullptr;
+  const auto shown = [](const Rows& matrix) {
+    json::array_t rows;
+    for (const auto& row : head(matrix, columns_in_page)) rows.emplace_back(head(row, columns_in_page));
+    return rows;
+  };
+  return {{"x0", shown(sensitivities->x0)},
+          {"p", shown(sensitivities->p)},
+          {"parameters", head(sensitivities->parameters, columns_in_page)}};
+}
+
 /// The branches of a tree, parents first; branch i of the list is entry i + 1 of the tree, entry 0 the root.
 json branches_data(const std::vector<result::TreeEntry>& tree, std::size_t limit) {
   json branches = json::array();
@@ -236,6 +265,7 @@ json page_data(const result::Result& result, std::size_t limit) {
             {"controls", result.controls.size()},
             {"switching functions", result.switching_functions.size()},
             {"outputs", result.outputs.size()}}},
+          {"sensitivity_parameters", result.sensitivities ? result.sensitivities->parameters.size() : 0},
           {"final",
            {{"t", result.final.t},
             {"x", shown(result.final.x)},
@@ -247,6 +277,8 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"branches", branches_data(tree, share_of_trajectory)},
           {"not_followed", not_followed},
           {"surfaces", std::move(surfaces)},
+          {"elements", elements_data(result.elements)},
+          {"sensitivities", sensitivities_data(result.sensitivities)},
           {"comparison", comparison_data(result.comparison)},
           {"order", order_data(result.order)},
           {"statistics",

@@ -55,6 +55,23 @@ std::optional<SurfaceRole> surface_role_named(std::string_view name_of_one) {
   return std::nullopt;
 }
 
+std::string_view name(SelectionForm form) {
+  switch (form) {
+    case SelectionForm::step:
+      return "step";
+    case SelectionForm::stewart:
+      return "stewart";
+  }
+  __builtin_unreachable();
+}
+
+std::optional<SelectionForm> selection_form_named(std::string_view name_of_one) {
+  for (const auto form : {SelectionForm::step, SelectionForm::stewart}) {
+    if (name(form) == name_of_one) return form;
+  }
+  return std::nullopt;
+}
+
 std::vector<std::string> region_labels(const std::vector<RegionGroup>& groups) {
   std::vector<std::string> labels;
   for (const auto& group : groups) {

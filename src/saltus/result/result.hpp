@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "saltus/result/comparison.hpp"
+#include "saltus/result/elements.hpp"
 #include "saltus/result/sensitivities.hpp"
 #include "saltus/result/statistics.hpp"
 #include "saltus/result/status.hpp"
@@ -161,6 +162,7 @@ struct Result {
   std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)
 
   std::optional<Sensitivities> sensitivities;  ///< of the end state, if asked for
+  std::optional<Elements> elements;            ///< of methods made of finite elements, unless there are too many
 
   /// Of `compare` and `order`, whose reference run the rest of the result is.
   std::optional<Comparison> comparison;

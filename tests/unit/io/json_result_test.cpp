@@ -138,6 +138,26 @@ TEST(JsonResult, ReadsBranchesBack) {
   EXPECT_EQ(read->branches[1].branches.size(), 2U);
 }
 
+TEST(JsonResult, ElementsSurviveBitForBit) {
+  auto original = sample();
+  original.elements = result::Elements{
+      .points = 3,
+      .selections = {{"a", result::SelectionForm::step}, {"a > 0, b < 0", result::SelectionForm::stewart}},
+      .t = {0.0, 0.1, 1.0 / 3.0},
+      .lambda = {{-1.0, 0.0}, {-0.5, 1e-17}, {0.0, 2.0 / 3.0}},
+      .selection = {{0.0, 1.0}, {0.0, 1.0}, {0.3, 0.0}}};
+  const auto text = to_json(original);
+  const auto read = parse_result(text, "r.json");
+  ASSERT_TRUE(read.has_value()) << read.error().message;
+  EXPECT_EQ(to_json(*read), text);
+  const auto& elements = read->elements.value();
+  EXPECT_EQ(elements.points, 3U);
+  EXPECT_EQ(elements.selections, original.elements->selections);
+  EXPECT_EQ(elements.t, original.elements->t);
+  EXPECT_EQ(elements.lambda, original.elements->lambda);
+  EXPECT_EQ(elements.selection, original.elements->selection);
+}
+
 TEST(JsonResult, ReadsResultsFromBeforeSurfacesWereRecorded) {
   auto json = nlohmann::ordered_json::parse(to_json(sample()));
   json.erase("surfaces");

@@ -6,6 +6,13 @@ saltus.option = (result, ending) => {
   return found === undefined ? null : String(found[1]);
 };
 
+/** What computes: the integrator, or the scheme of finite elements with its stages and form. */
+saltus.computedBy = (result) => {
+  const part = (name) => saltus.option(result, `${result.method}.${name}`);
+  if (part("scheme") !== null) return [`${part("scheme")} ${part("stages")}`, part("reformulation")];
+  return [saltus.option(result, "integrator")];
+};
+
 saltus.statusBadge = (result) => {
   const {termination, done} = result.status;
   const kind = termination === "completed" ? "good" : done ? "notice" : "bad";
@@ -14,9 +21,9 @@ saltus.statusBadge = (result) => {
 
 saltus.facts = (result) => {
   const {t} = result.trajectory;
-  const integrator = saltus.option(result, "integrator");
-  const facts = [["method", integrator === null ? result.method : `${result.method}, ${integrator}`]];
-  for (const name of ["rtol", "atol"]) {
+  const facts = [["method", [result.method, ...saltus.computedBy(result).filter((part) => part !== null)].join(", ")]];
+  // Finite elements have steps and no tolerances.
+  for (const name of ["fesd", "timestepping"].includes(result.method) ? [] : ["rtol", "atol"]) {
     const value = saltus.option(result, name);
     if (value !== null) facts.push([name, value]);
   }

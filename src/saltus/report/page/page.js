@@ -106,11 +106,14 @@ saltus.start = () => {
       drawPhases();
     },
   });
-  main.append(...(branches === null ? [] : [branches]), cards, saltus.notes(result));
+  const sensitivities = saltus.sensitivityCard(result);
+  main.append(...[branches, cards, sensitivities].filter((part) => part !== null), saltus.notes(result));
   if (result.states.length > 1 && result.trajectory.t.length > 0) {
     phases.push(saltus.phasePlane(result, timeline, select));
     if (result.states.length > 2) phases.push(saltus.phasePortrait(result, timeline, select));
   }
+  const multipliers = saltus.multiplierPicture(result, timeline);
+  if (multipliers !== null) phases.push(multipliers);
   const intersection = saltus.intersectionPicture(result, timeline, select);
   if (intersection !== null) phases.push(intersection);
   const inCards = phases.slice(orders.length);
