@@ -129,39 +129,137 @@ TEST(Sensitivities, TheyConvergeWithTheOrderOfTheMethod) {
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 3.0, 0.5);
 }
 
-/// Central differences of step d have an error of d^2 and of 1e-14 / d by roundings, both below 1e-9 here; what the
-/// projection of Gauss methods leaves out is of the order of their local error.
+/// Central differences of the end state: columns over initial states, then over parameters.
+std::vector<std::vector<double>> differences(const model::System& system, double until, const Settings& settings,
+                                             double d) {
+  std::vector<std::vector<double>> rows(system.initial_state.size());
+  const auto add = [&](auto change) {
+    std::array<std::vector<double>, 2> ends;
+    for (const int sign : {-1, 1}) {
+      auto changed = system;
+      change(changed, sign * d);
+      ends[sign > 0 ? 1 : 0] = run(changed, until, settings).final.x;
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back((ends[1][i] - ends[0][i]) / (2.0 * d));
+  };
+  for (std::size_t j = 0; j < system.initial_state.size(); ++j) {
+    add([&](model::System& s, double by) { s.initial_state[j] += by; });
+  }
+  for (std::size_t j = 0; j < system.parameter_values.size(); ++j) {
+    add([&](model::System& s, double by) { s.parameter_values[j] += by; });
+  }
+  return rows;
+}
+
+/// x0 and p side by side.
+std::vector<std::vector<double>> side_by_side(const result::Sensitivities& sensitivities) {
+  auto rows = sensitivities.x0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].insert(rows[i].end(), sensitivities.p[i].begin(), sensitivities.p[i].end());
+  }
+  return rows;
+}
+
+/// Central differences of step d have an error of d^2 and of 1e-14 / d by roundings, both below 1e-9 here.
+constexpr double d = 1e-5;
+
 TEST(Sensitivities, TheyAreTheDerivativesOfTheDiscreteSolution) {
-  constexpr double d = 1e-5;
+  const auto system = driven();
   for (const auto form : {Form::step, Form::stewart}) {
     for (const auto& [family, stages] : families) {
+      SCOPED_TRACE(stages);
       const Settings settings{family, stages, 30, form};
-      const auto system = driven();
       const auto integration = run(system, 10.0, settings);
       // Crosses, slides, leaves.
       ASSERT_GE(integration.events.size(), 3U);
-      const auto difference = [&](auto change) {
-        std::array<std::vector<double>, 2> ends;
-        for (const int sign : {-1, 1}) {
-          auto changed = system;
-          change(changed, sign * d);
-          ends[sign > 0 ? 1 : 0] = run(changed, 10.0, settings).final.x;
-        }
-        std::vector<double> quotient;
-        for (std::size_t i = 0; i < ends[0].size(); ++i) quotient.push_back((ends[1][i] - ends[0][i]) / (2.0 * d));
-        return quotient;
-      };
-      for (std::size_t j = 0; j < 2; ++j) {
-        const auto of_x0 = difference([&](model::System& s, double by) { s.initial_state[j] += by; });
-        const auto of_p = difference([&](model::System& s, double by) { s.parameter_values[j] += by; });
-        for (std::size_t i = 0; i < 2; ++i) {
-          const double tolerance = family == TableauFamily::gauss_legendre ? 1e-4 : 1e-6;
-          EXPECT_NEAR(integration.sensitivities->x0[i][j], of_x0[i], tolerance) << i << j << " " << stages;
-          EXPECT_NEAR(integration.sensitivities->p[i][j], of_p[i], tolerance) << i << j << " " << stages;
-        }
-      }
+      expect_near(side_by_side(*integration.sensitivities), differences(system, 10.0, settings, d), 1e-6);
     }
   }
+}
+
+/// A spiral reaches the unit circle, whose field pulls it there in a direction that turns with it.
+model::System pulled_to_a_circle() {
+  model::Builder builder("circle");
+  const SX push = builder.parameter("push", 0.3);
+  const SX radius = builder.parameter("radius", 1.0);
+  const SX x = builder.state("x", {1.5});
+  const SX y = builder.state("y", {0.0});
+  const SX t = builder.time();
+  const SX turn = 1.0 + x / 2.0;
+  const SX pull = builder.sign(x * x + y * y - radius * radius * (1.0 + 0.1 * t));
+  builder.dynamics("x", -turn * y - pull * (x + 0.2 * y * y));
+  builder.dynamics("y", turn * x - pull * y / 2.0 + push);
+  return *builder.build();
+}
+
+TEST(Sensitivities, TheProjectionOfGaussMethodsTurnsWithItsEnd) {
+  // Coarse: what the change of the direction adds is of the order of the local error, here 1e-2 to 1e-4.
+  const auto system = pulled_to_a_circle();
+  for (const auto form : {Form::step, Form::stewart}) {
+    for (const int stages : {1, 2, 3}) {
+      SCOPED_TRACE(stages);
+      const Settings settings{TableauFamily::gauss_legendre, stages, 8, form};
+      const auto integration = run(system, 4.0, settings);
+      ASSERT_EQ(integration.final.mode, result::Mode{0});
+      expect_near(side_by_side(*integration.sensitivities), differences(system, 4.0, settings, d), 1e-7);
+    }
+  }
+}
+
+/// x' = -x + 2 step(t - p) + step(t - s) + 0.1 floor(t / q): a parameter, a discrete state and a scale move times of
+/// events.
+model::System moved_events() {
+  model::Builder builder("moved");
+  const SX p = builder.parameter("p", 0.613);
+  const SX q = builder.parameter("q", 0.37);
+  const SX x = builder.state("x", {1.0});
+  const SX s = builder.discrete_state("s", 1.234);
+  const SX t = builder.time();
+  builder.dynamics("x", -x + 2.0 * builder.step(t - p) + builder.step(t - s) + 0.1 * builder.floor(t / q) +
+                            0.2 * builder.sign(x - 0.7));
+  return *builder.build();
+}
+
+TEST(Sensitivities, TimesOfEventsMoveWithParametersAndDiscreteStates) {
+  const auto system = moved_events();
+  for (const auto& [family, stages] : families) {
+    SCOPED_TRACE(stages);
+    const Settings settings{family, stages, 11, Form::step};
+    const auto integration = run(system, 2.0, settings);
+    const auto found = side_by_side(*integration.sensitivities);
+    expect_near(found, differences(system, 2.0, settings, d), 1e-7);
+    // d x(2) / d s = -exp(-(2 - s)): x is above 0.7 by then.
+    if (stages > 2) {
+      EXPECT_NEAR(found[0][1], -std::exp(1.234 - 2.0), 1e-4);
+    }
+  }
+  // The same of time-stepping, where nothing of psi switches.
+  auto without = system;
+  without.initial_state[0] = 3.0;
+  const Settings fixed{TableauFamily::radau_iia, 2, 11, Form::step, IntegrationOptions::Switches::fixed};
+  expect_near(side_by_side(*run(without, 2.0, fixed).sensitivities), differences(without, 2.0, fixed, d), 1e-7);
+}
+
+TEST(Sensitivities, AnEventAtTheEndOfAStepCountsAsOne) {
+  model::Builder builder("grid");
+  const SX p = builder.parameter("p", 0.5);
+  const SX x = builder.state("x", {1.0});
+  builder.dynamics("x", -x + builder.step(builder.time() - p));
+  const auto integration = run(*builder.build(), 1.0, {TableauFamily::radau_iia, 3, 4});
+  expect_near(side_by_side(*integration.sensitivities), {{std::exp(-1.0), -std::exp(-0.5)}}, 1e-6);
+}
+
+TEST(Sensitivities, EventsAtOneTimeThatMoveApartAreNotDefined) {
+  model::Builder builder("two");
+  const SX p = builder.parameter("p", 0.25);
+  const SX q = builder.parameter("q", 0.25);
+  const SX x = builder.state("x", {1.0});
+  const SX t = builder.time();
+  builder.dynamics("x", -x + builder.step(t - p) + builder.step(4.0 * t * t - q));
+  const auto integration = run(*builder.build(), 1.0, {TableauFamily::radau_iia, 3, 3});
+  EXPECT_TRUE(std::isnan(integration.sensitivities->p[0][0]));
+  EXPECT_TRUE(std::isnan(integration.sensitivities->p[0][1]));
+  EXPECT_NEAR(integration.sensitivities->x0[0][0], std::exp(-1.0), 1e-6);
 }
 
 }  // namespace

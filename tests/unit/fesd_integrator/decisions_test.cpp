@@ -1,0 +1,215 @@
+// What continues a solution at a point, what is held and until when, and how it is recorded.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "compiled.hpp"
+#include "saltus/fesd_integrator/held_values.hpp"
+#include "saltus/fesd_integrator/recorder.hpp"
+#include "saltus/fesd_integrator/transition.hpp"
+
+namespace saltus::fesd_integrator {
+namespace {
+
+using casadi::SX;
+using discretization::TableauFamily;
+using reformulation::Form;
+
+std::vector<Continuation> continuations(const Compiled& model, double t, const std::vector<double>& x,
+                                        std::optional<std::vector<int>> before, std::vector<int> at_zero) {
+  ElementSolver solver(model.kernel, tableau(TableauFamily::radau_iia, 3));
+  Transition transition(model.kernel, model.facts.parts, solver);
+  std::optional<ActiveSet> set;
+  if (before) set = model.set(*before);
+  return transition.continuations({t, x, nullptr, set ? &*set : nullptr, at_zero, 1.0, 1e-3});
+}
+
+using Modes = std::vector<int>;
+
+TEST(Transition, OneSurface) {
+  struct Case {
+    const char* what;
+    double a, b, c, t;
+    int before, after;
+    double alpha;
+  };
+  const Case cases[] = {{"crosses", 2.0, 1.0, 0.0, 0.0, -1, 1, 1.0},
+                        {"enters sliding", 0.2, 1.0, 0.0, 0.0, -1, 0, 0.6},
+                        {"leaves sliding", 0.0, 1.0, 1.0, 1.0, 0, 1, 1.0},
+                        {"goes on sliding", 0.0, 1.0, 1.0, 0.5, 0, 0, 0.75}};
+  for (const auto& c : cases) {
+    for (const Form form : {Form::step, Form::stewart}) {
+      SCOPED_TRACE(c.what);
+      const Compiled model = scalar(c.a, c.b, c.c, form);
+      // Of the regions x > 0 and x < 0 those are active that are on the side of the mode.
+      const auto modes = [&](int k) { return form == Form::step ? Modes{k} : Modes{k >= 0 ? 0 : -1, k <= 0 ? 0 : -1}; };
+      const auto found = continuations(model, c.t, {0.0}, modes(c.before), form == Form::step ? Modes{0} : Modes{0, 1});
+      ASSERT_EQ(found.size(), 1U);
+      EXPECT_EQ(found[0].set.modes(), modes(c.after));
+      EXPECT_NEAR(found[0].selections[0], c.alpha, 1e-12);
+    }
+  }
+}
+
+TEST(Transition, ASpontaneousSwitchHasThreeContinuations) {
+  const Compiled model = scalar(0.0, -1.0);  // x' = sign x
+  const auto found = continuations(model, 0.0, {0.0}, std::nullopt, {});
+  ASSERT_EQ(found.size(), 3U);
+  // At a start: above, below, sliding.
+  EXPECT_EQ(found[0].set.modes(), Modes{1});
+  EXPECT_EQ(found[1].set.modes(), Modes{-1});
+  EXPECT_EQ(found[2].set.modes(), Modes{0});
+}
+
+TEST(Transition, AwayFromSurfacesTheSignsDecide) {
+  const Compiled model = scalar(2.0, 1.0);
+  const auto found = continuations(model, 0.0, {-0.4}, std::nullopt, {});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].set.modes(), Modes{-1});
+}
+
+/// x' = -2 sign x + b y-part, y' = -2 sign y + c x-part: coupled through their selections.
+Compiled coupled(double b, double c) {
+  model::Builder builder("coupled");
+  const SX x = builder.state("x", {0.0});
+  const SX y = builder.state("y", {0.0});
+  const SX sx = builder.sign(x), sy = builder.sign(y);
+  builder.dynamics("x", -2.0 * sx + b * sy);
+  builder.dynamics("y", -2.0 * sy + c * sx);
+  return Compiled(builder);
+}
+
+TEST(Transition, TwoSurfacesAreEnteredTogether) {
+  // From sliding on x = 0 below y = 0: both are attractive for weak coupling.
+  const auto found = continuations(coupled(0.5, -0.5), 0.0, {0.0, 0.0}, Modes{0, -1}, {0, 1});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].set.modes(), (Modes{0, 0}));
+  EXPECT_NEAR(found[0].selections[0], 0.5, 1e-12);
+  EXPECT_NEAR(found[0].selections[1], 0.5, 1e-12);
+}
+
+TEST(Transition, SurfacesWithoutInfluenceAreDecidedOneByOne) {
+  model::Builder builder("two");
+  const SX x = builder.state("x", {0.0});
+  const SX y = builder.state("y", {0.0});
+  builder.dynamics("x", 2.0 - builder.sign(x));
+  builder.dynamics("y", 0.2 - builder.sign(y));
+  const Compiled model(builder);
+  const auto found = continuations(model, 0.0, {0.0, 0.0}, Modes{-1, -1}, {0, 1});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].set.modes(), (Modes{1, 0}));
+  EXPECT_NEAR(found[0].selections[1], 0.6, 1e-12);
+}
+
+TEST(HeldValues, ChangeAtTheZerosOfTheirArguments) {
+  model::Builder builder("held");
+  const SX x = builder.state("x", {0.0});
+  const SX t = builder.time();
+  builder.dynamics("x", builder.step(t * t - 0.09) - x);
+  const Compiled model(builder);
+  ASSERT_EQ(model.facts.held.size(), 1U);
+  HeldValues held(model.functions, model.facts.held);
+  const double state = 0.0;
+  static_cast<void>(held.set_behind(0.0, 1.0, &state));
+  EXPECT_EQ(held.data()[0], 0.0);
+  EXPECT_NEAR(held.next_change(0.0, 1.0, &state), 0.3, 1e-15);
+  EXPECT_EQ(held.next_changing(), 0U);
+  EXPECT_EQ(held.next_change(0.0, 0.25, &state), 0.25);
+  EXPECT_EQ(held.next_changing(), std::nullopt);
+  EXPECT_EQ(held.set_behind(0.3, 1.0, &state), HeldValues::Change::some);
+  EXPECT_EQ(held.data()[0], 1.0);
+  EXPECT_EQ(held.next_change(0.3, 1.0, &state), 1.0);
+  EXPECT_EQ(held.set_behind(1.0, 1.0, &state), HeldValues::Change::none);
+}
+
+TEST(HeldValues, CellsOfFloorFollowEachOther) {
+  model::Builder builder("cells");
+  const SX x = builder.state("x", {0.0});
+  builder.dynamics("x", builder.floor(2.0 * builder.time()) - x);
+  const Compiled model(builder);
+  HeldValues held(model.functions, model.facts.held);
+  const double state = 0.0;
+  double t = 0.0;
+  static_cast<void>(held.set_behind(t, 1.0, &state));
+  for (const double expected : {0.5, 1.0, 1.5}) {
+    t = held.next_change(t, 10.0, &state);
+    EXPECT_NEAR(t, expected, 1e-14);
+    EXPECT_EQ(held.set_behind(t, 1.0, &state), HeldValues::Change::some);
+    double rate = 0.0;
+    model.kernel.field(t, &state, nullptr, held.data(), &rate);
+    EXPECT_EQ(rate, 2.0 * expected);
+  }
+}
+
+/// One listed surface x = 0 and a kink y = 0.
+Compiled listed_and_kink() {
+  model::Builder builder("recorded");
+  const SX x = builder.state("x", {0.0});
+  const SX y = builder.state("y", {0.0});
+  builder.dynamics("x", -builder.sign(x, "stick"));
+  builder.dynamics("y", builder.abs(y) + 1.0);
+  return Compiled(builder);
+}
+
+TEST(Recorder, ASwitchIsTwoRowsAndAnEvent) {
+  const Compiled model = listed_and_kink();
+  Recorder recorder(model.functions, model.facts);
+  const ActiveSet before = model.set({-1, 1}), behind = model.set({0, 1}), other = model.set({1, 1});
+  const std::vector<double> from{0.0, 1.0}, to{0.5, 1.0}, also{1.0, 1.0};
+  EXPECT_TRUE(
+      recorder.switched(2.0, {0.0, 3.0}, {&before, &from, nullptr}, {{behind, to}, {other, also}}, nullptr, "because"));
+  const auto& rows = recorder.trajectory();
+  EXPECT_EQ(rows.t, (std::vector{2.0, 2.0}));
+  ASSERT_EQ(recorder.event_list().size(), 1U);
+  const result::Event& event = recorder.event_list()[0];
+  EXPECT_EQ(event.kind, result::EventKind::enter_sliding);
+  EXPECT_EQ(event.surfaces, std::vector<std::string>{"stick"});
+  EXPECT_EQ(event.mode_before->front(), -1);
+  EXPECT_EQ(event.mode_after->front(), 0);
+  EXPECT_EQ(event.alpha_after->front(), 0.5);
+  EXPECT_EQ(event.unique, false);
+  ASSERT_EQ(event.alternatives.size(), 1U);
+  EXPECT_EQ(event.alternatives[0].mode.front(), 1);
+  EXPECT_EQ(event.reason, "because");
+}
+
+TEST(Recorder, AKinkIsNoEvent) {
+  const Compiled model = listed_and_kink();
+  Recorder recorder(model.functions, model.facts);
+  const ActiveSet before = model.set({1, -1}), behind = model.set({1, 1});
+  const std::vector<double> from{1.0, 0.0}, to{1.0, 1.0};
+  EXPECT_FALSE(recorder.switched(2.0, {1.0, 0.0}, {&before, &from, nullptr}, {{behind, to}}, nullptr, "because"));
+  EXPECT_TRUE(recorder.event_list().empty());
+}
+
+TEST(Recorder, NestedFunctionsHaveTheSelectionOfTheirBranch) {
+  // step(x + sign(y)): two surfaces x + 1 and x - 1 inside, one column.
+  model::Builder builder("nested");
+  const SX x = builder.state("x", {0.0});
+  const SX y = builder.state("y", {0.0});
+  builder.dynamics("x", 1.0 - 2.0 * builder.step(x + builder.sign(y, "inner"), "outer"));
+  builder.dynamics("y", SX(1.0));
+  const Compiled model(builder);
+  ASSERT_EQ(model.kernel.selections(), 3U);
+  Recorder recorder(model.functions, model.facts);
+  const std::size_t inner = model.facts.columns[0].name == "inner" ? 0 : 1;
+  for (const int side : {-1, 1}) {
+    // x = 0: x + 1 > 0 > x - 1.
+    Modes modes(3);
+    std::vector<double> selections(3);
+    std::vector<double> indicators(3);
+    const std::vector<double> state{0.0, static_cast<double>(side)};
+    model.kernel.indicators(0.0, state.data(), nullptr, indicators.data());
+    for (std::size_t j = 0; j < 3; ++j) {
+      modes[j] = indicators[j] > 0.0 ? 1 : -1;
+      selections[j] = indicators[j] > 0.0 ? 1.0 : 0.0;
+    }
+    const auto view = recorder.view(model.set(modes), selections, nullptr);
+    EXPECT_EQ(view.mode[static_cast<std::size_t>(model.facts.columns[inner].function)], side);
+    EXPECT_EQ(view.mode[static_cast<std::size_t>(model.facts.columns[1 - inner].function)], side);
+    EXPECT_EQ(view.alpha[static_cast<std::size_t>(model.facts.columns[1 - inner].function)], side > 0 ? 1.0 : 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace saltus::fesd_integrator
