@@ -47,6 +47,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       search_(kernel, field_, options.method, tolerances_),
       locator_(options.method, kernel.states(), stepper_, field_, search_, tolerances_),
       single_surface_(surroundings_),
+      surface_pair_(surroundings_),
       user_events_(kernel, system),
       jumps_(kernel, system, options.from),
       holding_(kernel, system),

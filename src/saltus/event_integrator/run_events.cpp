@@ -96,7 +96,8 @@ bool Run::change_mode(const Located& located) {
   note_ties(kernel_, state_, occasion);
   Transition& transition = transition_;
   const bool slope_holds = cells_.empty() && jumps_.none();  // no cell was left, and no guard released, here
-  if (!single_surface_.decide(before_, occasion, transition, slope_holds ? &slope_ : nullptr)) {
+  if (!single_surface_.decide(before_, occasion, transition, slope_holds ? &slope_ : nullptr) &&
+      !surface_pair_.decide(before_, occasion, transition)) {
     transition = decide_mode(surroundings_, before_, occasion);
   }
   if (transition.termination == Termination::completed) {

@@ -23,6 +23,7 @@
 #include "saltus/event_integrator/single_surface.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/event_integrator/step_memory.hpp"
+#include "saltus/event_integrator/surface_pair.hpp"
 #include "saltus/event_integrator/switch_series.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/event_integrator/user_events.hpp"
@@ -163,6 +164,7 @@ class Run {
   EventSearch search_;
   Locator locator_;
   SingleSurface single_surface_;
+  SurfacePair surface_pair_;
   UserEvents user_events_;
   Jumps jumps_;
   Holding holding_;

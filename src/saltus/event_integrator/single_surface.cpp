@@ -118,27 +118,14 @@ bool SingleSurface::select_others(const Occasion& occasion, ModeState& state) {
 void SingleSurface::fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
                          Transition& transition) const {
   const int j = occasion.touched.front();
+  begin_transition(before, occasion, f_.size(), transition);
   auto& state = transition.state;
-  state.mode = before.mode;
   state.alpha = alpha_;
-  state.sliding = before.sliding;
   set_surface(state, j, decision.mode, decision.alpha);
   set_corner_alpha(state);
-  transition.termination = result::Termination::completed;
-  transition.message.clear();
-  // Both fields are finite here; where they are not behind the projection onto the surface, this point is as good.
-  transition.beside.assign(occasion.x, occasion.x + f_.size());
-  transition.zero_order.assign(state.mode.size(), 0);
   if (decision.mode != 0) transition.zero_order[at(j)] = before.mode[at(j)] == 0 ? 2 : 1;
   rebase(surroundings_.kernel, state, transition.zero_order);
   complete_weights(surroundings_.kernel, state);
-  transition.unique = true;
-  transition.other_choices.clear();
-  transition.alternatives.clear();
-  transition.decision = -1;
-  transition.beyond_spiral.reset();
-  transition.meeting.reset();
-  transition.reason.clear();
   append_reason(surroundings_.system, j, decision, before, occasion, transition.reason);
 }
 

@@ -24,6 +24,34 @@ void append_reason(const model::System& system, int surface, const switching::Su
   reason += decision.reason;
 }
 
+void append_leaf(const switching::PlaneDecision& decision, std::string& reason) {
+  reason += ": ";
+  reason += decision.reason;
+  reason += " (";
+  reason += switching::name(decision.leaf);
+  reason += ")";
+}
+
+void begin_transition(const ModeState& before, const Occasion& occasion, std::size_t states, Transition& transition) {
+  auto& state = transition.state;
+  state.mode = before.mode;
+  state.alpha = before.alpha;
+  state.sliding = before.sliding;
+  state.higher.reset();
+  transition.termination = result::Termination::completed;
+  transition.message.clear();
+  // Both fields are finite here; where they are not behind the projection onto the surface, this point is as good.
+  transition.beside.assign(occasion.x, occasion.x + states);
+  transition.zero_order.assign(state.mode.size(), 0);
+  transition.unique = true;
+  transition.other_choices.clear();
+  transition.beyond_spiral.reset();
+  transition.alternatives.clear();
+  transition.decision = -1;
+  transition.reason.clear();
+  transition.meeting.reset();
+}
+
 using switching::SurfaceDecision;
 using switching::Verdict;
 

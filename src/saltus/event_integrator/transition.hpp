@@ -84,6 +84,14 @@ struct Surroundings {
 void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
                    const ModeState& before, const Occasion& occasion, std::string& reason);
 
+/// Behind the names of two surfaces: what a tree decided about them.
+void append_leaf(const switching::PlaneDecision& decision, std::string& reason);
+
+/// Makes of `transition`, whose storage is used again, the only one there is, with the mode as it was before: what is
+/// decided without detours starts from it.
+/// @param states  n_x
+void begin_transition(const ModeState& before, const Occasion& occasion, std::size_t states, Transition& transition);
+
 /// The mode behind an event, or a start, at one point.
 /// Surfaces that do not influence each other are decided one by one, the others in groups; switching functions nested
 /// around a surface that changes are read anew. Two that influence each other are decided by the trees of

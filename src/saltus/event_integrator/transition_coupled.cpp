@@ -134,8 +134,8 @@ bool Decider::accept(const std::vector<int>& group, const PlaneDecision& decisio
   take(group, {chosen.mode[0], chosen.mode[1]}, {chosen.alpha[0], chosen.alpha[1]});
   note_others(group, decision.others);
   if (decision.ambiguous || decision.spirals_out) transition_.unique = false;
-  group_reasons_.push_back(
-      fmt::format("{}: {} ({})", names(s_.system, group), decision.reason, switching::name(decision.leaf)));
+  group_reasons_.push_back(names(s_.system, group));
+  append_leaf(decision, group_reasons_.back());
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "saltus/event_integrator/integrate.hpp"
+#include "same_transition.hpp"
 #include "systems.hpp"
 
 namespace saltus::event_integrator {
@@ -40,20 +41,6 @@ model::System random_fields(std::mt19937& random, bool with_tangent_field) {
   }
   testing::set_field(s, f, {0.0, 0.0, 0.0});
   return s;
-}
-
-void expect_same(const Transition& one, const Transition& other) {
-  EXPECT_EQ(one.termination, other.termination);
-  EXPECT_EQ(one.state.mode, other.state.mode);
-  EXPECT_EQ(one.state.alpha, other.state.alpha);
-  EXPECT_EQ(one.state.sliding, other.state.sliding);
-  if (!one.state.sliding.empty()) {
-    EXPECT_EQ(one.state.corner_alpha, other.state.corner_alpha);
-  }
-  EXPECT_EQ(one.zero_order, other.zero_order);
-  EXPECT_EQ(one.unique, other.unique);
-  EXPECT_EQ(one.other_choices.size(), other.other_choices.size());
-  EXPECT_EQ(one.reason, other.reason);
 }
 
 Occasion at_origin(const std::vector<double>& origin) {

@@ -1,0 +1,165 @@
+#include "saltus/event_integrator/surface_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/switching/plane_table.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using switching::PlaneDecision;
+using switching::PlaneMode;
+
+double product(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+SurfacePair::SurfacePair(const Surroundings& surroundings)
+    : surroundings_(surroundings),
+      f_(at(surroundings.kernel.states())),
+      rows_{f_, f_},
+      field_(surroundings.kernel, surroundings.affine_in_alpha) {
+  const auto& kernel = surroundings.kernel;
+  any_ = surroundings.affine_in_alpha && kernel.switching_functions() > 1 && kernel.region_groups().empty();
+  for (int j = 0; j < kernel.switching_functions(); ++j) any_ = any_ && kernel.inner(j).empty();
+}
+
+bool SurfacePair::applies(const ModeState& before, const Occasion& occasion) const {
+  if (!any_ || occasion.start || before.higher || occasion.at_zero.size() != 2 || before.sliding.size() > 1) {
+    return false;
+  }
+  for (const auto* surfaces :
+       {&occasion.exit_below, &occasion.exit_above, &occasion.coalesced, &occasion.destabilised}) {
+    if (!surfaces->empty()) return false;
+  }
+  // A kink of the surface that is slid on touches that one, too.
+  if (occasion.touched.size() != 2 - before.sliding.size()) return false;
+  const int i = occasion.at_zero[0];
+  const int j = occasion.at_zero[1];
+  for (const int surface : {i, j}) {
+    if (surroundings_.system.switching[at(surface)].role != model::SwitchingRole::listed) return false;
+  }
+  return surroundings_.kernel.depends(i, j) || surroundings_.kernel.depends(j, i);
+}
+
+bool SurfacePair::find_normals(const Occasion& occasion) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    surroundings_.kernel.gradient(occasion.at_zero[k], occasion.t, occasion.x, alpha_.data(), rows_[k].data(),
+                                  &rates_[k]);
+    if (!is_finite(rows_[k]) || !(product(rows_[k], rows_[k]) > 0.0)) return false;
+  }
+  return true;
+}
+
+/// Normal components of the field that belongs to alpha_; false if it is not finite.
+bool SurfacePair::find_velocities(const Occasion& occasion, std::array<double, 2>& velocities) {
+  surroundings_.kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
+  if (!is_finite(f_)) return false;
+  for (std::size_t k = 0; k < 2; ++k) {
+    velocities[k] = rates_[k];
+    for (std::size_t i = 0; i < f_.size(); ++i) velocities[k] += rows_[k][i] == 0.0 ? 0.0 : rows_[k][i] * f_[i];
+  }
+  return true;
+}
+
+/// Whether all of the four fields are clear of both surfaces.
+bool SurfacePair::find_table(const Occasion& occasion) {
+  scales_ = {0.0, 0.0};
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (std::size_t k = 0; k < 2; ++k) alpha_[at(occasion.at_zero[k])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+    std::array<double, 2> velocities{};
+    if (!find_velocities(occasion, velocities)) return false;
+    for (std::size_t k = 0; k < 2; ++k) {
+      velocities_[k][corner] = velocities[k];
+      scales_[k] = std::max(scales_[k], std::abs(velocities[k]));
+    }
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto is_clear = [&](double velocity) { return std::abs(velocity) > sign_tolerance * scales_[k]; };
+    if (!std::all_of(velocities_[k].begin(), velocities_[k].end(), is_clear)) return false;
+  }
+  return true;
+}
+
+/// Whether the field of the new mode leaves the surfaces to where the mode says, clearly.
+bool SurfacePair::moves_there(const Occasion& occasion, ModeState& state) {
+  const int i = occasion.at_zero[0];
+  const int j = occasion.at_zero[1];
+  if (state.mode[at(i)] == 0 && state.mode[at(j)] == 0) return slides_on_both(occasion, state);
+  alpha_[at(i)] = state.alpha[at(i)];
+  alpha_[at(j)] = state.alpha[at(j)];
+  for (const int surface : state.sliding) {
+    if (!(alpha_[at(surface)] >= 0.0 && alpha_[at(surface)] <= 1.0)) return false;
+  }
+  std::array<double, 2> velocities{};
+  if (!find_velocities(occasion, velocities)) return false;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const int mode = state.mode[at(occasion.at_zero[k])];
+    if (mode != 0 && !(mode * velocities[k] > sign_tolerance * scales_[k])) return false;
+  }
+  return true;
+}
+
+/// Takes the selections from the field of the mode.
+bool SurfacePair::slides_on_both(const Occasion& occasion, ModeState& state) {
+  const double mixed = product(rows_[0], rows_[1]);
+  const double squares = product(rows_[0], rows_[0]) * product(rows_[1], rows_[1]);
+  // Gradients that nearly depend on each other: another reason to stop may be the right one.
+  if (!(squares - mixed * mixed > 1e-6 * squares)) return false;
+  field_.enter(state);
+  field_(occasion.t, occasion.x, f_.data());
+  if (!is_finite(f_)) return false;
+  for (const int surface : state.sliding) {
+    const double selection = field_.alpha()[at(surface)];
+    if (!(selection >= 0.0 && selection <= 1.0)) return false;
+    state.alpha[at(surface)] = selection;
+  }
+  return true;
+}
+
+bool SurfacePair::decide(const ModeState& before, const Occasion& occasion, Transition& transition) {
+  if (!applies(before, occasion)) return false;
+  alpha_ = before.alpha;
+  if (!find_normals(occasion) || !find_table(occasion)) return false;
+  const auto& pair = occasion.at_zero;
+  const auto table = switching::plane_table(velocities_);
+  const PlaneMode incoming{before.mode[at(pair[0])], before.mode[at(pair[1])]};
+  const PlaneDecision decision = before.sliding.empty()
+                                     ? switching::decide_corner_arrival(table, incoming)
+                                     : switching::decide_entering(table, incoming, surroundings_.policy);
+  if (!decision.undecided.empty() || decision.ambiguous || !decision.unique()) return false;
+  begin_transition(before, occasion, at(surroundings_.kernel.states()), transition);
+  auto& state = transition.state;
+  for (std::size_t k = 0; k < 2; ++k) {
+    set_surface(state, pair[k], decision.chosen.mode[k], decision.chosen.alpha[k]);
+    if (decision.chosen.mode[k] != 0) transition.zero_order[at(pair[k])] = 1;
+  }
+  set_corner_alpha(state);
+  if (!moves_there(occasion, state)) return false;
+  describe(before, occasion, decision, transition);
+  return true;
+}
+
+void SurfacePair::describe(const ModeState& before, const Occasion& occasion, const PlaneDecision& decision,
+                           Transition& transition) const {
+  auto& meeting = transition.meeting.emplace();
+  auto& alpha = meeting.alpha.emplace();
+  for (std::size_t k = 0; k < 2; ++k) {
+    const int surface = occasion.at_zero[k];
+    meeting.surfaces[k] = surface;
+    alpha[k] = std::clamp(before.alpha[at(surface)], 0.0, 1.0);
+    transition.reason += k == 0 ? "" : ", ";
+    transition.reason += surroundings_.system.switching[at(surface)].name;
+  }
+  meeting.velocities = velocities_;
+  append_leaf(decision, transition.reason);
+}
+
+}  // namespace saltus::event_integrator

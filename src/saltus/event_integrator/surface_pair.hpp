@@ -1,0 +1,51 @@
+// The usual meeting of two surfaces that influence each other, decided without detours.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "saltus/event_integrator/mode_field.hpp"
+#include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/event_integrator/transition.hpp"
+#include "saltus/switching/intersection.hpp"
+
+namespace saltus::event_integrator {
+
+/// Decides what decide_mode() decides, with the same bits, where
+///   - two surfaces that influence each other are at zero, and nothing else: one is met while the solution slides on
+///     the other, or both are met at once,
+///   - no function is nested around another one, there are no regions by indicator, and f is affine in the selections,
+///   - all normal components of the four fields are clear of zero, and a tree knows the only continuation.
+/// Cost: four evaluations of f, a tree, and one evaluation of the new mode's field where it slides. Owns its work
+/// space.
+class SurfacePair {
+ public:
+  explicit SurfacePair(const Surroundings& surroundings);
+
+  /// Fills `transition`, whose storage is used again.
+  /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
+  [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition);
+
+ private:
+  [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
+  bool find_normals(const Occasion& occasion);
+  bool find_velocities(const Occasion& occasion, std::array<double, 2>& velocities);
+  bool find_table(const Occasion& occasion);
+  bool moves_there(const Occasion& occasion, ModeState& state);
+  bool slides_on_both(const Occasion& occasion, ModeState& state);
+  void describe(const ModeState& before, const Occasion& occasion, const switching::PlaneDecision& decision,
+                Transition& transition) const;
+
+  const Surroundings& surroundings_;
+  bool any_ = false;             ///< the system may have such meetings
+  std::vector<double> alpha_;    ///< n_psi
+  std::vector<double> f_;        ///< n_x
+  std::vector<double> rows_[2];  ///< gradients of the two surfaces
+  std::array<double, 2> rates_{};
+  std::array<double, 2> scales_{};  ///< largest normal components
+  std::array<std::array<double, 4>, 2> velocities_{};
+  ModeField field_;
+};
+
+}  // namespace saltus::event_integrator

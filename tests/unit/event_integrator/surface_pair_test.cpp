@@ -1,0 +1,123 @@
+// The short way of the usual meeting of two surfaces against the general decision.
+#include "saltus/event_integrator/surface_pair.hpp"
+
+#include <algorithm>
+#include <array>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "same_transition.hpp"
+#include "systems.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+
+const std::vector<double> origin(4, 0.0);
+
+/// Four affine fields that meet where two affine surfaces intersect, in four dimensions, all coefficients random.
+model::System random_meeting(std::mt19937& random) {
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  auto s = testing::blank(4, 2);
+  const auto affine = [&](double offset) {
+    SX sum = offset + number(random) * s.t;
+    for (int i = 0; i < 4; ++i) sum += number(random) * s.x(i);
+    return sum;
+  };
+  testing::add_surface(s, "first", affine(0.0));
+  testing::add_surface(s, "second", affine(0.0));
+  const SX a = s.alpha(0);
+  const SX b = s.alpha(1);
+  std::vector<SX> f;
+  for (int i = 0; i < 4; ++i) {
+    std::array<SX, 4> corners;
+    for (auto& corner : corners) corner = affine(number(random));
+    f.push_back((1 - a) * (1 - b) * corners[0] + a * (1 - b) * corners[1] + (1 - a) * b * corners[2] +
+                a * b * corners[3]);
+  }
+  testing::set_field(s, f, origin);
+  return s;
+}
+
+Occasion meeting_from(const ModeState& before) {
+  Occasion occasion;
+  occasion.x = origin.data();
+  occasion.at_zero = {0, 1};
+  for (const int j : {0, 1}) {
+    if (before.mode[static_cast<std::size_t>(j)] != 0) occasion.touched.push_back(j);
+  }
+  occasion.time_scale = 0.1;
+  return occasion;
+}
+
+ModeState state_of(std::array<int, 2> mode) {
+  ModeState state{{mode[0], mode[1]}, {}, {}, {}};
+  for (const int j : {0, 1}) {
+    const int k = state.mode[static_cast<std::size_t>(j)];
+    state.alpha.push_back(k > 0 ? 1.0 : k < 0 ? 0.0 : 0.4);
+    if (k == 0) state.sliding.push_back(j);
+  }
+  set_corner_alpha(state);
+  return state;
+}
+
+TEST(SurfacePair, DecidesLikeTheGeneralDecision) {
+  std::mt19937 random(20240711);
+  int entered = 0, crossed = 0, left = 0, both = 0, other = 0;
+  for (int k = 0; k < 100; ++k) {
+    const auto system = random_meeting(random);
+    const auto kernel = evaluation::ModelKernel::compile(system);
+    ASSERT_TRUE(kernel.has_value());
+    const Surroundings surroundings{*kernel, system, true, {}, {}};
+    SurfacePair pair(surroundings);
+    Transition transition;
+    for (const std::array<int, 2> mode : {std::array{0, -1}, {0, 1}, {-1, 0}, {1, 0}, {-1, -1}, {1, 1}}) {
+      const ModeState before = state_of(mode);
+      const auto occasion = meeting_from(before);
+      if (!pair.decide(before, occasion, transition)) {
+        ++other;
+        continue;
+      }
+      expect_same(transition, decide_mode(surroundings, before, occasion));
+      const auto slides = transition.state.sliding.size();
+      ++(slides == 2 ? entered : slides == 0 ? left : crossed);
+      both += before.sliding.empty() ? 1 : 0;
+    }
+  }
+  // Each way of going on, and from regions as well; most random tables do not bring the solution to the intersection.
+  EXPECT_GT(entered, 10);
+  EXPECT_GT(crossed, 10);
+  EXPECT_GT(left, 10);
+  EXPECT_GT(both, 5);
+  EXPECT_GT(other, 100);
+}
+
+TEST(SurfacePair, LeavesWhatIsNotSimpleToTheGeneralDecision) {
+  std::mt19937 random(20240712);
+  const auto decides = [&](auto&& change) {
+    std::mt19937 same = random;
+    int decided = 0;
+    for (int k = 0; k < 20; ++k) {
+      const auto system = random_meeting(same);
+      const auto kernel = evaluation::ModelKernel::compile(system);
+      const Surroundings surroundings{*kernel, system, true, {}, {}};
+      SurfacePair pair(surroundings);
+      Transition transition;
+      const ModeState before = state_of({0, -1});
+      auto occasion = meeting_from(before);
+      change(occasion);
+      decided += pair.decide(before, occasion, transition) ? 1 : 0;
+    }
+    return decided;
+  };
+  EXPECT_GT(decides([](Occasion&) {}), 0);
+  EXPECT_EQ(decides([](Occasion& occasion) { occasion.start = true; }), 0);
+  EXPECT_EQ(decides([](Occasion& occasion) { occasion.exit_above = {0}; }), 0) << "a selection is at its bound";
+  EXPECT_EQ(decides([](Occasion& occasion) { occasion.touched = {0, 1}; }), 0) << "the surface slid on has a kink";
+  EXPECT_EQ(decides([](Occasion& occasion) { occasion.at_zero = {1}; }), 0) << "one surface";
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
