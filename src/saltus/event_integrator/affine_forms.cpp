@@ -58,6 +58,24 @@ void AffineForms::set(std::size_t i, const evaluation::AffineRow& row) {
   forms_[i] = form;
 }
 
+bool AffineForms::replace(std::size_t i, const evaluation::AffineRow& row) {
+  Form& form = forms_[i];
+  if (!form.known || is_threshold(form) || !std::isfinite(row.offset) || !std::isfinite(row.rate)) return false;
+  std::size_t count = 0;
+  for (const double coefficient : row.coefficient) {
+    if (!std::isfinite(coefficient)) return false;
+    count += coefficient != 0.0 ? 1 : 0;
+  }
+  const Form other{form.first, count, row.rate, row.offset, form.sign, true};
+  if (count > form.count || is_threshold(other)) return false;
+  form = other;
+  std::size_t place = form.first;
+  for (std::size_t k = 0; k < row.coefficient.size(); ++k) {
+    if (row.coefficient[k] != 0.0) terms_[place++] = {k, row.coefficient[k]};
+  }
+  return true;
+}
+
 double AffineForms::value(std::size_t i, double t, const double* x) const {
   const Form& form = forms_[i];
   double sum = form.rate == 0.0 ? 0.0 : form.rate * t;  // without a rate the time may be anything

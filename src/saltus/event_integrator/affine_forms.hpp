@@ -35,6 +35,9 @@ class AffineForms {
   /// The form of function i is row j; nothing if that row is not affine.
   void set(std::size_t i, const evaluation::AffineRows& rows, std::size_t j);
   void set(std::size_t i, const evaluation::AffineRow& row);
+  /// Behind group(): puts another row in the place of the form of function i, which is not watched. Returns false, with
+  /// nothing done, where that is no place for it (a threshold before or now, more terms, not finite).
+  [[nodiscard]] bool replace(std::size_t i, const evaluation::AffineRow& row);
 
   /// All forms are set: puts the thresholds of each state together. None is watched.
   void group();

@@ -300,6 +300,7 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
   if (outcome == SearchOutcome::hit) {
     find_candidates();
+    if (candidates_ == suspects_) return outcome;  // their roundings are known
     step.evaluate(0.0, x_.data());
     rescale(step.t, x_.data(), candidates_);
   }

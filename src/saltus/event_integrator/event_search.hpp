@@ -123,6 +123,8 @@ class EventSearch {
   [[nodiscard]] Parts parts_of(const std::vector<std::size_t>& which) const;
   void evaluate_parts(double t, const double* x, const Parts& parts);
   [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
+  [[nodiscard]] std::size_t exit_function(std::size_t row) const { return first_exit_ + 2 * row; }
+  bool turn_exits(double t, const double* x);
   bool flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
   void read_start(double t, const double* x);
   void read_values(double t, const double* x, const std::vector<std::size_t>& which);
@@ -172,12 +174,13 @@ class EventSearch {
   std::vector<std::size_t> sampled_;     ///< of the suspects those without a form
   std::vector<std::size_t> candidates_;  ///< of this step, ascending
   std::vector<std::size_t> inspected_;   ///< at the start of a mode: those whose values matter there
+  std::size_t first_exit_ = 0;           ///< where the exits of sliding surfaces begin in functions_
   std::size_t users_ = 0;                ///< the user functions among functions_, and their end
   std::size_t users_end_ = 0;
   std::vector<std::size_t> of_surface_;  ///< n_psi: function of a surface outside the mode
   bool any_nesting_ = false;             ///< some functions of the kernel hold selections
   bool nested_ = false;                  ///< there are functions nested around the sliding surface
-  bool flips_ = false;                   ///< the functions of the mode are surfaces only: crossings change signs only
+  bool flips_ = false;                   ///< surfaces and plain exits only: crossings change little
   std::vector<bool> prefilter_;          ///< five samples may show that the function stays away from zero
 };
 

@@ -8,6 +8,13 @@
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
+namespace {
+
+/// Of the lower field of a sliding surface. On a repelling one (a forced mode) both fields leave and the signs are the
+/// other way round.
+int arriving_sign(const ExitValues& exit) { return exit.below >= exit.above ? +1 : -1; }
+
+}  // namespace
 
 /// A step that led from one event to the next was not settled: the zeros at its start are history.
 void EventSearch::start_at(double t) {
@@ -18,18 +25,33 @@ void EventSearch::start_at(double t) {
   zeros_at_ = t;
 }
 
-/// A crossing, of surfaces that nothing else of the mode depends on: only signs change. Returns false, with nothing
-/// done, if the mode is another one than that. Cost: O(1) for each surface crossed, but for the comparison of the
-/// modes.
+/// Behind a crossing while sliding: the exits, whose fields are others now. Returns false where the mode has to be
+/// entered afresh.
+bool EventSearch::turn_exits(double t, const double* x) {
+  if (state_.sliding.empty()) return true;
+  field_.exits(t, x, exits_.data());
+  for (std::size_t row = 0; row < state_.sliding.size(); ++row) {
+    for (const auto& [i, side] :
+         {std::pair{exit_function(row), Region::below}, {exit_function(row) + 1, Region::above}}) {
+      const bool is_affine = field_.exit_row(row, side, x, row_);
+      if (is_affine != forms_.has(i) || (is_affine && !forms_.replace(i, row_))) return false;
+    }
+  }
+  return true;
+}
+
+/// A crossing, of surfaces that nothing else of the mode depends on but the exits of what is slid on: only signs
+/// change, and these. Returns false if the mode is another one than that: it is entered afresh. Cost: O(1) for each
+/// surface crossed, but for the comparison of the modes.
 bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
-  if (!flips_ || !state.sliding.empty() || !held_.empty() || !followers_.empty()) return false;
+  if (!flips_ || state.sliding != state_.sliding || state.higher || !held_.empty() || !followers_.empty()) return false;
   inspected_.clear();
   bool crosses = true;
   for_each_difference(state_.mode, state.mode, [&](std::size_t j) {
     crosses = crosses && state.mode[j] != 0 && state_.mode[j] != 0;
     inspected_.push_back(j);
   });
-  if (!crosses) return false;
+  if (!crosses || !turn_exits(t, x)) return false;
   for_each_nonzero(zero_order, [&](std::size_t j) {
     if (state.mode[j] == state_.mode[j]) inspected_.push_back(j);
   });
@@ -46,6 +68,18 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
     functions_[entry].sign = state.mode[j];
     functions_[entry].zero_order = zero_order[j];
     forms_.ignore(entry);
+  }
+  for (std::size_t row = 0; row < state.sliding.size(); ++row) {
+    const int arriving = arriving_sign(exits_[row]);
+    const auto j = at(state.sliding[row]);
+    state_.alpha[j] = state.alpha[j];
+    for (const auto& [i, sign] : {std::pair{exit_function(row), arriving}, {exit_function(row) + 1, -arriving}}) {
+      forms_.ignore(i);
+      functions_[i].sign = sign;
+      functions_[i].zero_order = 0;
+      functions_[i].offset = 0.0;
+      inspected_.push_back(i);
+    }
   }
   read_start(t, x);
   special_.clear();
@@ -100,12 +134,12 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
       functions_.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
     }
   }
+  first_exit_ = functions_.size();
   exits_.resize(state.sliding.size());
   if (!state.sliding.empty()) field_.exits(t, x, exits_.data());
   for (std::size_t row = 0; row < state.sliding.size(); ++row) {
     const int r = static_cast<int>(row);
-    // On a repelling surface (a forced mode) both fields leave and the signs are the other way round.
-    const int arriving = exits_[row].below >= exits_[row].above ? +1 : -1;
+    const int arriving = arriving_sign(exits_[row]);
     functions_.push_back({FunctionKind::exit_below, state.sliding[row], r, arriving});
     functions_.push_back({FunctionKind::exit_above, state.sliding[row], r, -arriving});
     // Where the value is 0 the event that led here was located on it: what follows keeps to the side it moves to.
@@ -149,7 +183,9 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   }
   read_start(t, x);
   sort_functions();
-  flips_ = !any_nesting_ && state.sliding.empty() && users_ == functions_.size() && followers_.empty();
+  const bool selections_are_plain =
+      state.sliding.empty() || (field_.solve() == SlidingSolve::decoupled && kernel_.region_groups().empty());
+  flips_ = !any_nesting_ && selections_are_plain && users_ == functions_.size() && followers_.empty();
 }
 
 void EventSearch::entered_cell(const EventFunction& reached) {

@@ -37,6 +37,8 @@ ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha
 }
 
 void ModeField::enter(const ModeState& state) {
+  // Alone, a surface is one group whatever happens around it.
+  const bool same_single = is_single() && state.sliding == sliding_ && !state.higher && kernel_.region_groups().empty();
   sliding_ = state.sliding;
   start_alpha_ = state.alpha;
   alpha_ = state.alpha;
@@ -53,8 +55,12 @@ void ModeField::enter(const ModeState& state) {
   exits_.assign(sliding_.size(), {});
   coordinate_.assign(sliding_.size(), -1);
   constant_row_.assign(sliding_.size(), false);
-  find_regions(state);
-  find_groups();
+  if (same_single) {
+    solve_ = SlidingSolve::decoupled;
+  } else {
+    find_regions(state);
+    find_groups();
+  }
   if (state.higher) {
     solve_ = SlidingSolve::higher_order;
     higher_order_.emplace(kernel_);
@@ -132,7 +138,26 @@ bool ModeField::exit_row(std::size_t row, Region region, const double* x, evalua
   if (const int only = coordinate_[row]; only >= 0 && rates_[static_cast<Eigen::Index>(row)] == 0.0) {
     fixed = {only, x[only]};
   }
-  return kernel_.lie_row(sliding_[row], fixed, alpha.data(), form);
+  // What cells and references change is not in the key.
+  if (sliding_.size() > 1 || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
+    return kernel_.lie_row(sliding_[row], fixed, alpha.data(), form);
+  }
+  const void* motion = constants_[0].use->motion;
+  for (const auto& known : exit_rows_) {
+    if (known.motion == motion && known.surface == sliding_[row] && known.fixed.component == fixed.component &&
+        known.fixed.value == fixed.value && known.alpha == alpha) {
+      form = known.form;
+      return true;
+    }
+  }
+  if (!kernel_.lie_row(sliding_[row], fixed, alpha.data(), form)) return false;
+  auto& oldest = exit_rows_[next_exit_row_++ % exit_rows_.size()];
+  oldest.motion = motion;
+  oldest.surface = sliding_[row];
+  oldest.fixed = fixed;
+  oldest.alpha = alpha;
+  oldest.form = form;
+  return true;
 }
 
 double ModeField::normal_terms(std::size_t row) const {

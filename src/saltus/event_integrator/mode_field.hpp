@@ -1,6 +1,8 @@
 // The vector field of a mode: the region's own, or the sliding field with its selections.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -130,13 +132,23 @@ class ModeField {
   std::vector<double> speed_;                                      ///< by row: in groups of more than two
   std::vector<double> scaled_;                                     ///< G of such a group, rows over their speeds
   std::vector<double> condition_;                                  ///< by row: of a coupled selection
-  std::vector<bool> constant_row_;                                 ///< gradient known once and for all in this mode
-  std::vector<int> coordinate_;                                    ///< the only nonzero column of a row, or -1
-  evaluation::SlidingConstants sliding_constants_;                 ///< of one surface with a constant gradient
-  Eigen::MatrixXd rows_;                                           ///< J, m x n_x
-  double row_square_ = 0.0;                                        ///< |J|^2 of one sliding surface
-  Eigen::VectorXd rates_, residual_;                               ///< d psi_I/dt, m
-  Eigen::MatrixXd normal_matrix_;                                  ///< J J^T
+  /// Forms of exits that were asked for: solutions come back to their modes.
+  struct ExitRow {
+    const void* motion = nullptr;  ///< of the kernel
+    int surface = 0;
+    evaluation::FixedState fixed;
+    std::vector<double> alpha;
+    evaluation::AffineRow form;
+  };
+  std::array<ExitRow, 8> exit_rows_;  ///< the last ones
+  std::size_t next_exit_row_ = 0;
+  std::vector<bool> constant_row_;                  ///< gradient known once and for all in this mode
+  std::vector<int> coordinate_;                     ///< the only nonzero column of a row, or -1
+  evaluation::SlidingConstants sliding_constants_;  ///< of one surface with a constant gradient
+  Eigen::MatrixXd rows_;                            ///< J, m x n_x
+  double row_square_ = 0.0;                         ///< |J|^2 of one sliding surface
+  Eigen::VectorXd rates_, residual_;                ///< d psi_I/dt, m
+  Eigen::MatrixXd normal_matrix_;                   ///< J J^T
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 
-#include "saltus/switching/plane_internal.hpp"
-#include "saltus/switching/plane_symmetry_internal.hpp"
+#include "saltus/switching/intersection_internal.hpp"
 
 namespace saltus::switching {
 namespace {
 
 bool points_to(const Side& side, int k) { return static_cast<int>(side.drift) == k; }
 
-void push_roots(const Plane& plane, PlaneModes& modes) {
-  const IntersectionRoots roots = intersection_roots(plane);
+void push_roots(const IntersectionRoots& roots, PlaneModes& modes) {
   for (const auto& root : {roots.rising, roots.falling}) {
     if (!root) continue;
     const auto [low, high] = std::minmax(root->alpha[0], root->alpha[1]);
@@ -45,8 +43,12 @@ void push_edges(const PlaneTable& table, const Plane& plane, std::size_t surface
 
 PlaneModes admissible_modes(const PlaneTable& table) {
   const Plane plane(table);
+  return admissible_modes(table, plane, intersection_roots(plane));
+}
+
+PlaneModes admissible_modes(const PlaneTable& table, const Plane& plane, const IntersectionRoots& roots) {
   PlaneModes modes;
-  push_roots(plane, modes);
+  push_roots(roots, modes);
   push_edges(table, plane, 0, modes);
   push_edges(table, plane, 1, modes);
   for (std::size_t corner = 0; corner < 4; ++corner) {

@@ -17,8 +17,7 @@ struct Entry {
 
 /// The root on the branch of g_1 = 0 through the point of entry, the one that is met first. Being on that branch is
 /// G11 < 0, which makes (4.12) hold: with the smallest alpha_2 the determinant is positive.
-std::optional<SlidingRoot> root_on_branch(const Plane& plane, SignTests& signs) {
-  const IntersectionRoots roots = intersection_roots(plane);
+std::optional<SlidingRoot> root_on_branch(const Plane& plane, const IntersectionRoots& roots, SignTests& signs) {
   if (std::abs(roots.discriminant) <= sign_tolerance && roots.rising) {
     if (roots.rising->inside()) signs.fail("discriminant of the sliding roots");
   }
@@ -36,9 +35,9 @@ std::optional<SlidingRoot> root_on_branch(const Plane& plane, SignTests& signs) 
 }
 
 /// In canonical form: from (0, -1), f_1^{--} > 0 > f_1^{+-}, f_2^{--} > 0, and H_1 > 0 or f_2^{+-} < 0.
-Entry enter(const Plane& p, SignTests& signs) {
+Entry enter(const Plane& p, const IntersectionRoots& roots, SignTests& signs) {
   const auto [s1, s2] = p.scale;
-  const auto root = root_on_branch(p, signs);
+  const auto root = root_on_branch(p, roots, signs);
   const double f1_mp = p.f1(-1, 1);
   const double f1_pp = p.f1(1, 1);
   const bool left_turning = signs.positive(p.h(0), s1 * s1, "H1 = f1(-+) f1(+-) - f1(++) f1(--)");
@@ -72,8 +71,9 @@ Entry enter(const Plane& p, SignTests& signs) {
 
 PlaneDecision decide_entering(const PlaneTable& table, PlaneMode incoming, SelectionPolicy policy) {
   const Plane plane(table);
-  const auto symmetry = find_symmetry(plane, [incoming](const PlaneSymmetry& s, const Plane& p) {
+  const auto symmetry = find_symmetry([&](const PlaneSymmetry& s) {
     if (s.apply(incoming) != PlaneMode{0, -1}) return false;
+    const Plane p = s.apply(plane);
     return p.f2(-1, -1) > 0.0 && (p.h(0) > 0.0 || p.f2(1, -1) <= 0.0);
   });
   if (!symmetry) return not_canonical(table, "velocity of the sliding solution towards the second surface");
@@ -88,10 +88,15 @@ PlaneDecision decide_entering(const PlaneTable& table, PlaneMode incoming, Selec
                       "velocity of the sliding solution towards the second surface")) {
     return not_canonical(table, "velocity of the sliding solution towards the second surface");
   }
-  const Entry entry = enter(canonical, signs);
+  const IntersectionRoots roots = intersection_roots(plane);
+  IntersectionRoots images = roots;
+  for (auto* root : {&images.rising, &images.falling}) {
+    if (*root) *root = symmetry->apply(**root);
+  }
+  const Entry entry = enter(canonical, images, signs);
   const bool passive = entry.exit_for_passive && policy == SelectionPolicy::passive_dominant;
   PlaneDecision decision = conclude(table, entry.leaf, symmetry->apply_inverse(passive ? *entry.exit : entry.mode),
-                                    signs, admissible_modes(table));
+                                    signs, admissible_modes(table, plane, roots));
   decision.ambiguous = decision.by_scaling = entry.exit_for_passive;
   return decision;
 }

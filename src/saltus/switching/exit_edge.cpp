@@ -25,7 +25,7 @@ PlaneDecision decide_exit_edge(const PlaneTable& table, SquareEdge edge) {
   const Plane plane(table);
   PlaneMode outward{};
   outward[edge.surface] = edge.side;
-  const auto symmetry = find_symmetry(plane, [outward](const PlaneSymmetry& s, const Plane&) {
+  const auto symmetry = find_symmetry([outward](const PlaneSymmetry& s) {
     return s.apply(outward) == PlaneMode{1, 0};
   });
   SALTUS_ASSERT(symmetry.has_value());

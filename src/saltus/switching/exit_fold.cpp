@@ -44,7 +44,8 @@ LeafMode leave(const Plane& p, const Touching& touching, SignTests& signs) {
 PlaneDecision decide_exit_fold(const PlaneTable& table) {
   const Plane plane(table);
   const PlaneAlpha root = double_root(plane);
-  const auto symmetry = find_symmetry(plane, [&root](const PlaneSymmetry& s, const Plane& p) {
+  const auto symmetry = find_symmetry([&](const PlaneSymmetry& s) {
+    const Plane p = s.apply(plane);
     if (!(p.h(0) < 0.0 && p.h(1) < 0.0)) return false;
     const Touching touching(p, s.apply(root));
     return touching.curvature[1] < touching.curvature[0];

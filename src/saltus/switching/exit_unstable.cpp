@@ -59,10 +59,11 @@ PlaneDecision spirals(const PlaneTable& table, const SignTests& signs, const Pla
 
 PlaneDecision decide_exit_unstable(const PlaneTable& table) {
   const Plane plane(table);
-  const auto root = intersection_roots(plane).rising;
+  const IntersectionRoots roots = intersection_roots(plane);
+  const auto& root = roots.rising;
   if (!root) return not_canonical(table, "sliding root on the intersection");
   const auto symmetry =
-      find_symmetry(plane, [&root](const PlaneSymmetry& s, const Plane& p) { return is_canonical(p, s.apply(*root)); });
+      find_symmetry([&](const PlaneSymmetry& s) { return is_canonical(s.apply(plane), s.apply(*root)); });
   if (!symmetry) return not_canonical(table, "the diagonal elements of G at the sliding root");
   const Plane canonical = symmetry->apply(plane);
   SignTests signs;
@@ -71,7 +72,7 @@ PlaneDecision decide_exit_unstable(const PlaneTable& table) {
   signs.positive(image.sliding_jacobian[1][1], s2, "G22 at the sliding root");
   signs.positive(image.sliding_jacobian[0][1], s1, "G12 at the sliding root");
   const Loss loss = leave(canonical, signs);
-  const PlaneModes admissible = admissible_modes(table);
+  const PlaneModes admissible = admissible_modes(table, plane, roots);
   if (loss.leaf == Leaf::C9_1) return spirals(table, signs, admissible);
   PlaneDecision decision = conclude(table, loss.leaf, symmetry->apply_inverse(loss.mode), signs, admissible);
   // Fig. 10: during the laps around the root the solution comes close to the asymptote; for a large ratio of scalings

@@ -200,7 +200,8 @@ void add(const TrajectoryEnd& end, HiddenDecision& decision) {
 }
 
 TrajectoryOptions trajectory_options(const HiddenOptions& options, double tolerance, double tolerance_away) {
-  return {options.budget, tolerance, tolerance_away, options.interpolation == Interpolation::multi_affine};
+  return {options.budget, tolerance, tolerance_away, options.interpolation == Interpolation::multi_affine,
+          ode::Method::dopri5};
 }
 
 }  // namespace
@@ -235,10 +236,11 @@ HiddenDecision decide_by_hidden_dynamics(const CornerTable& table, const HiddenS
 
 HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rate, const HiddenSituation& situation,
                               double eta, const HiddenOptions& options) {
-  constexpr double tolerance = 1e-11;  // far below eta, which is all that the solution gets away from the root by
-  constexpr double tolerance_nudged = 1e-9;
+  // Far below eta, which is all that the solution gets away from the root by; and of nudges.
+  constexpr double tolerance = 1e-10;
+  constexpr double tolerance_nudged = 1e-7;
   constexpr double tolerance_away = 1e-7;
-  constexpr std::array nudges{1e-4, -1e-4, 6e-5, -6e-5};  // on different turns of a spiral
+  constexpr std::array nudges{2e-3, -2e-3, 1.2e-3, -1.2e-3};  // on different turns of a spiral; linear to that
   std::vector<double> velocity(at(surfaces));
   double after = eta;
   const auto later = [&](const double* alpha, double* result) {
@@ -253,7 +255,10 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
       GroupField field(surfaces, later, group);
       HiddenFace face(static_cast<int>(group.size()), field, options.interpolation);
       face.set_scaling(own_options.scaling);
-      HiddenTrajectory trajectory(face, trajectory_options(own_options, tolerance, tolerance_away));
+      TrajectoryOptions closely =
+          trajectory_options(own_options, fraction < 1.0 ? 0.1 * tolerance : tolerance, tolerance_away);
+      closely.method = ode::Method::dop853;  // long laps at tight tolerances
+      HiddenTrajectory trajectory(face, closely);
       for (const auto& start : starts_of(own)) {
         const TrajectoryEnd end = trajectory.follow(start);
         add(end, decision);
@@ -263,7 +268,8 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
         }
         if (fraction < 1.0) continue;
         // The root is still there, but no longer stable: which way it is left is not the event's to say.
-        TrajectoryOptions fewer = trajectory_options(own_options, tolerance_nudged, tolerance_away);
+        TrajectoryOptions fewer = closely;
+        fewer.tolerance = tolerance_nudged;
         fewer.budget /= 10;
         HiddenTrajectory nudged(face, fewer);
         for (std::size_t j = 0; j < start.size(); ++j) {

@@ -79,6 +79,7 @@ void HiddenFace::enter(const std::vector<int>& zone) {
 void HiddenFace::velocity(const double* u, double* v) const {
   ++evaluations_;
   if (tabulated_) {
+    if (free_.size() == at(surfaces_)) return face_.evaluate(u, v);
     for (std::size_t i = 0; i < free_.size(); ++i) selections_[i] = u[free_[i]];
     face_.evaluate(selections_.data(), v);
     return;

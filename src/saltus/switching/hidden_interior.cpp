@@ -27,9 +27,10 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
   double fastest = 0.0;
   for (int j = 0; j < m_; ++j) fastest = std::max(fastest, face_.speed(j));
   if (!(fastest > 0.0)) return settle("no velocity depends on the selections", v_.data());
-  double h = 0.05 / fastest;
+  double h = h_ > 0.0 ? h_ : 0.05 / fastest;
+  h_ = 0.0;
   ode::StiffnessWatch watch;
-  ode::StepControl control(stiff_ ? ode::Method::radau5 : ode::Method::dopri5);
+  ode::StepControl control(stiff_ ? ode::Method::radau5 : options_.method);
   if (stiff_stepper_) stiff_stepper_->restart();
   int next_look = 0;
   int pause = shortest_pause;
@@ -42,7 +43,7 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
       if (rest == Rest::moved) return Status::goes_on;
     }
     auto& made = stiff_ ? stiff_stepper_ : stepper_;
-    if (!made) made.emplace(stiff_ ? ode::Method::radau5 : ode::Method::dopri5, m_);
+    if (!made) made.emplace(stiff_ ? ode::Method::radau5 : options_.method, m_);
     ode::Stepper& stepper = *made;
     const double tolerance = tolerance_here();
     const ode::Tolerances tolerances{tolerance, tolerance};
@@ -65,6 +66,7 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
     if (event.kind != StepEvent::Kind::none) {
       face_.velocity(u_.data(), v_.data());
       if (event.kind == StepEvent::Kind::boundary) return at_boundary(event.component);
+      h_ = h * control.accepted(stepper.error_norm());
       return pass_section(static_cast<std::uint64_t>(2 * m_ + event.component));
     }
     std::copy_n(stepper.slope_new(), m_, v_.begin());
@@ -97,22 +99,28 @@ HiddenTrajectory::StepEvent HiddenTrajectory::first_event(ode::Stepper& stepper)
     return z == 0 ? low_[at(j)] < 0.0 || high_[at(j)] > 1.0 : z < 0 ? high_[at(j)] > 0.0 : low_[at(j)] < 1.0;
   };
   const double* slope_new = stepper.slope_new();
+  // Of two components that cycle within the square either one has maxima.
+  const int only = m_ == 2 && face_.free().size() == 2 ? 0 : -1;
   const auto has_maximum = [&](int j) {
-    return zone_[at(j)] == 0 && v_[at(j)] > 0.0 && slope_new[j] < 0.0 &&
+    return (only < 0 || j == only) && zone_[at(j)] == 0 && v_[at(j)] > 0.0 && slope_new[j] < 0.0 &&
            v_[at(j)] - slope_new[j] > 1e-7 * face_.speed(j);  // else it has come to rest
   };
   bool any = false;
-  for (int j = 0; j < m_; ++j) any = any || may_cross(j) || has_maximum(j);
-  if (!any) return event;
+  bool any_may_cross = false;
+  for (int j = 0; j < m_; ++j) {
+    any_may_cross = any_may_cross || may_cross(j);
+    any = any || has_maximum(j);
+  }
+  if (!any && !any_may_cross) return event;
   if (!is_dense) stepper.dense(f, dense_);
-  for (std::size_t node = 0; node < ode::event_nodes; ++node) {
+  for (std::size_t node = 0; any_may_cross && node < ode::event_nodes; ++node) {
     dense_.evaluate(ode::interpolation_nodes()[node], samples_.data() + node * at(m_));
   }
   for (int j = 0; j < m_; ++j) {
     if (may_cross(j)) look_for_boundary(j, event);
   }
   for (int j = 0; j < m_; ++j) {
-    if (has_maximum(j)) look_for_maximum(j, event);
+    if (has_maximum(j)) look_for_maximum(j, stepper, event);
   }
   if (event.kind == StepEvent::Kind::none) return event;
   dense_.evaluate(event.theta, point_.data());
@@ -143,15 +151,34 @@ void HiddenTrajectory::look_for_boundary(int j, StepEvent& event) {
   }
 }
 
-/// v_j passes from + to -: located on the velocity at the dense output, whose own derivative is less accurate.
-void HiddenTrajectory::look_for_maximum(int j, StepEvent& event) {
+/// v_j passes from + to -: located on the velocity at the dense output, whose own derivative is less accurate. Regula
+/// falsi with halved ends (Illinois); the end at which v_j is not positive any more.
+void HiddenTrajectory::look_for_maximum(int j, const ode::Stepper& stepper, StepEvent& event) {
+  constexpr double resolution = 0x1p-44;
   double low = 0.0;
   double high = 1.0;
-  for (int i = 0; i < 44; ++i) {
-    const double middle = 0.5 * (low + high);
+  double at_low = v_[at(j)];
+  double at_high = stepper.slope_new()[j];
+  int kept = 0;  // > 0: the lower end was, < 0: the upper one
+  for (int i = 0; i < 44 && high - low > resolution; ++i) {
+    double middle = low + (high - low) * (at_low / (at_low - at_high));
+    // At least a little beyond an end that is as good as the zero.
+    middle = std::clamp(middle, low + 0.5 * resolution, high - 0.5 * resolution);
     dense_.evaluate(middle, point_.data());
     face_.velocity(point_.data(), point_velocity_.data());
-    (point_velocity_[at(j)] > 0.0 ? low : high) = middle;
+    const double value = point_velocity_[at(j)];
+    if (value > 0.0) {
+      low = middle;
+      at_low = value;
+      if (kept < 0) at_high *= 0.5;
+      kept = -1;
+    } else {
+      high = middle;
+      at_high = value;
+      if (kept > 0) at_low *= 0.5;
+      kept = 1;
+    }
+    if (value == 0.0) break;
   }
   if (high < event.theta) event = {StepEvent::Kind::maximum, j, high};
 }
@@ -198,8 +225,10 @@ HiddenTrajectory::Rest HiddenTrajectory::look_for_rest() {
     std::copy_n(derivatives_.begin() + static_cast<std::ptrdiff_t>(at(free[i]) * n), n,
                 jacobian_here_.begin() + static_cast<std::ptrdiff_t>(i * n));
   }
+  // Where J is not stable here, it is not by that margin at a root near by.
+  const bool may_settle = resting || is_hurwitz(std::span(jacobian_here_), static_cast<int>(n));
   root_ = u_;
-  const bool found = polish_rest(root_.data());
+  const bool found = may_settle && polish_rest(root_.data());
   bool inside = found;
   for (const int j : free) inside = inside && 0.0 < root_[at(j)] && root_[at(j)] < 1.0;
   if (!inside) {

@@ -43,6 +43,7 @@ TrajectoryEnd HiddenTrajectory::follow(const std::vector<double>& u) {
   end_ = {};
   used_ = 0;
   stiff_ = false;
+  h_ = 0.0;
   recurrence_.reset();
   enter_zones();
   nudges_ = 0;

@@ -31,6 +31,7 @@ struct TrajectoryOptions {
   double tolerance = 1e-9;       ///< of u, absolute and relative
   double tolerance_away = 1e-9;  ///< a layer's width away from the start; in between in proportion to the distance
   bool closed_forms = true;      ///< g is multi-affine
+  ode::Method method = ode::Method::dopri5;  ///< where it is not stiff
 };
 
 class HiddenTrajectory {
@@ -59,7 +60,7 @@ class HiddenTrajectory {
   [[nodiscard]] double tolerance_here() const;
   StepEvent first_event(ode::Stepper& stepper);
   void look_for_boundary(int j, StepEvent& event);
-  void look_for_maximum(int j, StepEvent& event);
+  void look_for_maximum(int j, const ode::Stepper& stepper, StepEvent& event);
   Status at_boundary(int j);
   Status pass_section(std::uint64_t event);
   void perturb();
@@ -82,6 +83,7 @@ class HiddenTrajectory {
   std::optional<ode::Stepper> stepper_, stiff_stepper_;  ///< made when they are first needed
   ode::DenseStep dense_;
   bool stiff_ = false;
+  double h_ = 0.0;  ///< proposed where the trajectory is still in the zone of its last step; else 0
   std::vector<double> low_, high_, point_, point_velocity_, root_, derivatives_, matrix_, jacobian_here_, step_;
   std::vector<double> samples_;  ///< of the dense output at the interpolation nodes, node by node
   TrajectoryEnd end_;

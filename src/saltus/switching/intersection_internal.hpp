@@ -15,15 +15,18 @@ struct LeafMode {
   PlaneMode mode{};
 };
 
-/// The first symmetry after which `canonical(symmetry, plane)` holds.
+/// The first symmetry for which `canonical(symmetry)` holds.
 template <class Canonical>
-std::optional<PlaneSymmetry> find_symmetry(const Plane& plane, Canonical&& canonical) {
+std::optional<PlaneSymmetry> find_symmetry(Canonical&& canonical) {
   for (unsigned i = 0; i < 8; ++i) {
     const auto symmetry = PlaneSymmetry::number(i);
-    if (canonical(symmetry, symmetry.apply(plane))) return symmetry;
+    if (canonical(symmetry)) return symmetry;
   }
   return std::nullopt;
 }
+
+/// admissible_modes() of a table whose plane and roots are known.
+[[nodiscard]] PlaneModes admissible_modes(const PlaneTable& table, const Plane& plane, const IntersectionRoots& roots);
 
 /// Selections of a mode, whether or not it is admissible: the sliding ones by their formulas.
 [[nodiscard]] PlaneContinuation continuation(const PlaneTable& table, PlaneMode mode);
