@@ -92,7 +92,9 @@ class Branches(tool.ToolTest):
         self.assertEqual(result["options"]["simulate.event.branches"], 64)
         ends = [result["final"]["x"][0]]
         for branch in result["branches"]:
-            self.assertEqual(list(branch), [*KEYS, "left_at"])
+            # To stay at 0 is to be able to leave at any later time.
+            stays = branch["events"][0]["mode_after"] == [0]
+            self.assertEqual(list(branch), [*KEYS, *(["families"] if stays else []), "left_at"])
             self.assertEqual(branch["model"], result["model"])
             left = branch["left_at"]
             taken = result["events"][left["event"]]["alternatives"][left["alternative"]]
@@ -104,6 +106,27 @@ class Branches(tool.ToolTest):
         self.assertEqual({row["branch"] for row in rows}, {"main", "1", "2"})
         self.assertEqual(float(rows[-1]["x"]), result["branches"][1]["final"]["x"][0])
         self.run_tool("report", "r.json", code=0)
+
+    def test_members_of_families_are_followed_and_shown(self):
+        out, _ = self.run_tool("simulate", "spontaneous-switch", "--branch", "all", "--set", "simulate.event.members=1",
+                               "--out", "r.json", code=0)
+        self.assertIn("branches    4\n", out)
+        self.assertRegex(out, r"families    2, behind event 1: may leave into - at any time from 0 to 1\n")
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        staying = result["branches"][1]
+        self.assertEqual([family["kind"] for family in staying["families"]], ["later_departure"] * 2)
+        for member in staying["branches"]:
+            left = member["left_at"]
+            self.assertEqual(set(left), {"event", "family", "parameter"})
+            family = staying["families"][left["family"]]
+            self.assertEqual(left["parameter"], (family["from"] + family["until"]) / 2)
+            self.assertEqual(member["events"][0]["t"], left["parameter"])
+            self.assertEqual(member["events"][0]["mode_after"], family["to"]["mode"])
+            self.assertAlmostEqual(member["final"]["x"][0], family["to"]["mode"][0] / 2)
+        self.run_tool("report", "r.json", code=0)
+        self.assertIn("families", (self.folder / "r.html").read_text(encoding="utf-8"))
+        err = self.run_tool("simulate", "spontaneous-switch", "--set", "simulate.event.members=-1", code=2)[1]
+        self.assertIn("a whole number >= 0", err)
 
     def test_a_branch_that_stops_early_is_told(self):
         # Downwards the right-hand side ends at x = -1/2.

@@ -296,6 +296,66 @@ test("of a surface that was slid on there is a path which it dominates, as in a 
   assert.equal(saltus.hiddenWeights(meetingOf(meeting.velocities, [0, 1])).length, 1);
 });
 
+test("the hidden dynamics of a start ends in one of the modes, exactly on either side of a separatrix", () => {
+  // Leaf C9-4 (the model part-ways) in lambda = 2 alpha - 1: (l2 + l1 l2/2, -l1/2 + l2 + l1 l2/5).
+  const g = (k, l) => [l + (k * l) / 2, -k / 2 + l + (k * l) / 5];
+  const corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
+  const meeting = meetingOf([0, 1].map((j) => corners.map(([k, l]) => g(k, l)[j])), [0.5, 0.5]);
+  const {axis, modes, parts} = saltus.basins(meeting, 40);
+  assert.deepEqual(modes.map(String).sort(), ["-1,-1", "1,1"]);
+  // The borders are the two solutions that slide along x2 = 0 away from the square: through (0, 3/16) and (1, 17/24);
+  // backwards in time they wind around the root.
+  const size = [0, 1].map((j) => Math.max(...corners.map(([k, l]) => Math.abs(g(k, l)[j]))));
+  const slope = (u) => g(2 * u[0] - 1, 2 * u[1] - 1).map((value, j) => -value / size[j]);
+  for (const [start, below] of [[[0, 3 / 16], "-1,-1"], [[1, 17 / 24], "-1,-1"]]) {
+    let u = start;
+    for (let n = 0; n < 1500; n += 1) {
+      if (n % 150 === 100) {
+        // Across the border, to the side that is below it at its end.
+        const [v, w] = slope(u).map((value) => value / Math.hypot(...slope(u)));
+        const sign = start[0] === 0 ? 1 : -1;
+        // Its arms get closer in proportion.
+        const step = 0.01 * sign * Math.hypot(u[0] - 0.5, u[1] - 0.5);
+        const near = (s) => saltus.hiddenOutcome(meeting, [u[0] + s * w, u[1] - s * v]);
+        assert.equal(String(near(step)), below, `${u}`);
+        assert.equal(String(near(-step)), "1,1", `${u}`);
+      }
+      const k1 = slope(u);
+      const k2 = slope(u.map((value, j) => value + 0.005 * k1[j]));
+      u = u.map((value, j) => value + 0.01 * k2[j]);
+    }
+  }
+  // Both sizes: every point belongs to one of them, and the root to neither.
+  const share = parts.flat().filter((part) => String(modes[part]) === "1,1").length / parts.flat().length;
+  assert.ok(share > 0.3 && share < 0.7, String(share));
+  assert.equal(axis.length, 40);
+  assert.equal(String(saltus.hiddenOutcome(meeting, [0.5, 0.5])), "0,0");
+});
+
+test("outcomes along an edge and at a stable root are told", () => {
+  assert.deepEqual(saltus.hiddenOutcome(meetingOf([[3, -1, 3, -1], [1, 1, -4, -4]]), [0, 0]), [0, 0]);
+  assert.deepEqual(saltus.hiddenOutcome(meetingOf([[3, -1, 3, -1], [1, 1, 1, 1]]), [0.2, 0]), [0, 1]);
+  assert.equal(saltus.basins(meetingOf([[3, -1, 3, -1], [1, 1, 1, 1]]), 10), null);
+});
+
+test("the border of two regions ends where a third one is nearer", () => {
+  // Distances from (-1, 0), (1, 0), (0, 2): x = 0 below the centre of the circle around them, (0, 3/4).
+  const border = {
+    ...affine([0, 1], [4, 0], 0),
+    role: "region",
+    name: "left | right",
+    within: [{gradient: [2, -4], rate: 0, constant: 3}]
+  };
+  const parts = saltus.surfaceInPlane(border, [0, 1], {t: 0, x: [0, 0]});
+  const path = saltus.surfacePath(parts, {x: [-2, 2], y: [-2, 2]});
+  near(path.y.slice(0, 2).sort((p, q) => p - q), [-2, 0.75]);
+  near(path.x.slice(0, 2), [0, 0]);
+  assert.equal(saltus.surfaceLabel(border), "left | right");
+  assert.deepEqual(saltus.surfacePath(parts, {x: [-2, 2], y: [1, 2]}).x, []);
+  const sheet = saltus.surfaceInSpace(border, [0, 1, 2], {t: 0, x: [0, 0, 0]}, [[-2, 2], [-2, 2], [0, 1]]);
+  assert.ok(Math.abs(Math.max(...sheet.y) - 0.75) < 1e-12 && Math.min(...sheet.y) === -2);
+});
+
 test("branches are one path with a gap behind each, without those outside the window", () => {
   const branch = (t, x) => ({trajectory: {t, x: [x]}});
   const branches = [branch([1, 2, 3], [5, 6, 7]), branch([8, 9], [0, 1]), branch([2, 4], [8, 9])];

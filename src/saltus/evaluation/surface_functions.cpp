@@ -104,17 +104,28 @@ class Composer {
   std::vector<Composed> composed_;
 };
 
-std::optional<AffineForm> affine_part(const model::System& system, const Composed& composed) {
+/// Squares of distances to two points differ by an affine function, although both are curved.
+bool curvature_cancels(const Composed& composed, const SX& arguments) {
+  constexpr std::size_t most_states = 32;  // the matrix grows with their square
+  if (composed.states.size() > most_states) return false;
+  const SX second = SX::jacobian(SX::jacobian(composed.psi, arguments), arguments);
+  return SX::sparsify(second).nnz() == 0;
+}
+
+/// @param states  of which the form has coefficients
+std::optional<AffineForm> affine_part(const model::System& system, const Composed& composed,
+                                      const std::set<int>& states) {
   if (composed.nested || !composed.cells.empty()) return std::nullopt;
   const SX arguments = SX::vertcat({system.x, system.t});
   const auto nonlinear = SX::which_depends(composed.psi, arguments, 2, false);
-  if (std::any_of(nonlinear.begin(), nonlinear.end(), [](bool value) { return value; })) return std::nullopt;
+  const bool looks_curved = std::any_of(nonlinear.begin(), nonlinear.end(), [](bool value) { return value; });
+  if (looks_curved && !curvature_cancels(composed, arguments)) return std::nullopt;
   ModelFunction function("affine", {arguments}, {SX::jacobian(composed.psi, arguments), composed.psi});
   const std::vector<double> origin(static_cast<std::size_t>(arguments.numel()), 0.0);
   std::vector<double> slopes(origin.size());
   AffineForm affine;
   function(std::array{origin.data()}, std::array{slopes.data(), &affine.constant});
-  for (const int i : composed.states) affine.gradient.push_back(slopes[static_cast<std::size_t>(i)]);
+  for (const int i : states) affine.gradient.push_back(slopes[static_cast<std::size_t>(i)]);
   affine.rate = slopes.back();
   const bool finite = std::all_of(slopes.begin(), slopes.end(), [](double value) { return std::isfinite(value); });
   if (!finite || !std::isfinite(affine.constant)) return std::nullopt;
@@ -148,9 +159,9 @@ struct PointFunction {
 };
 
 std::function<double(double, const double*)> value_of(const model::System& system, const Composer& composer,
-                                                      const Composed& composed) {
+                                                      const Composed& composed, const std::set<int>& drawn) {
   std::vector<SX> states;
-  for (const int i : composed.states) states.push_back(system.x(i));
+  for (const int i : drawn) states.push_back(system.x(i));
   const std::vector<SX> arguments{system.t, SX::vertcat(states), composer.symbols()};
   // std::function wants to be copied: the copies share one work space.
   auto function = std::make_shared<PointFunction>();
@@ -171,9 +182,58 @@ SurfaceFunction surface_function(const model::System& system, const Composer& co
   SurfaceFunction surface;
   surface.states.assign(composed.states.begin(), composed.states.end());
   surface.depends_on_time = composed.on_time;
-  surface.affine = affine_part(system, composed);
+  surface.affine = affine_part(system, composed, composed.states);
   if (!surface.affine && composed.resolved && surface.states.size() <= most_states_of_curves) {
-    surface.value = value_of(system, composer, composed);
+    surface.value = value_of(system, composer, composed, composed.states);
+  }
+  return surface;
+}
+
+/// g_r - g_i of a group by `indicator`, whose symbols say which region is r.
+Composed difference(const model::System& system, const Composer& composer, const model::ModeGroup& group, int r,
+                    int i) {
+  SX reference = SX::zeros(group.regions, 1);
+  reference(r) = 1;
+  const SX& psi = system.switching[static_cast<std::size_t>(group.first + i)].psi;
+  return composer.compose(SX::substitute(psi, group.reference, reference));
+}
+
+/// Where the regions i < k of a group meet: g_k = g_i, both at most as large as any other.
+SurfaceFunction region_border(const model::System& system, const Composer& composer, const model::ModeGroup& group,
+                              int i, int k) {
+  std::vector<Composed> parts{difference(system, composer, group, k, i)};
+  for (int other = 0; other < group.regions; ++other) {
+    if (other != i && other != k) parts.push_back(difference(system, composer, group, other, i));
+  }
+  SurfaceFunction surface;
+  surface.owner = SurfaceOwner::region_border;
+  const auto label = [&](int region) {
+    const auto& name = group.mode_names[static_cast<std::size_t>(region)];
+    return group.name.empty() ? name : group.name + "." + name;
+  };
+  surface.name = label(i) + " | " + label(k);
+  // What cuts a border off may depend on states of which the border itself does not.
+  std::set<int> states;
+  bool resolved = true, affine = true;
+  for (const auto& part : parts) {
+    states.insert(part.states.begin(), part.states.end());
+    surface.depends_on_time = surface.depends_on_time || part.on_time;
+    resolved = resolved && part.resolved;
+  }
+  surface.states.assign(states.begin(), states.end());
+  for (std::size_t p = 0; p < parts.size() && affine; ++p) {
+    auto form = affine_part(system, parts[p], states);
+    affine = form.has_value();
+    if (affine && p == 0) surface.affine = std::move(form);
+    if (affine && p > 0) surface.within.push_back(std::move(*form));
+  }
+  if (affine) return surface;
+  surface.affine.reset();
+  surface.within.clear();
+  if (!resolved || states.size() > most_states_of_curves) return surface;
+  surface.value = value_of(system, composer, parts.front(), states);
+  for (std::size_t p = 1; p < parts.size(); ++p) {
+    surface.within_values.push_back(value_of(system, composer, parts[p], states));
   }
   return surface;
 }
@@ -195,6 +255,14 @@ std::vector<SurfaceFunction> surface_functions(const model::System& system) {
   for (const auto& jump : system.jumps) {
     for (casadi_int i = 0; i < jump.guards.numel(); ++i) {
       add(composer.compose(jump.guards(i)), jump.name, SurfaceOwner::jump);
+    }
+  }
+  for (const auto& group : system.mode_groups) {
+    for (int k = 0; group.first >= 0 && k < group.regions; ++k) {
+      for (int i = 0; i < k; ++i) {
+        auto border = region_border(system, composer, group, i, k);
+        if (!border.states.empty()) surfaces.push_back(std::move(border));
+      }
     }
   }
   return surfaces;

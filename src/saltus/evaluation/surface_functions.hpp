@@ -1,4 +1,5 @@
-// Switching functions and guards of jumps as functions of the states they depend on: for drawing where they are zero.
+// Switching functions, guards of jumps and borders of regions as functions of the states they depend on: for drawing
+// where they are zero.
 #pragma once
 
 #include <functional>
@@ -10,7 +11,7 @@
 
 namespace saltus::evaluation {
 
-enum class SurfaceOwner { switching_function, jump };
+enum class SurfaceOwner { switching_function, jump, region_border };
 
 /// gradient . x[states] + rate t + constant.
 struct AffineForm {
@@ -30,9 +31,14 @@ struct SurfaceFunction {
   /// psi at a time and the coordinates of `states` (not finite where the model is undefined). Empty for affine
   /// functions and those of more than two states. Not thread safe.
   std::function<double(double t, const double* coordinates)> value;
+  /// The part of the surface where all of these are >= 0, over the same states. Of the border of two regions by
+  /// `indicator`: how much larger the indicators of the others are.
+  std::vector<AffineForm> within;                                                         ///< with `affine`
+  std::vector<std::function<double(double t, const double* coordinates)>> within_values;  ///< with `value`
 };
 
-/// One for every column of the result, then one for every guard of [[jumps]]; without those that depend on no state.
+/// One for every column of the result, then one for every guard of [[jumps]], then one for every two regions of a group
+/// by `indicator`, which may never be the two smallest ones; without those that depend on no state.
 /// Cost: compiles one function for each that is not affine.
 [[nodiscard]] std::vector<SurfaceFunction> surface_functions(const model::System& system);
 

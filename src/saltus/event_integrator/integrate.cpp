@@ -61,6 +61,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       slope_(x_.size()),
       row_x_(x_.size()),
       row_slope_(x_.size()),
+      families_(surroundings_),
       evaluations_before_(kernel.field_evaluations()),
       series_(options.until - options.from) {
   mode_atol_ = tolerances_.atol;
@@ -193,6 +194,7 @@ bool Run::begin() {
   h_scale_ = h_;
   h_ = step_memory_.change(state_.mode, t_, h_);
   while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) ++next_output_;
+  if (recorder_.events() > 0) watch_for_families();
   return true;
 }
 
@@ -221,7 +223,9 @@ CompactIntegration Run::to_end() {
   }
   result_.status.time_reached = t_;
   result_.statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
+  families_.close(t_);
   result_.recording = recorder_.take();
+  result_.recording.families = families_.take();
   begin_at_choice();
   return std::move(result_);
 }
@@ -241,7 +245,9 @@ Integration integrate(const evaluation::ModelKernel& kernel, const model::System
           recording.trajectory(system),
           run.statistics,
           std::move(recording.branch_points),
-          run.chosen};
+          run.chosen,
+          recording.listed_families(system),
+          recording.family_numbers()};
 }
 
 }  // namespace saltus::event_integrator

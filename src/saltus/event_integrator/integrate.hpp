@@ -64,6 +64,8 @@ struct Integration {
   result::Statistics statistics;           ///< wall_seconds is left to the caller
   std::vector<BranchPoint> branch_points;  ///< events with alternatives behind the last choice, ascending
   bool chosen = true;                      ///< false: it stopped before the last choice, and begins at its own start
+  std::vector<result::Family> families{};
+  std::vector<long> family_numbers{};  ///< in the run: what a Choice of one names
 };
 
 /// The same before events and rows are expanded into columns.

@@ -108,11 +108,11 @@ void Recorder::add_transition(Recording::Event& event, const Transition& transit
     event.meeting = recording_.meetings.size();
     recording_.meetings.push_back(*transition.meeting);
   }
-  if (transition.alternatives.empty()) return;
+  if (transition.alternatives.empty() && !transition.beyond_spiral) return;
   for (const auto& other : transition.alternatives) {
     recording_.alternatives.push_back({other.state.mode, other.state.alpha});
   }
-  event.alternatives.end = recording_.alternatives.size();
+  if (!transition.alternatives.empty()) event.alternatives.end = recording_.alternatives.size();
   recording_.branch_points.push_back({recording_.event_list.size() - 1, transition.decision});
 }
 

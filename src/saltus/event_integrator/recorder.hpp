@@ -55,6 +55,8 @@ class Recorder {
   [[nodiscard]] bool ends_at(double t) const {
     return !recording_.row_times.empty() && recording_.row_times.back() == t;
   }
+  /// Of the last event; there must be one.
+  [[nodiscard]] std::optional<bool> last_unique() const { return recording_.event_list.back().unique; }
   [[nodiscard]] long events() const { return static_cast<long>(recording_.event_list.size()); }
   [[nodiscard]] std::size_t rows() const { return recording_.row_times.size(); }
 

@@ -127,6 +127,16 @@ void Recording::drop(std::size_t events, std::size_t rows) {
   drop_from(row_inputs, rows * n_u);
   drop_from(row_outputs, rows * n_y);
   drop_from(row_modes, rows);
+  if (event_list.empty()) return;
+  const double begin = event_list.front().t;
+  std::erase_if(families, [&](const Family& family) {
+    const bool goes_on = family.kind == result::FamilyKind::later_departure && family.until > begin;
+    return family.event < events && !goes_on;
+  });
+  for (auto& family : families) {
+    family.event -= std::min(events, family.event);
+    family.from = std::max(family.from, begin);
+  }
 }
 
 std::vector<result::Event> Recording::events(const model::System& system) const {
@@ -169,6 +179,27 @@ std::vector<result::Event> Recording::events(const model::System& system) const 
     entry.reason = text.substr(event.reason.begin, event.reason.end - event.reason.begin);
   }
   return expanded;
+}
+
+std::vector<long> Recording::family_numbers() const {
+  std::vector<long> numbers;
+  for (const Family& family : families) numbers.push_back(family.number);
+  return numbers;
+}
+
+std::vector<result::Family> Recording::listed_families(const model::System& system) const {
+  Columns columns(system);
+  std::vector<result::Family> listed;
+  for (const Family& family : families) {
+    columns.set(family.mode, family.alpha);
+    listed.push_back({family.kind,
+                      family.event,
+                      family.from,
+                      family.until,
+                      {columns.mode(), columns.alpha(), active_regions(system, family.mode)},
+                      family.lap_ratio});
+  }
+  return listed;
 }
 
 result::Trajectory Recording::trajectory(const model::System& system) const {

@@ -46,6 +46,17 @@ struct Recording {
     std::vector<double> alpha;
   };
 
+  /// See result::Family.
+  struct Family {
+    result::FamilyKind kind = result::FamilyKind::later_departure;
+    std::size_t event = 0;
+    double from = 0.0, until = 0.0;
+    std::vector<int> mode;
+    std::vector<double> alpha;
+    std::optional<double> lap_ratio;
+    long number = 0;  ///< in the run, when events have been dropped
+  };
+
   std::size_t n_x = 0, n_u = 0, n_y = 0;
   ModeLog modes;
 
@@ -55,17 +66,20 @@ struct Recording {
   std::vector<Alternative> alternatives;
   std::vector<BranchPoint> branch_points;
   std::vector<Meeting> meetings;
+  std::vector<Family> families;
   std::string text;
 
   std::vector<double> row_times;
   std::vector<double> row_states, row_inputs, row_outputs;  ///< n_x, n_u, n_y a row
   std::vector<std::size_t> row_modes;                       ///< numbers in `modes`
 
-  /// Takes away the first events and rows.
+  /// Takes away the first events and rows; families that are left belong to the first event that is.
   void drop(std::size_t events, std::size_t rows);
   /// Events and rows as the result has them. Cost: O(n_psi) for each.
   [[nodiscard]] std::vector<result::Event> events(const model::System& system) const;
   [[nodiscard]] result::Trajectory trajectory(const model::System& system) const;
+  [[nodiscard]] std::vector<long> family_numbers() const;
+  [[nodiscard]] std::vector<result::Family> listed_families(const model::System& system) const;
   /// The last row; there must be one.
   [[nodiscard]] result::Final last(const model::System& system) const;
 };

@@ -163,9 +163,12 @@ Run::Step Run::handle(const Located& located) {
   const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
   if (located.t > t_) search_.forget_user_zeros();
+  const double t_begin = t_;
   t_ = located.t;
   x_ = located.x;
   static_cast<void>(holding_.project(t_, state_.alpha, x_));
+  // A step may be as long as the mode.
+  if (families_.watches() && t_ > t_begin) look_for_families(t_begin);
   // A step that ended exactly here has written the row before the event.
   const Arrival arrival = arrive(ended_here ? RowBefore::written : RowBefore::missing);
   flip_user_functions(located);
@@ -217,6 +220,7 @@ Run::Step Run::depart(const Arrival& arrival) {
     if (event) accumulate_switches();
     accumulate_jumps();
   }
+  if (recorder_.events() > arrival.events && running_) watch_for_families();
   return running_ ? Step::taken : Step::failed;
 }
 

@@ -13,6 +13,7 @@
 #include "saltus/event_integrator/accumulation.hpp"
 #include "saltus/event_integrator/cells.hpp"
 #include "saltus/event_integrator/event_search.hpp"
+#include "saltus/event_integrator/families.hpp"
 #include "saltus/event_integrator/holding.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/event_integrator/jumps.hpp"
@@ -78,7 +79,20 @@ class Run {
   Arrival arrive(RowBefore row);
   Step depart(const Arrival& arrival);
   void choose(Transition& transition);
+  void choose_phase(Transition& transition);
+  void note_choice(long decision);
   void begin_at_choice();
+  Step leave_later();
+  void watch_for_families();
+  void look_for_families(double t_begin);
+  [[nodiscard]] double next_departure() const {
+    const double time = next_choice().departure();
+    return time > t_ ? time : std::numeric_limits<double>::infinity();
+  }
+  /// The next one of the choices that a run was asked for; one that never comes if there is none.
+  [[nodiscard]] Choice next_choice() const {
+    return next_choice_ < options_.choices.size() ? options_.choices[next_choice_] : Choice{-1};
+  }
   bool change_mode(const Located& located);
   CellChange leave_cells(const Located& located);
   bool jump_with_cells();
@@ -196,7 +210,9 @@ class Run {
   double h_scale_ = 0.0;                     ///< of the last full step: time scale of the second-order sign tests
   std::size_t next_output_ = 0;
   bool jumped_ = false;  ///< at the event in hand
-  long decisions_ = 0;   ///< with alternatives, so far
+  Families families_;
+  long decisions_ = 0;  ///< with alternatives, or of spirals, so far
+  long chosen_ = -1;    ///< the one at which the last choice was made
   std::size_t next_choice_ = 0;
   std::size_t arrival_row_ = 0;  ///< the row before the event in hand, as are those of the last choice
   std::size_t choice_row_ = 0;

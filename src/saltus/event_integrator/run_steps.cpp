@@ -157,12 +157,14 @@ Run::Step Run::accept(double t_new) {
   const bool requested = next_output_ < options_.output.times.size() && options_.output.times[next_output_] == t_;
   if (requested) ++next_output_;
   if (options_.output.rows == OutputTimes::Rows::at_steps || requested || t_ >= options_.until) row(t_, x_);
+  if (families_.watches()) look_for_families(t_ - h);
+  if (t_ == next_choice().departure()) return leave_later();
   return jumps_.next_time() <= t_ ? jump_in_time() : Step::taken;
 }
 
 Run::Step Run::attempt() {
   // Times of jumps are hit exactly, like the end.
-  const double limit = std::min(options_.until, jumps_.next_time());
+  const double limit = std::min({options_.until, jumps_.next_time(), next_departure()});
   const bool to_the_limit = t_ + h_try_ * (1.0 + 4.0 * rounding_unit) >= limit;
   const double t_new = to_the_limit ? limit : t_ + h_try_;
   const double h = t_new - t_;

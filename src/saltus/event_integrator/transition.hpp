@@ -45,6 +45,7 @@ struct SpiralStart {
   double duration = 0.0;
   std::vector<double> x;
   int surface = 0;  ///< on which x is
+  double lap_ratio = 0.0;
 };
 
 /// Two surfaces that influence each other, at zero together.

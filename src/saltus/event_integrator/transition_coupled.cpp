@@ -148,8 +148,8 @@ bool Decider::spiral_out(const std::vector<int>& group, const PlaneTable& table,
   double delta = 1e-6 * occasion_.time_scale / lap->duration();
   for (const int j : group) delta = std::max(delta, 1e5 * fields_.noise(j) / (lap->lap_ratio - 1.0));
   const std::size_t crossed = (lap->corners[3] ^ lap->corners[0]) >> 1U;
-  transition_.beyond_spiral =
-      SpiralStart{delta * lap->duration(), {occasion_.x, occasion_.x + s_.kernel.states()}, group[crossed]};
+  transition_.beyond_spiral = SpiralStart{
+      delta * lap->duration(), {occasion_.x, occasion_.x + s_.kernel.states()}, group[crossed], lap->lap_ratio};
   std::vector<double> f(at(s_.kernel.states()));
   for (std::size_t k = 0; k < lap->corners.size(); ++k) {
     s_.kernel.field(occasion_.t, occasion_.x, fields_.corner_alpha(base_.alpha, group, lap->corners[k]).data(),

@@ -90,12 +90,12 @@ void read_trajectory(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_if_there(json, path, "theta", trajectory.theta);
 }
 
-void read_affine(JsonReader& reader, const Json& json, const std::string& path, result::Surface& surface) {
-  if (json.is_null()) return;
-  surface.affine.emplace();
-  reader.read_member(json, path, "gradient", surface.affine->gradient);
-  reader.read_member(json, path, "rate", surface.affine->rate);
-  reader.read_member(json, path, "constant", surface.affine->constant);
+result::AffineSurface read_affine(JsonReader& reader, const Json& json, const std::string& path) {
+  result::AffineSurface affine;
+  reader.read_member(json, path, "gradient", affine.gradient);
+  reader.read_member(json, path, "rate", affine.rate);
+  reader.read_member(json, path, "constant", affine.constant);
+  return affine;
 }
 
 result::SurfaceCurve read_curve(JsonReader& reader, const Json& json, const std::string& path) {
@@ -115,8 +115,11 @@ result::Surface read_surface(JsonReader& reader, const Json& json, const std::st
   surface.role = role.value_or(result::SurfaceRole::switching);
   reader.read_member(json, path, "states", surface.states);
   reader.read_member(json, path, "depends_on_time", surface.depends_on_time);
-  if (const auto* affine = reader.member(json, path, "affine")) {
-    read_affine(reader, *affine, path + "/affine", surface);
+  if (const auto* affine = reader.member(json, path, "affine"); affine && !affine->is_null()) {
+    surface.affine = read_affine(reader, *affine, path + "/affine");
+  }
+  if (json.contains("within")) {
+    read_list(reader, *reader.member(json, path, "within"), path + "/within", surface.within, read_affine);
   }
   if (const auto* curves = reader.member(json, path, "curves")) {
     read_list(reader, *curves, path + "/curves", surface.curves, read_curve);
@@ -171,15 +174,38 @@ void read_format(JsonReader& reader, const Json& json) {
   reader.fail("/format", fmt::format("expected \"{}\", found \"{}\": no result of this version", format_name, format));
 }
 
+std::size_t read_number(JsonReader& reader, const Json& json, const std::string& path, const char* key) {
+  std::int64_t value = 0;
+  reader.read_member(json, path, key, value);
+  if (value < 0) reader.fail(path + "/" + key, fmt::format("expected a number from 0, found {}", value));
+  return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
+}
+
+result::Family read_family(JsonReader& reader, const Json& json, const std::string& path) {
+  result::Family family;
+  std::string word;
+  reader.read_member(json, path, "kind", word);
+  const auto kind = result::family_kind_named(word);
+  if (!kind) reader.fail(path + "/kind", fmt::format("'{}' is no kind of a family", word));
+  family.kind = kind.value_or(result::FamilyKind::later_departure);
+  family.event = read_number(reader, json, path, "event");
+  reader.read_member(json, path, "from", family.from);
+  reader.read_member(json, path, "until", family.until);
+  if (const auto* to = reader.member(json, path, "to")) family.to = read_alternative(reader, *to, path + "/to");
+  reader.read_if_there(json, path, "lap_ratio", family.lap_ratio);
+  return family;
+}
+
 void read_departure(JsonReader& reader, const Json& json, const std::string& path,
                     std::optional<result::Departure>& left_at) {
-  const auto number = [&](const char* key) {
-    std::int64_t value = 0;
-    reader.read_member(json, path, key, value);
-    if (value < 0) reader.fail(path + "/" + key, fmt::format("expected a number from 0, found {}", value));
-    return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
-  };
-  left_at = result::Departure{number("event"), number("alternative")};
+  left_at = result::Departure{read_number(reader, json, path, "event")};
+  if (!json.contains("family")) {
+    left_at->alternative = read_number(reader, json, path, "alternative");
+    return;
+  }
+  left_at->member.emplace();
+  left_at->member->family = read_number(reader, json, path, "family");
+  reader.read_member(json, path, "parameter", left_at->member->parameter);
 }
 
 result::Result read_whole(JsonReader& reader, const Json& json, const std::string& path, int depth);
@@ -235,6 +261,9 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
     read_part(reader, json, path, "comparison", read_comparison, result.comparison);
   }
   if (json.is_object() && json.contains("order")) read_part(reader, json, path, "order", read_order, result.order);
+  if (json.is_object() && json.contains("families")) {
+    read_list(reader, json["families"], path + "/families", result.families, read_family);
+  }
   if (json.is_object() && json.contains("left_at")) {
     read_part(reader, json, path, "left_at", read_departure, result.left_at);
   }

@@ -41,6 +41,9 @@ void check_surface(JsonReader& reader, const result::Surface& surface, const std
     reader.fail(path + "/states", fmt::format("'{}' is no state", name));
   }
   if (surface.affine) check_length(reader, path + "/affine/gradient", surface.affine->gradient, surface.states.size());
+  for (const auto& form : surface.within) {
+    check_length(reader, path + "/within/gradient", form.gradient, surface.states.size());
+  }
   for (std::size_t i = 0; i < surface.curves.size(); ++i) {
     const auto& coordinates = surface.curves[i].coordinates;
     const auto here = fmt::format("{}/curves/{}/coordinates", path, i);
@@ -122,6 +125,16 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   for (std::size_t i = 0; i < result.events.size(); ++i) {
     check_event_lengths(reader, result.events[i], fmt::format("{}/events/{}", path, i), result.states.size(), columns);
   }
+  for (std::size_t i = 0; i < result.families.size(); ++i) {
+    const auto& family = result.families[i];
+    const auto here = fmt::format("{}/families/{}", path, i);
+    if (family.event >= result.events.size()) {
+      reader.fail(here + "/event", fmt::format("there is no event {}", family.event));
+    }
+    check_length(reader, here + "/to/mode", family.to.mode, columns);
+    check_length(reader, here + "/to/alpha", family.to.alpha, columns);
+    check_active(reader, here + "/to", family.to.regions, result.region_groups);
+  }
   for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
     check_surface(reader, result.surfaces[i], fmt::format("{}/surfaces/{}", path, i), result.states);
   }
@@ -139,8 +152,12 @@ void check_branch(JsonReader& reader, const std::string& path, const result::Res
     reader.fail(path, "'left_at' is missing");
     return;
   }
-  const auto& [event, alternative] = *branch.left_at;
-  if (event >= parent.events.size() || alternative >= parent.events[event].alternatives.size()) {
+  const auto& [event, alternative, member] = *branch.left_at;
+  if (member) {
+    if (member->family >= parent.families.size()) {
+      reader.fail(path + "/left_at", fmt::format("what it leaves has no family {}", member->family));
+    }
+  } else if (event >= parent.events.size() || alternative >= parent.events[event].alternatives.size()) {
     reader.fail(path + "/left_at",
                 fmt::format("what it leaves has no alternative {} of an event {}", alternative, event));
   }

@@ -27,15 +27,40 @@ Json intersection_json(const result::Intersection& intersection) {
   return json;
 }
 
+Json alternative_json(const result::Alternative& other) {
+  Json json = Json::object();
+  json["mode"] = other.mode;
+  json["alpha"] = other.alpha;
+  if (!other.regions.empty()) json["regions"] = other.regions;
+  return json;
+}
+
+Json family_json(const result::Family& family) {
+  Json json = Json::object();
+  json["kind"] = name(family.kind);
+  json["event"] = family.event;
+  json["from"] = family.from;
+  json["until"] = family.until;
+  json["to"] = alternative_json(family.to);
+  if (family.lap_ratio) json["lap_ratio"] = *family.lap_ratio;
+  return json;
+}
+
+Json departure_json(const result::Departure& departure) {
+  Json json = Json::object();
+  json["event"] = departure.event;
+  if (!departure.member) {
+    json["alternative"] = departure.alternative;
+    return json;
+  }
+  json["family"] = departure.member->family;
+  json["parameter"] = departure.member->parameter;
+  return json;
+}
+
 Json event_json(const result::Event& event) {
   Json alternatives = Json::array();
-  for (const auto& other : event.alternatives) {
-    Json alternative = Json::object();
-    alternative["mode"] = other.mode;
-    alternative["alpha"] = other.alpha;
-    if (!other.regions.empty()) alternative["regions"] = other.regions;
-    alternatives.push_back(std::move(alternative));
-  }
+  for (const auto& other : event.alternatives) alternatives.push_back(alternative_json(other));
   Json json = Json::object();
   json["t"] = event.t;
   json["kind"] = name(event.kind);
@@ -85,6 +110,14 @@ Json trajectory_json(const result::Trajectory& trajectory) {
   return json;
 }
 
+Json affine_json(const result::AffineSurface& affine) {
+  Json json = Json::object();
+  json["gradient"] = affine.gradient;
+  json["rate"] = affine.rate;
+  json["constant"] = affine.constant;
+  return json;
+}
+
 Json surface_json(const result::Surface& surface) {
   Json curves = Json::array();
   for (const auto& curve : surface.curves) {
@@ -98,13 +131,8 @@ Json surface_json(const result::Surface& surface) {
   json["role"] = name(surface.role);
   json["states"] = surface.states;
   json["depends_on_time"] = surface.depends_on_time;
-  json["affine"] = nullptr;
-  if (surface.affine) {
-    json["affine"] = Json::object();
-    json["affine"]["gradient"] = surface.affine->gradient;
-    json["affine"]["rate"] = surface.affine->rate;
-    json["affine"]["constant"] = surface.affine->constant;
-  }
+  json["affine"] = surface.affine ? affine_json(*surface.affine) : Json();
+  for (const auto& form : surface.within) json["within"].push_back(affine_json(form));
   json["curves"] = std::move(curves);
   return json;
 }
@@ -147,9 +175,8 @@ Json whole_json(const result::Result& result) {
   if (result.elements) json["elements"] = elements_json(*result.elements);
   if (result.comparison) json["comparison"] = comparison_json(*result.comparison);
   if (result.order) json["order"] = order_json(*result.order);
-  if (result.left_at) {
-    json["left_at"] = {{"event", result.left_at->event}, {"alternative", result.left_at->alternative}};
-  }
+  for (const auto& family : result.families) json["families"].push_back(family_json(family));
+  if (result.left_at) json["left_at"] = departure_json(*result.left_at);
   if (!result.branches.empty()) {
     json["branches"] = Json::array();
     for (const auto& branch : result.branches) json["branches"].push_back(whole_json(branch));

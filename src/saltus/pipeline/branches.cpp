@@ -15,6 +15,30 @@ struct Waiting {
   result::Departure left_at;
 };
 
+/// Adds members of the families of trajectory `number`.
+void find_members(const Followed& trajectory, const Path& path, std::size_t number, long members,
+                  std::deque<Waiting>& waiting) {
+  for (std::size_t f = 0; f < trajectory.result.families.size(); ++f) {
+    const auto& family = trajectory.result.families[f];
+    // To the other root of the same mode: nothing that an event would show.
+    const bool spiral = family.kind == result::FamilyKind::spiral;
+    if (!spiral && trajectory.result.events[family.event].mode_after == family.to.mode) continue;
+    for (long i = 1; i <= members; ++i) {
+      const double part = static_cast<double>(i) / static_cast<double>(members + 1);
+      event_integrator::Choice choice{trajectory.family_numbers[f]};
+      double parameter = part;
+      if (spiral) {
+        choice.phase = part;
+      } else {
+        choice.leave_at = parameter = family.from + part * (family.until - family.from);
+      }
+      Path longer = path;
+      longer.push_back(choice);
+      waiting.push_back({std::move(longer), number, {family.event, 0, result::Departure::Member{f, parameter}}});
+    }
+  }
+}
+
 /// Adds what leaves trajectory `number`.
 void find_branches(const Followed& trajectory, const Path& path, std::size_t number, std::deque<Waiting>& waiting) {
   for (const auto& point : trajectory.branch_points) {
@@ -22,7 +46,7 @@ void find_branches(const Followed& trajectory, const Path& path, std::size_t num
     for (std::size_t alternative = 0; alternative < event.alternatives.size(); ++alternative) {
       Path longer = path;
       longer.push_back({point.decision, alternative});
-      waiting.push_back({std::move(longer), number, {point.event, alternative}});
+      waiting.push_back({std::move(longer), number, {point.event, alternative, {}}});
     }
   }
 }
@@ -38,7 +62,8 @@ result::Result nested(std::vector<result::Result> trajectories, const std::vecto
 
 }  // namespace
 
-result::Result follow_branches(FunctionRef<Followed(const Path&, const Count&)> run, long most) {
+result::Result follow_branches(FunctionRef<Followed(const Path&, const Count&)> run, const Follow& follow) {
+  const long most = follow.trajectories;
   std::vector<result::Result> trajectories;
   std::vector<std::size_t> parents;
   std::deque<Waiting> waiting{{}};
@@ -52,6 +77,7 @@ result::Result follow_branches(FunctionRef<Followed(const Path&, const Count&)> 
     stopped = followed.result.status.termination == result::Termination::stopped_by_user;
     if (!followed.reached) continue;
     find_branches(followed, next.path, number, waiting);
+    find_members(followed, next.path, number, follow.members, waiting);
     if (!next.path.empty()) followed.result.left_at = next.left_at;
     trajectories.push_back(std::move(followed.result));
     parents.push_back(next.parent);

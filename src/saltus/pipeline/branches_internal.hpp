@@ -16,7 +16,8 @@ using Path = std::vector<event_integrator::Choice>;
 struct Followed {
   result::Result result;
   std::vector<event_integrator::BranchPoint> branch_points;
-  bool reached = true;  ///< false: stopped before the last choice of its path
+  std::vector<long> family_numbers;  ///< in the run, of result.families
+  bool reached = true;               ///< false: stopped before the last choice of its path
 };
 
 /// Which trajectory this is, from 1, of how many that are known and will be followed.
@@ -25,10 +26,16 @@ struct Count {
   long known = 1;
 };
 
+struct Follow {
+  long trajectories = 1;  ///< at most, >= 1
+  long members = 0;       ///< of every family, evenly spread over its times or phases, ends not among them
+};
+
 /// Follows the alternatives of all events breadth first, so that what is found first is followed first: the
-/// trajectory without choices, then its branches in the order of events and alternatives, then theirs.
-/// @param run   computes the trajectory of a path; one that ends with stopped_by_user is the last
-/// @param most  trajectories at most, >= 1
-[[nodiscard]] result::Result follow_branches(FunctionRef<Followed(const Path&, const Count&)> run, long most);
+/// trajectory without choices, then its branches in the order of events and alternatives, behind them those of
+/// families, then theirs.
+/// @param run  computes the trajectory of a path; one that ends with stopped_by_user is the last
+[[nodiscard]] result::Result follow_branches(FunctionRef<Followed(const Path&, const Count&)> run,
+                                             const Follow& follow);
 
 }  // namespace saltus::pipeline

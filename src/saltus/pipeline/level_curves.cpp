@@ -168,6 +168,8 @@ class MarchingSquares {
 
 }  // namespace
 
+double change_of_sign(FunctionRef<bool(double)> inside) { return bisect(inside, inside(0.0), halvings); }
+
 std::vector<double> sign_changes(FunctionRef<double(double)> f, Interval range) {
   std::vector<double> found;
   const auto at = [&](double i) { return range.from + (range.to - range.from) * (i / samples_of_an_interval); };

@@ -21,6 +21,9 @@ inline constexpr int level_curve_cells = 128;
 /// Largest distance of a polyline from the curve, as a fraction of the box: a tenth of a pixel of a large drawing.
 inline constexpr double level_curve_tolerance = 1e-4;
 
+/// The place between 0 and 1 where `inside`, which differs at both, changes, to the last digits.
+[[nodiscard]] double change_of_sign(FunctionRef<bool(double)> inside);
+
 /// Places in `range` where the sign of f changes, each to the last digits. f may jump there.
 /// Where f is not finite nothing is looked for. Two changes within 1/2048 of the range are missed.
 [[nodiscard]] std::vector<double> sign_changes(FunctionRef<double(double)> f, Interval range);

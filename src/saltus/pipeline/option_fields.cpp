@@ -22,6 +22,7 @@ constexpr auto rtol = [](auto& o) -> auto& { return o.rtol; };
 constexpr auto atol = [](auto& o) -> auto& { return o.atol; };
 constexpr auto native = [](auto& o) -> auto& { return o.native; };
 constexpr auto max_steps = [](auto& o) -> auto& { return o.max_steps; };
+constexpr auto members = [](auto& o) -> auto& { return o.event.members; };
 constexpr auto max_events = [](auto& o) -> auto& { return o.max_events; };
 constexpr auto integrator = [](auto& o) -> auto& { return o.event.integrator; };
 constexpr auto epsilon = [](auto& o) -> auto& { return o.smoothed.epsilon; };
@@ -173,6 +174,13 @@ void record_branches(const SimulateOptions& options, std::string_view key, Optio
   }
 }
 
+Expected<void> set_members(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  const auto* count = std::get_if<std::int64_t>(&value);
+  if (count == nullptr || *count < 0) return tl::unexpected(out_of_range("a whole number >= 0", value));
+  options.event.members = *count;
+  return {};
+}
+
 constexpr std::array fields{
     OptionField{"until", "a finite number > `from`", "End of the simulation; there is no default.",
                 set_number<until, Range::finite>, record_until},
@@ -216,6 +224,9 @@ constexpr std::array fields{
         "event.branches", "report, all, or a whole number >= 1",
         "Other admissible motions: only listed in the events, or followed, so many trajectories at most (all: 64).",
         set_branches, record_branches},
+    OptionField{"event.members", "a whole number >= 0",
+                "Of every family of motions (departures at later times, spirals), with branches: followed so many.",
+                set_members, record_count<members>},
     OptionField{"smoothed.epsilon", "a finite number > 0",
                 "Half width of the layer around every surface, in the units of its switching function.",
                 set_number<epsilon, Range::positive>, record_number<epsilon>},

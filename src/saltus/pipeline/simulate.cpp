@@ -181,6 +181,7 @@ class Integrand {
   [[nodiscard]] event_integrator::Integration restated(event_integrator::Integration run) const {
     if (!regularisation_) return run;
     run.branch_points.clear();  // the regularised system has one solution
+    run.families.clear();
     smoothed::restate(*regularisation_, run.events, run.trajectory, run.status);
     const auto& rows = run.trajectory;
     run.final.mode = rows.mode.back();
@@ -257,8 +258,9 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
     integration.choices = path;
     auto run =
         integrand_or->restated(event_integrator::integrate(*kernel, integrand_or->system(), integration, observer));
-    Followed followed{frame(system, options), std::move(run.branch_points), run.chosen};
+    Followed followed{frame(system, options), std::move(run.branch_points), std::move(run.family_numbers), run.chosen};
     auto& result = followed.result;
+    result.families = std::move(run.families);
     result.status = std::move(run.status);
     result.final = std::move(run.final);
     result.events = std::move(run.events);
@@ -269,7 +271,7 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
     begin = end;
     return followed;
   };
-  return follow_branches(run_one, options.event.trajectories);
+  return follow_branches(run_one, {options.event.trajectories, options.event.members});
 }
 
 }  // namespace saltus::pipeline

@@ -34,6 +34,7 @@ struct EventOptions {
   Selection selection = Selection::active_dominant;
   std::vector<std::pair<std::string, double>> scaling;
   long trajectories = 1;  ///< at most so many along other admissible modes; 1: those are only listed in the events
+  long members = 0;       ///< followed of every family of solutions (later departures, spirals), if others are
 };
 
 /// [simulate.smoothed]

@@ -34,19 +34,54 @@ Interval drawn_range(const result::Result& result, int state) {
   return {least - room, greatest + room};
 }
 
+/// >= 0 on the part of the surface that is one.
+double least_margin(const evaluation::SurfaceFunction& function, double t, const double* coordinates) {
+  double least = 0.0;
+  for (const auto& margin_of : function.within_values) least = std::min(least, margin_of(t, coordinates));
+  return least;
+}
+
+/// The parts of a polyline along which `inside` is >= 0, cut to the last digits.
+std::vector<Polyline> cut(const Polyline& curve, FunctionRef<double(double, double)> inside) {
+  std::vector<Polyline> pieces;
+  bool drawing = false;
+  const auto add = [&](double x, double y) {
+    if (!drawing) pieces.emplace_back();
+    drawing = true;
+    pieces.back().x.push_back(x);
+    pieces.back().y.push_back(y);
+  };
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    const bool here = inside(curve.x[i], curve.y[i]) >= 0.0;
+    if (i > 0 && here != drawing) {
+      const auto along = [&](double part) {
+        return std::array{curve.x[i - 1] + part * (curve.x[i] - curve.x[i - 1]),
+                          curve.y[i - 1] + part * (curve.y[i] - curve.y[i - 1])};
+      };
+      const auto positive = [&](double part) { return inside(along(part)[0], along(part)[1]) >= 0.0; };
+      const auto [x, y] = along(change_of_sign(positive));
+      add(x, y);
+    }
+    if (here) add(curve.x[i], curve.y[i]);
+    drawing = here;
+  }
+  return pieces;
+}
+
 /// Adds where the function is zero at one time.
 void add_curves(const evaluation::SurfaceFunction& function, double t, const std::vector<Interval>& ranges,
                 std::vector<result::SurfaceCurve>& curves) {
   const auto when = function.depends_on_time ? std::optional<double>(t) : std::nullopt;
   if (ranges.size() == 1) {
     for (const double x : sign_changes([&](double value) { return function.value(t, &value); }, ranges[0])) {
-      curves.push_back({{{x}}, when});
+      if (least_margin(function, t, &x) >= 0.0) curves.push_back({{{x}}, when});
     }
     return;
   }
   const auto value = [&](double x, double y) { return function.value(t, std::array{x, y}.data()); };
-  for (auto& curve : level_curves(value, ranges[0], ranges[1])) {
-    curves.push_back({{std::move(curve.x), std::move(curve.y)}, when});
+  const auto inside = [&](double x, double y) { return least_margin(function, t, std::array{x, y}.data()); };
+  for (const auto& curve : level_curves(value, ranges[0], ranges[1])) {
+    for (auto& piece : cut(curve, inside)) curves.push_back({{std::move(piece.x), std::move(piece.y)}, when});
   }
 }
 
@@ -66,6 +101,20 @@ std::vector<result::SurfaceCurve> curves_of(const evaluation::SurfaceFunction& f
   return curves;
 }
 
+result::SurfaceRole role_of(evaluation::SurfaceOwner owner) {
+  switch (owner) {
+    case evaluation::SurfaceOwner::switching_function:
+      return result::SurfaceRole::switching;
+    case evaluation::SurfaceOwner::jump:
+      return result::SurfaceRole::jump;
+    case evaluation::SurfaceOwner::region_border:
+      return result::SurfaceRole::region;
+  }
+  __builtin_unreachable();
+}
+
+result::AffineSurface form_of(const evaluation::AffineForm& form) { return {form.gradient, form.rate, form.constant}; }
+
 }  // namespace
 
 std::vector<result::Surface> surfaces(const model::System& system, const result::Result& result) {
@@ -74,15 +123,17 @@ std::vector<result::Surface> surfaces(const model::System& system, const result:
   for (const auto& function : evaluation::surface_functions(system)) {
     result::Surface surface;
     surface.name = function.name;
-    surface.role =
-        function.owner == evaluation::SurfaceOwner::jump ? result::SurfaceRole::jump : result::SurfaceRole::switching;
+    surface.role = role_of(function.owner);
     surface.depends_on_time = function.depends_on_time;
     for (const int state : function.states) surface.states.push_back(result.states[static_cast<std::size_t>(state)]);
     if (function.affine) {
-      surface.affine = {function.affine->gradient, function.affine->rate, function.affine->constant};
+      surface.affine = form_of(*function.affine);
+      for (const auto& form : function.within) surface.within.push_back(form_of(form));
     } else if (function.value && with_curves < most_surfaces_with_curves) {
       surface.curves = curves_of(function, result);
       ++with_curves;
+      // Two of many regions have no border, or none in the picture.
+      if (surface.role == result::SurfaceRole::region && surface.curves.empty()) continue;
     }
     surfaces.push_back(std::move(surface));
   }

@@ -128,14 +128,18 @@ json surface_data(const result::Surface& surface, const std::vector<std::string>
   for (const auto& curve : surface.curves) {
     curves.emplace_back(json{{"t", or_null(curve.t)}, {"coordinates", curve.coordinates}});
   }
-  json affine = nullptr;
+  const auto form = [](const result::AffineSurface& affine) {
+    return json{{"gradient", affine.gradient}, {"rate", affine.rate}, {"constant", affine.constant}};
+  };
+  json affine = nullptr, within = json::array();
   if (surface.affine) {
-    affine = {
-        {"gradient", surface.affine->gradient}, {"rate", surface.affine->rate}, {"constant", surface.affine->constant}};
+    affine = form(*surface.affine);
+    for (const auto& end : surface.within) within.push_back(form(end));
   }
   return {{"name", surface.name},        {"role", result::name(surface.role)},
           {"states", std::move(places)}, {"depends_on_time", surface.depends_on_time},
-          {"affine", std::move(affine)}, {"curves", std::move(curves)}};
+          {"affine", std::move(affine)}, {"within", std::move(within)},
+          {"curves", std::move(curves)}};
 }
 
 json option_value(const result::OptionValue& value) {
@@ -214,6 +218,7 @@ json branches_data(const std::vector<result::TreeEntry>& tree, std::size_t limit
                         {"parent", parent},
                         {"left_at",
                          {{"event", branch->left_at ? branch->left_at->event : 0},
+                          {"later", branch->left_at && branch->left_at->member},
                           {"t", left.t},
                           {"mode", head_or_null(left.mode_after, columns_in_page)},
                           {"regions", or_null(left.regions_after)}}},
@@ -223,6 +228,24 @@ json branches_data(const std::vector<result::TreeEntry>& tree, std::size_t limit
                         {"trajectory", trajectory_data(*branch, limit)}});
   }
   return branches;
+}
+
+/// Continua of other solutions, of all trajectories of a tree; `of` is the number in the tree.
+json families_data(const std::vector<result::TreeEntry>& tree) {
+  json families = json::array();
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    for (const auto& family : tree[i].result->families) {
+      families.push_back({{"of", i},
+                          {"kind", name(family.kind)},
+                          {"event", family.event},
+                          {"from", family.from},
+                          {"until", family.until},
+                          {"mode", head(family.to.mode, columns_in_page)},
+                          {"regions", family.to.regions},
+                          {"lap_ratio", or_null(family.lap_ratio)}});
+    }
+  }
+  return families;
 }
 
 }  // namespace
@@ -276,6 +299,7 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"trajectory", trajectory_data(result, share_of_trajectory)},
           {"branches", branches_data(tree, share_of_trajectory)},
           {"not_followed", not_followed},
+          {"families", families_data(tree)},
           {"surfaces", std::move(surfaces)},
           {"elements", elements_data(result.elements)},
           {"sensitivities", sensitivities_data(result.sensitivities)},

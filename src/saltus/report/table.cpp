@@ -117,8 +117,9 @@ std::string branch_table(const result::Result& result) {
   for (std::size_t i = 1; i < std::min(tree.size(), most_lines + 1); ++i) {
     const auto& [branch, label, parent] = tree[i];
     const auto event = branch->left_at ? branch->left_at->event + 1 : 0;
+    const bool member = branch->left_at && branch->left_at->member;
     const bool begun = !branch->events.empty();
-    rows.push_back({label, fmt::format("{}, event {}", tree[parent].label, event),
+    rows.push_back({label, fmt::format("{}, {}event {}", tree[parent].label, member ? "behind " : "", event),
                     begun ? fmt::format("{:.12g}", branch->events.front().t) : "",
                     with_modes && begun ? signs(branch->events.front().mode_after) : "",
                     fmt::format("{}", branch->events.size()),
@@ -129,6 +130,28 @@ std::string branch_table(const result::Result& result) {
   return fmt::format("branches    {}{}\n", tree.size() - 1,
                      left_out > 0 ? fmt::format(", {} more not followed", left_out) : "") +
          aligned(rows);
+}
+
+/// Continua of other solutions, which no list of branches can hold.
+std::string family_table(const result::Result& result) {
+  constexpr std::size_t most_lines = 16;
+  std::vector<std::string> lines;
+  std::size_t count = 0;
+  for (const auto& [trajectory, label, parent] : result::tree(result)) {
+    for (const auto& family : trajectory->families) {
+      if (++count > most_lines) continue;
+      std::string into = family.to.mode.size() <= most_signs ? signs(family.to.mode) : "another mode";
+      for (const auto& active : family.to.regions) into += fmt::format(" {}", fmt::join(active, "+"));
+      lines.push_back(family.kind == result::FamilyKind::spiral
+                          ? fmt::format("{}, event {}: spirals out with any phase", label, family.event + 1)
+                          : fmt::format("{}, behind event {}: may leave into {} at any time from {:.12g} to {:.12g}",
+                                        label, family.event + 1, into, family.from, family.until));
+    }
+  }
+  if (count > most_lines) lines.push_back(fmt::format("… and {} more", count - most_lines));
+  std::string text;
+  for (std::size_t i = 0; i < lines.size(); ++i) text += paragraph(i == 0 ? "families" : "", lines[i]);
+  return text;
 }
 
 std::string method_text(const result::Result& result) {
@@ -210,6 +233,7 @@ std::string to_table(const result::Result& result) {
   if (result.sensitivities) text += sensitivity_table(result, *result.sensitivities);
   text += event_table(result);
   text += branch_table(result);
+  text += family_table(result);
   const auto& statistics = result.statistics;
   text += paragraph("statistics", fmt::format("{} steps, {} rejected, {} evaluations of the right-hand side, {:.3g} s",
                                               statistics.steps, statistics.rejected, statistics.rhs_evaluations,

@@ -38,18 +38,37 @@ std::optional<EventKind> event_kind_named(std::string_view name_of_one) {
   return std::nullopt;
 }
 
+std::string_view name(FamilyKind kind) {
+  switch (kind) {
+    case FamilyKind::later_departure:
+      return "later_departure";
+    case FamilyKind::spiral:
+      return "spiral";
+  }
+  __builtin_unreachable();
+}
+
+std::optional<FamilyKind> family_kind_named(std::string_view name_of_one) {
+  for (const auto kind : {FamilyKind::later_departure, FamilyKind::spiral}) {
+    if (name(kind) == name_of_one) return kind;
+  }
+  return std::nullopt;
+}
+
 std::string_view name(SurfaceRole role) {
   switch (role) {
     case SurfaceRole::switching:
       return "switching";
     case SurfaceRole::jump:
       return "jump";
+    case SurfaceRole::region:
+      return "region";
   }
   __builtin_unreachable();
 }
 
 std::optional<SurfaceRole> surface_role_named(std::string_view name_of_one) {
-  for (const auto role : {SurfaceRole::switching, SurfaceRole::jump}) {
+  for (const auto role : {SurfaceRole::switching, SurfaceRole::jump, SurfaceRole::region}) {
     if (name(role) == name_of_one) return role;
   }
   return std::nullopt;
@@ -115,7 +134,10 @@ std::size_t not_followed(const Result& result) {
   for (std::size_t i = result.left_at ? 1 : 0; i < result.events.size(); ++i) {
     listed += result.events[i].alternatives.size();
   }
-  return listed - std::min(listed, result.branches.size());
+  for (const auto& branch : result.branches) {
+    if (branch.left_at && !branch.left_at->member && listed > 0) --listed;
+  }
+  return listed;
 }
 
 }  // namespace saltus::result

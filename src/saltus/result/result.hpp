@@ -105,6 +105,7 @@ struct ModelRecord {
 enum class SurfaceRole {
   switching,  ///< a switching function: psi = 0
   jump,       ///< a guard of a jump
+  region,     ///< the border of two regions by `indicator`
 };
 [[nodiscard]] std::string_view name(SurfaceRole role);
 /// The inverse of name; nullopt if there is none of that name.
@@ -123,13 +124,15 @@ struct SurfaceCurve {
   std::optional<double> t{};  ///< when it lies there, for a surface that moves
 };
 
-/// Where a switching function or a guard is zero in the space of states: what a phase plane needs.
+/// Where a switching function or a guard is zero, or two regions meet, in the space of states: what a phase plane
+/// needs.
 struct Surface {
-  std::string name;  ///< of the switching function, or of the jump
+  std::string name;  ///< of the switching function, or of the jump; "a | b" of two regions
   SurfaceRole role = SurfaceRole::switching;
   std::vector<std::string> states;  ///< those it depends on, in the order of Result::states
   bool depends_on_time = false;
   std::optional<AffineSurface> affine;  ///< exact, of any number of states
+  std::vector<AffineSurface> within{};  ///< the surface ends where one of these is < 0 (curves have ended there)
   /// Of other functions of one state (points) or two (polylines), within the range of the trajectory and a margin; at
   /// several times if it depends on time; none for functions of more states.
   std::vector<SurfaceCurve> curves;
@@ -139,10 +142,34 @@ struct Surface {
 using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
 using OptionRecord = std::vector<std::pair<std::string, OptionValue>>;
 
-/// Where a branch leaves its parent.
+enum class FamilyKind {
+  later_departure,  ///< the mode may be left for another one at any time of an interval
+  spiral,           ///< a spiral that leaves may begin with any phase
+};
+[[nodiscard]] std::string_view name(FamilyKind kind);
+/// The inverse of name; nullopt if there is none of that name.
+[[nodiscard]] std::optional<FamilyKind> family_kind_named(std::string_view name);
+
+/// A continuum of solutions beside the one that is shown, with one parameter: the time at which they leave its mode, or
+/// the phase of a spiral.
+struct Family {
+  FamilyKind kind = FamilyKind::later_departure;
+  std::size_t event = 0;            ///< with which the mode, or the spiral, begins: number in the events, from 0
+  double from = 0.0, until = 0.0;   ///< times at which they may leave; of a spiral both are the time of its event
+  Alternative to;                   ///< what they leave into, with its selections at `from`
+  std::optional<double> lap_ratio;  ///< of a spiral: from one lap to the next; the phase is the part of it, 0 to 1
+};
+
+/// Where a branch leaves its parent: at an event, or as a member of a family.
 struct Departure {
   std::size_t event = 0;        ///< number in the events of the parent, from 0
   std::size_t alternative = 0;  ///< number in the alternatives of that event, from 0
+  /// Of a member of a family: number in the families of the parent, and its time, or its phase.
+  struct Member {
+    std::size_t family = 0;
+    double parameter = 0.0;
+  };
+  std::optional<Member> member{};
 };
 
 struct Result {
@@ -163,6 +190,8 @@ struct Result {
 
   std::optional<Sensitivities> sensitivities;  ///< of the end state, if asked for
   std::optional<Elements> elements;            ///< of methods made of finite elements, unless there are too many
+
+  std::vector<Family> families;  ///< other solutions that no list of events can hold, by event
 
   /// Of `compare` and `order`, whose reference run the rest of the result is.
   std::optional<Comparison> comparison;

@@ -64,6 +64,7 @@ result::Result sample() {
        {"q", "v"},
        false,
        std::nullopt,
+       {},
        {{{{1.0, 1e-300}, {2.0, nan}}, {}}, {{{7.0}, {8.0}}, 0.5}}}};
   return r;
 }
@@ -125,6 +126,34 @@ TEST(JsonResult, ReadsComparisonsAndOrdersBack) {
   EXPECT_EQ(read->comparison->runs[1].switch_time_difference, std::nullopt);
   EXPECT_EQ(read->order->series[0].slope, 3.01);
   EXPECT_EQ(read->order->series[0].points[1].reason, "stopped");
+}
+
+TEST(JsonResult, ReadsFamiliesAndTheirMembersBack) {
+  auto original = with_branches();
+  const auto& mode = original.events[0].alternatives[1].mode;
+  const auto& alpha = original.events[0].alternatives[1].alpha;
+  original.families = {{result::FamilyKind::later_departure, 0, 0.1, 0.7, {mode, alpha, {}}, std::nullopt},
+                       {result::FamilyKind::spiral, 1, 0.3, 0.3, {mode, alpha, {}}, 81.0}};
+  original.branches[1].left_at->member = {1, 0.25};
+  original.surfaces[0].within = {{{0.5}, 0.0, -0.125}};
+  const auto text = to_json(original);
+  const auto read = parse_result(text, "r.json");
+  ASSERT_TRUE(read) << to_text(read.error());
+  EXPECT_EQ(to_json(*read), text);
+  ASSERT_EQ(read->families.size(), 2U);
+  EXPECT_EQ(read->families[0].until, 0.7);
+  EXPECT_EQ(read->families[0].to.mode, mode);
+  EXPECT_EQ(read->families[1].kind, result::FamilyKind::spiral);
+  EXPECT_EQ(read->families[1].lap_ratio, 81.0);
+  EXPECT_FALSE(read->branches[0].left_at->member.has_value());
+  EXPECT_EQ(read->branches[1].left_at->member->family, 1U);
+  EXPECT_EQ(read->branches[1].left_at->member->parameter, 0.25);
+  EXPECT_EQ(read->surfaces[0].within[0].constant, -0.125);
+  original.families.pop_back();
+  const auto damaged = parse_result(to_json(original), "r.json");
+  ASSERT_FALSE(damaged);
+  EXPECT_NE(to_text(damaged.error()).find("at /branches/1/left_at: what it leaves has no family 1"), std::string::npos)
+      << to_text(damaged.error());
 }
 
 TEST(JsonResult, ReadsBranchesBack) {

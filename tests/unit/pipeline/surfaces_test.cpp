@@ -168,5 +168,68 @@ TEST(Surfaces, TablesAreLookedUpAtEveryPointOfACurve) {
   }
 }
 
+/// Borders of regions around (-1, 0), (1, 0) and (0, 2): they meet in the centre of the circle around these, (0, 3/4).
+/// `bend` is added to every indicator: it changes nothing but the form of the functions.
+template <class Bend>
+std::vector<result::Surface> borders(Bend bend) {
+  model::Builder model("regions");
+  const SX x = model.state("x", {-0.5}), y = model.state("y", {-0.75});
+  int number = 0;
+  for (const auto& [a, b] : {std::pair{-1.0, 0.0}, std::pair{1.0, 0.0}, std::pair{0.0, 2.0}}) {
+    const SX to_x = a - x, to_y = b - y;
+    model.region(bend(x, y) * (to_x * to_x + to_y * to_y), {{"x", 0.2 + 0.01 * number}, {"y", 0.4}},
+                 "r" + std::to_string(number));
+    ++number;
+  }
+  model.dynamics("x", 0.0);
+  model.dynamics("y", 0.0);
+  const auto system = model.build();
+  EXPECT_TRUE(system.has_value()) << (system ? "" : to_text(system.error()));
+  SimulateOptions options;
+  options.until = 4.0;
+  options.native = Native::off;
+  const auto result = simulate(*system, options);
+  EXPECT_TRUE(result.has_value()) << (result ? "" : to_text(result.error()));
+  return surfaces(*system, *result);
+}
+
+TEST(Surfaces, BordersOfRegionsEndWhereThreeMeet) {
+  const auto found = borders([](const SX&, const SX&) { return SX(1.0); });
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].name, "r0 | r1");
+  EXPECT_EQ(found[0].role, result::SurfaceRole::region);
+  ASSERT_TRUE(found[0].affine.has_value());
+  // g_1 - g_0 = -4 x where g_2 - g_0 = 3 - 2 x - 4 y >= 0.
+  EXPECT_EQ(found[0].affine->gradient, (std::vector<double>{-4.0, 0.0}));
+  EXPECT_EQ(found[0].affine->constant, 0.0);
+  ASSERT_EQ(found[0].within.size(), 1U);
+  EXPECT_EQ(found[0].within[0].gradient, (std::vector<double>{-2.0, -4.0}));
+  EXPECT_EQ(found[0].within[0].constant, 3.0);
+}
+
+TEST(Surfaces, CurvedBordersOfRegionsAreCutAtTheTriplePoint) {
+  const auto found = borders([](const SX& x, const SX&) { return exp(x / 8.0); });
+  ASSERT_EQ(found.size(), 3U);
+  for (const auto& border : found) {
+    EXPECT_FALSE(border.affine.has_value());
+    EXPECT_TRUE(border.within.empty());
+    ASSERT_EQ(border.curves.size(), 1U) << border.name;
+    const auto& points = border.curves[0].coordinates;
+    double nearest = 1.0;
+    for (std::size_t i = 0; i < points[0].size(); ++i) {
+      const double x = points[0][i], y = points[1][i];
+      nearest = std::min(nearest, std::hypot(x, y - 0.75));
+      if (border.name == "r0 | r1") {
+        EXPECT_NEAR(x, 0.0, 1e-3);
+        EXPECT_LT(y, 0.75 + 1e-3);
+      } else {
+        EXPECT_NEAR(3.0 + 2.0 * std::abs(x) - 4.0 * y, 0.0, 1e-2);
+        EXPECT_TRUE(border.name == "r0 | r2" ? x < 1e-3 : x > -1e-3) << x;
+      }
+    }
+    EXPECT_LT(nearest, 1e-3) << border.name;
+  }
+}
+
 }  // namespace
 }  // namespace saltus::pipeline

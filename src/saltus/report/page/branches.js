@@ -83,6 +83,7 @@ saltus.branchCard = (result, actions) => {
   const rows = branches.map((branch, i) => {
     const depth = branch.label.split(".").length;
     const {event} = branch.left_at;
+    const behind = branch.left_at.later ? "behind " : "";
     const place = branch.parent === 0 ? saltus.element(
                                             "button", {
                                               title: "show this event",
@@ -91,8 +92,8 @@ saltus.branchCard = (result, actions) => {
                                                 actions.select(event);
                                               }
                                             },
-                                            `event ${event + 1}`) :
-                                        `event ${event + 1} of ${branches[branch.parent - 1].label}`;
+                                            `${behind}event ${event + 1}`) :
+                                        `${behind}event ${event + 1} of ${branches[branch.parent - 1].label}`;
     const cells = [
       "\u2003".repeat(depth - 1) + branch.label, place, saltus.brief(branch.left_at.t, 8),
       branch.left_at.regions === null ? saltus.modeBoxes(branch.left_at.mode) :
@@ -122,4 +123,36 @@ saltus.branchCard = (result, actions) => {
           saltus.element("tbody", {}, ...rows)),
       saltus.element(
           "p", {class: "quiet note"}, `Dashed in the drawings; a click on a line draws that branch solid.${more}`));
+};
+
+/** The continua of other solutions, in words, one row each; null if there are none. */
+saltus.familyCard = (result) => {
+  const {families} = result;
+  if (families.length === 0) return null;
+  const most = 32;
+  const place = ({of, event}) => `${of === 0 ? "" : `branch ${result.branches[of - 1].label}, `}event ${event + 1}`;
+  const rows = families.slice(0, most).map((family) => {
+    const spiral = family.kind === "spiral";
+    return saltus.element(
+        "tr", {},
+        ...[spiral ? "spirals of any phase" : "leaves at any later time", place(family),
+            spiral ? saltus.brief(family.from, 8) :
+                     `${saltus.brief(family.from, 8)} to ${saltus.brief(family.until, 8)}`,
+            family.regions.length > 0 ? saltus.regionsText(family.regions) : saltus.modeBoxes(family.mode)]
+            .map((cell, column) => saltus.element("td", column > 1 ? {class: "digits"} : {}, cell)));
+  });
+  const head = ["family", "behind", "t", "into"];
+  const more = families.length > most ? ` ${families.length - most} more are in the result.` : "";
+  return saltus.element(
+      "section", {class: "card branches"},
+      saltus.element(
+          "header", {},
+          saltus.element("h2", {}, saltus.count(families.length, "family of solutions", "families of solutions"))),
+      saltus.element(
+          "table", {class: "events"},
+          saltus.element("thead", {}, saltus.element("tr", {}, ...head.map((text) => saltus.element("th", {}, text)))),
+          saltus.element("tbody", {}, ...rows)),
+      saltus.element(
+          "p", {class: "quiet note"},
+          `Each is a continuum of solutions; simulate.event.members follows some of every one.${more}`));
 };

@@ -106,8 +106,10 @@ saltus.start = () => {
       drawPhases();
     },
   });
+  const families = saltus.familyCard(result);
   const sensitivities = saltus.sensitivityCard(result);
-  main.append(...[branches, cards, sensitivities].filter((part) => part !== null), saltus.notes(result));
+  const parts = [branches, families, cards, sensitivities];
+  main.append(...parts.filter((part) => part !== null), saltus.notes(result));
   if (result.states.length > 1 && result.trajectory.t.length > 0) {
     phases.push(saltus.phasePlane(result, timeline, select));
     if (result.states.length > 2) phases.push(saltus.phasePortrait(result, timeline, select));

@@ -18,7 +18,7 @@ saltus.planeSurfaces = (result, choice, view, palette) => {
   const seen = new Set();
   const traces = drawn.map(({surface, index, kind, path}, n) => {
     const style = saltus.surfaceStyle(index, surface, palette);
-    const label = `${saltus.shorten(surface.name, 22)}${surface.role === "jump" ? " (jump)" : " = 0"}`;
+    const label = saltus.surfaceLabel(surface);
     const first = !seen.has(label);
     seen.add(label);
     return {

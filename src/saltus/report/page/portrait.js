@@ -67,7 +67,7 @@ saltus.portraitSurfaces = (result, choice, view, palette) => {
     traces.push({
       type: "mesh3d",
       ...sheet,
-      name: saltus.plain(`${saltus.shorten(surface.name, 22)}${surface.role === "jump" ? " (jump)" : " = 0"}`),
+      name: saltus.plain(saltus.surfaceLabel(surface)),
       showlegend: result.surfaces.length <= saltus.maximumLegendSurfaces,
       hoverinfo: "skip",
       opacity: 0.22,

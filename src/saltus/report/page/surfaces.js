@@ -27,25 +27,62 @@ saltus.clipLine = ([a, b, c], box) => {
   return [point(from), point(to)];
 };
 
-/** Coefficients of an affine surface over the states of `axes`, the others and the time put in from `at`. */
-saltus.affineOver = (surface, axes, at) => {
+/** What a surface is called in a legend. */
+saltus.surfaceLabel = ({name, role}) => `${saltus.shorten(name, 22)}${{jump: " (jump)", region: ""}[role] ?? " = 0"}`;
+
+/** The part of the segment between two points where all values a x + b y + … + c of `within` are >= 0, or null. */
+saltus.clipSegment = ([p, q], within) => {
+  let [from, to] = [0, 1];
+  for (const coefficients of within) {
+    const value = (point) => point.reduce((sum, x, i) => sum + coefficients[i] * x, coefficients.at(-1));
+    const [v, w] = [value(p), value(q)];
+    if (v < 0 && w < 0) return null;
+    if (v < 0) from = Math.max(from, v / (v - w));
+    if (w < 0) to = Math.min(to, v / (v - w));
+  }
+  if (!(from < to)) return null;
+  return [from, to].map((s) => p.map((x, i) => x + s * (q[i] - x)));
+};
+
+/** The part of a convex polygon where all values a x + b y + c z + d of `within` are >= 0. */
+saltus.clipPolygon = (polygon, within) => within.reduce((points, coefficients) => {
+  const value = (point) => point.reduce((sum, x, i) => sum + coefficients[i] * x, coefficients.at(-1));
+  return points.flatMap((p, n) => {
+    const q = points[(n + 1) % points.length];
+    const [v, w] = [value(p), value(q)];
+    const crossing = (v < 0) === (w < 0) ? [] : [p.map((x, i) => x + (v / (v - w)) * (q[i] - x))];
+    return v < 0 ? crossing : [p, ...crossing];
+  });
+}, polygon);
+
+/** An affine form over `states` as one over those of `axes`, the others and the time put in from `at`. */
+saltus.formOver = (form, states, axes, at) => {
   const coefficients = axes.map(() => 0);
-  let constant = surface.affine.constant + surface.affine.rate * at.t;
-  surface.states.forEach((state, i) => {
+  let constant = form.constant + form.rate * at.t;
+  states.forEach((state, i) => {
     const axis = axes.indexOf(state);
     if (axis >= 0)
-      coefficients[axis] = surface.affine.gradient[i];
+      coefficients[axis] = form.gradient[i];
     else
-      constant += surface.affine.gradient[i] * at.x[state];
+      constant += form.gradient[i] * at.x[state];
   });
   return {coefficients, constant};
 };
+
+saltus.affineOver = (surface, axes, at) => saltus.formOver(surface.affine, surface.states, axes, at);
+
+/** Where an affine surface ends: [a, b, …, c] over the states of `axes`. */
+saltus.endsOver = (surface, axes, at) => (surface.within ?? []).map((form) => {
+  const {coefficients, constant} = saltus.formOver(form, surface.states, axes, at);
+  return [...coefficients, constant];
+});
 
 /** Whether the surface is the same whatever the time and the states outside of `axes` are. */
 saltus.isExact = (surface, axes) => !surface.depends_on_time && surface.states.every((state) => axes.includes(state));
 
 /**
- * What of a surface a plane shows: {kind, lines: [[a, b, c]], curves: [{x, y}]}. The kind is exact, cut (at the time
+ * What of a surface a plane shows: {kind, lines: [[a, b, c]], curves: [{x, y}], within} (lines end where one of
+ * `within` is < 0). The kind is exact, cut (at the time
  * and the other states of `at`), or moving (at the recorded times within the window `between`). Null if it does not
  * belong into this plane: nothing of it would be a line here.
  */
@@ -54,7 +91,9 @@ saltus.surfaceInPlane = (surface, pair, at, between = [-Infinity, Infinity]) => 
   if (surface.affine !== null) {
     const {coefficients, constant} = saltus.affineOver(surface, pair, at);
     if (coefficients[0] === 0 && coefficients[1] === 0) return null;
-    return {kind: saltus.isExact(surface, pair) ? "exact" : "cut", lines: [[...coefficients, constant]], curves: []};
+    const kind = saltus.isExact(surface, pair) ? "exact" : "cut";
+    const within = saltus.endsOver(surface, pair, at);
+    return {kind, lines: [[...coefficients, constant]], curves: [], ...(within.length > 0 ? {within} : {})};
   }
   const pieces = surface.curves.filter(({t}) => t === null || (t >= between[0] && t <= between[1]));
   if (!surface.states.every((state) => pair.includes(state)) || pieces.length === 0) return null;
@@ -76,7 +115,8 @@ saltus.surfacePath = (parts, box) => {
     path.y.push(...y, null);
   };
   for (const line of parts.lines) {
-    const ends = saltus.clipLine(line, box);
+    const whole = saltus.clipLine(line, box);
+    const ends = whole === null ? null : saltus.clipSegment(whole, parts.within ?? []);
     if (ends !== null) add(ends.map((point) => point[0]), ends.map((point) => point[1]));
   }
   for (const {x, y} of parts.curves) add(x, y);
@@ -121,8 +161,9 @@ saltus.surfaceInSpace = (surface, axes, at, box) => {
     if (coefficients.every((value) => value === 0)) return null;
     const offset = coefficients.reduce((sum, value, axis) => sum + value * box[axis][0], constant);
     const corners = saltus.planeInBox(coefficients.map((value, axis) => value * widths[axis]), offset);
-    sheet.points = corners.map((p) => p.map((coordinate, axis) => box[axis][0] + coordinate * widths[axis]));
-    for (let n = 2; n < corners.length; n += 1) sheet.triangles.push([0, n - 1, n]);
+    const polygon = corners.map((p) => p.map((coordinate, axis) => box[axis][0] + coordinate * widths[axis]));
+    sheet.points = saltus.clipPolygon(polygon, saltus.endsOver(surface, axes, at));
+    for (let n = 2; n < sheet.points.length; n += 1) sheet.triangles.push([0, n - 1, n]);
   } else {
     if (!saltus.isExact(surface, axes)) return null;
     const places = surface.states.map((state) => axes.indexOf(state));

@@ -1,0 +1,87 @@
+// Families of other solutions: those that leave the mode of a run at a later time, and spirals of other phases.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "saltus/base/function_ref.hpp"
+#include "saltus/event_integrator/recording.hpp"
+#include "saltus/event_integrator/transition.hpp"
+#include "saltus/switching/admissible_modes.hpp"
+
+namespace saltus::event_integrator {
+
+/// Watches the mode of a run for other modes that its surfaces admit, in the sense of Definition 2.1 of
+/// [guglielmi2022], as long as they do:
+///   - a surface that repels on both sides and is slid on alone, to either side (f_below < 0 < f_above, which holds
+///     until the mode ends);
+///   - two that influence each other, into every other mode of admissible_modes(), the other root among them.
+/// Other surfaces (three and more that influence each other, borders of regions, selections that enter other than
+/// affinely) are not watched.
+class Families {
+ public:
+  /// One that may be left now.
+  struct Open {
+    std::vector<GivenMode> given;  ///< modes of its surfaces
+    std::size_t number = 0;        ///< in the run
+  };
+  /// What is looked at: a point of the run.
+  struct Point {
+    double t = 0.0;
+    const double* x = nullptr;
+    double time_scale = 1.0;
+  };
+
+  explicit Families(const Surroundings& surroundings);
+
+  /// A mode that begins at the last event; `unique` says that no single surface of it can repel.
+  void enter(const Point& point, const ModeState& state, std::size_t event, std::optional<bool> unique);
+  /// Whether the mode of the last enter() has to be looked at step by step.
+  [[nodiscard]] bool watches() const { return !pairs_.empty(); }
+  /// Whether a change of mode is nothing to it.
+  [[nodiscard]] bool idle() const { return open_.empty() && pairs_.empty(); }
+  /// Behind a step from t_begin: what can be left now, and what no more. `state_at` gives the states in between.
+  void look(const Point& point, double t_begin, FunctionRef<void(double t, double* x)> state_at);
+  /// Spirals from an event that is recorded next.
+  void add_spirals(double t, std::size_t event, const Transition& transition);
+  /// All that are open, at the end of a run.
+  void close(double t);
+
+  [[nodiscard]] std::size_t count() const { return recorded_.size(); }
+  [[nodiscard]] const std::vector<Open>& open() const { return open_; }
+  [[nodiscard]] const std::vector<int>& mode() const { return state_.mode; }
+  /// In the order of their numbers.
+  [[nodiscard]] std::vector<Recording::Family> take() { return std::move(recorded_); }
+
+ private:
+  using Velocities = std::array<std::array<double, 4>, 2>;
+  struct Pair {
+    std::array<int, 2> surfaces{};
+    switching::PlaneAlpha alpha{};  ///< of the root that is slid on, as it was last
+    std::vector<std::array<int, 2>> refused;
+  };
+
+  [[nodiscard]] bool is_watched(int surface) const;
+  [[nodiscard]] bool is_alone(int surface) const;
+  void find_pairs();
+  void close_those_that_ended(double t);
+  void add(const Point& point, std::vector<GivenMode> given, double from);
+  void watch_singles(const Point& point);
+  void watch(const Point& point, Pair& pair, double t_begin, FunctionRef<void(double t, double* x)> state_at);
+  [[nodiscard]] switching::PlaneModes modes_at(double t, const double* x, const std::array<int, 2>& surfaces);
+  [[nodiscard]] switching::PlaneModes others_at(double t, const double* x, Pair& pair);
+  double change(double t_begin, double t_end, const Pair& pair, const std::array<int, 2>& mode,
+                FunctionRef<void(double t, double* x)> state_at);
+
+  const Surroundings& s_;
+  ModeState state_;
+  std::size_t event_ = 0;
+  std::vector<Pair> pairs_;
+  std::vector<Open> open_;
+  std::vector<Recording::Family> recorded_;
+  std::vector<double> alpha_, f_, row_, x_;
+};
+
+}  // namespace saltus::event_integrator
