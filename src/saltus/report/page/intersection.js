@@ -1,5 +1,5 @@
 // Decisions where two surfaces meet: the square of the selections with g1 = 0, g2 = 0 and the hidden dynamics in it
-// (Figs. 11 and 12 of Guglielmi & Hairer 2022).
+// (Figs. 11 to 13 of Guglielmi & Hairer 2022).
 "use strict";
 
 /** The normal components at selections (a, b): bilinear in them. */
@@ -69,6 +69,83 @@ saltus.hiddenPath = (meeting, start, weights = [1, 1], reach = 0.25) => {
   return path;
 };
 
+/**
+ * Where the hidden dynamics goes from a start: [k1, k2], 0 where a selection comes to rest or goes round; equal speeds.
+ * Known once both have left the square for good, or one has and the other one is drawn to a zero of its component.
+ */
+saltus.hiddenOutcome = ({velocities}, [a0, b0]) => {
+  const size = velocities.map((v) => Math.max(...v.map(Math.abs)) || 1);
+  const terms = velocities.map(([v, va, vb, vab], j) => [v, va - v, vb - v, v - va - vb + vab].map((c) => c / size[j]));
+  const [[p0, pa, pb, pab], [q0, qa, qb, qab]] = terms;
+  const clamp = saltus.clampUnit;
+  const g1 = (a, b) => p0 + pa * a + (pb + pab * a) * b;
+  const g2 = (a, b) => q0 + qa * a + (qb + qab * a) * b;
+  const beyond = (value) => (value > 1 ? 1 : value < 0 ? -1 : 0);
+  // On the strip where one selection is saturated the other one is drawn to a zero from which the first goes on out.
+  const drawnTo = (out, other, side, value) => {
+    const [start, end] = [other(0), other(1)];
+    if (!(start > 0 && end < 0)) return false;
+    return side * out(value) > 0 && side * out(start / (start - end)) > 0;
+  };
+  let [u, w] = [a0, b0];
+  for (let n = 0; n < 4000; n += 1) {
+    const [i, k, a, b] = [beyond(u), beyond(w), clamp(u), clamp(w)];
+    const [f1, f2] = [g1(a, b), g2(a, b)];
+    if (i !== 0 && k !== 0 && i * f1 > 0 && k * f2 > 0) return [i, k];
+    if (i !== 0 && k === 0 && drawnTo((s) => g1(a, s), (s) => g2(a, s), i, b)) return [i, 0];
+    if (k !== 0 && i === 0 && drawnTo((s) => g2(s, b), (s) => g1(s, b), k, a)) return [0, k];
+    const speed = Math.hypot(f1, f2);
+    if (speed < 1e-6) return [0, 0];
+    const h = 0.03;
+    const [a1, b1] = [clamp(u + (h / 2) * f1), clamp(w + (h / 2) * f2)];
+    const [e1, e2] = [g1(a1, b1), g2(a1, b1)];
+    const [a2, b2] = [clamp(u + (h / 2) * e1), clamp(w + (h / 2) * e2)];
+    const [c1, c2] = [g1(a2, b2), g2(a2, b2)];
+    const [a3, b3] = [clamp(u + h * c1), clamp(w + h * c2)];
+    u += (h / 6) * (f1 + 2 * (e1 + c1) + g1(a3, b3));
+    w += (h / 6) * (f2 + 2 * (e2 + c2) + g2(a3, b3));
+  }
+  return [0, 0];
+};
+
+/**
+ * The basins of the hidden dynamics over the square with a margin (Fig. 13): {axis, modes, parts}, parts[row][column]
+ * a number in modes, which are those that occur. Null if there is only one.
+ */
+saltus.basins = (meeting, cells = 72, margin = 0.27) => {
+  const axis = Array.from({length: cells}, (_, i) => -margin + ((1 + 2 * margin) * (i + 0.5)) / cells);
+  const modes = [];
+  const parts = axis.map((b) => axis.map((a) => {
+    const mode = saltus.hiddenOutcome(meeting, [a, b]);
+    const known = modes.findIndex((other) => other[0] === mode[0] && other[1] === mode[1]);
+    return known >= 0 ? known : modes.push(mode) - 1;
+  }));
+  return modes.length > 1 ? {axis, modes, parts} : null;
+};
+
+/** Each basin as one trace: cells in a light colour. */
+saltus.basinTraces =
+    (basins, palette) =>
+        basins.modes.map((mode, number) => ({
+                           type: "heatmap",
+                           x: basins.axis,
+                           y: basins.axis,
+                           z: basins.parts.map((row) => row.map((part) => (part === number ? 1 : null))),
+                           name: `ends in (${
+                               mode.map(
+                                       (k) =>
+                                           (k > 0     ? "+" :
+                                                k < 0 ? "−" :
+                                                        "0"))
+                                   .join(" ")})`,
+                           showscale: false,
+                           showlegend: true,
+                           hoverinfo: "name",
+                           hoverongaps: false,
+                           opacity: 0.3,
+                           colorscale: [[0, palette.curves[(number + 1) % 6]], [1, palette.curves[(number + 1) % 6]]],
+                         }));
+
 /** How much faster the surface that was slid on is made in the second path. */
 saltus.dominance = 30;
 
@@ -87,7 +164,7 @@ saltus.hiddenWeights = ({alpha_before: before, surfaces}) => {
 /** Starts of the hidden dynamics: where the solution comes from; at a start the corners of the square. */
 saltus.hiddenStarts = ({alpha_before: before}) => (before === null ? [[0, 0], [1, 0], [0, 1], [1, 1]] : [before]);
 
-saltus.intersectionTraces = (meeting, palette) => {
+saltus.intersectionTraces = (meeting, palette, basins = null) => {
   const line = ([x, y], name, style, more = {}) => ({
     type: "scatter",
     mode: "lines",
@@ -114,7 +191,7 @@ saltus.intersectionTraces = (meeting, palette) => {
     point(meeting.alpha_before, "comes from", {symbol: "circle-open", size: 11, color: palette.text, line: {width: 2}})
   ];
   return [
-    ...zeros, ...paths, ...before,
+    ...(basins === null ? [] : saltus.basinTraces(basins, palette)), ...zeros, ...paths, ...before,
     point(meeting.alpha_after, "goes on with", {symbol: "circle", size: 11, color: palette.select})
   ];
 };
@@ -167,15 +244,25 @@ saltus.intersectionPicture = (result, timeline, select) => {
   const note = saltus.element("p", {class: "quiet note"});
   const title = saltus.element("button", {title: "show this event", onclick: () => select(shown())}, "");
   const shown = () => saltus.intersectionShown(result, timeline.selected());
+  const known = new Map();
+  // Where the solution is unique they say nothing about it.
+  const basinsOf = (i) => {
+    if (!known.has(i)) {
+      known.set(i, result.events[i].unique === false ? saltus.basins(result.events[i].intersection) : null);
+    }
+    return known.get(i);
+  };
   const draw = () => {
     const i = shown();
     const event = result.events[i];
     const palette = saltus.palette();
     title.textContent = `event ${i + 1}, t = ${saltus.brief(event.t, 8)}`;
     const from = event.intersection.alpha_before === null ? " from the four corners" : "";
-    note.textContent = `The square of the selections, and the hidden dynamics u′ = g(π(u))${from}. ${event.reason}`;
+    const shades = basinsOf(i) === null ? "" : " Shades: where it ends, from there and equal speeds.";
+    note.textContent =
+        `The square of the selections, and the hidden dynamics u′ = g(π(u))${from}. ${event.reason}.${shades}`;
     return Plotly.react(
-        holder, saltus.intersectionTraces(event.intersection, palette),
+        holder, saltus.intersectionTraces(event.intersection, palette, basinsOf(i)),
         saltus.intersectionLayout(event.intersection, holder, palette), saltus.plotConfig);
   };
   const element = saltus.element(
