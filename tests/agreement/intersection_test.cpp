@@ -279,5 +279,26 @@ TEST(Intersection, ThreeCoupledSurfacesAreSlidOnAndOneIsLeft) {
   }
 }
 
+// Three surfaces whose root vanishes: on y2 = y3 = 0 s2 = s1/2, s3 = s1/4, so that y1' = (t - 1)/2 + s1^2/2; s1 =
+// -sqrt(1 - t) until t = 1, where no root is left and y1 leaves upwards. y1 is reached at t^2 = 1/3.
+TEST(Intersection, OfThreeSurfacesTheRootVanishesAtItsExactTime) {
+  const std::string text =
+      "[model]\nname = \"fold\"\n[states]\ny1 = -0.1\ny2 = -0.1\ny3 = -0.1\ny4 = 0\n[dynamics]\n"
+      "y1 = \"(t - 1)/2 + sign(y1)*sign(y2) + (sign(y3) - sign(y1)/4)/3\"\ny2 = \"sign(y1) - 2*sign(y2)\"\n"
+      "y3 = \"sign(y1)/4 - sign(y3)\"\ny4 = \"sign(y1)\"\n[simulate]\nuntil = 2\n";
+  const double slid = 1.0 - 1.0 / std::sqrt(3.0);
+  for (const auto& accuracy : {fine, standard}) {
+    const Result result = simulated(text, accuracy);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    const std::vector<double> times{0.1, 2.0 / 15.0, 1.0 / std::sqrt(3.0), 1.0};
+    ASSERT_EQ(result.events.size(), times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(result.events[i].t, times[i], 1e-12) << i;
+    EXPECT_EQ(*result.events[2].mode_after, (std::vector<int>{0, 0, 0}));
+    EXPECT_EQ(*result.events[3].mode_after, (std::vector<int>{1, 0, 0}));
+    EXPECT_NEAR(result.final.x[0], 0.75, 1e-9);
+    EXPECT_NEAR(result.final.x[3], slid - 2.0 / 3.0 * std::pow(slid, 1.5), 1e-8);
+  }
+}
+
 }  // namespace
 }  // namespace saltus::problems

@@ -40,6 +40,43 @@ x2 = "-1.5*x2 + 40*step(x1 - 4)*(1 - step(x2_high))"
 until = 1
 )toml";
 
+/// Three surfaces whose normal components depend on all selections, reached one after the other; y4 integrates what the
+/// selections are.
+constexpr const char* three_coupled = R"toml([model]
+name = "three-coupled"
+[states]
+y1 = -0.3
+y2 = 0.2
+y3 = -0.1
+y4 = 0
+[dynamics]
+y1 = "t/2 - sign(y1) + (sign(y2) + sign(y3))/4 + sign(y1)*sign(y2)*sign(y3)/8"
+y2 = "y4/8 - sign(y2) + (sign(y1) + sign(y3))/4"
+y3 = "-sign(y3) + (sign(y1) + sign(y2))/4 - sign(y1)*sign(y2)/8"
+y4 = "sign(y1)*sign(y2) + sign(y3)"
+[simulate]
+until = 1.5
+rtol = 1e-11
+atol = 1e-13
+)toml";
+
+// The event engine's sliding in codimension 3 is the limit: the difference falls like epsilon.
+TEST(SmoothedRun, TendsToSlidingOnThreeCoupledSurfaces) {
+  const Simulator model = Simulator::from_text(three_coupled);
+  const Result sharp = model.run(model.options());
+  ASSERT_EQ(sharp.status.termination, Termination::completed) << sharp.status.message;
+  ASSERT_EQ(sharp.final.mode, (result::Mode{0, 0, 0}));
+  ASSERT_EQ(sharp.events.size(), 3U);
+  const auto difference = [&](double epsilon) {
+    const Result result = run_smoothed(model, epsilon);
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(result.final.alpha[j], sharp.final.alpha[j], epsilon) << j;
+    return std::abs(result.final.x[3] - sharp.final.x[3]);
+  };
+  const double coarse = difference(1e-3), fine_one = difference(1e-4);
+  EXPECT_LT(coarse, 3e-3);
+  EXPECT_NEAR(coarse / fine_one, 10.0, 0.3);
+}
+
 TEST(SmoothedRun, HoldsTheIntersectionOfTwoSurfaces) {
   const Simulator model = Simulator::from_text(two_genes);
   for (const double epsilon : {1e-3, 1e-5}) {
