@@ -87,6 +87,19 @@ std::vector<double> OwnField::psi_rates(double t, const std::vector<double>& x, 
   return rates_of_psi;
 }
 
+namespace {
+
+/// Largest number in sight: d psi/dt is a sum of such, and rounded like them where the sum vanishes (two-fold points).
+double size_of_terms(const std::vector<double>& x, const FieldValue& lower, const FieldValue& upper) {
+  double size = 1.0;
+  for (const auto* numbers : {&x, &lower.xdot, &upper.xdot}) {
+    for (const double number : *numbers) size = std::max(size, std::abs(number));
+  }
+  return size;
+}
+
+}  // namespace
+
 FieldValue OwnField::slide_on_one(double t, const std::vector<double>& x, std::vector<double> alpha) const {
   const std::size_t j = sliding_.front();
   const double guess = alpha[j];
@@ -99,7 +112,7 @@ FieldValue OwnField::slide_on_one(double t, const std::vector<double>& x, std::v
   value.below = psi_rates(t, x, lower)[j];
   value.above = psi_rates(t, x, upper)[j];
   value.imbalance = std::abs((1.0 - guess) * value.below + guess * value.above) /
-                    (1e-6 + std::abs(value.below) + std::abs(value.above));
+                    (1e-6 * size_of_terms(x, lower, upper) + std::abs(value.below) + std::abs(value.above));
   const double selection = value.below / (value.below - value.above);
   value.alpha[j] = selection;
   for (std::size_t i = 0; i < x.size(); ++i) value.xdot[i] += selection * (upper.xdot[i] - lower.xdot[i]);
@@ -138,7 +151,9 @@ FieldValue OwnField::slide_on_several(double t, const std::vector<double>& x, st
   FieldValue value = at_selections(t, x, alpha);
   value.imbalance = imbalance;
   value.pivot = std::abs(guessed.fullPivLu().matrixLU()(m - 1, m - 1));
-  value.determinant = (-guessed.rowwise().normalized()).determinant();
+  // A surface that no selection moves has a row of zeros.
+  const double lengths = guessed.rowwise().norm().prod();
+  value.determinant = lengths > 0.0 ? (-guessed).determinant() / lengths : 0.0;
   return value;
 }
 

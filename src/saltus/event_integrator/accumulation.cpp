@@ -111,8 +111,12 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::
   const double resolution = rounding_unit * std::abs(t);
   const auto jumps = last_jumps(period);
   const double drowning = longest(shortest, jumps);
-  if (now.size() >= 2 && now[0] <= std::max(16.0 * resolution, hundredth * drowning))
-    return SeriesLimit{t, back(0).x, jumps, now[0], false};
+  if (now.size() >= 2 && now[0] <= std::max(16.0 * resolution, hundredth * drowning)) {
+    // Laps that shrink fast leave little, but not nothing.
+    const double fast = now[0] / now[1];
+    if (!(fast <= 0.5)) return SeriesLimit{t, back(0).x, jumps, now[0], false};
+    return SeriesLimit{t + now[0] * fast / (1.0 - fast), extrapolated(period, fast), jumps, now[0], false};
+  }
   if (laps_[period] < fewest_laps * period || now.size() < fewest_laps) return std::nullopt;
   const auto before = durations(period, 1);
   const double ratio = ratio_of(now);

@@ -63,10 +63,11 @@ void Run::note_switch_rates() {
     const Rate leaving = rate_along_field(surface_of(label), t_, x_.data(), slope_.data());
     const double rate = std::max(std::abs(arriving.value), std::abs(leaving.value));
     // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the lap. Shallower
-    // laps are lost in the rounding of psi, or in ten times its tolerance.
+    // laps are lost in the rounding of psi, or in ten times the atol that follows the laps. Not in rtol times the terms
+    // of psi: every switch puts psi back to 0, and over laps far shorter than the steps that rtol allows the error of a
+    // step is far smaller than that.
     const double unresolved =
-        std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude,
-                 10.0 * (tolerances_.atol * leaving.slope + tolerances_.rtol * leaving.magnitude));
+        std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude, 10.0 * tolerances_.atol * leaving.slope);
     shortest_switch_lap_[at(label)] = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
   }
 }

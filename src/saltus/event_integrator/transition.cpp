@@ -139,9 +139,12 @@ bool Decider::decide(const std::vector<int>& group) {
   for (const int j : group) {
     const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
     // An exit is located where one field is tangent: its selection is at its bound to rounding over the other field,
-    // unless that vanishes, too. Ten times less or more makes no difference: it is 1e-9 or of the order of one.
+    // unless that vanishes, too. Ten times less or more makes no difference: it is 1e-9 or of the order of one. Between
+    // these it depends on what is left of the other field.
     constexpr double lost = 1e-6;
-    if (at_exit && !(before_.alpha[at(j)] >= -lost && before_.alpha[at(j)] <= 1.0 + lost)) {
+    constexpr double doubtful = 1e-9;
+    const double beyond = at_exit ? std::max(-before_.alpha[at(j)], before_.alpha[at(j)] - 1.0) : 0.0;
+    if (!(beyond <= lost) || (beyond > doubtful && fields_.nearly_two_fold(before_.alpha, j))) {
       return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
     }
   }

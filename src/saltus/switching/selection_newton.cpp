@@ -37,8 +37,9 @@ bool SelectionNewton::solve(ProjectedField g, double* alpha) {
     }
     if (!(reach < astray)) return false;
     if (size <= rounding * (1.0 + reach)) return true;
-    // Rounding has the last word where the steps no longer shrink.
-    if (k > 0 && size <= settled && size > 0.25 * previous) return true;
+    // Rounding has the last word where the steps no longer shrink. Towards a double root they halve until they are as
+    // long as the distance to its twin, and square from there.
+    if (k > 0 && size <= settled && size > 0.7 * previous) return true;
     previous = size;
   }
   return false;

@@ -55,6 +55,23 @@ TEST(SelectionNewton, ThreeSurfacesToRoundingInFewEvaluations) {
   }
 }
 
+TEST(SelectionNewton, TellsARootFromItsTwinCloseBy) {
+  // With both selections s: (s - 1/2 - d)(s - 1/2 + d). Until it is as close as that, a step only halves the way.
+  constexpr double d = 1e-7;
+  const auto g = [](const double* a, double* v) {
+    v[0] = (a[0] - 0.5) * (a[1] - 0.5) - d * d;
+    v[1] = a[0] - a[1];
+  };
+  SelectionNewton newton(2);
+  for (const double start : {0.6, 0.51, 0.5 + 3e-7}) {
+    std::array<double, 2> alpha{start, start};
+    ASSERT_TRUE(newton.solve(g, alpha.data()));
+    // Rounding of 1/2 over the slope 2 d is 1e-9 of it.
+    EXPECT_NEAR(alpha[0] - 0.5, d, 0.01 * d) << start;
+    EXPECT_NEAR(alpha[1] - 0.5, d, 0.01 * d) << start;
+  }
+}
+
 TEST(SelectionNewton, SaysWhereThereIsNoRoot) {
   SelectionNewton newton(2);
   std::array<double, 2> alpha{0.5, 0.5};
