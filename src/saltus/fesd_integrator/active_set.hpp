@@ -57,6 +57,8 @@ class ActiveSet {
   }
   /// Value of a condition of kind `side`: positive on the side of this set; also for rates of the indicators.
   [[nodiscard]] double side(int selection, const double* indicator) const;
+  /// The active region that a region is compared with; -1 for a step selection.
+  [[nodiscard]] int reference(int selection) const { return references_[static_cast<std::size_t>(selection)]; }
   /// Value of any condition.
   [[nodiscard]] double value(const Condition& condition, const double* indicator, const double* selections) const {
     const auto j = static_cast<std::size_t>(condition.selection);

@@ -330,6 +330,10 @@ void ElementSolver::interpolate(const Element& element, double theta, double* x)
   implementation_->polynomial.evaluate(element, theta, x);
 }
 
+void ElementSolver::slope(const Element& element, double theta, double* slope) const {
+  implementation_->polynomial.slope(element, theta, slope);
+}
+
 void ElementSolver::extrapolate(const Element& element, double h, Element& next) const {
   const auto& self = *implementation_;
   next.stage_states.resize(element.stage_states.size());

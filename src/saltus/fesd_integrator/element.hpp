@@ -58,6 +58,8 @@ class ElementSolver {
   /// x(t + theta h): for collocation and Lobatto methods the polynomial of degree n_s with the slopes of the stages,
   /// eq. (46) of [nurkanovic2024]; for explicit ones the cubic through both ends with the slopes there.
   void interpolate(const Element& element, double theta, double* x) const;
+  /// d x / dt of the same at t + theta h.
+  void slope(const Element& element, double theta, double* slope) const;
   /// Stage values of the element behind `element` of the same length, continued along its polynomial.
   void extrapolate(const Element& element, double h, Element& next) const;
 

@@ -68,6 +68,34 @@ void ElementPolynomial::evaluate(const Element& element, double theta, double* x
   }
 }
 
+double ElementPolynomial::weight_of_slope(Index stage, double theta) const {
+  double sum = 0.0;
+  for (Index k = integrals_.rows(); k-- > 0;) sum = sum * theta + static_cast<double>(k + 1) * integrals_(k, stage);
+  return sum;
+}
+
+void ElementPolynomial::slope(const Element& element, double theta, double* slope) const {
+  const std::size_t n_x = element.x.size();
+  if (n_x == 0) return;
+  const std::size_t n_s = element.stage_slopes.size() / n_x;
+  const double* slopes = element.stage_slopes.data();
+  if (hermite_) {
+    const double along = 6.0 * theta * (1.0 - theta) / element.h;
+    const double left = (1.0 - theta) * (1.0 - 3.0 * theta), right = theta * (3.0 * theta - 2.0);
+    const double stretch = last_node_ > 0.0 ? 1.0 / last_node_ : 0.0;
+    for (std::size_t i = 0; i < n_x; ++i) {
+      const double end_slope = slopes[i] + stretch * (slopes[(n_s - 1) * n_x + i] - slopes[i]);
+      slope[i] = along * (element.end[i] - element.x[i]) + left * slopes[i] + right * end_slope;
+    }
+    return;
+  }
+  std::fill_n(slope, n_x, 0.0);
+  for (std::size_t m = 0; m < n_s; ++m) {
+    const double factor = weight_of_slope(static_cast<Index>(m), theta);
+    for (std::size_t i = 0; i < n_x; ++i) slope[i] += factor * slopes[m * n_x + i];
+  }
+}
+
 void ElementPolynomial::watch_state(const Element& element, std::size_t point, double* x) const {
   const int stage = watch_stage_[point];
   const std::size_t n_x = element.x.size();

@@ -20,11 +20,14 @@ class ElementPolynomial {
  public:
   explicit ElementPolynomial(const discretization::ButcherTableau& tableau);
   void evaluate(const Element& element, double theta, double* x) const;
+  /// d x / dt there.
+  void slope(const Element& element, double theta, double* slope) const;
   [[nodiscard]] const std::vector<double>& watch_points() const { return watch_points_; }
   void watch_state(const Element& element, std::size_t point, double* x) const;
 
  private:
   [[nodiscard]] double weight(Eigen::Index stage, double theta) const;
+  [[nodiscard]] double weight_of_slope(Eigen::Index stage, double theta) const;
 
   bool hermite_ = false;
   double last_node_ = 1.0;

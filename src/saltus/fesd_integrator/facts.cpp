@@ -30,6 +30,7 @@ Facts facts(const model::System& system, const reformulation::Dcs& dcs) {
   facts.n_y = static_cast<std::size_t>(system.outputs.numel());
   facts.n_functions = system.switching.size();
   facts.initial_state = system.initial_state;
+  facts.state_names = system.state_names;
   for (const auto& part : dcs.parts) {
     const bool simplex = part.form == reformulation::Form::stewart;
     facts.parts.push_back({simplex, part.first, part.count});

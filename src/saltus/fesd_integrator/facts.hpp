@@ -57,6 +57,7 @@ struct Facts {
   std::vector<HeldFact> held;
   std::vector<EventFact> events;
   std::vector<double> initial_state;
+  std::vector<std::string> state_names;
 };
 
 [[nodiscard]] Facts facts(const model::System& system, const reformulation::Dcs& dcs);

@@ -96,16 +96,13 @@ void Recorder::finish(result::Event& event, const Columns& after, const std::vec
   event.reason = reason;
 }
 
-bool Recorder::switched(double t, const std::vector<double>& x, const Side& before,
-                        const std::vector<Continuation>& found, const double* held, std::string_view reason) {
-  const Columns from = columns(*before.set, *before.selections, before.held);
-  const Columns to = columns(found.front().set, found.front().selections, held);
-  result::Event event;
-  result::Mode listed_before, listed_after;
+/// Names of what differs, and their modes on both sides: of a region 1 or -1 where one alone is replaced by another.
+Recorder::Differences Recorder::differences(const Columns& from, const Columns& to) const {
+  Differences differences;
   const auto note = [&](const std::string& name, int mode_before, int mode_after) {
-    event.surfaces.push_back(name);
-    listed_before.push_back(mode_before);
-    listed_after.push_back(mode_after);
+    differences.names.push_back(name);
+    differences.before.push_back(mode_before);
+    differences.after.push_back(mode_after);
   };
   for (std::size_t c = 0; c < facts_.columns.size(); ++c) {
     if (!facts_.columns[c].listed || from.mode[c] == to.mode[c]) continue;
@@ -126,11 +123,21 @@ bool Recorder::switched(double t, const std::vector<double>& x, const Side& befo
       }
     }
   }
-  if (event.surfaces.empty()) return false;
+  return differences;
+}
+
+bool Recorder::switched(double t, const std::vector<double>& x, const Side& before,
+                        const std::vector<Continuation>& found, const double* held, std::string_view reason) {
+  const Columns from = columns(*before.set, *before.selections, before.held);
+  const Columns to = columns(found.front().set, found.front().selections, held);
+  Differences listed = differences(from, to);
+  if (listed.names.empty()) return false;
+  result::Event event;
+  event.kind = result::kind_of_switch(listed.before, listed.after);
+  event.surfaces = std::move(listed.names);
   row(t, x, *before.set, *before.selections, before.held);
   row(t, x, found.front().set, found.front().selections, held);
   event.t = t;
-  event.kind = result::kind_of_switch(listed_before, listed_after);
   event.mode_before = from.mode;
   event.alpha_before = from.alpha;
   if (!facts_.regions.empty()) event.regions_before = from.regions;
@@ -138,6 +145,25 @@ bool Recorder::switched(double t, const std::vector<double>& x, const Side& befo
   finish(event, to, found, held, reason);
   events_.push_back(std::move(event));
   return true;
+}
+
+void Recorder::accumulated(double t, const std::vector<double>& x, const std::vector<double>& x_limit,
+                           const Side& before, const std::vector<Continuation>& found, const double* held) {
+  const Columns from = columns(*before.set, *before.selections, before.held);
+  const Columns to = columns(found.front().set, found.front().selections, held);
+  row(t, x, *before.set, *before.selections, before.held);
+  row(t, x_limit, found.front().set, found.front().selections, held);
+  result::Event event;
+  event.t = t;
+  event.kind = result::EventKind::accumulation;
+  event.surfaces = differences(from, to).names;
+  event.mode_before = from.mode;
+  event.alpha_before = from.alpha;
+  if (!facts_.regions.empty()) event.regions_before = from.regions;
+  event.x = x;
+  event.x_after = x_limit;
+  finish(event, to, found, held, "the intervals of these switches shrink geometrically: the state is their limit");
+  events_.push_back(std::move(event));
 }
 
 bool Recorder::started(double t, const std::vector<double>& x, const std::vector<Continuation>& found,

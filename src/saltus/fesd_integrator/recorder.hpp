@@ -39,6 +39,9 @@ class Recorder {
                 const double* held, std::string_view reason);
   bool started(double t, const std::vector<double>& x, const std::vector<Continuation>& found, const double* held,
                const std::vector<int>& at_zero);
+  /// Switches have a limit at t: `x` is the last state before it.
+  void accumulated(double t, const std::vector<double>& x, const std::vector<double>& x_limit, const Side& before,
+                   const std::vector<Continuation>& found, const double* held);
   void user(double t, const std::vector<double>& x, const Side& side, std::size_t event, std::string_view reason);
 
   [[nodiscard]] ModeView view(const ActiveSet& set, const std::vector<double>& selections, const double* held) const;
@@ -55,6 +58,11 @@ class Recorder {
     result::Regions regions;
     std::vector<double> theta;
   };
+  struct Differences {
+    std::vector<std::string> names;
+    result::Mode before, after;
+  };
+  [[nodiscard]] Differences differences(const Columns& from, const Columns& to) const;
   [[nodiscard]] Columns columns(const ActiveSet& set, const std::vector<double>& selections, const double* held) const;
   void finish(result::Event& event, const Columns& after, const std::vector<Continuation>& found, const double* held,
               std::string_view reason);

@@ -9,12 +9,14 @@
 #include "saltus/discretization/point_functions.hpp"
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/coarseness.hpp"
 #include "saltus/fesd_integrator/element.hpp"
 #include "saltus/fesd_integrator/element_recorder.hpp"
 #include "saltus/fesd_integrator/facts.hpp"
 #include "saltus/fesd_integrator/fixed_element.hpp"
 #include "saltus/fesd_integrator/held_values.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
+#include "saltus/fesd_integrator/lap_series.hpp"
 #include "saltus/fesd_integrator/recorder.hpp"
 #include "saltus/fesd_integrator/sensitivities.hpp"
 #include "saltus/fesd_integrator/transition.hpp"
@@ -36,12 +38,15 @@ class Run {
   /// Equal elements of one active set, solved one after the other.
   struct Chain {
     std::vector<Element> elements;
-    std::size_t count = 0;                  ///< solved
-    std::vector<std::vector<double>> left;  ///< selections at the left ends; of the right end of the last one behind
+    std::size_t count = 0;                    ///< solved
+    std::vector<std::vector<double>> left;    ///< selections at the left ends; of the right end of the last one behind
+    std::vector<std::vector<double>> errors;  ///< of each, as Watch::errors
   };
-  enum class Solved { all, violated, failed };
-  /// Elements of length h from here, up to the first that violates a condition.
+  enum class Solved { all, violated, missed, failed };
+  /// Elements of length h from here, up to the first that violates a condition, or jumps over a switch.
   [[nodiscard]] Solved solve_chain(int count, double h, Violation& violation);
+  /// Whether a condition ends along elements of half that length, a quarter, …, as far as it may end between them.
+  [[nodiscard]] bool jumps_over(const Point& left, double h, int halvings);
   /// Lengths such that `count` elements end where the condition does: h, or nullopt if it does not end there.
   [[nodiscard]] std::optional<double> locate(int count, double guess, const Violation& violation, double longest);
   struct Located {
@@ -62,6 +67,11 @@ class Run {
   /// Decides how to go on here; `at_zero` as in Decision.
   void decide(std::vector<int> at_zero, std::string_view reason, const ActiveSet& before,
               const std::vector<double>& selections_before, const double* held_before);
+  /// Of the time of a switch in hand, by what closed the elements before it.
+  [[nodiscard]] double resolution_of(const Condition& condition, const std::vector<double>& selections_before);
+  [[nodiscard]] bool put_on_surfaces(const ActiveSet& set, double t, std::vector<double>& x);
+  /// True if the run has gone on from the limit of a sequence of switches, before anything that is held changes.
+  bool go_to_limit(LapSeries::Wanted wanted);
   void hold_behind();
   /// The same with fixed lengths.
   void advance_fixed(double end);
@@ -86,6 +96,7 @@ class Run {
     left_.size = size_;
     return left_;
   }
+  [[nodiscard]] std::string coarse_message(const Coarseness::Worst& worst) const;
   void emit_times(const Element* element, const std::vector<double>& selections, double until);
   struct EventZero {
     std::size_t function = 0;
@@ -140,6 +151,10 @@ class Run {
   double size_ = 0.0;     ///< of the largest state of late
   double nominal_ = 0.0;  ///< length of a simulation step
   Chain chain_;
+  Coarseness coarseness_;
+  LapSeries laps_;
+  discretization::StageValues at_switch_;
+  int divided_for_look_ = 0;         ///< halvings of the step in hand because it jumped over a switch
   std::optional<Element> previous_;  ///< the last element, if the next one continues it
   int decisions_here_ = 0;
   double decided_at_ = 0.0;

@@ -14,6 +14,10 @@ namespace {
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 /// A simulation step is divided at most so often; then the elements are below any time scale of the model.
 constexpr double shortest = 1e-12;
+/// Elements that may jump over a switch are compared with parts of them, down to this power of 1/2.
+constexpr int most_divisions_for_look = 8;
+/// Modes that follow each other at one time; behind them elements are shortened.
+constexpr int most_decisions_at_this_length = 4;
 
 }  // namespace
 
@@ -45,12 +49,36 @@ Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
       case Watch::Answer::holds:
         break;
     }
+    chain_.errors[static_cast<std::size_t>(i)] = watch_.errors();
+    if (watch_.may_miss() && divided_for_look_ < most_divisions_for_look &&
+        jumps_over(left, h, most_divisions_for_look)) {
+      return Solved::missed;
+    }
     left.t = t_ + (i + 1) * h;
     left.x = element.end;
     left.selections = right;
     left.size = element.size;
   }
   return Solved::all;
+}
+
+bool Run::jumps_over(const Point& left, double h, int halvings) {
+  if (halvings == 0) return false;
+  Point from = left;
+  Element half;
+  for (int i = 0; i < 2; ++i) {
+    Violation ignored;
+    if (solver_.solve(from, 0.5 * h, {&set_, 1}, held_.data(), ElementSolver::Guess::left_end, half) !=
+        ElementSolver::Outcome::solved) {
+      return true;
+    }
+    auto right = from.selections;
+    const auto answer = watch_.look(half, set_, held_.data(), right, ignored);
+    if (answer != Watch::Answer::holds) return true;
+    if (watch_.may_miss() && jumps_over(from, 0.5 * h, halvings - 1)) return true;
+    from = {from.t + 0.5 * h, half.end, right, half.size};
+  }
+  return false;
 }
 
 std::optional<double> Run::locate(int count, double guess, const Violation& violation, double longest) {
@@ -132,6 +160,7 @@ std::optional<Run::Located> Run::find_switch(int elements, double remaining, Vio
       const auto index = static_cast<std::size_t>(k);
       const auto answer = watch_.look(chain_.elements[index], set_, held_.data(), selections, other);
       chain_.left[index + 1] = selections;
+      chain_.errors[index] = watch_.errors();
       if (answer == Watch::Answer::not_finite) return std::nullopt;
       if (answer != Watch::Answer::violated) continue;
       const double at = *h * (k + other.theta);
@@ -170,10 +199,12 @@ void Run::advance(double end) {
     if (solved == Solved::all) {
       accept_chain(static_cast<std::size_t>(elements), limit, nullptr);
       row_here();
+      divided_for_look_ = 0;
       elements = options_.elements;
       limit = end;
       continue;
     }
+    if (solved == Solved::missed) ++divided_for_look_;
     std::optional<Located> located;
     if (solved == Solved::violated) {
       if (chain_.count == 1 && violation.theta == 0.0) {
@@ -210,6 +241,7 @@ void Run::advance(double end) {
       }
     }
     if (stopped()) return;
+    divided_for_look_ = 0;
     const ActiveSet before = set_;
     const auto selections = selections_;
     std::vector<int> at_zero;  // what slides is on its surfaces, whatever its rounding
@@ -218,8 +250,24 @@ void Run::advance(double end) {
       if (entry.reference >= 0) at_zero.push_back(entry.reference);
     }
     if (located->condition.kind == Condition::Kind::side) at_zero.push_back(located->condition.selection);
+    const Condition closing = located->condition;
     decide(std::move(at_zero), "located by the elements before it", before, selections, held_.data());
     row_here();
+    if (!stopped() && !(set_ == before)) {
+      const double resolution = laps_.shrinks() ? resolution_of(closing, selections) : 0.0;
+      laps_.add({t_, set_.modes(), x_, resolution});
+      if (go_to_limit(LapSeries::Wanted::resolved)) {
+        elements = options_.elements;
+        limit = end;
+        continue;
+      }
+    }
+    if (located->count == 0 && decisions_here_ > most_decisions_at_this_length) {
+      // A decision looks at what is just behind; elements so long see something else.
+      ++statistics_.rejected;
+      limit = t_ + 0.5 * (limit - t_);
+      elements = options_.elements;
+    }
   }
 }
 

@@ -36,7 +36,7 @@ void indicator_noise(const discretization::StageValues& values, double t, double
 }
 
 Watch::Watch(const discretization::StageKernel& kernel, const ElementSolver& solver)
-    : kernel_(kernel), solver_(solver), projected_(kernel), points_(solver.watch_points().size()) {
+    : kernel_(kernel), solver_(solver), projected_(kernel), defect_(solver), points_(solver.watch_points().size()) {
   const auto& thetas = solver.watch_points();
   for (const double node : ode::interpolation_nodes()) {
     for (std::size_t k = 0; k < points_; ++k) to_nodes_.push_back(lagrange(thetas, k, node));
@@ -73,6 +73,8 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   // Gradients at the left end give the rounding level; between the ends of an element it is the same.
   kernel_.evaluate(element.t, element.x.data(), selections.data(), held, left_);
   indicator_noise(left_, element.t + element.h, element.size, noise_);
+  find_errors(element, set, held, selections);
+  may_miss_ = false;
   for (std::size_t i = 0; i < points_; ++i) {
     const double t = element.t + thetas[i] * element.h;
     double* at = selections_.data() + i * n;
@@ -97,6 +99,48 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   return found ? Answer::violated : Answer::holds;
 }
 
+void Watch::find_errors(const Element& element, const ActiveSet& set, const double* held,
+                        const std::vector<double>& selections) {
+  const double* f = left_.f.data();
+  if (const double place = defect_.place(); place > 0.0) {
+    const double t = element.t + place * element.h;
+    solver_.interpolate(element, place, x_.data());
+    at_place_ = selections;
+    slope_.resize(x_.size());
+    if (set.sliding().empty() || projected_.solve(t, x_.data(), set, held, at_place_.data())) {
+      kernel_.field(t, x_.data(), at_place_.data(), held, slope_.data());
+    }
+    f = slope_.data();
+  }
+  defect_.errors(element, f, errors_);
+  // What errors of one component do to another one within the element.
+  const std::size_t n = kernel_.selections(), n_x = errors_.size();
+  slope_ = errors_;
+  for (std::size_t k = 0; k < n_x; ++k) {
+    const double moved = 0.5 * element.h * errors_[k];
+    for (std::size_t i = 0; i < n_x; ++i) slope_[i] += std::abs(left_.f_x[k * n_x + i]) * moved;
+  }
+  indicator_errors_.assign(n, 0.0);
+  for (std::size_t i = 0; i < n_x; ++i) {
+    for (std::size_t j = 0; j < n; ++j) indicator_errors_[j] += std::abs(left_.indicator_x[i * n + j]) * slope_[i];
+  }
+}
+
+double Watch::error_of(const ActiveSet& set, const Condition& condition) const {
+  if (condition.kind != Condition::Kind::side) {
+    // Selections are functions of the state whose derivatives nobody has: how much they bend in this element.
+    const double last = values_.back() - values_.front();
+    double bend = 0.0;
+    for (std::size_t k = 0; k < points_; ++k) {
+      bend = std::max(bend, std::abs(values_[k] - values_.front() - solver_.watch_points()[k] * last));
+    }
+    return bend;
+  }
+  const int reference = set.reference(condition.selection);
+  return indicator_errors_[static_cast<std::size_t>(condition.selection)] +
+         (reference >= 0 ? indicator_errors_[static_cast<std::size_t>(reference)] : 0.0);
+}
+
 /// d value / dt of a condition on the side of its set at the left end.
 double Watch::left_rate(const ActiveSet& set, const Condition& condition) {
   const std::size_t n = kernel_.selections();
@@ -109,7 +153,9 @@ double Watch::left_rate(const ActiveSet& set, const Condition& condition) {
 
 void Watch::first_change(const ActiveSet& set, double h, const Condition& condition, Violation& earliest, bool& found) {
   const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
-  if (0.5 * (*low + *high) > lebesgue_ * 0.5 * (*high - *low)) return;
+  constexpr double safety = 2.0;
+  const double error = safety * error_of(set, condition);
+  if (0.5 * (*low + *high) > lebesgue_ * 0.5 * (*high - *low) + error) return;
   const double level = noise(condition);
   std::array<double, ode::event_nodes> nodes{};
   for (std::size_t node = 0; node < nodes.size(); ++node) {
@@ -126,6 +172,15 @@ void Watch::first_change(const ActiveSet& set, double h, const Condition& condit
     const double largest = std::max(std::abs(*low), std::abs(*high));
     const bool side = condition.kind == Condition::Kind::side;
     zero_order = side && std::abs(left_rate(set, condition)) * h <= tangent * largest ? 2 : 1;
+  }
+  if (!may_miss_ && error > level && std::isfinite(error)) {
+    // Less what the error may grow to from the left end, where there is none.
+    auto lowest = polynomial;
+    for (std::size_t i = 1; i < lowest.size(); ++i) {
+      lowest[i] -= error * static_cast<double>(i) / static_cast<double>(ode::event_degree);
+    }
+    may_miss_ = !ode::certainly_no_sign_change(lowest, 1, zero_order, level) &&
+                ode::first_sign_change(lowest, 1, zero_order, level).has_value();
   }
   if (ode::certainly_no_sign_change(polynomial, 1, zero_order, level)) return;
   const auto change = ode::first_sign_change(polynomial, 1, zero_order, level);

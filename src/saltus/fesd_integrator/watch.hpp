@@ -9,6 +9,7 @@
 
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/defect.hpp"
 #include "saltus/fesd_integrator/element.hpp"
 #include "saltus/fesd_integrator/projected_field.hpp"
 
@@ -39,6 +40,11 @@ class Watch {
   enum class Answer { holds, violated, not_finite };
   [[nodiscard]] Answer look(const Element& element, const ActiveSet& set, const double* held,
                             std::vector<double>& selections, Violation& earliest, std::span<const int> only = {});
+  /// Of the element last looked at: how far its polynomial is from a solution, by component (Defect::errors).
+  [[nodiscard]] const std::vector<double>& errors() const { return errors_; }
+  /// Whether a condition of the element last looked at, which holds along its polynomial, may end along the solution
+  /// all the same: it comes nearer to zero than twice the error.
+  [[nodiscard]] bool may_miss() const { return may_miss_; }
   /// Value of a condition at the right end of the element last looked at, and its rounding level.
   [[nodiscard]] double end_value(const ActiveSet& set, const Condition& condition) const;
   [[nodiscard]] double noise(const Condition& condition) const;
@@ -46,10 +52,15 @@ class Watch {
  private:
   [[nodiscard]] double left_rate(const ActiveSet& set, const Condition& condition);
   void first_change(const ActiveSet& set, double h, const Condition& condition, Violation& earliest, bool& found);
+  /// What an error of the state makes of a condition.
+  [[nodiscard]] double error_of(const ActiveSet& set, const Condition& condition) const;
+  void find_errors(const Element& element, const ActiveSet& set, const double* held,
+                   const std::vector<double>& selections);
 
   const discretization::StageKernel& kernel_;
   const ElementSolver& solver_;
   ProjectedField projected_;
+  Defect defect_;
   std::size_t points_ = 0;
   double lebesgue_ = 1.0;           ///< of the interpolation at the watch points
   std::vector<double> to_nodes_;    ///< values at the nodes of ode::interpolation_nodes() from those at watch points
@@ -57,6 +68,8 @@ class Watch {
   std::vector<double> selections_;
   std::vector<double> values_, x_, noise_, rates_;
   discretization::StageValues left_;
+  bool may_miss_ = false;
+  std::vector<double> errors_, indicator_errors_, slope_, at_place_;
 };
 
 }  // namespace saltus::fesd_integrator

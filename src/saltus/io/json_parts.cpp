@@ -18,10 +18,12 @@ void read_status(JsonReader& reader, const Json& json, const std::string& path, 
 }
 
 Json statistics_json(const result::Statistics& statistics) {
-  return {{"steps", statistics.steps},
-          {"rejected", statistics.rejected},
-          {"rhs_evaluations", statistics.rhs_evaluations},
-          {"wall_seconds", statistics.wall_seconds}};
+  Json json = {{"steps", statistics.steps},
+               {"rejected", statistics.rejected},
+               {"rhs_evaluations", statistics.rhs_evaluations},
+               {"wall_seconds", statistics.wall_seconds}};
+  if (statistics.error_estimate) json["error_estimate"] = *statistics.error_estimate;
+  return json;
 }
 
 void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics) {
@@ -29,6 +31,9 @@ void read_statistics(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_member(json, path, "rejected", statistics.rejected);
   reader.read_member(json, path, "rhs_evaluations", statistics.rhs_evaluations);
   reader.read_member(json, path, "wall_seconds", statistics.wall_seconds);
+  if (json.is_object() && json.contains("error_estimate")) {
+    reader.read_member(json, path, "error_estimate", statistics.error_estimate.emplace());
+  }
 }
 
 Json sensitivities_json(const result::Sensitivities& sensitivities) {

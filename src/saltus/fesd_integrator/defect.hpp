@@ -1,0 +1,38 @@
+// How far the polynomial of an element is from a solution.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/element.hpp"
+#include "saltus/fesd_integrator/projected_field.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// The defect d(theta) = u'(theta) - f(u(theta)) of an element's polynomial u, seen at one point theta_c where the
+/// method does not ask for it to be zero. Of collocation methods it is d(theta_c) omega(theta) / omega(theta_c) to
+/// leading order, omega(theta) = prod_m (theta - c_m), so that
+///   u(theta) - x(theta) ~ h d(theta_c) W(theta) / omega(theta_c),   W(theta) = int_0^theta omega.
+/// Of other methods d is taken as constant. theta_c = 0 where no node is there: f at the left end is known anyway.
+class Defect {
+ public:
+  /// The solver must outlive it.
+  explicit Defect(const ElementSolver& solver);
+
+  /// Where f is wanted.
+  [[nodiscard]] double place() const { return place_; }
+  /// max over theta of |u(theta) - x(theta)| by component, from f at the place.
+  /// @param f, error  n_x
+  void errors(const Element& element, const double* f, std::vector<double>& error);
+
+ private:
+  const ElementSolver& solver_;
+  double place_ = 0.0;
+  double largest_ = 1.0;  ///< of |W / omega(theta_c)|
+  std::vector<double> slope_;
+};
+
+}  // namespace saltus::fesd_integrator

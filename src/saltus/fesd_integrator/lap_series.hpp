@@ -1,0 +1,51 @@
+// Sequences of switches with a limit: infinitely many in finite time (spirals).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace saltus::fesd_integrator {
+
+/// Watches switches for laps, cycles of active sets of at most eight switches, whose durations T_k shrink
+/// geometrically: with r = T_k / T_(k-1) < 1 what remains is T_k r / (1 - r). States are extrapolated component by
+/// component by Aitken's delta-squared process, which is exact for geometric sequences of any ratio.
+class LapSeries {
+ public:
+  struct Switch {
+    double t = 0.0;
+    std::vector<int> modes;  ///< behind
+    std::vector<double> x;
+    double resolution = 0.0;  ///< of t: the rounding level of what is zero there, divided by its rate
+  };
+  struct Limit {
+    double t = 0.0;
+    std::vector<double> x;
+    std::vector<std::vector<int>> modes;  ///< of one lap
+  };
+  void add(Switch next);
+  /// The limit, once what remains is below 1e-8 of the time that the sequence has taken, or laps are not much longer
+  /// than they are resolved, and the last two extrapolations agree to a fiftieth of what remains.
+  enum class Wanted {
+    resolved,
+    soon,  ///< nobody can follow the laps any further: whatever remains
+  };
+  [[nodiscard]] std::optional<Limit> limit(Wanted wanted) const;
+  /// Whether the last two laps of some period have shrunk.
+  [[nodiscard]] bool shrinks() const;
+  void clear();
+
+ private:
+  static constexpr std::size_t longest_period = 8;
+  static constexpr std::size_t laps = 4;  ///< that must shrink before a limit is believed in
+  [[nodiscard]] const Switch& back(std::size_t steps) const { return switches_[switches_.size() - 1 - steps]; }
+  [[nodiscard]] std::optional<Limit> limit_of(std::size_t period, Wanted wanted) const;
+
+  std::deque<Switch> switches_;
+  std::array<double, longest_period + 1> start_{};       ///< of the shrinking sequence of each period
+  std::array<std::size_t, longest_period + 1> count_{};  ///< of switches in it
+};
+
+}  // namespace saltus::fesd_integrator

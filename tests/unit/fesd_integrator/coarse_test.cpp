@@ -1,0 +1,133 @@
+// Elements that are too long: switches between their ends, estimates of their error; and spirals, beyond any length.
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "saltus/fesd_integrator/integrate.hpp"
+#include "saltus/model/builder.hpp"
+#include "saltus/reformulation/dcs.hpp"
+
+namespace saltus::fesd_integrator {
+namespace {
+
+using casadi::SX;
+using discretization::TableauFamily;
+using reformulation::Form;
+
+struct Settings {
+  long steps = 100;
+  Form form = Form::step;
+  TableauFamily family = TableauFamily::radau_iia;
+  int stages = 2;
+};
+
+Integration run(const model::System& system, double until, const Settings& settings) {
+  const auto dcs = reformulation::reformulate(system, {settings.form, std::nullopt});
+  EXPECT_TRUE(dcs.has_value());
+  IntegrationOptions options;
+  options.tableau = *discretization::butcher_tableau(settings.family, settings.stages);
+  options.until = until;
+  options.steps = settings.steps;
+  auto integration = integrate(system, *dcs, options);
+  EXPECT_TRUE(integration.has_value());
+  EXPECT_EQ(integration->status.termination, result::Termination::completed) << integration->status.message;
+  return std::move(*integration);
+}
+
+/// sin t, whose top is above `level` for a moment; nothing changes in the field but there.
+model::System top(double level) {
+  model::Builder builder("top");
+  const SX x = builder.state("x", {0.0});
+  const SX v = builder.state("v", {1.0});
+  builder.dynamics("x", v);
+  builder.dynamics("v", -x + 0.1 * builder.step(x - level));
+  return *builder.build();
+}
+
+TEST(Coarse, ATopBetweenTheEndsOfAnElementIsSeen) {
+  for (const double level : {0.95, 0.97, 0.99}) {
+    const auto integration = run(top(level), 6.0, {.steps = 6});
+    ASSERT_EQ(integration.events.size(), 2u) << level;
+    EXPECT_GE(integration.statistics.rejected, 1) << level;  // a step has been halved for it
+    EXPECT_NEAR(integration.events[0].t, std::asin(level), 0.05) << level;
+  }
+}
+
+TEST(Coarse, FineElementsAreNotDividedToLook) {
+  for (const double level : {0.5, 0.95, 1.5}) {
+    const auto integration = run(top(level), 6.0, {.steps = 100});
+    EXPECT_EQ(integration.events.size(), level < 1.0 ? 2u : 0u) << level;
+    EXPECT_EQ(integration.statistics.rejected, 0) << level;
+  }
+}
+
+/// sin 20 t with a selection that is never asked for.
+model::System fast() {
+  model::Builder builder("fast");
+  const SX x = builder.state("x", {0.0});
+  const SX v = builder.state("v", {20.0});
+  builder.dynamics("x", v);
+  builder.dynamics("v", -400.0 * x + builder.step(x - 50.0));
+  return *builder.build();
+}
+
+TEST(Coarse, ErrorsOfElementsAreEstimatedAndTold) {
+  const auto coarse = run(fast(), 2.0, {.steps = 20});
+  EXPECT_GT(*coarse.statistics.error_estimate, 0.03);
+  EXPECT_NE(coarse.status.message.find("coarse"), std::string::npos) << coarse.status.message;
+  const auto fine = run(fast(), 2.0, {.steps = 400});
+  EXPECT_LT(*fine.statistics.error_estimate, 0.03);
+  EXPECT_EQ(fine.status.message, "");
+}
+
+/// The estimate is that inside elements: of order n_s + 1 per element, n_s of their sum. Radau IIA has n_s = 2 here,
+/// Gauss 3; Lobatto IIIA, whose defect is looked at inside, 3.
+TEST(Coarse, TheEstimateFallsWithTheStageOrder) {
+  for (const auto& [family, stages] :
+       {std::pair{TableauFamily::radau_iia, 2}, std::pair{TableauFamily::gauss_legendre, 3},
+        std::pair{TableauFamily::lobatto_iiia, 3}}) {
+    const Settings once{.steps = 200, .family = family, .stages = stages};
+    const Settings twice{.steps = 400, .family = family, .stages = stages};
+    const double ratio =
+        *run(fast(), 2.0, once).statistics.error_estimate / *run(fast(), 2.0, twice).statistics.error_estimate;
+    EXPECT_NEAR(std::log2(ratio), stages, 0.2) << discretization::name(family);
+  }
+}
+
+/// x'' = -10 sign x - 3 sign x'. From x = x' = 10 it is at the top X = 10 + 100/26 at t = 10/13. From there to the next
+/// top, on the other side, X shrinks by 7/13 in a time of sqrt(X) (sqrt(2/7) + sqrt(14)/13).
+model::System twisting() {
+  model::Builder builder("twisting");
+  const SX x = builder.state("x", {10.0});
+  const SX v = builder.state("v", {10.0});
+  builder.dynamics("x", v);
+  builder.dynamics("v", -10.0 * builder.sign(x) - 3.0 * builder.sign(v));
+  return *builder.build();
+}
+
+TEST(Accumulation, TwistingComesToRest) {
+  const double top = 10.0 + 100.0 / 26.0;
+  const double exact =
+      10.0 / 13.0 + std::sqrt(top) * (std::sqrt(2.0 / 7.0) + std::sqrt(14.0) / 13.0) / (1.0 - std::sqrt(7.0 / 13.0));
+  for (const auto form : {Form::step, Form::stewart}) {
+    for (const long steps : {10L, 100L}) {
+      const auto integration = run(twisting(), 15.0, {.steps = steps, .form = form});
+      const auto& last = integration.events.back();
+      EXPECT_EQ(last.kind, result::EventKind::accumulation);
+      // The field is constant between switches: the method is exact. Laps of 1e-8 are extrapolated to 2e-10.
+      EXPECT_NEAR(last.t, exact, 1e-9);
+      EXPECT_EQ(std::set(last.surfaces.begin(), last.surfaces.end()), (std::set<std::string>{"v", "x"}));
+      EXPECT_EQ(*last.mode_after, (result::Mode{0, 0}));
+      EXPECT_EQ(last.unique, true);
+      EXPECT_EQ(integration.final.t, 15.0);
+      EXPECT_NEAR(integration.final.x[0], 0.0, 1e-12);
+      EXPECT_NEAR(integration.final.x[1], 0.0, 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace saltus::fesd_integrator
