@@ -14,6 +14,8 @@ void Coarseness::note(const Element& element, const std::vector<double>& errors)
   }
   for (std::size_t i = 0; i < n_x; ++i) {
     largest_[i] = std::max(largest_[i], std::abs(element.end[i]));
+    constexpr double rounding = 1e-12;  // of a component that is zero but for those of the others
+    if (!(errors[i] > rounding * element.size)) continue;
     sum_[i] += errors[i];
     if (!(errors[i] > error_[i])) continue;
     error_[i] = errors[i];
