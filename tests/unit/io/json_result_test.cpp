@@ -57,15 +57,20 @@ result::Result sample() {
                {"simulate.from", 0.0},
                {"simulate.output.times", std::vector<double>{0.5, 1.0}},
                {"flag", true}};
-  r.surfaces = {
-      {"slip", result::SurfaceRole::switching, {"v"}, true, result::AffineSurface{{1.0 / 3.0}, -0.5, 0.1 + 0.2}, {}},
-      {"hit",
-       result::SurfaceRole::jump,
-       {"q", "v"},
-       false,
-       std::nullopt,
-       {},
-       {{{{1.0, 1e-300}, {2.0, nan}}, {}}, {{{7.0}, {8.0}}, 0.5}}}};
+  r.surfaces = {{"slip",
+                 result::SurfaceRole::switching,
+                 {"v"},
+                 true,
+                 result::AffineSurface{{1.0 / 3.0}, -0.5, 0.1 + 0.2},
+                 {result::AffineSurface{{-1.0 / 7.0}, 2.0, 0.0}},
+                 {}},
+                {"hit",
+                 result::SurfaceRole::jump,
+                 {"q", "v"},
+                 false,
+                 std::nullopt,
+                 {},
+                 {{{{1.0, 1e-300}, {2.0, nan}}, {}}, {{{7.0}, {8.0}}, 0.5}}}};
   return r;
 }
 

@@ -106,14 +106,15 @@ TEST(PageData, LongTrajectoriesAreThinnedAndSayHowManyRowsThereWere) {
 
 TEST(PageData, SurfacesNameTheirStatesByColumn) {
   auto result = report_samples::stick_slip(2, 3);
-  result.surfaces = {{"slip", result::SurfaceRole::switching, {"v"}, true, result::AffineSurface{{2.0}, 0.5, -0.2}, {}},
-                     {"hit</script>",
-                      result::SurfaceRole::jump,
-                      {"q", "v"},
-                      false,
-                      std::nullopt,
-                      {},
-                      {{{{1.0, 2.0}, {3.0, 4.0}}, {}}}}};
+  result.surfaces = {
+      {"slip", result::SurfaceRole::switching, {"v"}, true, result::AffineSurface{{2.0}, 0.5, -0.2}, {}, {}},
+      {"hit</script>",
+       result::SurfaceRole::jump,
+       {"q", "v"},
+       false,
+       std::nullopt,
+       {},
+       {{{{1.0, 2.0}, {3.0, 4.0}}, {}}}}};
   const std::string text = to_script_text(page_data(result));
   EXPECT_EQ(text.find('<'), std::string::npos);
   const json surfaces = json::parse(text)["surfaces"];
@@ -143,8 +144,8 @@ TEST(PageData, OfVeryManyStatesTheFirstAreShownAndTheSizesTold) {
   result::Event event;
   event.x = event.x_after = x;
   result.events.assign(1000, event);
-  result.surfaces = {{"first", {}, {"x0"}, false, std::nullopt, {}},
-                     {"last", {}, {result.states.back()}, false, {}, {}}};
+  result.surfaces = {{"first", {}, {"x0"}, false, std::nullopt, {}, {}},
+                     {"last", {}, {result.states.back()}, false, {}, {}, {}}};
   const json data = page_data(result, 100000);
   EXPECT_EQ(data["states"].size(), columns_in_page);
   EXPECT_EQ(data["sizes"]["states"], size);
