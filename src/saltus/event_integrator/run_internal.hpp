@@ -59,6 +59,12 @@ class Run {
     double value = 0.0, terms = 0.0, magnitude = 0.0;
     double slope = 0.0;  ///< sum of |d_i phi|
   };
+  /// Limits of switches that follow each other at once.
+  struct LimitsInARow {
+    int count = 0;
+    double last = 0.0;       ///< time of the last one
+    double first_lap = 0.0;  ///< of the sequence before the first one
+  };
   /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
   struct Landing {
     std::vector<ExecutedJump> executed;
@@ -105,6 +111,7 @@ class Run {
   void follow_shrinking();
   void accumulate_switches();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
+  bool limits_repeat(double t);
   void pass_to(double t, std::vector<double> x);
   void go_on_from_limit();
   bool fire_user_events(const std::vector<double>& x_before, const ModeState& before);
@@ -172,6 +179,7 @@ class Run {
   double mode_atol_ = 0.0;      ///< of the mode; a part of it while switches tighten
   double lap_share_ = 1.0;      ///< that part
   double first_lap_ = 0.0;      ///< duration of the first one that was closed
+  LimitsInARow limits_in_a_row_;
   ode::DenseStep dense_;
   Cells cells_;
   CellChange cell_change_ = CellChange::none;  ///< at the event being handled

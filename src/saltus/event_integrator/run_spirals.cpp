@@ -99,8 +99,20 @@ void Run::accumulate_switches() {
     if (follow_spiral(*nearly, Behind::higher_order)) return switch_laps_.clear();
   }
   if (!limit || limit->rattling || limit->t > std::min(options_.until, jumps_.next_time())) return;
+  const bool repeats = limits_repeat(limit->t);
   switch_laps_.clear();
-  if (!follow_spiral(*limit, Behind::any)) accumulates();
+  if (repeats || !follow_spiral(*limit, Behind::any)) accumulates();
+}
+
+/// Whether limits follow each other at once, laps of rounding between them: the solution stays where the switches have
+/// come together (sliding of second order on some surfaces), and no mode found there is that.
+bool Run::limits_repeat(double t) {
+  constexpr int many = 8;
+  constexpr double at_once = 1e-3;
+  auto& row = limits_in_a_row_;
+  const bool follows = row.count > 0 && t - row.last <= at_once * row.first_lap;
+  row = {follows ? row.count + 1 : 1, t, follows ? row.first_lap : first_lap_};
+  return row.count >= many;
 }
 
 /// Returns whether the run has gone on, or has ended for another reason.
