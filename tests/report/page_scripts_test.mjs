@@ -13,6 +13,12 @@ const source =
         .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
 
+test("every script of the page is one that a browser reads", () => {
+  for (const file of fs.readdirSync(page).filter((name) => name.endsWith(".js"))) {
+    assert.doesNotThrow(() => new vm.Script(fs.readFileSync(new URL(file, page), "utf8")), file);
+  }
+});
+
 test("rows of a window reach over both of its ends and take both rows of an event there", () => {
   const t = [0, 1, 2, 2, 3, 4];
   assert.deepEqual(saltus.rowsInWindow(t, [1.5, 2]), [1, 5]);

@@ -108,8 +108,8 @@ saltus.start = () => {
   });
   const families = saltus.familyCard(result);
   const sensitivities = saltus.sensitivityCard(result);
-  const parts = [branches, families, cards, sensitivities];
-  main.append(...parts.filter((part) => part !== null), saltus.notes(result));
+  const sections = [branches, families, cards, sensitivities];
+  main.append(...sections.filter((section) => section !== null), saltus.notes(result));
   if (result.states.length > 1 && result.trajectory.t.length > 0) {
     phases.push(saltus.phasePlane(result, timeline, select));
     if (result.states.length > 2) phases.push(saltus.phasePortrait(result, timeline, select));
