@@ -18,6 +18,20 @@ class Elements(tool.ToolTest):
         # Of order 1: near the solution, not at it.
         self.assertLess(abs(result["final"]["x"][0] - 0.6289), 0.1)
 
+    def test_stages_are_found_where_the_modes_of_the_left_end_have_none(self):
+        # Implicit Euler from v = -0.01 with h = 1: below the belt's speed 2 v + 0.05 = 1/(1.2 - v) has no root, on it
+        # alpha = 0.275 does it.
+        self.run_tool("simulate", "stick-slip", "--method", "timestepping", "--quiet", "--out", "r.json", "--set",
+                      "simulate.timestepping.stages=1", "--set", "simulate.timestepping.steps=1", "--until", "1", code=0)
+        final = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["final"]
+        self.assertAlmostEqual(final["x"][0], 0.24, delta=1e-12)
+        self.assertAlmostEqual(final["x"][1], 0.2, delta=1e-12)
+
+    def test_selections_that_slide_are_found_from_the_ends_of_their_range(self):
+        # The equations of the element from t = 0.98 have two solutions on the circle, alpha = -0.82 and 0.80.
+        self.run_tool("simulate", "rotating-oscillator", "--method", "timestepping", "--quiet", "--set",
+                      "simulate.timestepping.steps=40", code=0)
+
     def test_a_step_without_active_sets_is_tried_as_a_problem_with_complementarities(self):
         # sqrt(|x|) has no derivative where the model starts: neither finds a solution, and both say so.
         _, errors = self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet", "--out", "r.json", code=3)

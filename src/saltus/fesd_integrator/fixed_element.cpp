@@ -106,14 +106,17 @@ FixedElement::Search FixedElement::by_pivoting(const Point& left, double h, cons
   return Search::stuck;
 }
 
-/// The selections that slide in the middle of their range, all states at the left end.
-void FixedElement::to_middle(Element& element) const {
+/// The selections that slide at `level` of their range, of regions at equal parts; all states at the left end.
+void FixedElement::to_level(double level, Element& element) const {
   const std::size_t n = kernel_.selections(), n_x = kernel_.states();
   for (std::size_t m = 0; m < sets_.size(); ++m) {
     std::copy(element.x.begin(), element.x.end(), element.stage_states.begin() + static_cast<std::ptrdiff_t>(m * n_x));
     const auto& sliding = sets_[m].sliding();
-    const std::vector<double> middle(sliding.size(), 1.0 / static_cast<double>(sliding.size() + 1));
-    sets_[m].selections(middle.data(), element.stage_selections.data() + m * n);
+    std::vector<double> values(sliding.size(), level);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (sliding[k].reference >= 0) values[k] = 1.0 / static_cast<double>(sliding.size() + 1);
+    }
+    sets_[m].selections(values.data(), element.stage_selections.data() + m * n);
   }
 }
 
@@ -155,11 +158,17 @@ FixedElement::Search FixedElement::by_enumeration(const Point& left, double h, c
     });
     if (!possible) continue;
     for (std::size_t m = 0; m < sets_.size(); ++m) sets_[m] = ActiveSet(parts_, modes_[m]);
-    // Selections that slide may have several solutions: from the left end, and from the middle of their range.
-    for (const auto guess : {ElementSolver::Guess::left_end, ElementSolver::Guess::stages}) {
-      if (guess == ElementSolver::Guess::stages) to_middle(element);
-      const auto outcome = solver_.solve(left, h, sets_, held, guess, element);
-      if (outcome == ElementSolver::Outcome::solved && all_hold(element, held)) return Search::found;
+    const auto is_found = [&](ElementSolver::Guess guess) {
+      return solver_.solve(left, h, sets_, held, guess, element) == ElementSolver::Outcome::solved &&
+             all_hold(element, held);
+    };
+    if (is_found(ElementSolver::Guess::left_end)) return Search::found;
+    // Selections that slide may have several solutions: from the middle and the ends of their range, too.
+    const bool slides = std::any_of(sets_.begin(), sets_.end(), [](const auto& set) { return !set.sliding().empty(); });
+    for (const double level : {0.5, 0.95, 0.05}) {
+      if (!slides && level != 0.5) break;
+      to_level(level, element);
+      if (is_found(ElementSolver::Guess::stages)) return Search::found;
     }
   }
   return Search::stuck;
@@ -174,7 +183,10 @@ bool FixedElement::solve(const Point& left, double h, const ActiveSet& before, c
   }
   if (by_pivoting(left, h, held, element) == Search::stuck &&
       by_enumeration(left, h, before, held, element) == Search::stuck) {
-    return false;
+    // Where the equations of the modes on the way have no solution, nothing has shown what else changes.
+    if (std::find(touched_.begin(), touched_.end(), false) == touched_.end()) return false;
+    touched_.assign(touched_.size(), true);
+    if (by_enumeration(left, h, before, held, element) == Search::stuck) return false;
   }
   const auto n = static_cast<std::ptrdiff_t>(kernel_.selections());
   end_selections_.assign(element.stage_selections.end() - n, element.stage_selections.end());

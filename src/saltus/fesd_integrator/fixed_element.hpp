@@ -36,7 +36,7 @@ class FixedElement {
   [[nodiscard]] Search by_pivoting(const Point& left, double h, const double* held, Element& element);
   [[nodiscard]] Search by_enumeration(const Point& left, double h, const ActiveSet& before, const double* held,
                                       Element& element);
-  void to_middle(Element& element) const;
+  void to_level(double level, Element& element) const;
   [[nodiscard]] bool is_violated(std::size_t stage, const Condition& condition, const Element& element) const;
   /// Evaluates the indicators at a stage, for is_violated.
   void look_at(std::size_t stage, const Element& element, const double* held);
