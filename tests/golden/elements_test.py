@@ -32,6 +32,15 @@ class Elements(tool.ToolTest):
         self.run_tool("simulate", "rotating-oscillator", "--method", "timestepping", "--quiet", "--set",
                       "simulate.timestepping.steps=40", code=0)
 
+    def test_sliding_at_the_origin_converges_to_the_roundings_of_the_field(self):
+        # x = 0 has no roundings of its own to converge to: -sign(x) + t has.
+        for scheme in ("radau_iia", "gauss_legendre", "lobatto_iiic"):
+            self.run_tool("simulate", "leaving-sliding", "--method", "fesd", "--quiet", "--out", "r.json", "--set",
+                          f"simulate.fesd.scheme={scheme}", code=0)
+            result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+            self.assertEqual(result["statistics"]["rejected"], 0, scheme)
+            self.assertAlmostEqual(result["final"]["x"][0], 0.125, delta=1e-12)
+
     def test_a_step_without_active_sets_is_tried_as_a_problem_with_complementarities(self):
         # sqrt(|x|) has no derivative where the model starts: neither finds a solution, and both say so.
         _, errors = self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet", "--out", "r.json", code=3)

@@ -83,8 +83,18 @@ struct ElementSolver::Implementation {
     if (entry.reference >= 0) row = psi_x.row(entry.reference).transpose() - row;
   }
 
-  /// Rounding level of the equations: a few roundings of the largest state.
-  [[nodiscard]] double negligible(const Element& element) const { return 1e-13 * element.size; }
+  /// What the states are rounded at: the largest one or, near zero, the terms of h f that cancel in sliding.
+  [[nodiscard]] double size(const Element& element) const {
+    double terms = 0.0;
+    for (Index m = 0; m < n_s; ++m) {
+      for (Index k = 0; k < unknowns(m); ++k) {
+        terms = std::max(terms, directions.col(m * n_psi + k).cwiseAbs().maxCoeff());
+      }
+    }
+    return std::max(element.size, element.h * terms);
+  }
+  /// Rounding level of the equations: a few roundings of that.
+  [[nodiscard]] double negligible(const Element& element) const { return 1e-13 * size(element); }
   /// Equations of one Newton step; the unknowns of the selections are their changes times h, as in the states.
   void assemble_matrix(const Element& element);
   void assemble_right(const Element& element);
@@ -194,8 +204,8 @@ double ElementSolver::Implementation::update(Element& element) {
       if (entry.reference >= 0) all[entry.reference] -= correction;
     }
   }
-  const double size = std::max(element.size, states.cwiseAbs().maxCoeff());
-  return size > 0.0 ? change / size : change;
+  const double scale = std::max(size(element), states.cwiseAbs().maxCoeff());
+  return scale > 0.0 ? change / scale : change;
 }
 
 /// NOTE: without this the methods with c_s != 1 lose half their order on curved surfaces.
@@ -226,9 +236,9 @@ bool ElementSolver::Implementation::project(double t, const double* held, Elemen
       for (Index l = 0; l < count; ++l) moved += system.right()(l) * along(i, l);
       change = std::max(change, std::abs(moved));
     }
-    const double size = element.size;
-    if (change <= 1e-15 * size || (change <= 1e-12 * size && change >= 0.5 * before)) return true;
-    if (change <= 1e-9 * size && before <= 1e-4 * size) return true;
+    const double scale = size(element);
+    if (change <= 1e-15 * scale || (change <= 1e-12 * scale && change >= 0.5 * before)) return true;
+    if (change <= 1e-9 * scale && before <= 1e-4 * scale) return true;
     before = change;
   }
   return false;
@@ -313,7 +323,7 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
                       element.stage_selections.data() + m * n_psi, held, element.stage_slopes.data() + m * n_x);
   }
   element.size =
-      std::max(element.size, ConstMatrix(element.stage_states.data(), self.n_x, self.n_s).cwiseAbs().maxCoeff());
+      std::max(self.size(element), ConstMatrix(element.stage_states.data(), self.n_x, self.n_s).cwiseAbs().maxCoeff());
   if (self.ends_at_last_stage && !self.explicit_method) {
     std::copy_n(element.stage_states.end() - static_cast<std::ptrdiff_t>(n_x), n_x, element.end.begin());
   } else {

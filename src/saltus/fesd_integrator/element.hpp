@@ -23,8 +23,8 @@ struct Point {
 struct Element {
   double t = 0.0;  ///< left end
   double h = 0.0;
-  double size = 0.0;                     ///< largest state of it and of those around
-  std::vector<double> x;                 ///< left end
+  double size = 0.0;      ///< what roundings are relative to: the largest state, the terms of h f that cancel
+  std::vector<double> x;  ///< left end
   std::vector<double> stage_states;      ///< n_x by n_s
   std::vector<double> stage_slopes;      ///< n_x by n_s: f at the stages
   std::vector<double> stage_selections;  ///< n_selections by n_s
