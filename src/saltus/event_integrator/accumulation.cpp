@@ -112,9 +112,10 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::
   const auto jumps = last_jumps(period);
   const double drowning = longest(shortest, jumps);
   if (now.size() >= 2 && now[0] <= std::max(16.0 * resolution, hundredth * drowning)) {
-    // Laps that shrink fast leave little, but not nothing.
+    // Laps that shrink fast leave little, but not nothing. Long ones are here because psi leaves its surface
+    // tangentially, with no rate: their limit is where they are.
     const double fast = now[0] / now[1];
-    if (!(fast <= 0.5)) return SeriesLimit{t, back(0).x, jumps, now[0], false};
+    if (!(fast <= 0.5 && now[0] <= 1e-6 * (t - start_[period]))) return SeriesLimit{t, back(0).x, jumps, now[0], false};
     return SeriesLimit{t + now[0] * fast / (1.0 - fast), extrapolated(period, fast), jumps, now[0], false};
   }
   if (laps_[period] < fewest_laps * period || now.size() < fewest_laps) return std::nullopt;
