@@ -12,6 +12,7 @@
 #include "saltus/io/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/reformulation/dcs.hpp"
+#include "value_or_exit.hpp"
 
 namespace compare {
 namespace {
@@ -19,13 +20,6 @@ namespace {
 namespace discretization = saltus::discretization;
 namespace fesd_integrator = saltus::fesd_integrator;
 namespace reformulation = saltus::reformulation;
-
-template <class Value>
-Value value_or_exit(saltus::Expected<Value> expected) {
-  if (expected) return std::move(*expected);
-  std::fprintf(stderr, "%s\n", saltus::to_text(expected.error()).c_str());
-  std::exit(2);
-}
 
 discretization::TableauFamily family_of(std::string_view scheme) {
   if (scheme == "radau_iia") return discretization::TableauFamily::radau_iia;

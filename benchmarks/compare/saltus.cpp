@@ -11,6 +11,7 @@
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/io/toml_model.hpp"
 #include "saltus/model/build.hpp"
+#include "value_or_exit.hpp"
 
 namespace compare {
 namespace {
@@ -18,13 +19,6 @@ namespace {
 namespace evaluation = saltus::evaluation;
 namespace event_integrator = saltus::event_integrator;
 namespace model = saltus::model;
-
-template <class Value>
-Value value_or_exit(saltus::Expected<Value> expected) {
-  if (expected) return std::move(*expected);
-  std::fprintf(stderr, "%s\n", saltus::to_text(expected.error()).c_str());
-  std::exit(2);
-}
 
 event_integrator::IntegrationOptions options_of(const Request& request, double until) {
   event_integrator::IntegrationOptions options;
