@@ -8,11 +8,7 @@ Json status_json(const result::Status& status) {
 }
 
 void read_status(JsonReader& reader, const Json& json, const std::string& path, result::Status& status) {
-  std::string word;
-  reader.read_member(json, path, "termination", word);
-  const auto termination = result::termination_named(word);
-  if (!termination) reader.fail(path + "/termination", fmt::format("'{}' is no termination", word));
-  status.termination = termination.value_or(result::Termination::completed);
+  reader.read_word(json, path, "termination", result::termination_named, "termination", status.termination);
   reader.read_member(json, path, "message", status.message);
   reader.read_member(json, path, "time_reached", status.time_reached);
 }
@@ -70,12 +66,9 @@ void read_elements(JsonReader& reader, const Json& json, const std::string& path
     read_list(reader, *selections, path + "/selections", elements->selections,
               [](JsonReader& inner, const Json& entry, const std::string& here) {
                 result::ElementSelection selection;
-                std::string form;
                 inner.read_member(entry, here, "name", selection.name);
-                inner.read_member(entry, here, "form", form);
-                const auto known = result::selection_form_named(form);
-                if (!known) inner.fail(here + "/form", fmt::format("'{}' is no form of a selection", form));
-                selection.form = known.value_or(result::SelectionForm::step);
+                inner.read_word(entry, here, "form", result::selection_form_named, "form of a selection",
+                                selection.form);
                 return selection;
               });
   }

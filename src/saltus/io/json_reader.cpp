@@ -48,12 +48,8 @@ void read_intersection(JsonReader& reader, const Json& json, const std::string& 
 
 result::Event read_event(JsonReader& reader, const Json& json, const std::string& path) {
   result::Event event;
-  std::string word;
   reader.read_member(json, path, "t", event.t);
-  reader.read_member(json, path, "kind", word);
-  const auto kind = result::event_kind_named(word);
-  if (!kind) reader.fail(path + "/kind", fmt::format("'{}' is no kind of event", word));
-  event.kind = kind.value_or(result::EventKind::crossing);
+  reader.read_word(json, path, "kind", result::event_kind_named, "kind of event", event.kind);
   reader.read_member(json, path, "name", event.name);
   reader.read_member(json, path, "surfaces", event.surfaces);
   reader.read_member(json, path, "mode_before", event.mode_before);
@@ -107,12 +103,8 @@ result::SurfaceCurve read_curve(JsonReader& reader, const Json& json, const std:
 
 result::Surface read_surface(JsonReader& reader, const Json& json, const std::string& path) {
   result::Surface surface;
-  std::string word;
   reader.read_member(json, path, "name", surface.name);
-  reader.read_member(json, path, "role", word);
-  const auto role = result::surface_role_named(word);
-  if (!role) reader.fail(path + "/role", fmt::format("'{}' is no role of a surface", word));
-  surface.role = role.value_or(result::SurfaceRole::switching);
+  reader.read_word(json, path, "role", result::surface_role_named, "role of a surface", surface.role);
   reader.read_member(json, path, "states", surface.states);
   reader.read_member(json, path, "depends_on_time", surface.depends_on_time);
   if (const auto* affine = reader.member(json, path, "affine"); affine && !affine->is_null()) {
@@ -183,11 +175,7 @@ std::size_t read_number(JsonReader& reader, const Json& json, const std::string&
 
 result::Family read_family(JsonReader& reader, const Json& json, const std::string& path) {
   result::Family family;
-  std::string word;
-  reader.read_member(json, path, "kind", word);
-  const auto kind = result::family_kind_named(word);
-  if (!kind) reader.fail(path + "/kind", fmt::format("'{}' is no kind of a family", word));
-  family.kind = kind.value_or(result::FamilyKind::later_departure);
+  reader.read_word(json, path, "kind", result::family_kind_named, "kind of a family", family.kind);
   family.event = read_number(reader, json, path, "event");
   reader.read_member(json, path, "from", family.from);
   reader.read_member(json, path, "until", family.until);

@@ -55,6 +55,19 @@ class JsonReader {
     if (const auto* json = member(object, path, key)) read(*json, path + "/" + key, target);
   }
 
+  /// A word of a fixed set; `named` gives its value, or nullopt where it is no `what`.
+  template <class Named, class Target>
+  void read_word(const Json& object, const std::string& path, const char* key, Named named, const char* what,
+                 Target& target) {
+    std::string word;
+    read_member(object, path, key, word);
+    if (const auto value = named(word)) {
+      target = *value;
+    } else {
+      fail(path + "/" + key, fmt::format("'{}' is no {}", word, what));
+    }
+  }
+
   /// Only models of some kinds have this member.
   template <class Target>
   void read_if_there(const Json& object, const std::string& path, const char* key, Target& target) {
