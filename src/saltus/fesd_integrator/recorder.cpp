@@ -80,6 +80,12 @@ void Recorder::row(double t, const std::vector<double>& x, const ActiveSet& set,
   trajectory_.theta.push_back(std::move(now.theta));
 }
 
+void Recorder::note_before(result::Event& event, const Columns& before) const {
+  event.mode_before = before.mode;
+  event.alpha_before = before.alpha;
+  if (!facts_.regions.empty()) event.regions_before = before.regions;
+}
+
 void Recorder::finish(result::Event& event, const Columns& after, const std::vector<Continuation>& found,
                       const double* held, std::string_view reason) {
   event.mode_after = after.mode;
@@ -138,9 +144,7 @@ bool Recorder::switched(double t, const std::vector<double>& x, const Side& befo
   row(t, x, *before.set, *before.selections, before.held);
   row(t, x, found.front().set, found.front().selections, held);
   event.t = t;
-  event.mode_before = from.mode;
-  event.alpha_before = from.alpha;
-  if (!facts_.regions.empty()) event.regions_before = from.regions;
+  note_before(event, from);
   event.x = event.x_after = x;
   finish(event, to, found, held, reason);
   events_.push_back(std::move(event));
@@ -157,9 +161,7 @@ void Recorder::accumulated(double t, const std::vector<double>& x, const std::ve
   event.t = t;
   event.kind = result::EventKind::accumulation;
   event.surfaces = differences(from, to).names;
-  event.mode_before = from.mode;
-  event.alpha_before = from.alpha;
-  if (!facts_.regions.empty()) event.regions_before = from.regions;
+  note_before(event, from);
   event.x = x;
   event.x_after = x_limit;
   finish(event, to, found, held, "the intervals of these switches shrink geometrically: the state is their limit");
@@ -201,9 +203,7 @@ void Recorder::user(double t, const std::vector<double>& x, const Side& side, st
   entry.t = t;
   entry.kind = result::EventKind::user;
   entry.name = facts_.events[event].name;
-  entry.mode_before = now.mode;
-  entry.alpha_before = now.alpha;
-  if (!facts_.regions.empty()) entry.regions_before = now.regions;
+  note_before(entry, now);
   entry.x = entry.x_after = x;
   finish(entry, now, {}, side.held, reason);
   events_.push_back(std::move(entry));

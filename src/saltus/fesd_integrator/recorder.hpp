@@ -64,6 +64,7 @@ class Recorder {
   };
   [[nodiscard]] Differences differences(const Columns& from, const Columns& to) const;
   [[nodiscard]] Columns columns(const ActiveSet& set, const std::vector<double>& selections, const double* held) const;
+  void note_before(result::Event& event, const Columns& before) const;
   void finish(result::Event& event, const Columns& after, const std::vector<Continuation>& found, const double* held,
               std::string_view reason);
 
