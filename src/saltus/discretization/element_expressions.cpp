@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <casadi/core/function.hpp>
 
+#include "saltus/discretization/dcs_expressions_internal.hpp"
 #include "saltus/discretization/element_expressions_internal.hpp"
 
 namespace saltus::discretization {
@@ -154,11 +155,7 @@ class ElementBuilder {
   /// f_alpha mu of the projection of index-2 equations onto their constraints ([hairer1996], section VII.4).
   [[nodiscard]] SX correction() const {
     if (result_.layout.correction.count == 0) return SX::zeros(dcs_.x.numel());
-    SX f = call(dcs_.t, dcs_.x, dcs_.selection, dcs_.lifted).f;
-    for (casadi_int k = dcs_.lifted.numel(); k-- > 0;) {
-      // Row k is beta_k less its product of earlier ones.
-      f = SX::substitute(f, dcs_.lifted(k), -SX::substitute(dcs_.lifting(k), dcs_.lifted(k), 0.0));
-    }
+    const SX f = without_lifting(dcs_, call(dcs_.t, dcs_.x, dcs_.selection, dcs_.lifted).f);
     const SX directions = SX::substitute(
         std::vector<SX>{SX::jacobian(f, dcs_.selection)}, std::vector<SX>{dcs_.t, dcs_.x, dcs_.selection},
         std::vector<SX>{result_.depends_on_time ? variables_.end_time : SX(0.0), variables_.end_state,
