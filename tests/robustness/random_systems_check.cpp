@@ -73,6 +73,7 @@ class ModeCheck {
       const State coarse = path.end;
       const double change = distance(coarse, finer.end);
       path = finer;
+      if (!path.is_defined) return path.problem;
       if (!(change <= 0.5 * tolerance)) continue;
       // Order 4: a fifteenth of the difference is left.
       for (std::size_t i = 0; i < coarse.size(); ++i) path.end[i] += (path.end[i] - coarse[i]) / 15.0;
@@ -91,6 +92,7 @@ class ModeCheck {
     State end;
     std::string problem;  ///< an inequality that fails on the way
     bool is_determined = true;
+    bool is_defined = true;  ///< the selection is not 0/0: what derivatives of psi hold cannot be followed here
   };
 
   /// Classical Runge-Kutta steps of one length; inequalities are looked at where they begin.
@@ -98,16 +100,18 @@ class ModeCheck {
     const double h = (t_next - t) / steps;
     // Where the path is not exact yet, an inequality may fail by its error.
     const double slack = 10.0 * rtol_;
-    Path path{x, "", true};
+    Path path{x, ""};
     State& y = path.end;
     for (int step = 0; step < steps; ++step) {
       const double now = t + step * h;
       const FieldValue k1 = field_(now, y, alpha);
+      path.is_determined = path.is_determined && determined(k1);
+      path.is_defined = std::isfinite(k1.xdot.front());
+      if (!path.is_defined) return path;
       alpha = k1.alpha;
       const FieldValue k2 = field_(now + 0.5 * h, moved(y, 0.5 * h, k1.xdot), alpha);
       const FieldValue k3 = field_(now + 0.5 * h, moved(y, 0.5 * h, k2.xdot), alpha);
       const FieldValue k4 = field_(now + h, moved(y, h, k3.xdot), alpha);
-      path.is_determined = path.is_determined && determined(k1);
       if (path.problem.empty()) {
         path.problem = inequalities(y, k1, slack);
         if (!path.problem.empty()) path.problem += fmt::format(" at t = {}", now);

@@ -148,7 +148,8 @@ void Run::flip_user_functions(const Located& located) {
 /// Notes what is here before an event, the selections of a sliding mode among it.
 Run::Arrival Run::arrive(RowBefore row) {
   field_(t_, x_.data(), slope_.data());
-  if (!state_.sliding.empty()) state_.alpha = field_.alpha();
+  // 0/0 in the last bit where both fields are tangent: the selections that the mode began with are as good.
+  if (!state_.sliding.empty() && is_finite(field_.alpha())) state_.alpha = field_.alpha();
   before_ = state_;
   x_before_ = x_;
   jumped_ = false;

@@ -187,6 +187,12 @@ bool Decider::decide(const std::vector<int>& group) {
   }
   for (std::size_t k = 0; k < group.size(); ++k) {
     SurfaceDecision surface = decision.surfaces[k];
+    // One field has turned away from the surface, the other one moves along it: the solution can go on there and leave
+    // at any later time.
+    const bool turned = contains(occasion_.exit_below, group[k]) || contains(occasion_.exit_above, group[k]);
+    if (turned && surface.verdict == Verdict::decided && surface.mode == 0 && group.size() == 1) {
+      return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(group[k])].name, occasion_.t));
+    }
     if (surface.verdict == Verdict::stands) {
       const int kept = before_.mode[at(group[k])] != 0 && !occasion_.start ? before_.mode[at(group[k])] : 1;
       surface = {Verdict::decided, kept, kept > 0 ? 1.0 : 0.0, {}, "psi stays 0 and the fields agree"};
@@ -379,6 +385,9 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   if (transition.termination == result::Termination::outside_class ||
       transition.termination == result::Termination::no_admissible_mode) {
     if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
+  }
+  if (transition.termination == result::Termination::no_admissible_mode) {
+    if (auto other = borderline_mode(surroundings, exact, occasion, transition.state)) return std::move(*other);
   }
   return transition;
 }

@@ -84,7 +84,7 @@ bool Decider::check() {
   if (!std::all_of(xdot.begin(), xdot.end(), is_number)) {
     // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
     for (const int j : state.sliding) {
-      if (!fields_.gradient_vanishes(state.alpha, j)) continue;
+      if (!fields_.gradient_vanishes(state.alpha, j) && !fields_.nearly_two_fold(state.alpha, j)) continue;
       return fail(result::Termination::outside_class, undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
     }
     if (!state.sliding.empty()) {

@@ -38,6 +38,14 @@ std::string undetermined_at(const ProjectedFields& fields, const model::System& 
 std::optional<Transition> hold_with_higher_order(const Surroundings& s, const ModeState& before,
                                                  const Occasion& occasion);
 
+/// Where `failed` does not move to where it says: the modes of the surfaces at zero of which an inequality is an
+/// equality (fields tangent to several surfaces at once, selections at their bounds) by the check along their own
+/// fields. The first one that it passes, those with fewer surfaces in other modes than `failed` before the others;
+/// nullopt if there is none. Not for regions, functions nested around the surfaces, or more surfaces than are
+/// enumerated. Cost: milliseconds.
+std::optional<Transition> borderline_mode(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                                          const ModeState& failed);
+
 /// The mode behind an event of a state that is held so.
 Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion);
 

@@ -29,8 +29,9 @@ struct CornerField {
 /// The modes of one table, one zone of the cube after the other.
 class Enumeration {
  public:
-  explicit Enumeration(const CornerTable& table)
+  Enumeration(const CornerTable& table, Borderline borderline)
       : table_(table),
+        keeps_borderline_(borderline == Borderline::kept),
         m_(at(table.surfaces)),
         field_{MultiAffine(table)},
         face_(table.surfaces, field_, Interpolation::multi_affine),
@@ -120,7 +121,7 @@ class Enumeration {
     }
     std::vector<double> rest(n);
     velocities(selections.data(), rest.data());
-    note(selections);
+    note(selections, newton.jacobian());
     return is_one_to_one(newton.jacobian(), low, high);
   }
 
@@ -156,13 +157,15 @@ class Enumeration {
   }
 
   /// The root that u_ is at, with its velocities in v_: a mode, if it is inside and the others are left.
-  void note(const std::vector<double>& selections) {
+  void note(const std::vector<double>& selections, std::span<const double> jacobian) {
+    const double least = keeps_borderline_ ? -sign_tolerance : sign_tolerance;
     for (const double a : selections) {
-      if (!(a > sign_tolerance && a < 1.0 - sign_tolerance)) return;
+      if (!(a > least && a < 1.0 - least)) return;
     }
     for (std::size_t j = 0; j < m_; ++j) {
-      if (zone_[j] != 0 && !(zone_[j] * v_[j] > sign_tolerance)) return;
+      if (zone_[j] != 0 && !(zone_[j] * v_[j] > least)) return;
     }
+    if (keeps_borderline_ && !(fisher_fuller_margin(jacobian, static_cast<int>(selections.size())) > 0.0)) return;
     const auto is_known = [&](const GroupMode& known) {
       return known.mode == zone_ && std::equal(u_.begin(), u_.end(), known.alpha.begin(),
                                                [](double a, double b) { return std::abs(a - b) <= 1e-8; });
@@ -171,6 +174,7 @@ class Enumeration {
   }
 
   const CornerTable& table_;
+  bool keeps_borderline_;
   std::size_t m_;
   CornerField field_;
   HiddenFace face_;
@@ -181,9 +185,9 @@ class Enumeration {
 
 }  // namespace
 
-std::vector<GroupMode> admissible_modes(const CornerTable& table) {
+std::vector<GroupMode> admissible_modes(const CornerTable& table, Borderline borderline) {
   SALTUS_ASSERT(table.surfaces >= 1 && table.surfaces <= largest_enumerated);
-  return Enumeration(table).run();
+  return Enumeration(table, borderline).run();
 }
 
 }  // namespace saltus::switching

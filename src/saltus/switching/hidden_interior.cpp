@@ -17,6 +17,8 @@ constexpr int shortest_pause = 4;
 constexpr int longest_pause = 32;
 /// Relative to the largest velocity of a surface: below this a velocity is rounding.
 constexpr double rounding = 1e-13;
+/// Of selections: nearer to its bound a root is on it.
+constexpr double edge = 1e-12;
 
 std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
@@ -229,8 +231,15 @@ HiddenTrajectory::Rest HiddenTrajectory::look_for_rest() {
   const bool may_settle = resting || is_hurwitz(std::span(jacobian_here_), static_cast<int>(n));
   root_ = u_;
   const bool found = may_settle && polish_rest(root_.data());
+  // A root on the edge of the zone is one of its points: what crosses the edge there is rounding.
   bool inside = found;
-  for (const int j : free) inside = inside && 0.0 < root_[at(j)] && root_[at(j)] < 1.0;
+  bool at_edge = false;
+  for (const int j : free) {
+    double& selection = root_[at(j)];
+    inside = inside && -edge < selection && selection < 1.0 + edge;
+    at_edge = at_edge || !(edge < selection && selection < 1.0 - edge);
+    if (inside) selection = std::clamp(selection, 0.0, 1.0);
+  }
   if (!inside) {
     if (!resting) return Rest::none;
     perturb();
@@ -268,7 +277,10 @@ HiddenTrajectory::Rest HiddenTrajectory::look_for_rest() {
     }
   }
   for (const int j : free) u_[at(j)] = root_[at(j)];
-  if (first < 0) return Rest::settled;
+  if (first < 0) {
+    end_.marginal = end_.marginal || at_edge;
+    return Rest::settled;
+  }
   // The free components rest while the others move on at constant velocities until the first is back.
   recurrence_.add_time(returns);
   for (int j = 0; j < m_; ++j) {

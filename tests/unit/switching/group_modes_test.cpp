@@ -119,5 +119,44 @@ TEST(GroupModes, HoldTheModeThatTheHiddenDynamicsSettlesIn) {
   }
 }
 
+/// The rows (a, b, c, d) of velocities at the corners 00, 10, 01, 11.
+CornerTable plane_of(const std::array<std::array<double, 4>, 2>& velocities) {
+  CornerTable table;
+  table.surfaces = 2;
+  table.arrival.assign(2, Arrival::at_start);
+  for (const auto& row : velocities) {
+    for (const double v : row) {
+      table.sides.push_back({v, v > 0.0 ? Drift::up : v < 0.0 ? Drift::down : Drift::stays});
+    }
+  }
+  return table;
+}
+
+TEST(GroupModes, ARootOnTheEdgeIsBorderline) {
+  // At alpha_1 = 1: -3/2 + 7/2 alpha_2 = 0 and 3 - 7 alpha_2 = 0, with the stable Jacobian (-25/14, 7/2; 5/14, -7). The
+  // other root (1/10, 12/13) is a saddle.
+  const CornerTable table = plane_of({{{3.5, -1.5, -0.5, 2.0}, {-1.0, 3.0, 0.5, -4.0}}});
+  const auto strict = admissible_modes(table);
+  for (const auto& mode : strict) EXPECT_LT(mode.alpha[0], 0.2);
+  std::size_t found = 0;
+  for (const auto& mode : admissible_modes(table, Borderline::kept)) {
+    if (mode.mode != std::vector<int>{0, 0}) continue;
+    ++found;
+    EXPECT_NEAR(mode.alpha[0], 1.0, 1e-14);
+    EXPECT_NEAR(mode.alpha[1], 3.0 / 7.0, 1e-14);
+  }
+  EXPECT_EQ(found, 1U);
+}
+
+TEST(GroupModes, MotionAlongASurfaceIsBorderline) {
+  // Right of psi_1 = 0 both fields point to psi_2 = 0, and the sliding motion there, half of each, is along psi_1 = 0.
+  const CornerTable table = plane_of({{{1.0, 1.0, 1.0, -1.0}, {1.0, 1.0, -1.0, -1.0}}});
+  const auto is_it = [](const GroupMode& mode) { return mode.mode == std::vector<int>{1, 0}; };
+  const auto strict = admissible_modes(table);
+  EXPECT_TRUE(std::none_of(strict.begin(), strict.end(), is_it));
+  const auto kept = admissible_modes(table, Borderline::kept);
+  EXPECT_TRUE(std::any_of(kept.begin(), kept.end(), is_it));
+}
+
 }  // namespace
 }  // namespace saltus::switching
