@@ -51,8 +51,13 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
     for (int j = part.first; j < part.first + part.count; ++j) {
       const double value = part.simplex ? values.indicator[at(j)] - smallest : values.indicator[at(j)];
       const bool zero = std::abs(value) <= 4.0 * noise_[at(j)] || forced(j);
+      if (part.simplex) {
+        // One of the tied regions alone, as a classical mode stands for the other groups while one is asked.
+        modes[at(j)] = zero && members.size() == begin ? 0 : -1;
+      } else {
+        modes[at(j)] = value > 0.0 ? 1 : -1;
+      }
       if (zero) members.push_back(j);
-      modes[at(j)] = zero && part.simplex ? 0 : value > 0.0 && !part.simplex ? 1 : -1;
     }
     if (part.simplex && members.size() == begin + 1) members.pop_back();  // one region: nothing to decide
   }
@@ -71,7 +76,9 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
   };
   for (const double level : {0.5, 0.0, 1.0}) {
     std::vector<double> selections(n);
-    for (std::size_t j = 0; j < n; ++j) selections[j] = modes[j] > 0 ? 1.0 : 0.0;
+    for (std::size_t j = 0; j < n; ++j) {
+      selections[j] = modes[j] == (parts_[at(part_of_[j])].simplex ? 0 : 1) ? 1.0 : 0.0;
+    }
     for (const int j : members) selections[at(j)] = level;
     kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values);
     for (std::size_t j = 0; j < n; ++j) {

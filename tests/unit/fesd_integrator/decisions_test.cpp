@@ -61,6 +61,21 @@ TEST(Transition, ASpontaneousSwitchHasThreeContinuations) {
   EXPECT_EQ(found[2].set.modes(), Modes{0});
 }
 
+TEST(Transition, TwoFunctionsThatAreZeroAtTheStartAreAskedBesideEachOther) {
+  // v' = 1 - |v|, z' = v - |z| from (0, 0): v and z become positive, z to second order.
+  model::Builder builder("at rest");
+  const SX v = builder.state("v", {0.0});
+  const SX z = builder.state("z", {0.0});
+  builder.dynamics("v", 1.0 - v * builder.sign(v));
+  builder.dynamics("z", v - z * builder.sign(z));
+  for (const Form form : {Form::step, Form::stewart}) {
+    const Compiled model(builder, form);
+    const auto found = continuations(model, 0.0, {0.0, 0.0}, std::nullopt, {});
+    ASSERT_GE(found.size(), 1U) << (form == Form::step ? "step" : "stewart");
+    EXPECT_EQ(found[0].set.modes(), form == Form::step ? (Modes{1, 1}) : (Modes{0, -1, 0, -1}));
+  }
+}
+
 TEST(Transition, AwayFromSurfacesTheSignsDecide) {
   const Compiled model = scalar(2.0, 1.0);
   const auto found = continuations(model, 0.0, {-0.4}, std::nullopt, {});
