@@ -41,6 +41,26 @@ class Elements(tool.ToolTest):
             self.assertEqual(result["statistics"]["rejected"], 0, scheme)
             self.assertAlmostEqual(result["final"]["x"][0], 0.125, delta=1e-12)
 
+    def test_indicators_that_are_not_finite_are_told(self):
+        self.write("m.toml", """
+[model]
+name = "m"
+[states]
+x = 2
+y = 1
+[dynamics]
+x = "1"
+y = "1 - 2*step(y + log(1 - x))"
+[simulate]
+until = 1
+method = "fesd"
+fesd = { reformulation = "stewart" }
+""")
+        _, errors = self.run_tool("simulate", "m.toml", "--quiet", "--out", "r.json", code=3)
+        self.assertIn("indicators of regions are not finite at t = 0", " ".join(errors.split()))
+        status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
+        self.assertEqual(status["termination"], "evaluation_failed")
+
     def test_a_step_without_active_sets_is_tried_as_a_problem_with_complementarities(self):
         # sqrt(|x|) has no derivative where the model starts: neither finds a solution, and both say so.
         _, errors = self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet", "--out", "r.json", code=3)

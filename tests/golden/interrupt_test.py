@@ -44,6 +44,13 @@ class Interrupt(tool.ToolTest):
         except OSError as failure:
             self.skipTest(f"no pseudo-terminal can be opened here: {failure}")
 
+    def test_a_violated_contract_ends_with_the_code_of_an_internal_error(self):
+        process = self.start(stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(1.0)
+        self.assertIsNone(process.poll(), "ended by itself")
+        process.send_signal(signal.SIGABRT)  # what std::abort sends
+        self.assertEqual(process.wait(timeout=60), 1)
+
     def test_the_first_one_stops_and_writes(self):
         process = self.start(stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(2.0)

@@ -1,6 +1,8 @@
 // The command-line tool.
 #include <algorithm>
 #include <array>
+#include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <string>
 #include <vector>
@@ -83,7 +85,11 @@ ExitCode run(int argc, char** argv) {
 }  // namespace
 }  // namespace saltus::cli
 
+/// A violated contract has said what it is and calls std::abort: its exit code is that of an internal error, too.
+extern "C" void end_as_internal_error(int) { std::_Exit(static_cast<int>(saltus::cli::ExitCode::internal_error)); }
+
 int main(int argc, char** argv) {
+  std::signal(SIGABRT, end_as_internal_error);
   try {
     return static_cast<int>(saltus::cli::run(argc, argv));
   } catch (const std::exception& failure) {

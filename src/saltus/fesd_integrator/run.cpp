@@ -122,14 +122,15 @@ void Run::start() {
       return view.mode[static_cast<std::size_t>(forced.first)] == forced.second;
     });
   });
-  const ActiveSet at_zero(facts_.parts, transition_.modes_at_zero());
   if (chosen == found.end()) {
+    if (stopped_where_not_finite()) return;
     stop(result::Termination::no_admissible_mode,
          options_.initial_mode.empty()
              ? fmt::format("no mode continues the solution from the start at t = {:.10g}", t_)
              : fmt::format("no mode with the forced initial_mode continues the solution from t = {:.10g}", t_));
     return;
   }
+  const ActiveSet at_zero(facts_.parts, transition_.modes_at_zero());
   const auto zero = recorder_.view(at_zero, selections_, held_.data());
   std::vector<int> functions;
   for (std::size_t j = 0; j < zero.mode.size(); ++j) {
@@ -150,6 +151,15 @@ void Run::start() {
   }
   recorder_.started(t_, x_, found, held_.data(), functions);
   row_here();
+}
+
+bool Run::stopped_where_not_finite() {
+  if (transition_.finite()) return false;
+  stop(result::Termination::evaluation_failed,
+       fmt::format("indicators of regions are not finite at t = {:.10g}; change the state there or their expressions, "
+                   "or take reformulation = \"step\" or method = \"event\"",
+                   t_));
+  return true;
 }
 
 bool Run::step_counts() {
@@ -187,6 +197,7 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
   const auto found =
       transition_.continuations({t_, x_, held_.data(), &before, at_zero, size_, nominal_ / options_.elements / 128.0});
   if (found.empty() && go_to_limit(LapSeries::Wanted::soon)) return;
+  if (found.empty() && stopped_where_not_finite()) return;
   if (found.empty() && can_fall_back()) {
     undecided_ = true;
     return;

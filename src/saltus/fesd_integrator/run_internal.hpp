@@ -114,6 +114,7 @@ class Run {
             const std::vector<double>& selections);
   void stop(result::Termination termination, std::string message);
   [[nodiscard]] bool stopped() const { return status_.has_value(); }
+  [[nodiscard]] bool stopped_where_not_finite();
   [[nodiscard]] bool step_counts();
 
   const discretization::StageKernel& kernel_;

@@ -29,7 +29,8 @@ Transition::Transition(const discretization::StageKernel& kernel, std::span<cons
 }
 
 /// Which functions are zero at the point, in groups that influence each other; signs of the others into `modes`.
-void Transition::find_groups(const Decision& decision, std::vector<int>& modes) {
+/// @return false where the indicators of regions are not finite, so that none of them is the smallest
+bool Transition::find_groups(const Decision& decision, std::vector<int>& modes) {
   const std::size_t n = kernel_.selections(), n_x = kernel_.states();
   groups_.clear();
   modes.assign(n, -1);
@@ -47,6 +48,7 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
     for (int j = part.first; j < part.first + part.count; ++j) {
       smallest = std::min(smallest, values.indicator[at(j)]);
     }
+    if (part.simplex && !std::isfinite(smallest)) return false;
     const std::size_t begin = members.size();
     for (int j = part.first; j < part.first + part.count; ++j) {
       const double value = part.simplex ? values.indicator[at(j)] - smallest : values.indicator[at(j)];
@@ -63,7 +65,7 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
   }
   modes_at_zero_ = modes;
   for (const int j : members) modes_at_zero_[at(j)] = 0;
-  if (members.empty()) return;
+  if (members.empty()) return true;
 
   // The size of a rate: of its largest terms for any selections, as f may cancel inside.
   size_.assign(n, 0.0);
@@ -110,6 +112,7 @@ void Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
     }
     entry.patterns = patterns_of(entry, decision);
   }
+  return true;
 }
 
 std::vector<std::vector<int>> Transition::patterns_of(const Group& group, const Decision& decision) const {
@@ -215,7 +218,8 @@ bool Transition::passes_trial(const Decision& decision, const Group& group, cons
 
 std::vector<Continuation> Transition::continuations(const Decision& decision) {
   std::vector<int> modes;
-  find_groups(decision, modes);
+  finite_ = find_groups(decision, modes);
+  if (!finite_) return {};
   // A first guess at every group, so that each is asked with the others in place: what has the largest margin.
   struct Option {
     std::vector<int> pattern;

@@ -47,13 +47,15 @@ class Transition {
   [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision);
   /// Of the last decision: the modes where everything that is zero there slides, or is active.
   [[nodiscard]] const std::vector<int>& modes_at_zero() const { return modes_at_zero_; }
+  /// Whether the indicators of regions were finite there; nothing continues where they are not.
+  [[nodiscard]] bool finite() const { return finite_; }
 
  private:
   struct Group {
     std::vector<int> members;                ///< functions of the step form, or regions of a simplex
     std::vector<std::vector<int>> patterns;  ///< modes of the members
   };
-  void find_groups(const Decision& decision, std::vector<int>& modes);
+  [[nodiscard]] bool find_groups(const Decision& decision, std::vector<int>& modes);
   [[nodiscard]] std::vector<std::vector<int>> patterns_of(const Group& group, const Decision& decision) const;
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
@@ -69,6 +71,7 @@ class Transition {
   std::vector<Group> groups_;
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
+  bool finite_ = true;
   std::vector<double> rate_, size_, noise_;
 };
 
