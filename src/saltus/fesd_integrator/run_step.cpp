@@ -85,9 +85,9 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
   // Secant steps from the root of the interpolant, inside the bracket (lower: the condition holds; upper: it does not).
   double lower = 0.0, upper = std::numeric_limits<double>::infinity();
   double h = guess, h_before = 0.0, value_before = 0.0;
-  double slope = violation.slope * count / guess;  // of the value over the common length
-  double best = std::numeric_limits<double>::infinity(), best_h = guess;
-  constexpr int most_iterations = 60;
+  double slope = violation.slope * count;  // of the value over the common length
+  int polished = 0;                        // steps taken from values within their roundings
+  constexpr int most_iterations = 60, most_polishing_steps = 3;
   for (int i = 0; i < most_iterations; ++i) {
     // The other conditions are looked at afterwards.
     Violation other;
@@ -117,12 +117,15 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
     if (failed) return std::nullopt;
     const double value = watch_.end_value(set_, violation.condition), noise = watch_.noise(violation.condition);
     if (!std::isfinite(value)) return std::nullopt;
-    if (std::abs(value) < best) {
-      best = std::abs(value);
-      best_h = h;
+    if (upper - lower <= 4.0 * rounding * h) return h;
+    if (std::abs(value) <= 0.25 * noise) {
+      // Roundings of components much smaller than the largest are smaller than this noise, and divided by a small slope
+      // it is a time.
+      const bool resolved = std::abs(value) * count <= 2.0 * rounding * (t_ + count * h) * std::abs(slope);
+      const bool stalls = polished > 0 && std::abs(value) > 0.5 * std::abs(value_before) && value * value_before > 0.0;
+      if (resolved || stalls || polished == most_polishing_steps) return h;
+      ++polished;
     }
-    const bool resolved = upper - lower <= 4.0 * rounding * h;
-    if (std::abs(value) <= 0.25 * noise || resolved) return best_h == h || resolved ? std::optional(h) : std::nullopt;
     (value > 0.0 ? lower : upper) = h;
     if (i > 0 && h != h_before && value != value_before) slope = (value - value_before) / (h - h_before);
     h_before = h;

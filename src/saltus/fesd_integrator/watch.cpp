@@ -189,7 +189,7 @@ void Watch::first_change(const ActiveSet& set, double h, const Condition& condit
   constexpr double small = 1e-4;
   const double at = std::clamp(change->upper, small, 1.0 - small);
   earliest = {condition, change->upper,
-              (ode::evaluate(polynomial, at + small) - ode::evaluate(polynomial, at - small)) / (2.0 * small)};
+              (ode::evaluate(polynomial, at + small) - ode::evaluate(polynomial, at - small)) / (2.0 * small * h)};
   if (change->upper == 0.0 || change->lower == 0.0) earliest.theta = change->upper <= 1e-12 ? 0.0 : change->upper;
 }
 

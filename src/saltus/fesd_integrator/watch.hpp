@@ -19,7 +19,7 @@ namespace saltus::fesd_integrator {
 struct Violation {
   Condition condition;
   double theta = 0.0;
-  double slope = 0.0;  ///< d value / d theta there
+  double slope = 0.0;  ///< d value / dt there
 };
 
 /// Rounding level of every indicator: a few roundings of its largest term.

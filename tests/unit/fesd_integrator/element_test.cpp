@@ -182,7 +182,7 @@ TEST(Watch, SeesWhereASideEnds) {
   ASSERT_EQ(through.answer, Watch::Answer::violated);
   EXPECT_EQ(through.violation.condition.kind, Condition::Kind::side);
   EXPECT_NEAR(through.violation.theta, 2.0 / 3.0, 1e-9);
-  EXPECT_NEAR(through.violation.slope, -1.5, 1e-6);
+  EXPECT_NEAR(through.violation.slope, -3.0, 1e-6);
   EXPECT_NEAR(through.end_value, -0.5, 1e-14);
   EXPECT_EQ(look(model, 0.0, -1.0, 0.3, -1, 0.0).answer, Watch::Answer::holds);
   // A zero at an end, within rounding, is none inside.
