@@ -62,6 +62,24 @@ TEST_P(Fesd, AgreesToEightDigits) {
   expect_reference(model.run(options), GetParam().problem, 1e-8);
 }
 
+/// 100 steps of two stages: where these are too few, they are divided.
+TEST_P(Fesd, DefaultsFindAllSwitches) {
+  const Simulator model = Simulator::from_reference(GetParam().problem);
+  pipeline::SimulateOptions options = model.options();
+  options.method = pipeline::Method::fesd;
+  options.fesd.reformulation = GetParam().form;
+  const auto result = model.run(options);
+  EXPECT_EQ(result.status.termination, result::Termination::completed);
+  EXPECT_EQ(result.status.message, "");
+  EXPECT_EQ(result.events.size(), GetParam().problem.events.size());
+  // Above what is lost in the least accurate one, chua, which amplifies errors.
+  for (std::size_t i = 0; i < result.final.x.size(); ++i) {
+    double largest = 0.0;
+    for (const auto& row : result.trajectory.x) largest = std::max(largest, std::abs(row[i]));
+    EXPECT_NEAR(result.final.x[i], GetParam().problem.final_x[i], 0.02 * largest) << i;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(References, Fesd, testing::ValuesIn(cases()), [](const auto& c) {
   return test_name(c.param.problem) + (c.param.form == Reformulation::step ? "_step" : "_stewart");
 });

@@ -13,6 +13,12 @@ namespace saltus::fesd_integrator {
 /// component has had by the end: an estimate of the error of a solution that neither damps nor amplifies errors.
 class Coarseness {
  public:
+  /// `limit`: of that sum over a run of length `span`; nullopt if elements may be as coarse as they are.
+  Coarseness(std::optional<double> limit, double span) : limit_(limit), span_(span) {}
+
+  /// The error of an element that might be next over its share of the limit, limit h / span times the largest value
+  /// so far: with shares up to 1 the sum stays below the limit. 0 without a limit.
+  [[nodiscard]] double share(const Element& element, const std::vector<double>& errors) const;
   void note(const Element& element, const std::vector<double>& errors);
   struct Worst {
     std::size_t state = 0;  ///< where the sum is largest
@@ -24,6 +30,8 @@ class Coarseness {
   [[nodiscard]] std::optional<Worst> worst() const;
 
  private:
+  std::optional<double> limit_;
+  double span_ = 0.0;
   std::vector<double> largest_, sum_, error_, t_;
 };
 

@@ -15,6 +15,7 @@ Defect::Defect(const ElementSolver& solver) : solver_(solver) {
     place_ = 0.5;
     return;
   }
+  if (tableau.family == TableauFamily::lobatto_iiic) first_weight_ = std::abs(tableau.b(0));
   if (c(0) == 0.0) place_ = 0.5 * (c(0) + c(1));
   // Coefficients of omega, ascending; Horner's scheme for omega and its integral.
   std::vector<double> omega{1.0};
@@ -37,12 +38,16 @@ Defect::Defect(const ElementSolver& solver) : solver_(solver) {
   largest_ /= std::abs(value(place_, false));
 }
 
-void Defect::errors(const Element& element, const double* f, std::vector<double>& error) {
+void Defect::errors(const Element& element, const double* f, const double* f_left, std::vector<double>& error) {
   const std::size_t n_x = element.x.size();
   slope_.resize(n_x);
   error.resize(n_x);
   solver_.slope(element, place_, slope_.data());
   for (std::size_t i = 0; i < n_x; ++i) error[i] = element.h * largest_ * std::abs(slope_[i] - f[i]);
+  if (first_weight_ == 0.0) return;
+  for (std::size_t i = 0; i < n_x; ++i) {
+    error[i] = std::max(error[i], element.h * first_weight_ * std::abs(element.stage_slopes[i] - f_left[i]));
+  }
 }
 
 }  // namespace saltus::fesd_integrator

@@ -37,6 +37,9 @@ struct IntegrationOptions {
   double until = 1.0;
   long steps = 100;
   int elements = 2;
+  /// Simulation steps are divided where their elements' estimated errors (statistics.error_estimate) would add up to
+  /// more than this over the run; nullopt: they are not.
+  std::optional<double> error_limit;
   double step_bounds = 1.0;  ///< gamma: lengths within (1 - gamma, 1 + gamma) times their mean
   long max_steps = 1000000;  ///< elements
   long max_events = 100000;

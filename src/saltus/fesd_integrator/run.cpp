@@ -37,7 +37,9 @@ Run::Run(const discretization::StageKernel& kernel, const discretization::PointF
       t_(options.from),
       x_(facts.initial_state),
       selections_(kernel.selections()),
-      nominal_((options.until - options.from) / static_cast<double>(options.steps)) {
+      nominal_((options.until - options.from) / static_cast<double>(options.steps)),
+      longest_part_(nominal_),
+      coarseness_(options.error_limit, options.until - options.from) {
   chain_.elements.resize(static_cast<std::size_t>(options.elements));
   chain_.left.resize(static_cast<std::size_t>(options.elements) + 1);
   chain_.errors.resize(static_cast<std::size_t>(options.elements));
@@ -94,7 +96,8 @@ Integration Run::run() {
   integration.status.time_reached = t_;
   if (const auto worst = coarseness_.worst()) {
     statistics_.error_estimate = worst->sum;
-    if (!status_ && worst->sum > coarse) integration.status.message = coarse_message(*worst);
+    if (!status_ && worst->sum > options_.error_limit.value_or(coarse))
+      integration.status.message = coarse_message(*worst);
   }
   integration.final = recorder_.last();
   integration.events = std::move(recorder_.event_list());

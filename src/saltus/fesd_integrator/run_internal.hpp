@@ -42,8 +42,8 @@ class Run {
     std::vector<std::vector<double>> left;    ///< selections at the left ends; of the right end of the last one behind
     std::vector<std::vector<double>> errors;  ///< of each, as Watch::errors
   };
-  enum class Solved { all, violated, missed, failed };
-  /// Elements of length h from here, up to the first that violates a condition, or jumps over a switch.
+  enum class Solved { all, violated, missed, coarse, failed };
+  /// Elements of length h from here, up to the first that violates a condition, jumps over a switch or is too coarse.
   [[nodiscard]] Solved solve_chain(int count, double h, Violation& violation);
   /// Whether a condition ends along elements of half that length, a quarter, …, as far as it may end between them.
   [[nodiscard]] bool jumps_over(const Point& left, double h, int halvings);
@@ -53,10 +53,18 @@ class Run {
     int count = 0;
     double h = 0.0;
     Condition condition;
+    bool coarse = false;  ///< too coarse to be taken
   };
   /// From the first violation of a trial to the chain that ends at the earliest switch; left in chain_.
   [[nodiscard]] std::optional<Located> find_switch(int elements, double remaining, Violation violation,
                                                    std::size_t element);
+
+  /// Where the part of a simulation step that is tried next ends.
+  [[nodiscard]] double part_end(double end) const;
+  /// Whether an element's estimated error is beyond its share, and shorter ones are allowed; notes the share.
+  [[nodiscard]] bool too_coarse(const Element& element, const std::vector<double>& errors);
+  /// Length of parts behind elements of length h with the shares that were noted.
+  void set_longest_part(double h, Solved solved);
 
   void start();
   /// One simulation step, or what lies between two changes of what is held.
@@ -149,8 +157,10 @@ class Run {
   Point left_;
   ActiveSet set_before_;
   std::vector<double> selections_before_;
-  double size_ = 0.0;     ///< of the largest state of late
-  double nominal_ = 0.0;  ///< length of a simulation step
+  double size_ = 0.0;          ///< of the largest state of late
+  double nominal_ = 0.0;       ///< length of a simulation step
+  double longest_part_ = 0.0;  ///< of a simulation step that is divided for its errors
+  double share_ = 0.0;         ///< the largest of the chain in hand, Coarseness::share
   Chain chain_;
   Coarseness coarseness_;
   LapSeries laps_;

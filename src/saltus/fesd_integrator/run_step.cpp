@@ -16,13 +16,41 @@ constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double shortest = 1e-12;
 /// Elements that may jump over a switch are compared with parts of them, down to this power of 1/2.
 constexpr int most_divisions_for_look = 8;
+/// Parts of simulation steps that are divided for their errors are not shorter than this: what then is left of them has
+/// no derivatives, or is the singularity of a solution.
+constexpr double shortest_for_errors = 1e-3;
 /// Modes that follow each other at one time; behind them elements are shortened.
 constexpr int most_decisions_at_this_length = 4;
 
 }  // namespace
 
+double Run::part_end(double end) const {
+  const double remaining = end - t_;
+  if (!(longest_part_ < nominal_) || remaining <= longest_part_) return end;
+  return t_ + remaining / std::ceil(remaining / longest_part_ * (1.0 - 1e-12));
+}
+
+bool Run::too_coarse(const Element& element, const std::vector<double>& errors) {
+  share_ = std::max(share_, coarseness_.share(element, errors));
+  // Twice: parts of the shortest length are so but for the roundings of t.
+  return share_ > 1.0 && element.h * options_.elements > 2.0 * shortest_for_errors * nominal_;
+}
+
+void Run::set_longest_part(double h, Solved solved) {
+  if (!options_.error_limit) return;
+  // Shares grow with h^n_s; 0.8 and the bounds are those of step controls [hairer1993].
+  const double ratio = 0.8 * std::pow(share_, -1.0 / solver_.tableau().stages());
+  const double part = h * options_.elements;
+  if (solved == Solved::coarse) {
+    longest_part_ = std::max(part * std::clamp(ratio, 0.1, 0.5), shortest_for_errors * nominal_);
+  } else {
+    longest_part_ = std::max(longest_part_, part * std::min(ratio, 4.0));
+  }
+}
+
 Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
   chain_.count = 0;
+  share_ = 0.0;
   chain_.left[0] = selections_;
   Point& left = begin_here();
   for (int i = 0; i < count; ++i) {
@@ -50,6 +78,7 @@ Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
         break;
     }
     chain_.errors[static_cast<std::size_t>(i)] = watch_.errors();
+    if (too_coarse(element, watch_.errors())) return Solved::coarse;
     if (watch_.may_miss() && divided_for_look_ < most_divisions_for_look &&
         jumps_over(left, h, most_divisions_for_look)) {
       return Solved::missed;
@@ -157,13 +186,15 @@ std::optional<Run::Located> Run::find_switch(int elements, double remaining, Vio
     // The elements as they are now, all conditions: does another end before?
     Violation other;
     auto selections = selections_;
-    bool earlier = false;
+    bool earlier = false, coarse = false;
+    share_ = 0.0;
     chain_.left[0] = selections;
     for (int k = 0; k < count && !earlier; ++k) {
       const auto index = static_cast<std::size_t>(k);
       const auto answer = watch_.look(chain_.elements[index], set_, held_.data(), selections, other);
       chain_.left[index + 1] = selections;
       chain_.errors[index] = watch_.errors();
+      coarse = too_coarse(chain_.elements[index], watch_.errors());
       if (answer == Watch::Answer::not_finite) return std::nullopt;
       if (answer != Watch::Answer::violated) continue;
       const double at = *h * (k + other.theta);
@@ -177,41 +208,45 @@ std::optional<Run::Located> Run::find_switch(int elements, double remaining, Vio
     }
     if (!earlier) {
       chain_.count = static_cast<std::size_t>(count);
-      return Located{count, *h, violation.condition};
+      return Located{count, *h, violation.condition, coarse};
     }
-    if (tau <= 0.0) return Located{0, 0.0, violation.condition};
+    if (tau <= 0.0) return Located{0, 0.0, violation.condition, false};
   }
   return std::nullopt;
 }
 
 void Run::advance(double end) {
-  int elements = options_.elements;
-  double limit = end;  // of the part that is tried
+  int elements = 0;
+  double limit = t_;  // of the part that is tried
+  const auto next_part = [&] {
+    elements = options_.elements;
+    limit = part_end(end);
+  };
+  next_part();
   while (!stopped() && t_ < end) {
     if (std::exchange(undecided_, false)) {
       fall_back(end, result::Termination::no_admissible_mode,
                 fmt::format("no mode continues the solution at t = {:.10g}", t_));
-      elements = options_.elements;
-      limit = end;
+      next_part();
       continue;
     }
     const double remaining = limit - t_;
     const double h = remaining / elements;
     Violation violation;
-    const auto solved = solve_chain(elements, h, violation);
+    auto solved = solve_chain(elements, h, violation);
     if (solved == Solved::all) {
       accept_chain(static_cast<std::size_t>(elements), limit, nullptr);
       row_here();
       divided_for_look_ = 0;
-      elements = options_.elements;
-      limit = end;
+      set_longest_part(h, solved);
+      next_part();
       continue;
     }
     if (solved == Solved::missed) ++divided_for_look_;
     std::optional<Located> located;
     if (solved == Solved::violated) {
       if (chain_.count == 1 && violation.theta == 0.0) {
-        located = Located{0, 0.0, violation.condition};
+        located = Located{0, 0.0, violation.condition, false};
       } else if (elements < 2) {
         // More switches than elements can separate: the rest is a simulation step of its own.
         ++statistics_.rejected;
@@ -219,7 +254,14 @@ void Run::advance(double end) {
         continue;
       } else {
         located = find_switch(elements, remaining, violation, chain_.count - 1);
+        if (located && located->coarse) solved = Solved::coarse;
       }
+    }
+    if (solved == Solved::coarse) {
+      ++statistics_.rejected;
+      set_longest_part(located ? located->h : h, solved);
+      next_part();
+      continue;
     }
     if (!located) {
       ++statistics_.rejected;
@@ -229,7 +271,7 @@ void Run::advance(double end) {
       if (0.5 * remaining <= shortest * nominal_ || !(limit > t_)) {
         fall_back(end, result::Termination::not_converged,
                   fmt::format("the equations of an element have no solution that was found at t = {:.10g}", t_));
-        limit = end;
+        next_part();
       }
       continue;
     }
@@ -237,11 +279,9 @@ void Run::advance(double end) {
       double at = t_ + located->count * located->h;
       if (std::abs(limit - at) <= 1e-13 * nominal_) at = limit;
       accept_chain(static_cast<std::size_t>(located->count), at, &located->condition);
+      set_longest_part(located->h, solved);
       elements = std::max(1, elements - located->count);
-      if (t_ >= limit) {
-        elements = options_.elements;
-        limit = end;
-      }
+      if (t_ >= limit) next_part();
     }
     if (stopped()) return;
     divided_for_look_ = 0;
@@ -260,8 +300,7 @@ void Run::advance(double end) {
       const double resolution = laps_.shrinks() ? resolution_of(closing, selections) : 0.0;
       laps_.add({t_, set_.modes(), x_, resolution});
       if (go_to_limit(LapSeries::Wanted::resolved)) {
-        elements = options_.elements;
-        limit = end;
+        next_part();
         continue;
       }
     }

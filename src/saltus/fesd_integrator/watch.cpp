@@ -112,7 +112,7 @@ void Watch::find_errors(const Element& element, const ActiveSet& set, const doub
     }
     f = slope_.data();
   }
-  defect_.errors(element, f, errors_);
+  defect_.errors(element, f, left_.f.data(), errors_);
   // What errors of one component do to another one within the element.
   const std::size_t n = kernel_.selections(), n_x = errors_.size();
   slope_ = errors_;

@@ -96,6 +96,25 @@ Expected<void> set_step_bounds(SimulateOptions& options, std::string_view, const
 }
 
 template <auto part>
+Expected<void> set_error_limit(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  if (const auto* word = std::get_if<std::string>(&value); word != nullptr && *word == "off") {
+    part(options).error_limit.reset();
+    return {};
+  }
+  if (!is_fesd<part>) return tl::unexpected(out_of_range("\"off\": lengths are fixed", value));
+  return number_within(Range::positive, value).map([&](double number) { part(options).error_limit = number; });
+}
+
+template <auto part>
+void record_error_limit(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (part(options).error_limit) {
+    record.emplace_back(key, *part(options).error_limit);
+  } else {
+    record.emplace_back(key, std::string("off"));
+  }
+}
+
+template <auto part>
 Expected<void> set_lifting(SimulateOptions& options, std::string_view, const OptionValue& value) {
   if (const auto* word = std::get_if<std::string>(&value); word != nullptr && *word == "off") {
     part(options).lifting.reset();
@@ -151,6 +170,11 @@ constexpr std::array fields_of{
                 "Unknowns of an element: stage states or stage slopes; the solutions are the same.",
                 set_choice<representation<part>, representations>,
                 record_choice<representation<part>, representations>},
+    OptionField{"error_limit", is_fesd<part> ? "a finite number > 0, or \"off\"" : "\"off\"",
+                is_fesd<part>
+                    ? "Of the estimated errors of all elements, relative to the states: steps are divided for it."
+                    : "Lengths are fixed.",
+                set_error_limit<part>, record_error_limit<part>},
     OptionField{"step_bounds", "a number > 0 and <= 1",
                 "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided.",
                 set_step_bounds<part>, record_number<step_bounds<part>>},

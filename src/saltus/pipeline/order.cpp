@@ -52,11 +52,13 @@ Expected<SimulateOptions> with_all(SimulateOptions options,
 Expected<SimulateOptions> options_of(const result::OrderSeries& series, long steps, SimulateOptions options) {
   options.output = AtTimes{{*options.until}};
   const auto key = [&](const char* name) { return fmt::format("{}.{}", series.method, name); };
-  return with_all(std::move(options), {{"method", series.method},
-                                       {key("scheme"), series.scheme},
-                                       {key("stages"), series.stages},
-                                       {key("reformulation"), series.reformulation},
-                                       {key("steps"), std::int64_t{steps}}});
+  return with_all(std::move(options),
+                  {{"method", series.method},
+                   {key("scheme"), series.scheme},
+                   {key("stages"), series.stages},
+                   {key("reformulation"), series.reformulation},
+                   {key("error_limit"), std::string("off")},  // elements as long as they are asked to be
+                   {key("steps"), std::int64_t{steps}}});
 }
 
 result::OrderPoint point(const Expected<result::Result>& found, const result::OrderSeries& series, long steps,

@@ -124,6 +124,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   integration.until = *options.until;
   integration.steps = wanted.steps;
   integration.elements = static_cast<int>(wanted.elements);
+  integration.error_limit = wanted.error_limit;
   integration.step_bounds = wanted.step_bounds;
   integration.max_steps = options.max_steps;
   integration.max_events = options.max_events;

@@ -64,7 +64,8 @@ struct ElementOptions {
   long steps = 100;   ///< simulation steps of equal length
   long elements = 2;  ///< per simulation step
   Representation representation = Representation::integral;
-  double step_bounds = 1.0;  ///< lengths of elements are within (1 - this, 1 + this) times their mean
+  std::optional<double> error_limit;  ///< of the sum of elements' estimated errors; beyond it steps are divided
+  double step_bounds = 1.0;           ///< lengths of elements are within (1 - this, 1 + this) times their mean
   double rho = 1.0;
   double equilibration_scale = 1.0;
   Reformulation reformulation = Reformulation::step;
@@ -88,7 +89,7 @@ struct SimulateOptions {
   std::vector<std::pair<std::string, int>> initial_mode;  ///< switching function -> -1, 0, 1
   EventOptions event;
   SmoothedOptions smoothed;
-  ElementOptions fesd, timestepping;
+  ElementOptions fesd{.error_limit = 0.03}, timestepping;
 };
 
 }  // namespace saltus::pipeline

@@ -1,5 +1,6 @@
 // Elements that are too long: switches between their ends, estimates of their error; and spirals, beyond any length.
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@ struct Settings {
   Form form = Form::step;
   TableauFamily family = TableauFamily::radau_iia;
   int stages = 2;
+  std::optional<double> error_limit{};
 };
 
 Integration run(const model::System& system, double until, const Settings& settings) {
@@ -31,6 +33,7 @@ Integration run(const model::System& system, double until, const Settings& setti
   options.tableau = *discretization::butcher_tableau(settings.family, settings.stages);
   options.until = until;
   options.steps = settings.steps;
+  options.error_limit = settings.error_limit;
   auto integration = integrate(system, *dcs, options);
   EXPECT_TRUE(integration.has_value());
   EXPECT_EQ(integration->status.termination, result::Termination::completed) << integration->status.message;
@@ -81,6 +84,39 @@ TEST(Coarse, ErrorsOfElementsAreEstimatedAndTold) {
   const auto fine = run(fast(), 2.0, {.steps = 400});
   EXPECT_LT(*fine.statistics.error_estimate, 0.03);
   EXPECT_EQ(fine.status.message, "");
+}
+
+/// 31 oscillations in 8 steps: every method with two stages and more is brought below the limit.
+TEST(Coarse, StepsAreDividedUntilErrorsAddUpToTheLimit) {
+  for (const auto& [family, stages] :
+       {std::pair{TableauFamily::radau_iia, 2}, std::pair{TableauFamily::gauss_legendre, 3},
+        std::pair{TableauFamily::lobatto_iiic, 3}, std::pair{TableauFamily::explicit_rk, 4}}) {
+    for (const double limit : {0.03, 3e-3}) {
+      const auto integration =
+          run(fast(), 10.0, {.steps = 8, .family = family, .stages = stages, .error_limit = limit});
+      EXPECT_LE(*integration.statistics.error_estimate, limit) << discretization::name(family);
+      EXPECT_EQ(integration.status.message, "") << discretization::name(family);
+      EXPECT_GT(integration.statistics.rejected, 0) << discretization::name(family);
+      // Nothing damps or amplifies what elements are off.
+      EXPECT_NEAR(integration.final.x[0], std::sin(200.0), limit) << discretization::name(family);
+    }
+  }
+}
+
+TEST(Coarse, ResolvedStepsAreNotDivided) {
+  const auto without = run(fast(), 2.0, {.steps = 2000});
+  const auto with = run(fast(), 2.0, {.steps = 2000, .error_limit = 0.03});
+  EXPECT_EQ(with.trajectory.x, without.trajectory.x);
+  EXPECT_EQ(with.statistics.rejected, 0);
+}
+
+/// A field without a derivative at x = 0, where its elements have an error that no length makes small.
+TEST(Coarse, PartsOfStepsHaveAShortestLength) {
+  model::Builder builder("root");
+  const SX x = builder.state("x", {1.0});
+  builder.dynamics("x", -casadi::SX::pow(x * x, 0.35) + 0.0 * builder.step(x - 5.0));
+  const auto integration = run(*builder.build(), 3.0, {.steps = 10, .error_limit = 1e-9});
+  EXPECT_LT(integration.statistics.steps, 40000);
 }
 
 /// The estimate is that inside elements: of order n_s + 1 per element, n_s of their sum. Radau IIA has n_s = 2 here,
