@@ -48,6 +48,7 @@ double alpha_of_place(double t) { return 0.5 * (1.0 + 0.5 * std::cos(t)); }
 pipeline::SimulateOptions options_of(const Simulator& model, const RungeKutta& method, Reformulation form, long steps) {
   pipeline::SimulateOptions options = model.options();
   options.method = pipeline::Method::fesd;
+  options.fesd.error_limit.reset();  // elements of the length that is studied
   options.fesd.scheme = method.scheme;
   options.fesd.stages = method.stages;
   options.fesd.steps = steps;
