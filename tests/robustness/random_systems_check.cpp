@@ -206,11 +206,48 @@ std::string surfaces_of(const Event& event, const Result& result, const std::vec
 /// limit of what it has seen this long before it.
 constexpr double before_limit = 1e-5;
 
-/// The limit of a sequence of switches at or near t, where they do follow each other faster than any bound.
-bool has_limit(const Result& result, double t, double nearby) {
-  return std::any_of(result.events.begin(), result.events.end(), [&](const Event& event) {
-    return event.kind == result::EventKind::accumulation && std::abs(event.t - t) <= nearby;
-  });
+bool same_change(const Event& a, const Event& b) {
+  return a.mode_before == b.mode_before && a.mode_after == b.mode_after;
+}
+
+/// What the last two laps leave to their limit, as far as they shrink geometrically.
+struct Remaining {
+  double t = 0.0;
+  double x = 0.0;  ///< the largest component
+};
+
+/// Between the last event before limit number k and the limit; 0 if the limit is elsewhere than where the laps lead. A
+/// surface that is met tangentially at the limit ends the laps of a slow sequence long before it.
+Remaining remaining_before(const std::vector<Event>& events, std::size_t k) {
+  std::vector<const Event*> last;
+  for (std::size_t i = k; i-- > 0 && last.size() < 3;) {
+    if (same_change(events[i], events[k - 1])) last.push_back(&events[i]);
+  }
+  if (last.size() < 3) return {};
+  const double lap = last[0]->t - last[1]->t;
+  const double ratio = lap / (last[1]->t - last[2]->t);
+  if (!(ratio < 1.0)) return {};
+  const double laps = ratio / (1.0 - ratio);
+  const double stretch = events[k].t - last[0]->t;
+  if (!(std::abs(stretch - lap * laps) <= 0.05 * lap * laps)) return {};
+  return {stretch, distance(last[0]->x, last[1]->x) * laps};
+}
+
+/// The limit of a sequence of switches at t, where they do follow each other faster than any bound.
+bool has_limit(const Result& result, double t) {
+  return std::any_of(result.events.begin(), result.events.end(),
+                     [&](const Event& event) { return event.kind == result::EventKind::accumulation && event.t == t; });
+}
+
+/// The same near t, or behind it by what has been extrapolated.
+bool is_near_limit(const Result& result, double t) {
+  for (std::size_t k = 1; k < result.events.size(); ++k) {
+    if (result.events[k].kind != result::EventKind::accumulation) continue;
+    const double after = result.events[k].t - t;
+    if (std::abs(after) <= before_limit) return true;
+    if (after > 0.0 && after <= remaining_before(result.events, k).t) return true;
+  }
+  return false;
 }
 
 /// The first lap of a solution that spirals out of an intersection is passed in one step, from its closed form.
@@ -223,7 +260,7 @@ bool begins_to_spiral(const Result& result, double t) {
 /// Whether the switches of a surface at t are part of an accumulation that the run passes, or in which it ends. One
 /// whose laps shrink fast is over where two surfaces are met together: sliding on both.
 bool in_accumulation(const Result& result, double t, std::size_t surface) {
-  if (has_limit(result, t, before_limit)) return true;
+  if (is_near_limit(result, t)) return true;
   const auto ends_it = [&](const Event& event) {
     if (!event.mode_after || event.t < t || event.t - t > 1e-9 || (*event.mode_after)[surface] != 0) return false;
     return std::count(event.mode_after->begin(), event.mode_after->end(), 0) > 1;
@@ -231,10 +268,6 @@ bool in_accumulation(const Result& result, double t, std::size_t surface) {
   if (std::any_of(result.events.begin(), result.events.end(), ends_it)) return true;
   return result.status.termination == result::Termination::outside_class &&
          result.status.message.starts_with("switches accumulate") && result.status.time_reached - t < 1e-6;
-}
-
-bool same_change(const Event& a, const Event& b) {
-  return a.mode_before == b.mode_before && a.mode_after == b.mode_after;
 }
 
 /// Whether events i < k that follow each other are those of laps that shrink: the same two changes have followed each
@@ -302,7 +335,14 @@ bool same_where_listed(const result::Mode& a, const result::Mode& b, const std::
 }
 
 /// What the state may move by at a time: nothing, or from the last computed lap to the limit that is extrapolated.
-double step_at(const Result& result, double t) { return has_limit(result, t, 0.0) ? 1e-6 : 1e-13; }
+double step_at(const Result& result, double t) {
+  double step = 1e-13;
+  for (std::size_t k = 1; k < result.events.size(); ++k) {
+    if (result.events[k].kind != result::EventKind::accumulation || result.events[k].t != t) continue;
+    step = std::max(1e-6, 1.05 * remaining_before(result.events, k).x);
+  }
+  return step;
+}
 
 std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& listed, const Result& result,
                           double rtol) {
@@ -313,12 +353,12 @@ std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& l
     if (last && result.status.termination != result::Termination::completed) break;
     const ModeCheck check(system, listed, rows.mode[i], rtol);
     // The last laps before a limit are smaller than what the tolerances leave of psi.
-    const bool behind_limit = has_limit(result, rows.t[i], 0.0) && (last || rows.t[i + 1] > rows.t[i]);
-    const bool in_last_laps = has_limit(result, rows.t[i], before_limit) && !behind_limit;
+    const bool behind_limit = has_limit(result, rows.t[i]) && (last || rows.t[i + 1] > rows.t[i]);
+    const bool in_last_laps = is_near_limit(result, rows.t[i]) && !behind_limit;
     std::string problem = in_last_laps ? "" : check.row(rows.t[i], rows.x[i], rows.alpha[i]);
     if (problem.empty() && !last) {
       const bool later = rows.t[i + 1] > rows.t[i];
-      if (later && in_last_laps && has_limit(result, rows.t[i + 1], 0.0)) {
+      if (later && in_last_laps && has_limit(result, rows.t[i + 1])) {
         // What is left of the laps is extrapolated: no single mode leads there.
         if (!same_state(rows.x[i], rows.x[i + 1], 1e-5)) problem = "the limit is far from the last lap";
       } else if (later && begins_to_spiral(result, rows.t[i])) {

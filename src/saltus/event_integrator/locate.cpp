@@ -148,7 +148,12 @@ bool Locator::correct(const Hit& hit) {
       next = 0.5 * (before + beyond);
     }
     if (iteration >= newton_steps) next = 0.5 * (before + beyond);
-    if ((!flat_ && std::abs(next - h) <= time_resolution()) || beyond - before <= time_resolution()) return true;
+    if (!flat_ && std::abs(next - h) <= time_resolution()) return true;
+    if (beyond - before <= time_resolution()) {
+      // A function that touches zero: its interpolant has passed it by less than it is good for.
+      const bool ended = beyond == dense_->h && value * hit.sign > 0.0;
+      return !ended || std::abs(value) <= search_.noise(hit.function) + std::abs(slope) * time_resolution();
+    }
     h = next;
   }
   return true;

@@ -1,5 +1,6 @@
 // Switches that accumulate: spirals into the intersection of surfaces, and what follows behind their limit.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "saltus/event_integrator/continuations.hpp"
@@ -68,7 +69,13 @@ void Run::note_switch_rates() {
     // step is far smaller than that.
     const double unresolved =
         std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude, 10.0 * tolerances_.atol * leaving.slope);
-    shortest_switch_lap_[at(label)] = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
+    double& shortest = shortest_switch_lap_[at(label)];
+    shortest = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
+    // Where sliding ends psi leaves tangentially: its rate is rounding, and what bends it is what resolves the lap.
+    if (const auto lap = switch_laps_.closed_lap(); lap && *lap <= shortest) {
+      const double bend = std::abs(kernel_.lie_derivative(surface_of(label), 2, t_, x_.data(), state_.alpha.data()));
+      if (bend > 0.0) shortest = std::min(shortest, std::sqrt(8.0 * unresolved / bend));
+    }
   }
 }
 
