@@ -77,6 +77,8 @@ class EventSearch {
   /// Rounding of a candidate: at the start of the step, or where rescale() was called last.
   void rescale(double t, const double* x) { rescale(t, x, candidates_); }
   [[nodiscard]] double noise(std::size_t function) const { return noise_[function]; }
+  /// What the tolerances leave of it, at least its rounding.
+  [[nodiscard]] double accuracy(std::size_t function) const { return accuracy_[function]; }
   /// Signs of the user functions in force, 0 where not known yet.
   [[nodiscard]] const std::vector<int>& user_signs() const { return user_sign_; }
   /// Which of them vanish at the start of the next step.

@@ -115,6 +115,7 @@ void Locator::set_hit(const Hit& hit) {
 /// Newton for the function of `hit`; the last trial is the result.
 bool Locator::correct(const Hit& hit) {
   set_hit(hit);
+  touches_ = false;
   double before = 0.0;        // longest step seen that ends before the event
   double beyond = dense_->h;  // shortest one that ends behind it
   double slope = hit.slope;
@@ -150,9 +151,11 @@ bool Locator::correct(const Hit& hit) {
     if (iteration >= newton_steps) next = 0.5 * (before + beyond);
     if (!flat_ && std::abs(next - h) <= time_resolution()) return true;
     if (beyond - before <= time_resolution()) {
-      // A function that touches zero: its interpolant has passed it by less than it is good for.
-      const bool ended = beyond == dense_->h && value * hit.sign > 0.0;
-      return !ended || std::abs(value) <= search_.noise(hit.function) + std::abs(slope) * time_resolution();
+      // A function that touches zero: its interpolant has passed it by less than the tolerances, and it is far from
+      // zero where the bracket ends with the step.
+      constexpr double far = 1e3;
+      touches_ = beyond == dense_->h && value * hit.sign > far * search_.accuracy(hit.function);
+      return true;
     }
     h = next;
   }
@@ -213,6 +216,7 @@ const Located* Locator::locate(const StepStart& start, const ode::DenseStep& den
     if (!(hit.slope * hit.sign < 0.0)) hit.slope = 2.0 * value / h;
     if (!correct(hit)) return nullptr;
   }
+  if (touches_) return nullptr;
   // A shorter step than the accepted one can only be worse where the field is singular (a selection that is 0/0).
   if (trial_.h > 0.0 && !(stepper_.error_norm() <= 2.0)) return nullptr;
   located_.t = start_.t + trial_.h;

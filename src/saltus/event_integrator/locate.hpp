@@ -77,6 +77,7 @@ class Locator {
   StepStart start_;
   const ode::DenseStep* dense_ = nullptr;
   Hit hit_;
+  bool touches_ = false;   ///< the function of the hit is far from zero where the trial ends: it only touches zero
   bool flat_ = false;      ///< a multiple zero
   std::size_t place_ = 0;  ///< of its function among the candidates
   Trial trial_, moved_;

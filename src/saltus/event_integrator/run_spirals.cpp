@@ -72,10 +72,10 @@ void Run::note_switch_rates() {
     double& shortest = shortest_switch_lap_[at(label)];
     shortest = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
     // Where sliding ends psi leaves tangentially: its rate is rounding, and what bends it is what resolves the lap.
-    if (const auto lap = switch_laps_.closed_lap(); lap && *lap <= shortest) {
-      const double bend = std::abs(kernel_.lie_derivative(surface_of(label), 2, t_, x_.data(), state_.alpha.data()));
-      if (bend > 0.0) shortest = std::min(shortest, std::sqrt(8.0 * unresolved / bend));
-    }
+    constexpr double tangent = 1e-12;
+    if (rate > tangent * std::max(arriving.terms, leaving.terms)) continue;
+    const double bend = std::abs(kernel_.lie_derivative(surface_of(label), 2, t_, x_.data(), state_.alpha.data()));
+    if (bend > 0.0) shortest = std::min(shortest, std::sqrt(8.0 * unresolved / bend));
   }
 }
 
