@@ -62,11 +62,27 @@ fesd = { reformulation = "stewart" }
         self.assertEqual(status["termination"], "evaluation_failed")
 
     def test_a_step_without_active_sets_is_tried_as_a_problem_with_complementarities(self):
-        # sqrt(|x|) has no derivative where the model starts: neither finds a solution, and both say so.
+        # One stage of Radau IIA does not come to rest where both surfaces meet: neither finds a solution, and both say so.
+        _, errors = self.run_tool("simulate", "twisting", "--method", "fesd", "--quiet", "--set", "simulate.fesd.stages=1",
+                                  "--set", "simulate.fesd.error_limit=off", code=3)
+        self.assertIn("problem with complementarities of the step at t =", " ".join(errors.split()))
+
+    def test_roots_of_zero_are_told(self):
+        # sqrt(|x|) has no derivative where the model starts.
         _, errors = self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet", "--out", "r.json", code=3)
-        self.assertIn("problem with complementarities of the step at t = 0", " ".join(errors.split()))
+        for part in ("x1 has no finite derivative by x1 at t = 0", "method = \"event\""):
+            self.assertIn(part, " ".join(errors.split()))
         status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
-        self.assertIn(status["termination"], ("evaluation_failed", "not_converged"))
+        self.assertEqual(status["termination"], "evaluation_failed")
+
+    def test_timestepping_divides_elements_that_have_no_active_sets(self):
+        for model, stages in (("irma", 2), ("irma", 3), ("irma", 4), ("two-belts", 1)):
+            for steps in (20, 40):
+                self.run_tool("simulate", model, "--method", "timestepping", "--quiet", "--out", "r.json", "--set",
+                              f"simulate.timestepping.stages={stages}", "--set", f"simulate.timestepping.steps={steps}",
+                              code=0)
+                result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+                self.assertGreater(result["statistics"]["rejected"], 0, (model, stages, steps))
 
     def test_lengths_without_an_exact_rule_have_no_sensitivities(self):
         _, errors = self.run_tool("simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.sensitivities=true",

@@ -53,8 +53,11 @@ class Run {
     int count = 0;
     double h = 0.0;
     Condition condition;
-    bool coarse = false;  ///< too coarse to be taken
+    bool coarse = false;   ///< too coarse to be taken
+    bool divides = false;  ///< what is behind is a step of its own: lengths cannot be within their bounds
   };
+  /// The number of elements before a switch nearest to `count` with which all lengths are within step_bounds.
+  [[nodiscard]] bool fits_bounds(int elements, double remaining, double tau, int& count) const;
   /// From the first violation of a trial to the chain that ends at the earliest switch; left in chain_.
   [[nodiscard]] std::optional<Located> find_switch(int elements, double remaining, Violation violation,
                                                    std::size_t element);
@@ -83,6 +86,13 @@ class Run {
   void hold_behind();
   /// The same with fixed lengths.
   void advance_fixed(double end);
+  struct FixedSpan {
+    double t = 0.0;  ///< left end
+    double h = 0.0;
+    double end = 0.0;  ///< t + h but for roundings
+  };
+  /// One element or, where it has no solution that was found, halves of it (quarters, …).
+  void advance_fixed_element(const FixedSpan& span);
   /// The same by the problem with complementarities of the whole step.
   void advance_by_problem(StepProblem& problem, double end);
   void advance_by_problem(StepProblem& problem, double end, int halvings_allowed);
@@ -90,6 +100,8 @@ class Run {
   [[nodiscard]] bool can_fall_back() const {
     return options_.fallback && propagation_ == nullptr && kernel_.selections() > 0;
   }
+  /// What a derivative of the field that is not finite here (a root of zero) means for elements; nullopt: all are.
+  [[nodiscard]] std::optional<std::string> steep_here();
   /// By the problem, because no active sets were found; stops with this where that is of no help.
   void fall_back(double end, result::Termination termination, std::string message);
   [[nodiscard]] bool solve_guessed(const std::vector<ElementGuess>& guesses, std::vector<ActiveSet>& sets);
@@ -159,6 +171,7 @@ class Run {
   std::vector<double> selections_before_;
   double size_ = 0.0;          ///< of the largest state of late
   double nominal_ = 0.0;       ///< length of a simulation step
+  double mean_ = 0.0;          ///< length of elements of the part in hand
   double longest_part_ = 0.0;  ///< of a simulation step that is divided for its errors
   double share_ = 0.0;         ///< the largest of the chain in hand, Coarseness::share
   Chain chain_;

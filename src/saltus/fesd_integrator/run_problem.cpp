@@ -1,5 +1,6 @@
 // Simulation steps by their problem with complementarities; its elements are solved again with their active sets.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -72,7 +73,29 @@ void Run::accept_guessed(const std::vector<ElementGuess>& guesses, const std::ve
   }
 }
 
+std::optional<std::string> Run::steep_here() {
+  kernel_.evaluate(t_, x_.data(), selections_.data(), held_.data(), at_switch_);
+  const std::size_t n_x = x_.size();
+  // Of a square root: of arguments below 1e-20 of the unit of time.
+  constexpr double steep = 1e10;
+  for (std::size_t k = 0; k < n_x; ++k) {
+    for (std::size_t i = 0; i < n_x; ++i) {
+      const double derivative = at_switch_.f_x[k * n_x + i];
+      if (std::abs(derivative) * nominal_ < steep) continue;
+      return fmt::format(
+          "the right-hand side of {} has no finite derivative by {} at t = {:.10g} (a root of zero?), and elements are "
+          "solved by derivatives; use method = \"event\"",
+          facts_.state_names[i], facts_.state_names[k], t_);
+    }
+  }
+  return std::nullopt;
+}
+
 void Run::fall_back(double end, result::Termination termination, std::string message) {
+  if (auto steep = steep_here()) {
+    stop(result::Termination::evaluation_failed, std::move(*steep));
+    return;
+  }
   StepProblem* problem = can_fall_back() ? options_.fallback() : nullptr;
   if (problem == nullptr) {
     stop(termination, std::move(message) + "; more simulate.fesd.steps, or method = \"event\"");

@@ -172,15 +172,33 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
   return std::nullopt;
 }
 
+bool Run::fits_bounds(int elements, double remaining, double tau, int& count) const {
+  constexpr double roundings = 1e-12;
+  const double low = (1.0 - options_.step_bounds - roundings) * mean_;
+  const double high = (1.0 + options_.step_bounds + roundings) * mean_;
+  const auto fits = [&](int before) {
+    const double h = tau / before, behind = (remaining - tau) / (elements - before);
+    return low <= h && h <= high && low <= behind && behind <= high;
+  };
+  const int nearest = count;
+  for (int away = 0; away < elements; ++away) {
+    for (const int candidate : {nearest + away, nearest - away}) {
+      if (candidate < 1 || candidate >= elements || !fits(candidate)) continue;
+      count = candidate;
+      return true;
+    }
+  }
+  return false;
+}
+
 std::optional<Run::Located> Run::find_switch(int elements, double remaining, Violation violation, std::size_t element) {
   double tau = chain_.elements[element].h * (static_cast<double>(element) + violation.theta);
   // Each round goes to a condition that ends earlier than the one before.
   const std::size_t rounds = set_.conditions().size() + 2;
   for (std::size_t round = 0; round < rounds; ++round) {
     int count = std::clamp(static_cast<int>(std::lround(elements * tau / remaining)), 1, elements - 1);
-    // Bounds of the lengths, on both sides of the switch.
-    const double mean = nominal_ / options_.elements;
-    while (count < elements - 1 && tau / count > (1.0 + options_.step_bounds) * mean) ++count;
+    const bool divides = !fits_bounds(elements, remaining, tau, count);
+    if (divides) count = elements;
     const auto h = locate(count, tau / count, violation, remaining / count);
     if (!h) return std::nullopt;
     // The elements as they are now, all conditions: does another end before?
@@ -208,9 +226,9 @@ std::optional<Run::Located> Run::find_switch(int elements, double remaining, Vio
     }
     if (!earlier) {
       chain_.count = static_cast<std::size_t>(count);
-      return Located{count, *h, violation.condition, coarse};
+      return Located{count, *h, violation.condition, coarse, divides};
     }
-    if (tau <= 0.0) return Located{0, 0.0, violation.condition, false};
+    if (tau <= 0.0) return Located{0, 0.0, violation.condition};
   }
   return std::nullopt;
 }
@@ -232,6 +250,7 @@ void Run::advance(double end) {
     }
     const double remaining = limit - t_;
     const double h = remaining / elements;
+    if (elements == options_.elements) mean_ = h;
     Violation violation;
     auto solved = solve_chain(elements, h, violation);
     if (solved == Solved::all) {
@@ -246,7 +265,7 @@ void Run::advance(double end) {
     std::optional<Located> located;
     if (solved == Solved::violated) {
       if (chain_.count == 1 && violation.theta == 0.0) {
-        located = Located{0, 0.0, violation.condition, false};
+        located = Located{0, 0.0, violation.condition};
       } else if (elements < 2) {
         // More switches than elements can separate: the rest is a simulation step of its own.
         ++statistics_.rejected;
@@ -281,7 +300,12 @@ void Run::advance(double end) {
       accept_chain(static_cast<std::size_t>(located->count), at, &located->condition);
       set_longest_part(located->h, solved);
       elements = std::max(1, elements - located->count);
-      if (t_ >= limit) next_part();
+      if (located->divides) {
+        ++statistics_.rejected;
+        next_part();
+      } else if (t_ >= limit) {
+        next_part();
+      }
     }
     if (stopped()) return;
     divided_for_look_ = 0;

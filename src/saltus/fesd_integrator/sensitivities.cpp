@@ -101,12 +101,16 @@ void SensitivityPropagation::begin_fixed_steps(int count, const End& end) {
   self.boundary.h = (target - self.boundary.t) / count;
 }
 
-void SensitivityPropagation::fixed_step(const Element& element, std::span<const ActiveSet> sets, const double* held) {
+void SensitivityPropagation::fixed_step(const Element& element, std::span<const ActiveSet> sets, const double* held,
+                                        double part) {
   auto& self = *implementation_;
+  const RowVectorXd whole = self.boundary.h;
+  self.boundary.h *= part;
   const auto n = static_cast<std::ptrdiff_t>(self.kernel.selections());
   const std::vector<double> left(element.stage_selections.begin(), element.stage_selections.begin() + n);
   self.boundary.x = self.element.end(element, sets, left, held, self.boundary);
   self.boundary.t += self.boundary.h;
+  self.boundary.h = whole;
 }
 
 void SensitivityPropagation::held_changed(double t, const double* x, const double* selections, const double* before,

@@ -50,8 +50,8 @@ class SensitivityPropagation {
     std::optional<std::size_t> changing;
   };
   void begin_fixed_steps(int count, const End& end);
-  /// One of these elements, an active set for every stage.
-  void fixed_step(const Element& element, std::span<const ActiveSet> sets, const double* held);
+  /// One of these elements, or `part` of it; an active set for every stage.
+  void fixed_step(const Element& element, std::span<const ActiveSet> sets, const double* held, double part);
   /// At the last boundary: something held has changed from `before` to `behind`; `selections` are those before it.
   void held_changed(double t, const double* x, const double* selections, const double* before, const double* behind);
 

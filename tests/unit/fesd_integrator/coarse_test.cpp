@@ -1,9 +1,11 @@
 // Elements that are too long: switches between their ends, estimates of their error; and spirals, beyond any length.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,6 +25,8 @@ struct Settings {
   Form form = Form::step;
   TableauFamily family = TableauFamily::radau_iia;
   int stages = 2;
+  int elements = 2;
+  double step_bounds = 1.0;
   std::optional<double> error_limit{};
 };
 
@@ -33,6 +37,8 @@ Integration run(const model::System& system, double until, const Settings& setti
   options.tableau = *discretization::butcher_tableau(settings.family, settings.stages);
   options.until = until;
   options.steps = settings.steps;
+  options.elements = settings.elements;
+  options.step_bounds = settings.step_bounds;
   options.error_limit = settings.error_limit;
   auto integration = integrate(system, *dcs, options);
   EXPECT_TRUE(integration.has_value());
@@ -117,6 +123,51 @@ TEST(Coarse, PartsOfStepsHaveAShortestLength) {
   builder.dynamics("x", -casadi::SX::pow(x * x, 0.35) + 0.0 * builder.step(x - 5.0));
   const auto integration = run(*builder.build(), 3.0, {.steps = 10, .error_limit = 1e-9});
   EXPECT_LT(integration.statistics.steps, 40000);
+}
+
+/// x' = 2 - sign x from x0 < 0: a crossing at t = -x0 / 3.
+TEST(StepBounds, LengthsAreWithinThemOrTheStepIsDividedAtTheSwitch) {
+  constexpr double gamma = 0.3, mean = 0.05;
+  constexpr int elements = 4;
+  int divided = 0, kept = 0;
+  for (int k = 1; k < 20; ++k) {
+    const double crossing = 0.2 + 0.01 * k + 1e-3;
+    model::Builder builder("crossing");
+    const SX x = builder.state("x", {-3.0 * crossing});
+    builder.dynamics("x", 2.0 - builder.sign(x));
+    const auto integration =
+        run(*builder.build(), 1.0, {.steps = 5, .elements = elements, .step_bounds = gamma, .error_limit = {}});
+    std::vector<double> before, behind;  // lengths in the step with the crossing
+    for (std::size_t i = 1; i < integration.trajectory.t.size(); ++i) {
+      const double t = integration.trajectory.t[i - 1], h = integration.trajectory.t[i] - t;
+      if (h <= 0.0 || t < 0.2 - 1e-9 || t > 0.4 - 1e-9) continue;
+      (t < crossing - 1e-9 ? before : behind).push_back(h);
+    }
+    ASSERT_FALSE(before.empty());
+    ASSERT_FALSE(behind.empty());
+    for (const auto* part : {&before, &behind}) {
+      for (const double h : *part) EXPECT_NEAR(h, part->front(), 1e-12) << k;
+    }
+    if (integration.statistics.rejected > 0) {
+      ++divided;
+      EXPECT_EQ(before.size(), 4u) << k;
+      EXPECT_EQ(behind.size(), 4u) << k;
+      // No other number of elements would have done.
+      for (int n = 1; n < elements; ++n) {
+        const double h = (crossing - 0.2) / n, other = (0.4 - crossing) / (elements - n);
+        EXPECT_TRUE(std::max(h, other) > (1.0 + gamma) * mean || std::min(h, other) < (1.0 - gamma) * mean) << k;
+      }
+    } else {
+      ++kept;
+      EXPECT_EQ(before.size() + behind.size(), 4u) << k;
+      for (const double h : {before.front(), behind.front()}) {
+        EXPECT_GE(h, (1.0 - gamma) * mean - 1e-9) << k;
+        EXPECT_LE(h, (1.0 + gamma) * mean + 1e-9) << k;
+      }
+    }
+  }
+  EXPECT_GE(divided, 4);
+  EXPECT_GE(kept, 4);
 }
 
 /// The estimate is that inside elements: of order n_s + 1 per element, n_s of their sum. Radau IIA has n_s = 2 here,
