@@ -76,13 +76,13 @@ fesd = { reformulation = "stewart" }
         self.assertEqual(status["termination"], "evaluation_failed")
 
     def test_timestepping_divides_elements_that_have_no_active_sets(self):
-        for model, stages in (("irma", 2), ("irma", 3), ("irma", 4), ("two-belts", 1)):
+        for stages in (2, 3, 4):
             for steps in (20, 40):
-                self.run_tool("simulate", model, "--method", "timestepping", "--quiet", "--out", "r.json", "--set",
+                self.run_tool("simulate", "irma", "--method", "timestepping", "--quiet", "--out", "r.json", "--set",
                               f"simulate.timestepping.stages={stages}", "--set", f"simulate.timestepping.steps={steps}",
                               code=0)
                 result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
-                self.assertGreater(result["statistics"]["rejected"], 0, (model, stages, steps))
+                self.assertGreater(result["statistics"]["rejected"], 0, (stages, steps))
 
     def test_lengths_without_an_exact_rule_have_no_sensitivities(self):
         _, errors = self.run_tool("simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.sensitivities=true",
