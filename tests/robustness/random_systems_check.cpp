@@ -147,8 +147,10 @@ class ModeCheck {
                            value.above);
       }
     } else {
-      // Where two roots meet det G is 0 to the square root of rounding.
-      if (!(value.determinant >= -1e-6)) return fmt::format("slides where det(-G) is {}", value.determinant);
+      // Where two roots meet det G is 0 to the square root of rounding; where a gradient vanishes its sign means
+      // nothing.
+      if (!(value.determinant >= -1e-6) && value.pivot > bound)
+        return fmt::format("slides where det(-G) is {}", value.determinant);
       for (const auto j : field_.sliding()) {
         const double slack = std::max(bound, 1e-9) / std::max(1e-12, value.pivot);
         if (!(value.alpha[j] >= -slack && value.alpha[j] <= 1.0 + slack)) {

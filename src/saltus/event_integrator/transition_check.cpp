@@ -225,7 +225,9 @@ std::optional<std::string> two_fold_message(const Surroundings& surroundings, co
   occasion.at_zero = state.sliding;
   const ProjectedFields fields(surroundings.kernel, occasion);
   for (const int j : state.sliding) {
-    if (fields.nearly_two_fold(state.alpha, j)) return two_fold_at(surroundings.system.switching[at(j)].name, t);
+    if (fields.nearly_two_fold(state.alpha, j) || fields.gradient_vanishes(state.alpha, j)) {
+      return undetermined_at(fields, surroundings.system, state.alpha, j, t);
+    }
   }
   return std::nullopt;
 }
