@@ -40,6 +40,15 @@ Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& s
 
 void Recorder::row(double t, const std::vector<double>& x, const std::vector<int>& mode,
                    const std::vector<double>& alpha, const HigherOrderSet* higher) {
+  append_row(t, x, alpha, number(mode, alpha, higher));
+}
+
+void Recorder::row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event) {
+  const bool known = before_switch_.event == first_event;
+  append_row(t, x, before.alpha, known ? before_switch_.mode : number(before.mode, before.alpha, nullptr));
+}
+
+void Recorder::append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode) {
   recording_.row_times.push_back(t);
   recording_.row_states.insert(recording_.row_states.end(), x.begin(), x.end());
   const auto appended = [](std::vector<double>& list, std::size_t count) {
@@ -50,7 +59,7 @@ void Recorder::row(double t, const std::vector<double>& x, const std::vector<int
   if (recording_.n_y > 0) {
     kernel_.outputs(t, x.data(), alpha.data(), appended(recording_.row_outputs, recording_.n_y));
   }
-  recording_.row_modes.push_back(number(mode, alpha, higher));
+  recording_.row_modes.push_back(mode);
 }
 
 std::size_t Recorder::number(const std::vector<int>& mode, const std::vector<double>& alpha,
@@ -101,7 +110,11 @@ void Recorder::set_passage(Recording::Event& event, const Passage& passage) {
 }
 
 void Recorder::add_transition(Recording::Event& event, const Transition& transition) {
-  event.mode_after = number(transition.state);
+  add_transition(event, transition, number(transition.state));
+}
+
+void Recorder::add_transition(Recording::Event& event, const Transition& transition, std::size_t mode_after) {
+  event.mode_after = mode_after;
   event.unique = transition.unique;
   add_reason(event, transition.reason);
   if (transition.meeting) {
@@ -142,8 +155,9 @@ void Recorder::note_changed_regions(const ModeState& before, const ModeState& af
 
 bool Recorder::switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition) {
   const std::size_t number_before = number(before);
+  const std::size_t number_after = number(transition.state);
   changed_.clear();
-  if (number(transition.state) != number_before) recording_.modes.append_changed(changed_);
+  if (number_after != number_before) recording_.modes.append_changed(changed_);
   listed_before_.clear();
   listed_after_.clear();
   columns_.clear();
@@ -161,7 +175,8 @@ bool Recorder::switched(double t, const std::vector<double>& x, const ModeState&
   for (const std::size_t column : columns_) add_surface(event, column);
   set_states(event, x, x);
   event.mode = number_before;
-  add_transition(event, transition);
+  if (!before.higher) before_switch_ = {events() - 1, number_before};  // rows have the selections that it leaves open
+  add_transition(event, transition, number_after);
   return true;
 }
 

@@ -37,6 +37,8 @@ class Recorder {
   /// Selections of `higher` that nothing determines are recorded as NaN; outputs have the ones that they are handed.
   void row(double t, const std::vector<double>& x, const std::vector<int>& mode, const std::vector<double>& alpha,
            const HigherOrderSet* higher = nullptr);
+  /// A row with the mode before the events at t, of which this is the first one (or would be, if there are none).
+  void row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event);
   /// A switch, if a listed switching function changes its mode; returns whether it did.
   bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
   /// A start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
@@ -63,6 +65,7 @@ class Recorder {
  private:
   /// A new event; the reference is valid until the next one.
   Recording::Event& begin(double t, result::EventKind kind);
+  void append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode);
   [[nodiscard]] std::size_t keep(const std::vector<double>& x);
   [[nodiscard]] std::size_t number(const std::vector<int>& mode, const std::vector<double>& alpha,
                                    const HigherOrderSet* higher);
@@ -79,6 +82,13 @@ class Recorder {
   void note_changed_regions(const ModeState& before, const ModeState& after);
   void add_reason(Recording::Event& event, std::string_view reason);
   void add_transition(Recording::Event& event, const Transition& transition);
+  void add_transition(Recording::Event& event, const Transition& transition, std::size_t mode_after);
+
+  /// The last switch: the number of the mode before it.
+  struct BeforeSwitch {
+    long event = -1;
+    std::size_t mode = 0;
+  };
 
   const evaluation::ModelKernel& kernel_;
   const model::System& system_;
@@ -86,6 +96,7 @@ class Recorder {
   std::vector<std::vector<std::size_t>> listed_columns_;  ///< by switching function: of the result, if it is listed
   std::vector<std::size_t> changed_, columns_;            ///< of one event
   std::vector<int> listed_before_, listed_after_;
+  BeforeSwitch before_switch_;
   std::vector<double> determined_;  ///< selections, NaN where nothing determines them
 };
 

@@ -56,14 +56,14 @@ bool Run::find_undefined_cells() {
 }
 
 /// Rows at an event, or at a restart: at requested times that are this time to rounding, before and behind.
-void Run::rows_at_event() {
+void Run::rows_at_event(const Arrival& arrival) {
   const auto cells_behind = cells_.indices();
   cells_.put(cells_before_);
   const auto& times = options_.output.times;
   for (; next_output_ < times.size() && times[next_output_] < t_; ++next_output_) {
-    recorder_.row(times[next_output_], x_before_, before_.mode, before_.alpha);
+    recorder_.row_before(times[next_output_], x_before_, before_, arrival.events);
   }
-  recorder_.row(t_, x_before_, before_.mode, before_.alpha);
+  recorder_.row_before(t_, x_before_, before_, arrival.events);
   cells_.put(cells_behind);
 }
 

@@ -201,11 +201,11 @@ Run::Step Run::handle(const Located& located) {
 Run::Step Run::depart(const Arrival& arrival) {
   const bool event = recorder_.events() > arrival.events;
   if (event || !running_) {
-    if (arrival.row == RowBefore::missing) rows_at_event();
+    if (arrival.row == RowBefore::missing) rows_at_event(arrival);
     if (event) row(t_, x_);
   } else if (options_.output.rows == OutputTimes::Rows::at_steps) {
     // Inputs and outputs may jump here: their values before and behind.
-    if (cell_change_ == CellChange::jump) rows_at_event();
+    if (cell_change_ == CellChange::jump) rows_at_event(arrival);
     row(t_, x_);
   }
   while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) {

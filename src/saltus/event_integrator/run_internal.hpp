@@ -150,7 +150,7 @@ class Run {
   void rows_until(double t_end);
   void rows_by_steps(double t_new);
   void row_inside(double t);
-  void rows_at_event();
+  void rows_at_event(const Arrival& arrival);
   [[nodiscard]] bool reaches_cell_end(const Located& located) const;
   void row(double t, const std::vector<double>& x);
   void fail(result::Termination termination, std::string message);

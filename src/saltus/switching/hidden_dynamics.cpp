@@ -238,7 +238,7 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
                               double eta, const HiddenOptions& options) {
   // Far below eta, which is all that the solution gets away from the root by; and of nudges.
   constexpr double tolerance = 1e-10;
-  constexpr double tolerance_nudged = 1e-7;
+  constexpr double tolerance_nudged = 1e-6;
   constexpr double tolerance_away = 1e-7;
   constexpr std::array nudges{2e-3, -2e-3, 1.2e-3, -1.2e-3};  // on different turns of a spiral; linear to that
   std::vector<double> velocity(at(surfaces));
@@ -269,7 +269,7 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
         if (fraction < 1.0) continue;
         // The root is still there, but no longer stable: which way it is left is not the event's to say.
         TrajectoryOptions fewer = closely;
-        fewer.tolerance = tolerance_nudged;
+        fewer.tolerance = fewer.tolerance_away = tolerance_nudged;
         fewer.budget /= 10;
         HiddenTrajectory nudged(face, fewer);
         for (std::size_t j = 0; j < start.size(); ++j) {

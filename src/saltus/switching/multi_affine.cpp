@@ -34,16 +34,11 @@ MultiAffine::MultiAffine(int surfaces, ProjectedField g) : MultiAffine(surfaces,
   }
 }
 
-void MultiAffine::evaluate(const double* alpha, double* result) const {
+void MultiAffine::contract(const double* alpha, double* result) const {
   const double* v = values_.data();
   if (selections_ == 2) {
-    const double above[2] = {alpha[0], alpha[1]};  // once: results might be the selections, for all the compiler knows
-    const double below[2] = {1.0 - above[0], 1.0 - above[1]};
-    for (int j = 0; j < rows_; ++j, v += 4) {
-      const double low = below[0] * v[0] + above[0] * v[1];
-      const double high = below[0] * v[2] + above[0] * v[3];
-      result[j] = below[1] * low + above[1] * high;
-    }
+    const PairWeights weights(alpha);
+    for (int j = 0; j < rows_; ++j, v += 4) result[j] = weights.value(v);
     return;
   }
   if (selections_ == 0) {

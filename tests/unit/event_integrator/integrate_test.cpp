@@ -1,6 +1,8 @@
 #include "saltus/event_integrator/integrate.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <gtest/gtest.h>
 
@@ -62,6 +64,24 @@ TEST(Integrate, SpontaneousSwitchIsReportedAsNotUnique) {
   EXPECT_EQ(result.events[0].unique, std::optional<bool>(false));
   EXPECT_EQ(result.events[0].alternatives.size(), 2U);
   EXPECT_NEAR(result.final.x[0], 1.0, 1e-14);
+}
+
+TEST(Integrate, RowsAtASwitchHaveTheModesBeforeAndBehindIt) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+    const auto result = run(testing::stick_slip(), 40, 1e-9, method);
+    ASSERT_GE(result.events.size(), 4U);
+    const auto& rows = result.trajectory;
+    for (const auto& event : result.events) {
+      const auto before =
+          static_cast<std::size_t>(std::lower_bound(rows.t.begin(), rows.t.end(), event.t) - rows.t.begin());
+      ASSERT_LT(before + 1, rows.t.size());
+      EXPECT_EQ(rows.t[before + 1], event.t);
+      EXPECT_EQ(rows.mode[before], event.mode_before) << event.t;
+      EXPECT_EQ(rows.alpha[before], event.alpha_before) << event.t;
+      EXPECT_EQ(rows.mode[before + 1], event.mode_after) << event.t;
+      EXPECT_EQ(rows.alpha[before + 1], event.alpha_after) << event.t;
+    }
+  }
 }
 
 TEST(Integrate, StickSlipMatchesTheReference) {
