@@ -107,7 +107,7 @@ void begin_transition(const ModeState& before, const Occasion& occasion, std::si
                                            const Occasion& occasion);
 
 /// What to say where sliding has run into a point at which both fields are tangent to the surface (two-fold), so that
-/// its selection has no limit; nullopt if there is none near by.
+/// its selection has no limit, or at which the gradient of the surface vanishes; nullopt if there is none near by.
 [[nodiscard]] std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state,
                                                           double t, const double* x);
 
