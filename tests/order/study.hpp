@@ -65,6 +65,12 @@ struct Study {
     });
     return covariance / variance;
   }
+  /// The first errors only, down to where they are roundings.
+  void stop_at_rounding() {
+    const auto end = std::find_if(errors.begin(), errors.end(), [this](double e) { return e <= rounding; });
+    steps.resize(static_cast<std::size_t>(end - errors.begin()));
+    errors.erase(end, errors.end());
+  }
   /// The largest error of each `size` levels in a row, at the middle of their steps: where a switch lies in its
   /// simulation step decides how long the elements around it are, and errors scatter below this.
   [[nodiscard]] Study envelope(std::size_t size) const {
