@@ -81,23 +81,29 @@ def measured_row(row, run, exact):
 
 
 def rows(program, timeout, kept):
-    """One by one; `kept`: rows of nosnoc measured before, by key, if it is not to run again."""
+    """One by one, contender by contender; `kept`: rows of nosnoc measured before, by key, if it is not to run again."""
     exact = references()
     installed = contenders.succeeds(NOSNOC, "-c", "import nosnoc")
-    for problem, scheme, stages, form in lines():
-        line_up = {"Saltus": lambda: run_saltus(program, problem, form, scheme, stages)}
-        for variant in VARIANTS:
-            line_up[f"nosnoc, {variant}"] = lambda v=variant: run_nosnoc(problem, form, scheme, stages, v, timeout)
-        for name, run in line_up.items():
+    for variant in (*VARIANTS, None):
+        for problem, scheme, stages, form in lines():
             row = {"problem": problem, "form": form, "scheme": f"{scheme} {stages}", "steps": PROBLEMS[problem][1],
-                   "contender": name}
+                   "contender": f"nosnoc, {variant}" if variant else "Saltus"}
             print(*row.values(), file=sys.stderr, flush=True)
-            if name != "Saltus" and kept is not None:
+            if variant is None:
+                yield measured_row(row, lambda: run_saltus(program, problem, form, scheme, stages), exact)
+            elif kept is not None:
                 yield kept.get(key(row), {**row, "failed": "not measured"})
-            elif name != "Saltus" and not installed:
+            elif not installed:
                 yield {**row, "failed": "not installed"}
             else:
-                yield measured_row(row, run, exact)
+                yield measured_row(row, lambda: run_nosnoc(problem, form, scheme, stages, variant, timeout), exact)
+
+
+def by_line(measured):
+    """Lines in the order of `lines`, Saltus first."""
+    order = {line: place for place, line in enumerate((p, form, f"{scheme} {n}") for p, scheme, n, form in lines())}
+    return sorted(measured, key=lambda row: (order[row["problem"], row["form"], row["scheme"]],
+                                             row["contender"] != "Saltus"))
 
 
 def key(row):
@@ -151,9 +157,9 @@ def main():
         with file.open("w", newline="", encoding="utf-8") as stream:  # what is measured is kept, whatever follows
             writer = csv.DictWriter(stream, COLUMNS)
             writer.writeheader()
-            writer.writerows(measured)
+            writer.writerows(by_line(measured))
     remark = " The rows of nosnoc are those of an earlier run." if options.keep_nosnoc else ""
-    text = page(measured, (load_before, os.getloadavg()[2]), remark)
+    text = page(by_line(measured), (load_before, os.getloadavg()[2]), remark)
     (options.output / "fesd.md").write_text(text, encoding="utf-8")
 
 
