@@ -43,7 +43,7 @@ inline constexpr std::array<Problem, 6> problems{
     {{"Sliding", "sliding", 2.0, {200, 20, 4, 4, 20, 4, 4, 4}, all, 1e-13, 2e-13},
      {"RotatingOscillator", "rotating-oscillator", 1.5707963, {2000, 60, 10, 8, 144, 16, 8, 8}, none, 2e-13, 2e-13},
      {"DryFriction", "dry-friction-oscillator", 15.0, {2000, 60, 12, 8, 94, 18, 10, 6}, of_gauss, 1e-13, 2e-13},
-     {"StickSlip", "stick-slip", 40.0, {2000, 200, 80, 50, 328, 140, 60, 150}, none, 3e-14, 2e-13},
+     {"StickSlip", "stick-slip", 40.0, {2000, 200, 80, 50, 328, 140, 60, 190}, none, 3e-14, 2e-13},
      {"Irma", "irma", 100.0, {2000, 40, 8, 9, 40, 21, 6, 9}, none, 5e-15, 3e-13},
      {"Circle", "circle", 10.0, {800, 20, 14, 17, 22, 40, 12, 24}, none, 5e-14, 5e-14}}};
 
