@@ -1,6 +1,17 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
 #include "saltus/io/json_parts_internal.hpp"
 
 namespace saltus::io {
+
+std::size_t read_number(JsonReader& reader, const Json& json, const std::string& path, const char* key) {
+  std::int64_t value = 0;
+  reader.read_member(json, path, key, value);
+  if (value < 0) reader.fail(path + "/" + key, fmt::format("expected a number from 0, found {}", value));
+  return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
+}
 
 Json status_json(const result::Status& status) {
   return {
@@ -59,9 +70,7 @@ Json elements_json(const result::Elements& elements) {
 void read_elements(JsonReader& reader, const Json& json, const std::string& path,
                    std::optional<result::Elements>& elements) {
   elements.emplace();
-  std::int64_t points = 0;
-  reader.read_member(json, path, "points", points);
-  elements->points = static_cast<std::size_t>(std::max<std::int64_t>(points, 0));
+  elements->points = read_number(reader, json, path, "points");
   if (const auto* selections = reader.member(json, path, "selections")) {
     read_list(reader, *selections, path + "/selections", elements->selections,
               [](JsonReader& inner, const Json& entry, const std::string& here) {

@@ -1,6 +1,7 @@
 // Parts that occur in several places of a result file.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ template <class Value>
 [[nodiscard]] Json comparison_json(const result::Comparison& comparison);
 [[nodiscard]] Json order_json(const result::OrderStudy& order);
 
+/// A count or an index: a whole number from 0.
+[[nodiscard]] std::size_t read_number(JsonReader& reader, const Json& json, const std::string& path, const char* key);
 void read_status(JsonReader& reader, const Json& json, const std::string& path, result::Status& status);
 void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics);
 void read_sensitivities(JsonReader& reader, const Json& json, const std::string& path,

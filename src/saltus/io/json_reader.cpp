@@ -166,13 +166,6 @@ void read_format(JsonReader& reader, const Json& json) {
   reader.fail("/format", fmt::format("expected \"{}\", found \"{}\": no result of this version", format_name, format));
 }
 
-std::size_t read_number(JsonReader& reader, const Json& json, const std::string& path, const char* key) {
-  std::int64_t value = 0;
-  reader.read_member(json, path, key, value);
-  if (value < 0) reader.fail(path + "/" + key, fmt::format("expected a number from 0, found {}", value));
-  return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
-}
-
 result::Family read_family(JsonReader& reader, const Json& json, const std::string& path) {
   result::Family family;
   reader.read_word(json, path, "kind", result::family_kind_named, "kind of a family", family.kind);

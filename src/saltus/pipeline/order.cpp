@@ -108,8 +108,10 @@ Expected<void> find_floor(const model::System& system, const SimulateOptions& ti
   const auto second = simulate(system, looser, observers);
   if (!second) return tl::unexpected(second.error());
   constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
-  double largest = 0.0;
-  for (const double x : reference.final.x) largest = std::max(largest, std::abs(x));
+  double largest = 0.0;  // on the way: a state that ends at rest is zero but for roundings of what it was
+  for (const auto& row : reference.trajectory.x) {
+    for (const double x : row) largest = std::max(largest, std::abs(x));
+  }
   const auto [state, time] = agreement(*second, reference);
   study.floor = std::max(10.0 * state.value_or(0.0), rounding * largest);
   study.time_floor = std::max(10.0 * time.value_or(0.0), rounding * std::abs(reference.final.t));

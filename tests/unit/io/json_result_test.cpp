@@ -190,6 +190,16 @@ TEST(JsonResult, ElementsSurviveBitForBit) {
   EXPECT_EQ(elements.t, original.elements->t);
   EXPECT_EQ(elements.lambda, original.elements->lambda);
   EXPECT_EQ(elements.selection, original.elements->selection);
+
+  const std::string points = "\"points\": 3";
+  const auto place = text.find(points);
+  ASSERT_NE(place, std::string::npos) << text;
+  auto damaged = text;
+  damaged.replace(place, points.size(), "\"points\": -3");
+  const auto refused = parse_result(damaged, "r.json");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(to_text(refused.error()).find("at /elements/points: expected a number from 0, found -3"), std::string::npos)
+      << to_text(refused.error());
 }
 
 TEST(JsonResult, ReadsResultsFromBeforeSurfacesWereRecorded) {
