@@ -60,8 +60,8 @@ namespace {
 /// Largest group whose 2^m corners are looked at.
 constexpr std::size_t largest_group = 12;
 
-/// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
-/// around j.
+}  // namespace
+
 bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j) {
   if (kernel.depends(i, j) || same_group(kernel, i, j)) return true;
   for (int nested = 0; nested < kernel.switching_functions(); ++nested) {
@@ -71,9 +71,8 @@ bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int 
   return false;
 }
 
-/// Connected groups of surfaces that influence each other, each ascending.
-std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion) {
-  std::vector<int> open = occasion.at_zero;
+std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion,
+                                        std::vector<int> open) {
   std::vector<std::vector<int>> groups;
   while (!open.empty()) {
     std::vector<int> group{open.front()};
@@ -93,8 +92,6 @@ std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, c
   }
   return groups;
 }
-
-}  // namespace
 
 bool Decider::fail(result::Termination termination, std::string message) {
   transition_.termination = termination;
@@ -222,7 +219,7 @@ bool Decider::read_nested_anew() {
 
 Transition Decider::run() {
   base_ = before_;
-  const auto groups = groups_of(s_.kernel, occasion_);
+  const auto groups = groups_of(s_.kernel, occasion_, occasion_.at_zero);
   // Nested functions that flip change the fields for everything else: decide again until nothing flips.
   for (int pass = 0; pass < 8; ++pass) {
     decisions_.clear();

@@ -230,6 +230,7 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   const bool decided =
       hidden.limit == switching::HiddenLimit::settled || hidden.limit == switching::HiddenLimit::oscillating;
   if (!decided) {
+    if (decide_parts(group, table)) return true;
     return fail(result::Termination::outside_class,
                 fmt::format("the surfaces {} meet at t = {} and influence each other: no mode could be found that "
                             "continues the solution ({}); start beside them or perturb a parameter",
@@ -256,6 +257,36 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   }
   group_reasons_.push_back(fmt::format("{}: {}", names(s_.system, group), hidden.reason));
   return true;
+}
+
+/// Groups one after the other, each with what was decided for those before it; none may feel a later one.
+bool Decider::decide_parts(const std::vector<std::vector<int>>& parts) {
+  const ModeState kept = base_;
+  bool decided = true;
+  for (const auto& part : parts) {
+    const std::size_t surfaces = decisions_.size(), choices = region_choices_.size();
+    decided = decide(part);
+    if (!decided) break;
+    for (std::size_t k = surfaces; k < decisions_.size(); ++k) {
+      set_surface(base_, decisions_[k].first, decisions_[k].second.mode, decisions_[k].second.alpha);
+    }
+    for (std::size_t k = choices; k < region_choices_.size(); ++k) {
+      set_active(base_, region_choices_[k].group, region_choices_[k].sets.front());
+    }
+  }
+  base_ = kept;
+  return decided;
+}
+
+/// A group of which some surfaces do not feel others: the table of all corners knows first derivatives only, while
+/// those who feel nobody decide how the others move.
+bool Decider::decide_parts(const std::vector<int>& group, const switching::CornerTable& table) {
+  auto parts = switching::parts_by_influence(table);
+  if (parts.size() < 2) return false;
+  for (auto& part : parts) {
+    for (int& surface : part) surface = group[at(surface)];
+  }
+  return decide_parts(parts);
 }
 
 bool Decider::decide_coupled(const std::vector<int>& group, const switching::CornerTable& table) {

@@ -56,6 +56,14 @@ struct RegionChoice {
   std::string reason;
 };
 
+/// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
+/// around j.
+bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j);
+
+/// Connected groups of those `open` surfaces that influence each other, each ascending.
+std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion,
+                                        std::vector<int> open);
+
 /// One pass over all groups with the selections of `state` for everything else.
 class Decider {
  public:
@@ -72,7 +80,10 @@ class Decider {
 
  private:
   bool decide(const std::vector<int>& group);
-  bool cross_beside(int surface);
+  bool decide_parts(const std::vector<std::vector<int>>& parts);
+  bool decide_parts(const std::vector<int>& group, const switching::CornerTable& table);
+  bool passes(int surface) const;
+  void cross_beside(int surface);
   bool decide_regions(const std::vector<int>& group);
   void apply_regions();
   void follow_other_regions();

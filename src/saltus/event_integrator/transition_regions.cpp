@@ -76,15 +76,18 @@ bool Decider::goes_on(const std::vector<int>& candidates, switching::RegionSet& 
   return true;
 }
 
-/// A kink, or a time, that is passed where regions meet: nothing slides on it, they feel its other side from here on.
-bool Decider::cross_beside(int surface) {
+/// A kink, or a time, that is passed where regions meet: nothing slides on it.
+bool Decider::passes(int surface) const {
   const auto role = s_.system.switching[at(surface)].role;
+  const bool is_beside = role == model::SwitchingRole::kink || role == model::SwitchingRole::time_event;
+  return is_beside && !occasion_.start && before_.mode[at(surface)] != 0;
+}
+
+/// The regions that meet there feel its other side from here on.
+void Decider::cross_beside(int surface) {
   const int mode = before_.mode[at(surface)];
-  const bool passes = role == model::SwitchingRole::kink || role == model::SwitchingRole::time_event;
-  if (!passes || occasion_.start || mode == 0) return false;
   set_surface(base_, surface, -mode, mode > 0 ? 0.0 : 1.0);
   take({surface}, {-mode}, {mode > 0 ? 0.0 : 1.0});
-  return true;
 }
 
 bool Decider::decide_regions(const std::vector<int>& group) {
@@ -92,23 +95,30 @@ bool Decider::decide_regions(const std::vector<int>& group) {
   const auto range = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
     return std::any_of(group.begin(), group.end(), [&](int j) { return g.holds(j); });
   });
-  std::vector<int> candidates{reference_of(before_, *range)};
-  bool alone = true;
-  for (const int j : group) {
-    if (range->holds(j)) {
-      candidates.push_back(j);
-    } else {
-      alone = alone && cross_beside(j);
-    }
+  std::vector<int> regions, others;
+  for (const int j : group) (range->holds(j) ? regions : others).push_back(j);
+  if (std::all_of(others.begin(), others.end(), [&](int j) { return passes(j); })) {
+    for (const int j : others) cross_beside(j);
+    others.clear();
   }
   constexpr std::size_t most = 12;
-  if (!alone || group.size() >= most || !s_.affine_in_alpha) {
+  if (!others.empty() || regions.size() >= most || !s_.affine_in_alpha) {
+    const auto is_felt = [&](int j) {
+      return std::any_of(regions.begin(), regions.end(), [&](int i) { return feels(s_.kernel, occasion_, i, j); });
+    };
+    if (!others.empty() && std::none_of(others.begin(), others.end(), is_felt)) {
+      auto parts = groups_of(s_.kernel, occasion_, others);
+      parts.insert(parts.begin(), regions);
+      return decide_parts(parts);
+    }
     return fail(result::Termination::outside_class,
                 fmt::format("at t = {} three or more regions by `indicator` meet on other surfaces that influence "
                             "them ({}), or more than {} regions meet: that decision is not available; perturb a "
                             "parameter",
                             occasion_.t, names(s_.system, group), most));
   }
+  std::vector<int> candidates{reference_of(before_, *range)};
+  candidates.insert(candidates.end(), regions.begin(), regions.end());
   const auto rates = region_rates(candidates, occasion_.t, occasion_.x);
   std::vector<switching::RegionSet> sets;
   for (auto& set : switching::admissible_region_sets(rates, marginal)) {

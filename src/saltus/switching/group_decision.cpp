@@ -1,6 +1,7 @@
 #include "saltus/switching/group_decision.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -87,15 +88,20 @@ bool same_side(const Side& a, const Side& b, double scale) {
   return a.drift == b.drift && std::abs(a.velocity - b.velocity) <= rounding * scale;
 }
 
+double largest_velocity(const CornerTable& table, int surface) {
+  double largest = 0.0;
+  for (std::size_t corner = 0; corner < table.corners(); ++corner) {
+    largest = std::max(largest, std::abs(table.side(surface, corner).velocity));
+  }
+  return largest;
+}
+
 /// The situation of a surface whose sides depend on its own selection only.
 std::optional<SurfaceSituation> own_situation(const CornerTable& table, const RestrictedTable& restricted,
                                               int surface) {
   std::optional<Side> below;
   std::optional<Side> above;
-  double scale = 0.0;
-  for (std::size_t corner = 0; corner < table.corners(); ++corner) {
-    scale = std::max(scale, std::abs(table.side(surface, corner).velocity));
-  }
+  const double scale = largest_velocity(table, surface);
   for (std::size_t corner = 0; corner < table.corners(); ++corner) {
     if (!restricted.is_representative(corner)) continue;
     auto& known = (corner >> surface & 1U) != 0 ? above : below;
@@ -160,6 +166,42 @@ GroupDecision decide_group(const CornerTable& table) {
     }
   }
   return decision;
+}
+
+std::vector<std::vector<int>> parts_by_influence(const CornerTable& table) {
+  SALTUS_ASSERT(1 <= table.surfaces && table.surfaces <= 12);
+  const auto m = static_cast<std::size_t>(table.surfaces);
+  std::vector<unsigned> feels(m);  // bit j: surface i feels surface j, at last through others
+  for (std::size_t i = 0; i < m; ++i) {
+    const int surface = static_cast<int>(i);
+    const double scale = largest_velocity(table, surface);
+    feels[i] = 1U << i;
+    for (std::size_t corner = 0; corner < table.corners(); ++corner) {
+      for (std::size_t j = 0; j < m; ++j) {
+        const std::size_t other = corner ^ (std::size_t{1} << j);
+        if (!same_side(table.side(surface, corner), table.side(surface, other), scale)) feels[i] |= 1U << j;
+      }
+    }
+  }
+  for (std::size_t k = 0; k < m; ++k) {
+    for (std::size_t i = 0; i < m; ++i) {
+      if ((feels[i] >> k & 1U) != 0) feels[i] |= feels[k];
+    }
+  }
+  // Who feels fewer comes first; those of one part feel the same.
+  std::vector<int> order(m);
+  std::iota(order.begin(), order.end(), 0);
+  const auto felt = [&](int i) { return feels[static_cast<std::size_t>(i)]; };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    const int fewer = std::popcount(felt(a)), more = std::popcount(felt(b));
+    return fewer != more ? fewer < more : felt(a) < felt(b);
+  });
+  std::vector<std::vector<int>> parts;
+  for (const int i : order) {
+    if (parts.empty() || felt(parts.back().front()) != felt(i)) parts.emplace_back();
+    parts.back().push_back(i);
+  }
+  return parts;
 }
 
 }  // namespace saltus::switching

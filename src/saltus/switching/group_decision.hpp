@@ -37,4 +37,9 @@ struct GroupDecision {
 /// would decide, the verdict is `coupled`. Cost: O(m^2 2^m).
 [[nodiscard]] GroupDecision decide_group(const CornerTable& table);
 
+/// Parts of a group whose surfaces influence each other, in an order in which none feels a later one: numbers in the
+/// table, each part ascending. One part if every surface feels every other, directly or through others. A surface feels
+/// a selection that changes its normal component, or where that leads if it is zero. Cost: O(m^2 2^m).
+[[nodiscard]] std::vector<std::vector<int>> parts_by_influence(const CornerTable& table);
+
 }  // namespace saltus::switching
