@@ -82,6 +82,12 @@ bool DenseSystem::solve_again() {
   return right().allFinite();
 }
 
+Eigen::MatrixXd DenseSystem::null_space() const {
+  if (n_ == 0 || factorised_) return Eigen::MatrixXd(n_, 0);
+  const Eigen::MatrixXd basis = orthogonal_.matrixZ().transpose().rightCols(n_ - orthogonal_.rank());
+  return orthogonal_.colsPermutation() * basis;
+}
+
 bool DenseSystem::solve(double negligible) {
   if (n_ == 0) return true;
   if (!keep_copy()) return false;

@@ -36,6 +36,8 @@ class DenseSystem {
   /// The same for another right() and the matrix that was solved for last, if that was regular. Cost: n^2.
   [[nodiscard]] bool is_factorised() const { return factorised_; }
   [[nodiscard]] bool solve_again();
+  /// What the matrix of the last solve() maps to 0: an orthonormal basis, one column each; none if it was regular.
+  [[nodiscard]] Eigen::MatrixXd null_space() const;
 
  private:
   [[nodiscard]] bool keep_copy();

@@ -31,7 +31,7 @@ struct ElementSolver::Implementation {
   Index n_x, n_s, n_psi;
   bool explicit_method, left_limit, ends_at_last_stage;
 
-  DenseSystem system;
+  DenseSystem system, projection;
   std::vector<discretization::StageValues> values;  // of the stages; one more for the end
   Eigen::MatrixXd directions;                       // n_x by n_psi per stage: f_alpha of what slides
   std::vector<Index> offset;                        // of the unknowns of each stage
@@ -52,6 +52,7 @@ struct ElementSolver::Implementation {
     offset.resize(static_cast<std::size_t>(n_s + 1));
     sets.resize(static_cast<std::size_t>(n_s));
     system.reserve(n_s * (n_x + n_psi));
+    projection.reserve(n_psi);
     end.resize(n_x);
     row.resize(n_x);
     mu.resize(n_psi);
@@ -220,20 +221,20 @@ bool ElementSolver::Implementation::project(double t, const double* held, Elemen
     kernel.evaluate(t + element.h, element.end.data(), selections, held, at);
     if (iteration == 0) find_directions(n_s, at);
     const auto along = directions.middleCols(n_s * n_psi, count);
-    system.reset(count);
-    auto matrix = system.matrix();
-    auto right = system.right();
+    projection.reset(count);
+    auto matrix = projection.matrix();
+    auto right = projection.right();
     for (Index k = 0; k < count; ++k) {
       surface_row(active, static_cast<std::size_t>(k), at);
       for (Index l = 0; l < count; ++l) matrix(k, l) = row.dot(along.col(l));
       right(k) = -active.surface(static_cast<std::size_t>(k), at.indicator.data());
     }
-    if (!system.solve(negligible(element))) return false;
-    for (Index l = 0; l < count; ++l) x_1 += system.right()(l) * along.col(l);
+    if (!projection.solve(negligible(element))) return false;
+    for (Index l = 0; l < count; ++l) x_1 += right(l) * along.col(l);
     double change = 0.0;
     for (Index i = 0; i < n_x; ++i) {
       double moved = 0.0;
-      for (Index l = 0; l < count; ++l) moved += system.right()(l) * along(i, l);
+      for (Index l = 0; l < count; ++l) moved += right(l) * along(i, l);
       change = std::max(change, std::abs(moved));
     }
     const double scale = size(element);
@@ -334,6 +335,17 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
   }
   const ConstVector end(element.end.data(), self.n_x);
   return end.allFinite() ? Outcome::solved : Outcome::not_finite;
+}
+
+bool ElementSolver::determined() const {
+  const auto& self = *implementation_;
+  const Eigen::MatrixXd free = self.system.null_space();
+  constexpr double rounding = 1e-6;  // of columns of length 1
+  for (Index m = 0; m < self.n_s && free.cols() > 0; ++m) {
+    const Index begin = self.offset[static_cast<std::size_t>(m)];
+    if (free.middleRows(begin, self.n_x).cwiseAbs().maxCoeff() > rounding) return false;
+  }
+  return true;
 }
 
 void ElementSolver::interpolate(const Element& element, double theta, double* x) const {

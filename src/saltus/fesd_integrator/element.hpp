@@ -55,6 +55,10 @@ class ElementSolver {
   enum class Guess { left_end, stages };
   [[nodiscard]] Outcome solve(const Point& left, double h, std::span<const ActiveSet> sets, const double* held,
                               Guess guess, Element& element);
+  /// Whether the states of the last solve() are the only ones in their set: false where selections move them that no
+  /// equation holds (four regions that meet have four weights and three equations in Stewart's form). Selections that
+  /// are determined by a higher derivative of their surface are. Cost: n^3 where the matrix was singular.
+  [[nodiscard]] bool determined() const;
   /// x(t + theta h): for collocation and Lobatto methods the polynomial of degree n_s with the slopes of the stages,
   /// eq. (46) of [nurkanovic2024]; for explicit ones the cubic through both ends with the slopes there.
   void interpolate(const Element& element, double theta, double* x) const;

@@ -37,6 +37,7 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
   constexpr int most_iterations = 30;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     kernel_.evaluate(t, x, selections, held, values_);
+    regular_ = true;
     if (count == 0) return true;
     auto& system = work_->system;
     system.reset(static_cast<Eigen::Index>(count));
@@ -62,7 +63,9 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
       }
       right(static_cast<Eigen::Index>(k)) = -rate;
     }
-    if (!system.solve(1e-11 * size)) return false;
+    const bool solved = system.solve(1e-11 * size);
+    regular_ = system.is_factorised();
+    if (!solved) return false;
     double change = 0.0;
     for (std::size_t l = 0; l < count; ++l) {
       const double step = system.right()(static_cast<Eigen::Index>(l));

@@ -24,6 +24,8 @@ class ProjectedField {
   /// @param selections  all of them; the sliding ones are found
   /// @return false where Newton's method finds none. values() are those at the solution.
   [[nodiscard]] bool solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections);
+  /// Whether the equations of the last solve() have one solution.
+  [[nodiscard]] bool regular() const { return regular_; }
   [[nodiscard]] const discretization::StageValues& values() const { return values_; }
   /// Rates d psi / dt (or d g / dt) of all indicators along values().f.
   void rates(std::vector<double>& rate) const;
@@ -31,6 +33,7 @@ class ProjectedField {
  private:
   const discretization::StageKernel& kernel_;
   discretization::StageValues values_;
+  bool regular_ = true;
   struct Work;
   std::unique_ptr<Work> work_;
 };

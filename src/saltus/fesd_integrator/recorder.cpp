@@ -91,7 +91,7 @@ void Recorder::finish(result::Event& event, const Columns& after, const std::vec
   event.mode_after = after.mode;
   event.alpha_after = after.alpha;
   if (!facts_.regions.empty()) event.regions_after = after.regions;
-  event.unique = true;
+  event.unique = std::all_of(found.begin(), found.end(), [](const auto& other) { return other.determined; });
   for (std::size_t k = 1; k < found.size(); ++k) {
     Columns other = columns(found[k].set, found[k].selections, held);
     // Sets that differ only where it does not show (inside a nested function) are one continuation.

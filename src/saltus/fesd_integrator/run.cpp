@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/fesd_integrator/run_internal.hpp"
 
@@ -43,6 +44,7 @@ Run::Run(const discretization::StageKernel& kernel, const discretization::PointF
   chain_.elements.resize(static_cast<std::size_t>(options.elements));
   chain_.left.resize(static_cast<std::size_t>(options.elements) + 1);
   chain_.errors.resize(static_cast<std::size_t>(options.elements));
+  chain_.determined.resize(static_cast<std::size_t>(options.elements));
   between_x_.resize(facts.n_x);
   kernel.size(at_switch_);
 }
@@ -94,10 +96,12 @@ Integration Run::run() {
   }
   integration.status = status_.value_or(result::Status{result::Termination::completed, "", t_});
   integration.status.time_reached = t_;
+  if (!status_ && undetermined_) integration.status.message = *undetermined_;
   if (const auto worst = coarseness_.worst()) {
     statistics_.error_estimate = worst->sum;
-    if (!status_ && worst->sum > options_.error_limit.value_or(coarse))
+    if (!status_ && !undetermined_ && worst->sum > options_.error_limit.value_or(coarse)) {
       integration.status.message = coarse_message(*worst);
+    }
   }
   integration.final = recorder_.last();
   integration.events = std::move(recorder_.event_list());
@@ -147,8 +151,7 @@ void Run::start() {
     if (std::count_if(functions.begin(), functions.end(), in_group) == 1) std::erase_if(functions, in_group);
   }
   std::rotate(found.begin(), chosen, chosen + 1);
-  set_ = found.front().set;
-  selections_ = found.front().selections;
+  continue_with(found);
   if (!user_events_.empty()) {
     static_cast<void>(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), std::nullopt));
   }
@@ -163,6 +166,25 @@ bool Run::stopped_where_not_finite() {
                    "or take reformulation = \"step\" or method = \"event\"",
                    t_));
   return true;
+}
+
+void Run::continue_with(const std::vector<Continuation>& found) {
+  set_ = found.front().set;
+  selections_ = found.front().selections;
+  determined_ = found.front().determined;
+  const bool all = std::all_of(found.begin(), found.end(), [](const auto& other) { return other.determined; });
+  if (all || undetermined_) return;
+  const auto view = recorder_.view(set_, selections_, held_.data());
+  std::vector<std::string> names;
+  for (const auto& column : facts_.columns) {
+    if (view.mode[static_cast<std::size_t>(column.function)] == 0) names.push_back(column.name);
+  }
+  const bool regions = std::any_of(facts_.parts.begin(), facts_.parts.end(), [](const Part& p) { return p.simplex; });
+  undetermined_ = fmt::format(
+      "from t = {:.10g} the solution is one of many: the equations of sliding on {} do not determine all {}, and these "
+      "move the state (unique = false); take {}method = \"event\"",
+      t_, fmt::join(names, ", "), regions ? "weights of regions" : "selections",
+      regions ? "reformulation = \"step\" or " : "");
 }
 
 bool Run::step_counts() {
@@ -211,8 +233,7 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
     return;
   }
   recorder_.switched(t_, x_, {&before, &selections_before, held_before}, found, held_.data(), reason);
-  set_ = found.front().set;
-  selections_ = found.front().selections;
+  continue_with(found);
   previous_.reset();
   if (!user_events_.empty()) {
     fire(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), std::nullopt), t_, x_, selections_);
@@ -268,7 +289,7 @@ void Run::accept_chain(std::size_t count, double end_time, const Condition* clos
   }
   for (std::size_t i = 0; i < count && !stopped(); ++i) {
     const Element& element = chain_.elements[i];
-    coarseness_.note(element, chain_.errors[i]);
+    if (determined_) coarseness_.note(element, chain_.errors[i]);
     accept(element, chain_.left[i], chain_.left[i + 1], i + 1 == count ? end_time : element.t + element.h);
     if (i + 1 == count) break;
     row_here();

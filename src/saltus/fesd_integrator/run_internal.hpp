@@ -41,6 +41,7 @@ class Run {
     std::size_t count = 0;                    ///< solved
     std::vector<std::vector<double>> left;    ///< selections at the left ends; of the right end of the last one behind
     std::vector<std::vector<double>> errors;  ///< of each, as Watch::errors
+    std::vector<bool> determined;             ///< of each, ElementSolver::determined; where a problem has guessed it
   };
   enum class Solved { all, violated, missed, coarse, failed };
   /// Elements of length h from here, up to the first that violates a condition, jumps over a switch or is too coarse.
@@ -116,6 +117,8 @@ class Run {
     left_.size = size_;
     return left_;
   }
+  /// From here on in the first of these sets.
+  void continue_with(const std::vector<Continuation>& found);
   [[nodiscard]] std::string coarse_message(const Coarseness::Worst& worst) const;
   void emit_times(const Element* element, const std::vector<double>& selections, double until);
   struct EventZero {
@@ -165,6 +168,8 @@ class Run {
   double t_ = 0.0;
   std::vector<double> x_, selections_;
   ActiveSet set_;
+  bool determined_ = true;                   ///< Continuation::determined of set_
+  std::optional<std::string> undetermined_;  ///< what to say of the first set that was not
   /// Of the element that is solved, and of the one before it; members, so that steps do not allocate.
   Point left_;
   ActiveSet set_before_;

@@ -105,8 +105,7 @@ bool Run::go_to_limit(LapSeries::Wanted wanted) {
   recorder_.accumulated(limit->t, x_, x, {&before, &selections, held_.data()}, found, held_.data());
   t_ = limit->t;
   x_ = std::move(x);
-  set_ = found.front().set;
-  selections_ = found.front().selections;
+  continue_with(found);
   previous_.reset();
   if (!user_events_.empty()) {
     fire(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), std::nullopt), t_, x_, selections_);

@@ -30,6 +30,7 @@ bool Run::solve_guessed(const std::vector<ElementGuess>& guesses, std::vector<Ac
     if (i == 0 || !(sets[i] == sets[i - 1])) selections_behind(guess, sets[i], left);
     const auto outcome =
         solver_.solve(left, guess.h, {&sets[i], 1}, held_.data(), ElementSolver::Guess::left_end, element);
+    chain_.determined[i] = solver_.determined();
     Violation ignored;  // signs hold at the stages and at both ends, which is all the problem knows of
     auto& right = chain_.left[i + 1];
     right = left.selections;
@@ -63,10 +64,10 @@ void Run::accept_guessed(const std::vector<ElementGuess>& guesses, const std::ve
       const auto selections = selections_;
       Point behind{t_, x_, selections_, size_};
       selections_behind(guesses[i], sets[i], behind);
-      recorder_.switched(t_, x_, {&before, &selections, held_.data()}, {{sets[i], behind.selections}}, held_.data(),
+      const std::vector<Continuation> found{{sets[i], behind.selections, chain_.determined[i]}};
+      recorder_.switched(t_, x_, {&before, &selections, held_.data()}, found, held_.data(),
                          "found by the problem of the step");
-      set_ = sets[i];
-      selections_ = behind.selections;
+      continue_with(found);
     }
     accept(element, selections_, chain_.left[i + 1], i + 1 == guesses.size() ? end : element.t + element.h);
     row_here();

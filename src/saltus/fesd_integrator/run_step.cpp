@@ -31,6 +31,8 @@ double Run::part_end(double end) const {
 }
 
 bool Run::too_coarse(const Element& element, const std::vector<double>& errors) {
+  // Weights that nothing determines wander from stage to stage: no length makes these elements alike.
+  if (!determined_) return false;
   share_ = std::max(share_, coarseness_.share(element, errors));
   // Twice: parts of the shortest length are so but for the roundings of t.
   return share_ > 1.0 && element.h * options_.elements > 2.0 * shortest_for_errors * nominal_;

@@ -202,11 +202,14 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
   return least;
 }
 
-bool Transition::passes_trial(const Decision& decision, const Group& group, const Continuation& candidate) {
+ElementSolver::Outcome Transition::solve_trial(const Decision& decision, const Continuation& candidate) {
   const Point left{decision.t, {decision.x.begin(), decision.x.end()}, candidate.selections, decision.size};
-  const auto outcome = solver_.solve(left, decision.trial_length, {&candidate.set, 1}, decision.held,
-                                     ElementSolver::Guess::left_end, trial_);
-  if (outcome != ElementSolver::Outcome::solved) return false;
+  return solver_.solve(left, decision.trial_length, {&candidate.set, 1}, decision.held, ElementSolver::Guess::left_end,
+                       trial_);
+}
+
+bool Transition::passes_trial(const Decision& decision, const Group& group, const Continuation& candidate) {
+  if (solve_trial(decision, candidate) != ElementSolver::Outcome::solved) return false;
   auto selections = candidate.selections;
   Violation violation;
   // A switch late in the trial is the next one.
@@ -235,7 +238,7 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     for (const auto& pattern : groups_[g].patterns) {
       auto trial = modes;
       put(groups_[g], pattern, trial);
-      Continuation candidate{ActiveSet(parts_, trial), {}};
+      Continuation candidate{ActiveSet(parts_, trial), {}, true};
       const double value = margin(decision, groups_[g], candidate);
       if (value < -undecided) continue;
       options[g].push_back({pattern, value});
@@ -251,7 +254,7 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
       if (option.margin <= undecided) {
         auto trial = guess;
         put(groups_[g], option.pattern, trial);
-        Continuation candidate{ActiveSet(parts_, trial), {}};
+        Continuation candidate{ActiveSet(parts_, trial), {}, true};
         if (margin(decision, groups_[g], candidate) < -undecided) continue;
         if (!passes_trial(decision, groups_[g], candidate)) continue;
       }
@@ -264,8 +267,12 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
   Group all;
   for (const Group& group : groups_) all.members.insert(all.members.end(), group.members.begin(), group.members.end());
   const auto keep = [&](const std::vector<int>& chosen) {
-    Continuation candidate{ActiveSet(parts_, chosen), {}};
-    if (margin(decision, all, candidate) >= -undecided) found.push_back(std::move(candidate));
+    Continuation candidate{ActiveSet(parts_, chosen), {}, true};
+    if (margin(decision, all, candidate) < -undecided) return;
+    if (!projected_.regular()) {
+      candidate.determined = solve_trial(decision, candidate) == ElementSolver::Outcome::solved && solver_.determined();
+    }
+    found.push_back(std::move(candidate));
   };
   keep(guess);
   for (std::size_t g = 0; g < groups_.size(); ++g) {

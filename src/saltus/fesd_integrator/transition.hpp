@@ -18,6 +18,7 @@ namespace saltus::fesd_integrator {
 struct Continuation {
   ActiveSet set;
   std::vector<double> selections;
+  bool determined = true;  ///< ElementSolver::determined of an element that begins here
 };
 
 /// What is known of a point where a set ended.
@@ -60,6 +61,7 @@ class Transition {
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
                                    Continuation& candidate);
+  [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate);
   [[nodiscard]] bool passes_trial(const Decision& decision, const Group& group, const Continuation& candidate);
 
   const discretization::StageKernel& kernel_;

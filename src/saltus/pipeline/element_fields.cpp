@@ -176,7 +176,9 @@ constexpr std::array fields_of{
                     : "Lengths are fixed.",
                 set_error_limit<part>, record_error_limit<part>},
     OptionField{"step_bounds", "a number > 0 and <= 1",
-                "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided.",
+                is_fesd<part>
+                    ? "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided."
+                    : "Lengths are fixed: every value holds.",
                 set_step_bounds<part>, record_number<step_bounds<part>>},
     OptionField{"rho", "a finite number > 0", "Weight of the objective terms of step_equilibration.",
                 set_number<rho<part>, Range::positive>, record_number<rho<part>>},

@@ -116,6 +116,26 @@ TEST(Coarse, ResolvedStepsAreNotDivided) {
   EXPECT_EQ(with.statistics.rejected, 0);
 }
 
+/// Sliding on x = sin(t) / 2 and y = 0 from t = 0 on; z feels the weight that Stewart's form leaves free.
+TEST(Coarse, SolutionsThatAreOneOfManyAreToldAndNotDivided) {
+  model::Builder builder("free weight");
+  const SX x = builder.state("x", {0.0});
+  const SX y = builder.state("y", {0.0});
+  const SX z = builder.state("z", {0.0});
+  const SX a = builder.sign(x - 0.5 * sin(builder.time())), b = builder.sign(y);
+  builder.dynamics("x", -1.5 * a + 0.4 * a * b);
+  builder.dynamics("y", -2.0 * b + 0.7 * a);
+  builder.dynamics("z", a * b - z);
+  const auto system = *builder.build();
+  const auto step = run(system, 4.0, {.error_limit = 0.03});
+  EXPECT_EQ(step.status.message, "");
+  EXPECT_EQ(step.events.front().unique, true);
+  const auto stewart = run(system, 4.0, {.form = Form::stewart, .error_limit = 0.03});
+  EXPECT_NE(stewart.status.message.find("one of many"), std::string::npos) << stewart.status.message;
+  EXPECT_EQ(stewart.events.front().unique, false);
+  EXPECT_EQ(stewart.statistics.steps, 200U);
+}
+
 /// A field without a derivative at x = 0, where its elements have an error that no length makes small.
 TEST(Coarse, PartsOfStepsHaveAShortestLength) {
   model::Builder builder("root");

@@ -1,4 +1,5 @@
 // What continues a solution at a point, what is held and until when, and how it is recorded.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -101,6 +102,29 @@ TEST(Transition, TwoSurfacesAreEnteredTogether) {
   EXPECT_EQ(found[0].set.modes(), (Modes{0, 0}));
   EXPECT_NEAR(found[0].selections[0], 0.5, 1e-12);
   EXPECT_NEAR(found[0].selections[1], 0.5, 1e-12);
+}
+
+/// Two surfaces that influence each other meet, z' = factor sign x sign y beside them: in Stewart's form four weights
+/// and three equations.
+bool determined_at_the_corner(double factor, Form form) {
+  model::Builder builder("corner");
+  const SX x = builder.state("x", {0.0});
+  const SX y = builder.state("y", {0.0});
+  builder.state("z", {0.0});
+  const SX sx = builder.sign(x), sy = builder.sign(y);
+  builder.dynamics("x", -2.0 * sx + 0.5 * sy);
+  builder.dynamics("y", -2.0 * sy - 0.5 * sx);
+  builder.dynamics("z", factor * sx * sy);
+  const auto found = continuations(Compiled(builder, form), 0.0, {0.0, 0.0, 0.0}, std::nullopt, {});
+  EXPECT_FALSE(found.empty());
+  return std::all_of(found.begin(), found.end(), [](const auto& other) { return other.determined; });
+}
+
+TEST(Transition, WeightsThatNoEquationHoldsAreTold) {
+  EXPECT_TRUE(determined_at_the_corner(1.0, Form::step));
+  EXPECT_FALSE(determined_at_the_corner(1.0, Form::stewart));
+  // Nothing moves with the weight that is free.
+  EXPECT_TRUE(determined_at_the_corner(0.0, Form::stewart));
 }
 
 TEST(Transition, SurfacesWithoutInfluenceAreDecidedOneByOne) {
