@@ -75,6 +75,16 @@ fesd = { reformulation = "stewart" }
         status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
         self.assertEqual(status["termination"], "evaluation_failed")
 
+    def test_roots_of_zero_in_a_switching_function_are_told(self):
+        (self.folder / "root.toml").write_text(
+            '[model]\nname = "root"\n[states]\nx = 0\ny = 0.5\n[dynamics]\nx = "y"\n'
+            'y = "-sign(y + abs(x)^0.6*sign(x))"\n[simulate]\nuntil = 1\n', encoding="utf-8")
+        _, errors = self.run_tool("simulate", "root.toml", "--method", "fesd", "--quiet", "--out", "r.json", code=3)
+        for part in ("the switching function of y+abs(x)^0.6*sign(x)", "has no finite derivative by x at t = 0", "method = \"event\""):
+            self.assertIn(part, " ".join(errors.split()))
+        status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
+        self.assertEqual(status["termination"], "evaluation_failed")
+
     def test_timestepping_divides_elements_that_have_no_active_sets(self):
         for stages in (2, 3, 4):
             for steps in (20, 40):

@@ -26,7 +26,11 @@ bool Run::fire_user_events(const std::vector<double>& x_before, const ModeState&
 
 bool Run::too_many_events() {
   if (recorder_.events() >= options_.max_events) {
-    fail(Termination::iteration_limit, fmt::format("max_events = {} reached at {}", options_.max_events, where()));
+    fail(Termination::iteration_limit,
+         fmt::format(
+             "max_events = {} reached at {}; raise simulate.max_events if they are meant, or see in the table of "
+             "events what switches ever faster",
+             options_.max_events, where()));
     return true;
   }
   // Jumps have their own limits.

@@ -160,7 +160,11 @@ void Run::start() {
 }
 
 bool Run::stopped_where_not_finite() {
-  if (transition_.finite()) return false;
+  if (transition_.finite()) {
+    auto steep = steep_here();
+    if (steep) stop(result::Termination::evaluation_failed, std::move(*steep));
+    return steep.has_value();
+  }
   stop(result::Termination::evaluation_failed,
        fmt::format("indicators of regions are not finite at t = {:.10g}; change the state there or their expressions, "
                    "or take reformulation = \"step\" or method = \"event\"",

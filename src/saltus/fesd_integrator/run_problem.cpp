@@ -89,6 +89,17 @@ std::optional<std::string> Run::steep_here() {
           facts_.state_names[i], facts_.state_names[k], t_);
     }
   }
+  const std::size_t n = facts_.selections.size();
+  for (std::size_t k = 0; k < n_x; ++k) {
+    for (std::size_t j = 0; j < n; ++j) {
+      // Of any size, as psi may be in any unit.
+      if (std::isfinite(at_switch_.indicator_x[k * n + j])) continue;
+      return fmt::format(
+          "the switching function of {} has no finite derivative by {} at t = {:.10g} (a root of zero?), and elements "
+          "are solved by derivatives; use method = \"event\"",
+          facts_.selections[j].name, facts_.state_names[k], t_);
+    }
+  }
   return std::nullopt;
 }
 
