@@ -85,6 +85,20 @@ fesd = { reformulation = "stewart" }
         status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
         self.assertEqual(status["termination"], "evaluation_failed")
 
+    def test_four_quadrants_by_indicators_are_told(self):
+        # g1 + g4 = g2 + g3: at the origin four weights and three equations, and z feels the one that is free.
+        fields = {"pp": ("-x-y", -1, -0.7, 1), "pm": ("-x+y", -0.5, 1.2, 0), "mp": ("x-y", 0.9, -1, 0), "mm": ("x+y", 1, 0.8, 2)}
+        modes = "".join(f'[[modes]]\nname = "{name}"\nindicator = "{g}"\ndynamics = {{ x = {x}, y = {y}, z = {z} }}\n'
+                        for name, (g, x, y, z) in fields.items())
+        (self.folder / "quad.toml").write_text(
+            f'[model]\nname = "quad"\n[states]\nx = 0.7\ny = 0.4\nz = 0\n{modes}[simulate]\nuntil = 3\n', encoding="utf-8")
+        _, errors = self.run_tool("simulate", "quad.toml", "--quiet", code=3)
+        self.assertIn("state these regions by conditions (when)", " ".join(errors.split()))
+        self.run_tool("simulate", "quad.toml", "--method", "fesd", "--quiet", "--out", "r.json", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertIn("sliding on pp, pm, mp do not determine all weights", result["status"]["message"])
+        self.assertEqual([event["unique"] for event in result["events"]], [True, False])
+
     def test_timestepping_divides_elements_that_have_no_active_sets(self):
         for stages in (2, 3, 4):
             for steps in (20, 40):

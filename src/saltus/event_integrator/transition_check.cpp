@@ -164,7 +164,17 @@ bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
 /// The field of the new mode does not move psi_j to where the mode says: why not.
 bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
   const auto& state = transition_.state;
-  const auto& name = s_.system.switching[at(j)].name;
+  const auto& function = s_.system.switching[at(j)];
+  const auto& name = function.name;
+  if (motion.side.drift == switching::Drift::stays && function.role == model::SwitchingRole::region &&
+      state.sliding.size() > 1) {
+    return fail(
+        result::Termination::outside_class,
+        fmt::format("at t = {} more regions meet than their indicators tell apart: that of '{}' follows from those "
+                    "of the others, as with four quadrants, so that their weights are not determined; state "
+                    "these regions by conditions (when) of switching functions",
+                    occasion_.t, name));
+  }
   if (motion.side.drift == switching::Drift::stays) {
     return fail(result::Termination::outside_class,
                 fmt::format("behind t = {} the field of the new mode does not leave '{}', to any order (boundary "

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "saltus/fesd_integrator/run_internal.hpp"
 
@@ -51,13 +50,6 @@ Run::Run(const discretization::StageKernel& kernel, const discretization::PointF
 
 void Run::stop(result::Termination termination, std::string message) {
   if (!status_) status_ = result::Status{termination, std::move(message), t_};
-}
-
-std::string Run::coarse_message(const Coarseness::Worst& worst) const {
-  return fmt::format(
-      "the elements are coarse: their estimated errors add up to {:.2g} of the largest |{}|, of the element at t = "
-      "{:.6g} alone {:.2g}; take more simulate.fesd.steps",
-      worst.sum, facts_.state_names[worst.state], worst.t, worst.error);
 }
 
 Integration Run::run() {
@@ -177,18 +169,7 @@ void Run::continue_with(const std::vector<Continuation>& found) {
   selections_ = found.front().selections;
   determined_ = found.front().determined;
   const bool all = std::all_of(found.begin(), found.end(), [](const auto& other) { return other.determined; });
-  if (all || undetermined_) return;
-  const auto view = recorder_.view(set_, selections_, held_.data());
-  std::vector<std::string> names;
-  for (const auto& column : facts_.columns) {
-    if (view.mode[static_cast<std::size_t>(column.function)] == 0) names.push_back(column.name);
-  }
-  const bool regions = std::any_of(facts_.parts.begin(), facts_.parts.end(), [](const Part& p) { return p.simplex; });
-  undetermined_ = fmt::format(
-      "from t = {:.10g} the solution is one of many: the equations of sliding on {} do not determine all {}, and these "
-      "move the state (unique = false); take {}method = \"event\"",
-      t_, fmt::join(names, ", "), regions ? "weights of regions" : "selections",
-      regions ? "reformulation = \"step\" or " : "");
+  if (!all && !undetermined_) undetermined_ = undetermined_message();
 }
 
 bool Run::step_counts() {

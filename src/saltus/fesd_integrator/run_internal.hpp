@@ -120,6 +120,8 @@ class Run {
   /// From here on in the first of these sets.
   void continue_with(const std::vector<Continuation>& found);
   [[nodiscard]] std::string coarse_message(const Coarseness::Worst& worst) const;
+  /// Of the set where the run is: what slides on which nothing determines all selections.
+  [[nodiscard]] std::string undetermined_message() const;
   void emit_times(const Element* element, const std::vector<double>& selections, double until);
   struct EventZero {
     std::size_t function = 0;
