@@ -4,6 +4,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import platform
 import subprocess
 
 import gene_ring
@@ -128,3 +129,20 @@ def line_up(programs):
     contenders.append(Contender("Siconos", "midpoint", "active relays", siconos, ("gene-ring",), time_stepping=True,
                                 missing=no_siconos))
     return contenders
+
+
+def machine():
+    """Processor, compiler and revision of this run."""
+    model = "unknown processor"
+    try:
+        for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                model = line.split(":", 1)[1].strip()
+                break
+    except OSError:
+        pass
+    compiler = subprocess.run(["c++", "--version"], capture_output=True, text=True, check=False).stdout
+    revision = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty=, changed"],
+                              capture_output=True, text=True, check=False).stdout.strip()
+    compiler = compiler.splitlines()[0] if compiler else "no compiler"
+    return f"{model}, {os.cpu_count()} processors, {platform.system()}, {compiler}, revision {revision}"

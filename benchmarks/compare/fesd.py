@@ -120,6 +120,16 @@ def stored_rows(file):
                 for row in csv.DictReader(stream)]
 
 
+def versions():
+    """Of the machine, and of what is in the virtual environment of nosnoc."""
+    ask = "from importlib.metadata import version; print(f'nosnoc {version(\"nosnoc\")}, CasADi {version(\"casadi\")}')"
+    try:
+        other = subprocess.run([NOSNOC, "-c", ask], capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        other = "no nosnoc"
+    return f"{contenders.machine()} (Release); {other}"
+
+
 def page(measured, loads, remark):
     body = []
     saltus = {row_line(row): row.get("seconds_per_step") for row in measured if row["contender"] == "Saltus"}
@@ -130,7 +140,7 @@ def page(measured, loads, remark):
                      str(row["failed"]), f"{row['error']:.1e}" if "error" in row else "–",
                      f"{1e3 * time:.3g}" if time else "–", f"{ratio:.0f}" if ratio else ""])
     head = ["problem", "form", "scheme", "steps", "", "failed steps", "error", "ms per step", "ratio"]
-    return ("# FESD: Saltus and nosnoc\n\nMade by `benchmarks/compare/fesd.py`; how to read it: "
+    return (f"# FESD: Saltus and nosnoc\n\n{versions()}\n\nMade by `benchmarks/compare/fesd.py`; how to read it: "
             "[benchmarks/README.md](../README.md). Processes that wanted to run meanwhile (load average before and "
             f"behind): {loads[0]:.1f}, {loads[1]:.1f}.{remark}\n\n" + table.markdown([head, ["---"] * len(head), *body]))
 

@@ -10,7 +10,6 @@ Needs nothing but Python; the competitors that cannot be installed become rows "
 import argparse
 import os
 import pathlib
-import platform
 import shutil
 import statistics
 import subprocess
@@ -82,26 +81,10 @@ def count_events(options, lineup):
     return counts
 
 
-def machine():
-    model = "unknown processor"
-    try:
-        for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-            if line.startswith("model name"):
-                model = line.split(":", 1)[1].strip()
-                break
-    except OSError:
-        pass
-    compiler = subprocess.run(["c++", "--version"], capture_output=True, text=True, check=False).stdout
-    revision = subprocess.run(["git", "-C", contenders.ROOT, "describe", "--always", "--dirty=, changed"],
-                              capture_output=True, text=True, check=False).stdout.strip()
-    compiler = compiler.splitlines()[0] if compiler else "no compiler"
-    return f"{model}, {os.cpu_count()} processors, {platform.system()}, {compiler}, revision {revision}"
-
-
 def page(options, results, counts, loads):
     parts = ["# Comparison: time at equal achieved error\n",
              f"Made by `benchmarks/compare/run.py --rounds {options.rounds} --seconds {options.seconds} "
-             f"--timeout {options.timeout:g}` on {machine()}. "
+             f"--timeout {options.timeout:g}` on {contenders.machine()}. "
              f"Processes that wanted to run meanwhile (load average before and behind): {loads[0]:.1f}, {loads[1]:.1f}. "
              "How to read it: "
              "[benchmarks/README.md](../README.md).\n",
