@@ -102,7 +102,10 @@ Expected<void> set_error_limit(SimulateOptions& options, std::string_view, const
     return {};
   }
   if (!is_fesd<part>) return tl::unexpected(out_of_range("\"off\": lengths are fixed", value));
-  return number_within(Range::positive, value).map([&](double number) { part(options).error_limit = number; });
+  const auto number = number_within(Range::positive, value);
+  if (!number) return tl::unexpected(out_of_range("a finite number > 0, or \"off\"", value));
+  part(options).error_limit = *number;
+  return {};
 }
 
 template <auto part>

@@ -108,6 +108,8 @@ FILES = {
     "sensitivity": (after("[sensitivity]\nx = 1\n"), 13, "[sensitivity]", "a later one brings it"),
     "fesd": (after("[simulate.fesd]\nsteps = 0\n"), "14:9", "steps", "expected a whole number >= 1"),
     "fesd lifting": (after("[simulate.fesd]\nlifting = 1\n"), "14:11", 'from 2 to 64 or "off"'),
+    "fesd error limit": (after("[simulate.fesd]\nerror_limit = \"on\"\n"), "14:15", "error_limit", 'a finite number > 0, or "off"'),
+    "timestepping error limit": (after("[simulate.timestepping]\nerror_limit = 0.1\n"), "14:15", "lengths are fixed"),
     "fesd key": (after("[simulate.fesd]\nstage = 1\n"), "14:1", "did you mean 'simulate.fesd.stages'"),
     "timestepping": (after("[simulate.timestepping]\nstep_bounds = 2\n"), "14:15", "a number > 0 and <= 1"),
     "smoothed": (after("[simulate.smoothed]\nepsilon = -1\n"), "14:11", "epsilon", "expected a finite number > 0"),
