@@ -101,6 +101,16 @@ class Compare(tool.ToolTest):
         self.assertIn("stopped early", table)
         self.assertIn("stopped early", errors)
 
+    def test_what_completed_runs_say_is_told(self):
+        # In Stewart's form z feels a weight that no equation determines.
+        model = self.write("free.toml", '[model]\nname = "free"\n[states]\nx = 0.5\ny = -0.2\nz = 0\n[dynamics]\n'
+                           'x = "-1.5*sign(x) + 0.4*sign(x)*sign(y)"\ny = "-2*sign(y) + 0.7*sign(x)"\n'
+                           'z = "sign(x)*sign(y)"\n[simulate]\nuntil = 2\n')
+        table, _ = self.run_tool("compare", model, "--report", "c.html", code=0)
+        remarks = " ".join(table[table.index("remarks"):].split())
+        self.assertIn("fesd (radau_iia 2, stewart, 100 steps): from t = ", remarks)
+        self.assertIn("the solution is one of many", remarks)
+
     def test_a_stored_comparison_gives_the_same_page(self):
         self.run_tool("compare", "crossing", "--out", "c.json", "--report", "c.html", "--quiet", code=0)
         self.run_tool("report", "c.json", "--out", "again.html", code=0)

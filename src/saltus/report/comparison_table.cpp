@@ -61,7 +61,7 @@ std::string comparison_table(const result::Result& result, const result::Compari
     head.emplace_back(title);
   }
   std::vector<Row> rows{head};
-  std::string stops, refusals;
+  std::string remarks, stops, refusals;
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     const auto& run = comparison.runs[i];
     if (!run.reason.empty()) {
@@ -69,7 +69,11 @@ std::string comparison_table(const result::Result& result, const result::Compari
       continue;
     }
     rows.push_back(run_row(run, i == comparison.reference, states));
-    if (is_done(run.status.termination)) continue;
+    if (is_done(run.status.termination)) {
+      if (run.status.termination == result::Termination::completed && !run.status.message.empty())
+        remarks += paragraph("", fmt::format("{}: {}", of_run(run), run.status.message));
+      continue;
+    }
     stops += paragraph("", fmt::format("{}: {} at t = {:.12g}: {}", of_run(run), name(run.status.termination),
                                        run.status.time_reached, run.status.message));
   }
@@ -78,6 +82,7 @@ std::string comparison_table(const result::Result& result, const result::Compari
                                         states < result.states.size() ? ", the first components" : ""));
   text += aligned(rows);
   text += not_unique(result);
+  if (!remarks.empty()) text += "remarks\n" + remarks;
   if (!stops.empty()) text += "stopped early\n" + stops;
   if (!refusals.empty()) text += "not run\n" + refusals;
   return text;

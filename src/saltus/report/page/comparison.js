@@ -46,6 +46,8 @@ saltus.comparisonCard = (result) => {
           saltus.element(
               "tbody", {},
               ...comparison.runs.map((run, i) => saltus.comparedRow(run, i === comparison.reference, states)))),
+      ...comparison.runs.filter((run) => run.reason === "" && run.status.termination !== "stopped_by_event" && run.status.message !== "")
+          .map((run) => saltus.element("p", {class: "note"}, `${run.method} (${run.variant}): ${run.status.message}`)),
       saltus.element(
           "p", {class: "quiet note"},
           "End states, largest differences from the reference (bars: logarithms from 1e-16 to 1), time with building. ",
