@@ -48,6 +48,7 @@ bool leads_into_its_region(const Surroundings& s, const ModeState& state, const 
 Transition transition_to(ModeState state) {
   Transition transition;
   for (auto& corner : state.corner_alpha) corner = state.alpha;
+  set_corner_alpha(state);
   transition.zero_order.assign(state.mode.size(), 0);
   transition.state = std::move(state);
   return transition;
@@ -75,6 +76,7 @@ std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occ
                                                  [](const HeldFunction& function) { return function.order == 0; });
   // Sliding of the usual kind is left to those who know it better.
   if (!usual) state.higher = std::make_shared<const HigherOrderSet>(std::move(*found));
+  set_corner_alpha(state);
   ModeField field(s.kernel, s.affine_in_alpha);
   field.enter(state);
   std::vector<double> xdot(x.size());
