@@ -231,7 +231,7 @@ until = 1
         out, _ = self.run_tool("check", "two-belts", "--set", "simulate.max_events=1", code=0)
         self.assertRegex(out, r"the simulation stopped at t = 0\.24")
         out, _ = self.run_tool("check", "bouncing-ball", code=0)
-        self.assertIn("none: finite elements with switch detection do not cover models with [[jumps]]", out)
+        self.assertIn("none: finite elements do not cover models with [[jumps]]", out)
         self.assertNotIn("well-posedness", out)
 
     def test_lists_the_columns_in_their_order_then_the_rest(self):

@@ -8,7 +8,7 @@ import tool
 class Elements(tool.ToolTest):
     def test_check_says_which_models_they_cover(self):
         self.assertIn("methods: event, smoothed, fesd, timestepping", self.run_tool("check", "stick-slip", code=0)[0])
-        self.assertIn("fesd, timestepping: finite elements with switch detection do not cover models with [[jumps]]",
+        self.assertIn("fesd, timestepping: finite elements do not cover models with [[jumps]]",
                       " ".join(self.run_tool("check", "bouncing-ball", code=0)[0].split()))
 
     def test_stages_whose_modes_go_round_in_circles_are_searched(self):

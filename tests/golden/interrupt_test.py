@@ -31,9 +31,9 @@ output = { points = 10 }
 
 
 class Interrupt(tool.ToolTest):
-    def start(self, **streams):
+    def start(self, command=("simulate", "--out", "r.json"), **streams):
         model = self.write("m.toml", ENDLESS)
-        return subprocess.Popen([tool.TOOL, "simulate", str(model), "--out", "r.json"], cwd=self.folder, **streams)
+        return subprocess.Popen([tool.TOOL, *command, str(model)], cwd=self.folder, **streams)
 
     def terminal(self):
         """Both ends of a pseudo-terminal; containers without /dev/ptmx have none."""
@@ -66,6 +66,16 @@ class Interrupt(tool.ToolTest):
         self.assertGreater(result["final"]["t"], 0.0)
         self.assertLess(result["final"]["t"], 1e9)
         self.assertEqual(result["trajectory"]["t"][-1], result["final"]["t"])
+
+    def test_check_says_what_it_knows(self):
+        process = self.start(["check"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(2.0)
+        self.assertIsNone(process.poll(), "ended by itself")
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 3, err)
+        self.assertIn("the simulation stopped at t = ", out)
+        self.assertIn("stopped_by_user", err)
 
     def test_a_terminal_sees_progress(self):
         seen, shown = self.terminal()

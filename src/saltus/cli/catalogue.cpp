@@ -58,7 +58,7 @@ std::vector<CatalogueEntry> catalogue() {
 Expected<fs::path> find_model(const std::string& model) {
   std::error_code ignored;
   const fs::path path(model);
-  if (fs::exists(path, ignored) && !fs::is_directory(path, ignored)) return path;
+  if (model == "-" || (fs::exists(path, ignored) && !fs::is_directory(path, ignored))) return path;
   std::vector<std::string> known;
   for (const auto& entry : catalogue()) {
     if (entry.name == model) return entry.file;

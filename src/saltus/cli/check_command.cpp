@@ -6,11 +6,12 @@
 #include <fmt/format.h>
 
 #include "saltus/cli/commands.hpp"
+#include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/model_input.hpp"
+#include "saltus/cli/progress.hpp"
 #include "saltus/cli/reformulation_text.hpp"
 #include "saltus/cli/terminal.hpp"
 #include "saltus/model/build.hpp"
-#include "saltus/pipeline/simulate_options.hpp"
 #include "saltus/reformulation/dcs.hpp"
 #include "saltus/smoothed/regularise.hpp"
 
@@ -206,12 +207,12 @@ std::string jumps_text(const model::System& system) {
 }
 
 std::string description_of(const model::System& system, const std::string& path,
-                           const pipeline::SimulateOptions& options) {
+                           const pipeline::SimulateOptions& options, const pipeline::Observers& observers) {
   const std::string_view colon = system.description.empty() ? "" : ": ";
   std::string text = fmt::format("{}{}{}\n{}\n", system.name, colon, system.description, path);
   text += states_text(system) + parameters_text(system) + controls_text(system) + switching_text(system);
   text += cells_text(system) + modes_text(system) + events_text(system) + jumps_text(system) + inclusion_text(system) +
-          methods_text(system) + reformulation_text(system) + ranks_text(system, options);
+          methods_text(system) + reformulation_text(system) + ranks_text(system, options, observers);
   text += heading("warnings", system.warnings.size());
   for (const auto& warning : system.warnings) text += fmt::format("  {}\n", warning);
   return text;
@@ -222,8 +223,13 @@ ExitCode run(const Arguments& arguments) {
   if (!input) return refuse(input.error());
   const auto system = model::build(input->file.description, input->overrides);
   if (!system) return refuse(io::located(system.error(), input->file));
-  print(description_of(*system, input->path, input->file.simulate));
-  return ExitCode::done;
+  ProgressLine progress(ShowProgress::when_terminal);
+  const auto text = description_of(*system, input->path, input->file.simulate, watched(progress));
+  progress.clear();
+  print(text);
+  if (!interrupted()) return ExitCode::done;
+  print_error("stopped early: stopped_by_user: the ranks are those until then");
+  return ExitCode::stopped_early;
 }
 
 }  // namespace
@@ -232,7 +238,10 @@ Command add_check(CLI::App& app) {
   auto* command = app.add_subcommand("check", "read a model, classify its switching functions, warn");
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("MODEL", arguments->model, "model file, or a name of the catalogue (saltus models)")->required();
+  command
+      ->add_option("MODEL", arguments->model,
+                   "model file, a name of the catalogue (saltus models), or - for standard input")
+      ->required();
   command->add_option("--set", arguments->settings, "change a value before checking, as in simulate")
       ->type_name("NAME=VALUE")
       ->expected(1)

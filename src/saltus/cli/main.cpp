@@ -77,7 +77,11 @@ ExitCode run(int argc, char** argv) {
     app.exit(failure);  // prints the help or the version that was asked for
     return ExitCode::done;
   }
-  if (command != commands.end()) return command->run();
+  if (command != commands.end()) {
+    const ExitCode code = command->run();
+    const auto lost = lost_output();
+    return lost ? refuse(*lost) : code;
+  }
   print_error(app.help());
   return ExitCode::bad_input;
 }

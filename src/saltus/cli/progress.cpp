@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/cli/interrupt.hpp"
+
 namespace saltus::cli {
 namespace {
 
@@ -20,6 +22,16 @@ std::string progress_text(const pipeline::StepRecord& step) {
   const auto which = step.trajectories > 1 ? fmt::format("{} of {}   ", step.trajectory, step.trajectories) : "";
   return which + fmt::format("t = {:.6g}   {:.0f} %   {} steps   {} events", step.t,
                              100.0 * std::clamp(share, 0.0, 1.0), step.steps, step.events);
+}
+
+pipeline::Observers watched(ProgressLine& progress) {
+  catch_interrupt();
+  pipeline::Observers observers;
+  observers.on_step = [&progress](const pipeline::StepRecord& step) {
+    progress.update(step);
+    return interrupted() ? pipeline::Proceed::stop : pipeline::Proceed::on;
+  };
+  return observers;
 }
 
 ProgressLine::ProgressLine(ShowProgress show)

@@ -31,6 +31,10 @@ class ProgressLine {
   Clock::time_point next_;
 };
 
+/// Shows the progress of a run and has it stop at Ctrl-C, which is caught from here on.
+/// @param progress  must outlive what is returned
+[[nodiscard]] pipeline::Observers watched(ProgressLine& progress);
+
 /// "t = 12.5   31 %   1234 steps   6 events"; "3 of 7   …" with several trajectories.
 [[nodiscard]] std::string progress_text(const pipeline::StepRecord& step);
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "saltus/model/system.hpp"
-#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/pipeline/simulate.hpp"
 
 namespace saltus::cli {
 
@@ -12,6 +12,7 @@ namespace saltus::cli {
 [[nodiscard]] std::string reformulation_text(const model::System& system);
 
 /// The ranks of the systems for the multipliers along the solution of the model's [simulate].
-[[nodiscard]] std::string ranks_text(const model::System& system, const pipeline::SimulateOptions& options);
+[[nodiscard]] std::string ranks_text(const model::System& system, const pipeline::SimulateOptions& options,
+                                     const pipeline::Observers& observers);
 
 }  // namespace saltus::cli

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/progress.hpp"
 #include "saltus/cli/terminal.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/pipeline/option_effects.hpp"
 #include "saltus/pipeline/surfaces.hpp"
 #include "saltus/report/table.hpp"
 
@@ -20,14 +20,23 @@ namespace {
 Expected<void> apply_shortcuts(const RunArguments& arguments, io::ModelFile& file) {
   for (const auto& [shortcut, value] : arguments.shortcuts) {
     if (!value) continue;
-    auto options = io::with_option(file.simulate, shortcut.key, *value);
-    if (!options) {
-      options.error().location = {fmt::format("{} {}", shortcut.flag, *value), 0, 0};
-      return tl::unexpected(options.error());
-    }
-    file.simulate = std::move(*options);
+    const SourceLocation typed{fmt::format("{} {}", shortcut.flag, *value), 0, 0};
+    if (auto done = io::set_option(file, shortcut.key, *value, typed); !done) return done;
   }
   return {};
+}
+
+/// Tells which given options say nothing to the method that runs. A file may hold the tables of several methods; what
+/// is typed, and what stands in the table of this one, is meant.
+void note_options_without_effect(const io::ModelFile& file) {
+  for (const auto& [key, location] : file.option_locations) {
+    const bool meant = location.line == 0 || pipeline::is_of_method(file.simulate, key);
+    const auto reason = meant ? pipeline::without_effect(file.simulate, key) : std::string();
+    if (reason.empty()) continue;
+    const auto place =
+        location.line == 0 ? location.file : fmt::format("{}:{}: simulate.{}", location.file, location.line, key);
+    print_error(fmt::format("warning: {} has no effect: {}", place, reason));
+  }
 }
 
 /// What a simulation cannot know: the file's fingerprint, and the inputs as they were written.
@@ -45,13 +54,7 @@ Expected<result::Result> compute_all(const RunArguments& arguments, const ModelI
   if (!system) return tl::unexpected(system.error());
   for (const auto& warning : system->warnings) print_error(fmt::format("warning: {}", warning));
   ProgressLine progress(arguments.quiet ? ShowProgress::never : ShowProgress::when_terminal);
-  pipeline::Observers observers;
-  observers.on_step = [&](const pipeline::StepRecord& step) {
-    progress.update(step);
-    return interrupted() ? pipeline::Proceed::stop : pipeline::Proceed::on;
-  };
-  catch_interrupt();
-  auto result = compute(*system, input.file.simulate, observers);
+  auto result = compute(*system, input.file.simulate, watched(progress));
   if (!result) return result;
   complete_record(input, *result);
   if (outputs.show_surfaces()) result->surfaces = pipeline::surfaces(*system, *result);
@@ -114,7 +117,10 @@ ExitCode report_stops(const result::Result& result) {
 
 void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts,
                      const std::vector<std::string>& suffixes, const std::string& out_help) {
-  command.add_option("MODEL", arguments.model, "model file, or a name of the catalogue (saltus models)")->required();
+  command
+      .add_option("MODEL", arguments.model,
+                  "model file, a name of the catalogue (saltus models), or - for standard input")
+      ->required();
   for (const auto& shortcut : shortcuts) arguments.shortcuts.emplace_back(shortcut, std::nullopt);
   for (auto& [shortcut, value] : arguments.shortcuts) {
     command.add_option(shortcut.flag, value, shortcut.help)->type_name(shortcut.placeholder);
@@ -143,6 +149,7 @@ ExitCode run_model(const RunArguments& arguments, Compute compute) {
   const auto outputs = Outputs::make(arguments.outputs, arguments.report, input->path, arguments.output_suffixes);
   if (!outputs) return refuse(outputs.error());
 
+  if (arguments.methods == RunMethods::chosen) note_options_without_effect(input->file);
   auto result = compute_all(arguments, *input, *outputs, compute);
   if (!result) return refuse(io::located(result.error(), input->file));
 

@@ -32,6 +32,9 @@ struct Shortcut {
 /// --until, as every command has it.
 inline constexpr Shortcut until_shortcut{"--until", "simulate.until", "T", "end time"};
 
+/// Whether a command runs the method that was chosen, or several.
+enum class RunMethods { chosen, several };
+
 /// What was typed behind one of these commands.
 struct RunArguments {
   std::string model;
@@ -41,6 +44,7 @@ struct RunArguments {
   std::vector<std::string> output_suffixes;
   std::string report;
   bool quiet = false;
+  RunMethods methods = RunMethods::several;
 };
 
 /// Adds MODEL, the shortcuts, --set, --out, --report and --quiet to a command.

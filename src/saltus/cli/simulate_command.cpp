@@ -34,6 +34,7 @@ Command add_simulate(CLI::App& app) {
   auto* command = app.add_subcommand("simulate", "simulate a model and show its end state and events");
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<RunArguments>();
+  arguments->methods = RunMethods::chosen;
   add_run_options(*command, *arguments, shortcuts, {".json", ".csv"},
                   "write the result: .json all of it, .csv the trajectory; may repeat");
   command->footer(footer());

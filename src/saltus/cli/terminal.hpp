@@ -1,6 +1,7 @@
 // What the tool prints, and where.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "saltus/base/error.hpp"
@@ -10,6 +11,9 @@ namespace saltus::cli {
 
 /// Writes to standard output. A reader that went away (a closed pipe) is no error.
 void print(std::string_view text);
+
+/// Whether something of what was printed could not be written, a closed pipe aside.
+[[nodiscard]] std::optional<Error> lost_output();
 
 /// Writes one line to standard error.
 void print_error(std::string_view line);

@@ -71,6 +71,20 @@ CellChange Cells::leave(const std::vector<EventFunction>& functions, const std::
   return change;
 }
 
+bool Cells::jumps_at(const EventFunction& end, double t, const double* x, const std::vector<double>& alpha) {
+  if (!is_cell_end(end.kind)) return false;
+  const auto& table = kernel_.cell_table(end.row);
+  if (table.change != model::CellTable::Change::jump) return false;
+  const bool upper = end.kind == FunctionKind::cell_upper;
+  const double argument = kernel_.cell_argument(end.row, t, x, alpha.data());
+  const double bound = upper ? table.upper(index_[at(end.row)]) : table.lower(index_[at(end.row)]);
+  const int function = kernel_.cell_function(end.row);
+  kernel_.scales(t, x, alpha.data(), magnitude_.data(), slope_.data());
+  if (!(std::abs(bound - argument) <= 8.0 * rounding_unit * magnitude_[at(function)])) return false;
+  const double rate = kernel_.lie_derivative(function, 1, t, x, alpha.data());
+  return upper ? rate > 0.0 : rate < 0.0;
+}
+
 bool Cells::any_undefined() const { return std::find(undefined_.begin(), undefined_.end(), true) != undefined_.end(); }
 
 CellChange Cells::locate_undefined(double t, const double* x, const std::vector<double>& alpha) {

@@ -31,6 +31,9 @@ class Cells {
   CellChange leave(const std::vector<EventFunction>& functions, const std::vector<std::size_t>& reached, double t,
                    const double* x, const std::vector<double>& alpha);
 
+  /// Whether an end of a cell is reached to rounding, and values jump there.
+  [[nodiscard]] bool jumps_at(const EventFunction& end, double t, const double* x, const std::vector<double>& alpha);
+
   /// Whether some argument was undefined when it was looked at; locate_undefined() looks at those again.
   [[nodiscard]] bool any_undefined() const;
   CellChange locate_undefined(double t, const double* x, const std::vector<double>& alpha);

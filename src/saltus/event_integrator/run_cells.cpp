@@ -23,6 +23,17 @@ CellChange Run::leave_cells(const Located& located) {
   return change;
 }
 
+/// Breaks at which values jump, at this time to rounding.
+Located Run::breaks_here() {
+  Located here{t_, x_, {}, {}};
+  for (std::size_t i = 0; i < search_.functions().size() && !cells_.empty(); ++i) {
+    if (!cells_.jumps_at(search_.functions()[i], t_, x_.data(), state_.alpha)) continue;
+    here.functions.push_back(i);
+    here.signs.push_back(search_.functions()[i].sign);
+  }
+  return here;
+}
+
 /// Values jump: the mode is decided as at a start, but what slides and is still at zero goes on sliding if it can.
 bool Run::jump_with_cells() {
   const ModeState& before = before_;

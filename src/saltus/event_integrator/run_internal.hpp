@@ -101,6 +101,7 @@ class Run {
   }
   bool change_mode(const Located& located);
   CellChange leave_cells(const Located& located);
+  Located breaks_here();
   bool jump_with_cells();
   bool find_undefined_cells();
   bool go_on();

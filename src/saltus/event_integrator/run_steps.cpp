@@ -154,6 +154,13 @@ Run::Step Run::accept(double t_new) {
     static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
     jumps_.update(jump_point());
   }
+  if (t_ >= options_.until && t_ != next_choice().departure()) {
+    // Values are continuous from the right at every break, at one that is the end, too.
+    if (const Located breaks = breaks_here(); !breaks.functions.empty()) {
+      if (families_.watches()) look_for_families(t_ - h);
+      return handle(breaks);
+    }
+  }
   const bool requested = next_output_ < options_.output.times.size() && options_.output.times[next_output_] == t_;
   if (requested) ++next_output_;
   if (options_.output.rows == OutputTimes::Rows::at_steps || requested || t_ >= options_.until) row(t_, x_);

@@ -80,6 +80,40 @@ void Recorder::row(double t, const std::vector<double>& x, const ActiveSet& set,
   trajectory_.theta.push_back(std::move(now.theta));
 }
 
+/// Takes out one of the last rows, 1 being the last one.
+void Recorder::drop_row(std::ptrdiff_t from_end) {
+  const auto drop = [&](auto& column) {
+    if (!column.empty()) column.erase(column.end() - from_end);
+  };
+  drop(trajectory_.t);
+  drop(trajectory_.x);
+  drop(trajectory_.u);
+  drop(trajectory_.alpha);
+  drop(trajectory_.mode);
+  drop(trajectory_.outputs);
+  drop(trajectory_.regions);
+  drop(trajectory_.theta);
+}
+
+void Recorder::row_behind(RowBefore before, const ActiveSet& set, const std::vector<double>& selections,
+                          const double* held) {
+  row(trajectory_.t.back(), std::vector<double>(trajectory_.x.back()), set, selections, held);
+  const std::size_t last = trajectory_.t.size() - 1;
+  const bool same =
+      trajectory_.u[last - 1] == trajectory_.u[last] && trajectory_.outputs[last - 1] == trajectory_.outputs[last];
+  if (same) drop_row(1);
+  if (!same && before == RowBefore::replaced) drop_row(2);
+}
+
+/// The row before a switch, unless the step that ended here has written it.
+void Recorder::row_before(double t, const std::vector<double>& x, const Side& before) {
+  row(t, x, *before.set, *before.selections, before.held);
+  const auto repeated = [](const auto& column) { return column[column.size() - 1] == column[column.size() - 2]; };
+  if (trajectory_.t.size() > 1 && repeated(trajectory_.t) && repeated(trajectory_.x) && repeated(trajectory_.mode) &&
+      repeated(trajectory_.u) && repeated(trajectory_.outputs))
+    drop_row(1);
+}
+
 void Recorder::note_before(result::Event& event, const Columns& before) const {
   event.mode_before = before.mode;
   event.alpha_before = before.alpha;
@@ -141,7 +175,7 @@ bool Recorder::switched(double t, const std::vector<double>& x, const Side& befo
   result::Event event;
   event.kind = result::kind_of_switch(listed.before, listed.after);
   event.surfaces = std::move(listed.names);
-  row(t, x, *before.set, *before.selections, before.held);
+  row_before(t, x, before);
   row(t, x, found.front().set, found.front().selections, held);
   event.t = t;
   note_before(event, from);
@@ -155,7 +189,7 @@ void Recorder::accumulated(double t, const std::vector<double>& x, const std::ve
                            const Side& before, const std::vector<Continuation>& found, const double* held) {
   const Columns from = columns(*before.set, *before.selections, before.held);
   const Columns to = columns(found.front().set, found.front().selections, held);
-  row(t, x, *before.set, *before.selections, before.held);
+  row_before(t, x, before);
   row(t, x_limit, found.front().set, found.front().selections, held);
   result::Event event;
   event.t = t;

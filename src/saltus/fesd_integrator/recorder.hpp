@@ -27,6 +27,9 @@ class Recorder {
 
   void row(double t, const std::vector<double>& x, const ActiveSet& set, const std::vector<double>& selections,
            const double* held);
+  /// What is held changed at the last row: the same with what is held now, if its inputs or outputs differ.
+  enum class RowBefore { kept, replaced };
+  void row_behind(RowBefore before, const ActiveSet& set, const std::vector<double>& selections, const double* held);
   /// The set changed at t, or was chosen at a start (`before` nullptr; then `at_zero` tells which selections are zero).
   /// Two rows and an event if a listed function changed; at a start a row, and an event if one is at zero.
   struct Side {
@@ -62,6 +65,8 @@ class Recorder {
     std::vector<std::string> names;
     result::Mode before, after;
   };
+  void row_before(double t, const std::vector<double>& x, const Side& before);
+  void drop_row(std::ptrdiff_t from_end);
   [[nodiscard]] Differences differences(const Columns& from, const Columns& to) const;
   [[nodiscard]] Columns columns(const ActiveSet& set, const std::vector<double>& selections, const double* held) const;
   void note_before(result::Event& event, const Columns& before) const;

@@ -190,7 +190,13 @@ void Run::hold_behind() {
   previous_.reset();
   const ActiveSet before = set_;
   const auto selections = selections_;
+  const std::size_t events = recorder_.events();
   decide({}, "a function of time changed", before, selections, held_before_.data());
+  if (stopped() || recorder_.events() > events || !recorder_.ends_at(t_)) return;
+  // Inputs and outputs are continuous from the right: a row asked for has the values behind a break, steps have both.
+  const bool both = options_.rows == IntegrationOptions::Rows::at_elements;
+  recorder_.row_behind(both ? Recorder::RowBefore::kept : Recorder::RowBefore::replaced, set_, selections_,
+                       held_.data());
 }
 
 void Run::decide(std::vector<int> at_zero, std::string_view reason, const ActiveSet& before,

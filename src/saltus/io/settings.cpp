@@ -217,6 +217,18 @@ Expected<pipeline::SimulateOptions> with_option(pipeline::SimulateOptions option
   return changed;
 }
 
+Expected<void> set_option(ModelFile& model, std::string_view key, std::string_view value,
+                          const SourceLocation& location) {
+  auto options = with_option(model.simulate, key, value);
+  if (!options) {
+    options.error().location = location;
+    return tl::unexpected(options.error());
+  }
+  model.simulate = std::move(*options);
+  model.option_locations.emplace_back(key.substr(key.find('.') + 1), location);
+  return {};
+}
+
 Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::string_view value) {
   constexpr std::string_view inputs = "simulate.inputs.";
   const auto dot = std::min(key.find('.'), key.size());
@@ -225,7 +237,7 @@ Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::str
   if (key.starts_with(inputs)) {
     done = set_input(model.description, key.substr(inputs.size()), value);
   } else if (table == "simulate") {
-    done = with_option(model.simulate, key, value).map([&](auto options) { model.simulate = std::move(options); });
+    done = set_option(model, key, value, place_of(key));
   } else {
     const auto same = [&](const auto& candidate) { return candidate.name == table; };
     const auto* found = std::find_if(settable.begin(), settable.end(), same);

@@ -108,7 +108,18 @@ Expected<ModelFile> parse_model(std::string_view text, const std::string& file) 
   return model;
 }
 
+namespace {
+
+constexpr std::size_t most_read = std::size_t{64} << 20;  // of what has no size, like a pipe
+
+}  // namespace
+
 Expected<ModelFile> read_model(const std::filesystem::path& file) {
+  if (file == "-") {
+    const auto text = read_file("/dev/stdin", most_read);
+    if (!text) return tl::unexpected(text.error());
+    return parse_model(*text, "<standard input>");  // in the working folder, as far as files in it are concerned
+  }
   std::error_code unknown_size;
   const auto size = std::filesystem::file_size(file, unknown_size);
   if (!unknown_size && size > max_model_bytes) {
@@ -118,7 +129,7 @@ Expected<ModelFile> read_model(const std::filesystem::path& file) {
                                 {file.string(), 0, 0},
                                 {}});
   }
-  const auto text = read_file(file, std::size_t{64} << 20);
+  const auto text = read_file(file, most_read);
   if (!text) return tl::unexpected(text.error());
   return parse_model(*text, file.string());
 }

@@ -25,7 +25,8 @@ struct ModelFile {
 };
 
 /// Reads a model file. Every error has file, line, column, what was expected and found, and a remedy; unknown tables
-/// and keys name the nearest known ones; tables that this version does not support are refused (not_available).
+/// and keys name the nearest known ones; tables that this version does not support are refused (not_available). "-" is
+/// standard input.
 [[nodiscard]] Expected<ModelFile> read_model(const std::filesystem::path& file);
 /// The same for text in memory; `file` is used in messages, and the folder it is in to find files that the model names.
 [[nodiscard]] Expected<ModelFile> parse_model(std::string_view text, const std::string& file);
@@ -40,6 +41,10 @@ inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
 /// @param value  a number, a list of numbers, an expression, or a bare word
 /// @return the model with that key replaced, or an error that names the nearest known keys.
 [[nodiscard]] Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::string_view value);
+
+/// Changes an option of [simulate] ("simulate.rtol") and notes that it was given at `location`.
+[[nodiscard]] Expected<void> set_option(ModelFile& model, std::string_view key, std::string_view value,
+                                        const SourceLocation& location);
 
 /// Checks the options of [simulate] against each other (pipeline::find_problem), and tells where the file states them.
 [[nodiscard]] Expected<void> check_options(const ModelFile& model);

@@ -62,11 +62,12 @@ void take(const ActiveSetRank& rank, FormRank& worst) {
 
 }  // namespace
 
-Expected<RanksAlongSolution> ranks_along_solution(const model::System& system, SimulateOptions options) {
+Expected<RanksAlongSolution> ranks_along_solution(const model::System& system, SimulateOptions options,
+                                                  const Observers& observers) {
   options.method = Method::event;
   options.native = Native::off;  // compiling would take longer than most runs
   options.event.trajectories = 1;
-  const auto result = simulate(system, options);
+  const auto result = simulate(system, options, observers);
   if (!result) return tl::unexpected(result.error());
   std::vector<std::pair<Form, WellPosedness>> forms;
   for (const Form form : {Form::step, Form::stewart}) {

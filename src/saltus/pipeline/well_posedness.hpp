@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/pipeline/simulate.hpp"
 #include "saltus/reformulation/well_posedness.hpp"
 #include "saltus/result/status.hpp"
 
@@ -34,6 +34,7 @@ struct RanksAlongSolution {
 /// Simulates with the event engine and the options of the model, and looks at every row (Assumption 7 of
 /// [nurkanovic2024]; reformulation::WellPosedness). Forms that do not cover the model are left out.
 /// @return as simulate
-[[nodiscard]] Expected<RanksAlongSolution> ranks_along_solution(const model::System& system, SimulateOptions options);
+[[nodiscard]] Expected<RanksAlongSolution> ranks_along_solution(const model::System& system, SimulateOptions options,
+                                                                const Observers& observers = {});
 
 }  // namespace saltus::pipeline

@@ -9,11 +9,7 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Error no_jumps() {
-  return {ErrorCode::not_available,
-          "finite elements with switch detection do not cover models with [[jumps]]",
-          "use --method event",
-          {},
-          {}};
+  return {ErrorCode::not_available, "finite elements do not cover models with [[jumps]]", "use --method event", {}, {}};
 }
 
 /// What does not depend on the form.

@@ -108,8 +108,9 @@ std::string branch_table(const result::Result& result) {
   for (const auto& entry : tree) left_out += result::not_followed(*entry.result);
   if (tree.size() == 1) {
     if (left_out == 0) return "";
-    return paragraph("branches", fmt::format("{} other continuation{} not followed: --branch all follows them",
-                                             left_out, left_out == 1 ? "" : "s"));
+    const auto* how = result.method == "event" ? "--branch all" : "--method event --branch all";
+    return paragraph("branches", fmt::format("{} other continuation{} not followed: {} follows them", left_out,
+                                             left_out == 1 ? "" : "s", how));
   }
   const std::size_t columns = result.switching_functions.size();
   const bool with_modes = columns > 0 && columns <= most_signs;
