@@ -277,6 +277,7 @@ void Run::accept_chain(std::size_t count, double end_time, const Condition* clos
   if (propagation_ != nullptr) {
     propagation_->chain({chain_.elements.data(), count}, {chain_.left.data(), count + 1}, set_, held_.data(), closing,
                         changing_at(end_time));
+    ends_fixed_ = closing == nullptr && !changing_at(end_time);
   }
   for (std::size_t i = 0; i < count && !stopped(); ++i) {
     const Element& element = chain_.elements[i];

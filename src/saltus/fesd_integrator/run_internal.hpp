@@ -190,6 +190,8 @@ class Run {
   int decisions_here_ = 0;
   double decided_at_ = 0.0;
   bool undecided_ = false;  ///< no mode was found to go on with: left to the fallback
+  bool ends_fixed_ =
+      false;  ///< the last chain of elements, with sensitivities: neither by a switch nor by a time event
   std::optional<TimeEvent> time_event_;
   std::size_t next_time_ = 0;
   std::vector<double> event_values_;

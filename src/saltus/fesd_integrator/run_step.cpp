@@ -310,6 +310,9 @@ void Run::advance(double end) {
       }
     }
     if (stopped()) return;
+    if (located->count == 0 && propagation_ != nullptr && std::exchange(ends_fixed_, false)) {
+      propagation_->switched_here(t_, x_, selections_, held_.data(), set_, located->condition);
+    }
     divided_for_look_ = 0;
     const ActiveSet before = set_;
     const auto selections = selections_;

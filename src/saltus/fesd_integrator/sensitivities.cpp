@@ -91,6 +91,32 @@ void SensitivityPropagation::chain(std::span<const Element> elements, std::span<
   if (closing == nullptr) boundary.t = target;
 }
 
+void SensitivityPropagation::switched_here(double t, const std::vector<double>& x,
+                                           const std::vector<double>& selections, const double* held,
+                                           const ActiveSet& set, const Condition& condition) {
+  auto& self = *implementation_;
+  auto& boundary = self.boundary;
+  const Index columns = boundary.x.cols();
+  self.kernel.evaluate(t, x.data(), selections.data(), held, self.values);
+  const Eigen::Map<const Eigen::VectorXd> field(self.values.f.data(), self.n_x);
+  // One more direction: a later boundary.
+  Directions go{MatrixXd(self.n_x, columns + 1), RowVectorXd(columns + 1), RowVectorXd::Zero(columns + 1),
+                MatrixXd::Zero(self.n_p, columns + 1)};
+  go.x << boundary.x, field;
+  go.t << boundary.t, 1.0;
+  go.p.leftCols(columns) = boundary.p;
+  Element here;
+  here.t = t;
+  here.end = x;
+  const RowVectorXd sigma = self.element.condition(condition, here, set, selections, held, go);
+  for (Index c = 0; c < columns; ++c) {
+    if (sigma(c) == 0.0) continue;
+    const double later = -sigma(c) / sigma(columns);
+    boundary.x.col(c) += field * later;
+    boundary.t(c) += later;
+  }
+}
+
 void SensitivityPropagation::begin_fixed_steps(int count, const End& end) {
   auto& self = *implementation_;
   RowVectorXd target = RowVectorXd::Zero(self.boundary.t.size());

@@ -42,6 +42,10 @@ class SensitivityPropagation {
   /// Cost: per element the solution of its linear system for n_x + n_p + 1 right-hand sides. Allocates.
   void chain(std::span<const Element> elements, std::span<const std::vector<double>> left, const ActiveSet& set,
              const double* held, const Condition* closing, std::optional<std::size_t> changing);
+  /// At the last boundary, a fixed end, a switch turns out to lie: it moves off it with the field before it.
+  /// @param set, selections, held  those before the switch
+  void switched_here(double t, const std::vector<double>& x, const std::vector<double>& selections, const double* held,
+                     const ActiveSet& set, const Condition& condition);
   /// Without switch detection: from here `count` elements of equal length go to `end`.
   struct End {
     double t = 0.0;

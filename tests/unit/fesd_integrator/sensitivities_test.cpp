@@ -249,6 +249,31 @@ TEST(Sensitivities, AnEventAtTheEndOfAStepCountsAsOne) {
   expect_near(side_by_side(*integration.sensitivities), {{std::exp(-1.0), -std::exp(-0.5)}}, 1e-6);
 }
 
+/// x reaches zero at t = 0.5, the end of a simulation step, and slides with alpha = 1/2 + p/4; y' = alpha.
+TEST(Sensitivities, ASwitchAtTheEndOfAStepMovesOffIt) {
+  model::Builder builder("grid");
+  const SX p = builder.parameter("p", 1.0);
+  const SX x = builder.state("x", {-1.5});
+  builder.state("y", {0.0});
+  builder.dynamics("x", p - 2.0 * builder.sign(x));
+  builder.dynamics("y", builder.step(x));
+  const auto entered = *builder.build();
+  model::Builder other("grid");
+  const SX z = other.state("x", {-1.5});
+  other.dynamics("x", 2.0 - other.sign(z));
+  const auto crossed = *other.build();
+  for (const auto form : {Form::step, Form::stewart}) {
+    for (const auto& [family, stages] : families) {
+      for (const long steps : {4L, 8L, 100L}) {
+        const Settings settings{family, stages, steps, form};
+        expect_near(run(crossed, 2.0, settings).sensitivities->x0, {{1.0 / 3.0}}, 1e-12);
+        expect_near(side_by_side(*run(entered, 2.0, settings).sensitivities), {{0.0, 0.0, 0.0}, {0.25, 1.0, 0.5}},
+                    1e-12);
+      }
+    }
+  }
+}
+
 TEST(Sensitivities, EventsAtOneTimeThatMoveApartAreNotDefined) {
   model::Builder builder("two");
   const SX p = builder.parameter("p", 0.25);
