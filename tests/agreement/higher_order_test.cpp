@@ -162,7 +162,9 @@ TEST(HigherOrder, SuperTwistingReachesTheOriginAndStays) {
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     const auto limits = of_kind(result, EventKind::accumulation);
     ASSERT_EQ(limits.size(), 1U);
-    EXPECT_NEAR(limits[0].t, limit, 1e-11);
+    // The field has no Lipschitz constant at the surface, where steps end that are as inaccurate as allowed: dop853 is
+    // off by 8 to 16 rtol for rtol from 1e-10 to 1e-12.
+    EXPECT_NEAR(limits[0].t, limit, 20e-12);
     EXPECT_EQ(*limits[0].mode_after, (std::vector<int>{0}));
     // x2' = 0 determines the one selection.
     EXPECT_NEAR((*limits[0].alpha_after)[0], 0.5, 1e-12);

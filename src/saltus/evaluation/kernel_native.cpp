@@ -13,10 +13,18 @@ namespace {
 std::string name_of_direct(const casadi::Function& field) { return field.name() + "_direct"; }
 
 /// States, and operations of the field, up to which the stages of steps are compiled with the field inside: they hold
-/// it 54 times, which takes the compiler about as long as everything else does at these limits, and what is around the
-/// field matters less the larger it is.
-constexpr int most_states_of_steps = 8;
-constexpr long most_operations_of_steps = 48;
+/// it 18 times, and 36 times more where the solution slides, which takes the compiler about as long as everything else
+/// does at these limits, and what is around the field matters less the larger it is.
+struct Limits {
+  int states;
+  long operations;
+};
+constexpr Limits of_steps{12, 96};
+constexpr Limits of_sliding_steps{8, 48};
+
+bool within(const Limits& limits, int states, long operations) {
+  return 0 < states && states <= limits.states && operations <= limits.operations;
+}
 
 /// f once more, with arguments in place of tables of them: the compiler then drops the tests for missing ones, which
 /// take longer than the arithmetic of a small model.
@@ -37,13 +45,15 @@ std::string direct_field(const casadi::Function& field) {
 }  // namespace
 
 bool ModelKernel::Implementation::has_small_field() const {
-  return 0 < x.numel() && x.numel() <= most_states_of_steps && free.field.operations() <= most_operations_of_steps;
+  return within(of_steps, static_cast<int>(x.numel()), free.field.operations());
 }
 
 Expected<void> ModelKernel::Implementation::start_native(NativeCode wanted) {
   const auto& field = free.field.function();
   std::string appended = direct_field(field);
-  if (has_small_field()) appended += stages_source(name_of_direct(field), static_cast<int>(x.numel()));
+  const auto n = static_cast<int>(x.numel());
+  if (has_small_field()) appended += field_stages_source(name_of_direct(field), n);
+  if (within(of_sliding_steps, n, free.field.operations())) appended += sliding_stages_source(name_of_direct(field), n);
   auto started =
       native.start(wanted, {&free.field, &free.constants, &functions, &scales, &output_function, &input_function},
                    std::move(appended));

@@ -62,14 +62,21 @@ void append_stages(std::string& source, const std::string& name, const std::stri
   fmt::format_to(out, "  return {};\n}}\n", last);
 }
 
-/// The motions, as static functions of (t, x, data, xdot).
-std::string motions(const std::string& field, int n) {
+// The motions, as static functions of (t, x, data, xdot).
+
+std::string motion_along_field(const std::string& field) {
   return fmt::format(
       R"(
 static inline void saltus_along_field(double t, const double* x, const void* data, double* xdot) {{
-  {0}(t, x, (const double*)data, xdot);
+  {}(t, x, (const double*)data, xdot);
 }}
+)",
+      field);
+}
 
+std::string motion_along_surface(const std::string& field, int n) {
+  return fmt::format(
+      R"(
 struct saltus_sliding_constants {{
   const double *below, *above, *row;
   double rate, row_square;
@@ -106,13 +113,17 @@ static inline void saltus_along_surface(double t, const double* x, const void* d
 
 }  // namespace
 
-std::string stages_source(const std::string& field, int n) {
-  std::string source = motions(field, n);
-  const auto size = static_cast<std::size_t>(n);
-  append_stages<ode::Dopri5Tableau>(source, field_stages.dopri5, "saltus_along_field", size);
-  append_stages<ode::Dop853Tableau>(source, field_stages.dop853, "saltus_along_field", size);
-  append_stages<ode::Dopri5Tableau>(source, sliding_stages.dopri5, "saltus_along_surface", size);
-  append_stages<ode::Dop853Tableau>(source, sliding_stages.dop853, "saltus_along_surface", size);
+std::string field_stages_source(const std::string& field, int n) {
+  std::string source = motion_along_field(field);
+  append_stages<ode::Dopri5Tableau>(source, field_stages.dopri5, "saltus_along_field", static_cast<std::size_t>(n));
+  append_stages<ode::Dop853Tableau>(source, field_stages.dop853, "saltus_along_field", static_cast<std::size_t>(n));
+  return source;
+}
+
+std::string sliding_stages_source(const std::string& field, int n) {
+  std::string source = motion_along_surface(field, n);
+  append_stages<ode::Dopri5Tableau>(source, sliding_stages.dopri5, "saltus_along_surface", static_cast<std::size_t>(n));
+  append_stages<ode::Dop853Tableau>(source, sliding_stages.dop853, "saltus_along_surface", static_cast<std::size_t>(n));
   return source;
 }
 

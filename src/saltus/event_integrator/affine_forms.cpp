@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace saltus::event_integrator {
 namespace {
@@ -15,12 +16,19 @@ constexpr double margin = 64.0 * std::numeric_limits<double>::epsilon();
 }  // namespace
 
 AffineForms::AffineForms(std::size_t states)
-    : first_(states + 1, 0), lower_(states, -infinity), upper_(states, infinity) {}
+    : first_(states + 1, 0),
+      below_(states, none),
+      above_(states, none),
+      lower_(states, -infinity),
+      upper_(states, infinity) {}
 
 void AffineForms::load(const evaluation::AffineRows& rows) {
   terms_.clear();
   table_.clear();
-  for (std::size_t j = 0; j < rows.offset.size(); ++j) table_.push_back(form_of(rows, j));
+  for (std::size_t j = 0; j < rows.offset.size(); ++j) {
+    Form& form = table_.emplace_back(form_of(rows, j));
+    form.threshold = form.count == 1 && form.rate == 0.0;
+  }
   loaded_terms_ = terms_.size();
 }
 
@@ -60,14 +68,14 @@ void AffineForms::set(std::size_t i, const evaluation::AffineRow& row) {
 
 bool AffineForms::replace(std::size_t i, const evaluation::AffineRow& row) {
   Form& form = forms_[i];
-  if (!form.known || is_threshold(form) || !std::isfinite(row.offset) || !std::isfinite(row.rate)) return false;
+  if (!form.known || form.threshold || !std::isfinite(row.offset) || !std::isfinite(row.rate)) return false;
   std::size_t count = 0;
   for (const double coefficient : row.coefficient) {
     if (!std::isfinite(coefficient)) return false;
     count += coefficient != 0.0 ? 1 : 0;
   }
   const Form other{form.first, count, row.rate, row.offset, form.sign, true};
-  if (count > form.count || is_threshold(other)) return false;
+  if (count > form.count) return false;
   form = other;
   std::size_t place = form.first;
   for (std::size_t k = 0; k < row.coefficient.size(); ++k) {
@@ -112,27 +120,26 @@ double AffineForms::terms(const Form& form, const StepBounds& bounds) const {
 double AffineForms::terms(std::size_t i, const StepBounds& bounds) const { return terms(forms_[i], bounds); }
 
 void AffineForms::group() {
+  thresholds_.clear();
+  for (std::size_t i = 0; i < forms_.size(); ++i) {
+    if (forms_[i].threshold) thresholds_.push_back({-forms_[i].offset / factor(i), i, 0});
+  }
+  std::sort(thresholds_.begin(), thresholds_.end(), [&](const Threshold& a, const Threshold& b) {
+    return std::tuple(state(a.function), a.value, a.function) < std::tuple(state(b.function), b.value, b.function);
+  });
+  place_.resize(forms_.size());
   first_.assign(lower_.size() + 1, 0);
-  for (const Form& form : forms_) {
-    if (is_threshold(form)) ++first_[terms_[form.first].column + 1];
+  for (std::size_t k = 0; k < thresholds_.size(); ++k) {
+    place_[thresholds_[k].function] = k;
+    ++first_[state(thresholds_[k].function) + 1];
   }
   for (std::size_t state = 0; state < lower_.size(); ++state) first_[state + 1] += first_[state];
-  thresholds_.resize(first_.back());
-  place_.resize(forms_.size());
-  for (std::size_t i = forms_.size(); i-- > 0;) {
-    const Form& form = forms_[i];
-    if (!is_threshold(form)) continue;
-    const Term& term = terms_[form.first];
-    place_[i] = --first_[term.column + 1];
-    thresholds_[place_[i]] = {-form.offset / term.coefficient, i, 0};
-  }
-  // Filled from their ends: each is where the next one was to begin.
-  std::rotate(first_.begin(), first_.begin() + 1, first_.end());
-  first_.back() = thresholds_.size();
   watch_none();
 }
 
 void AffineForms::watch_none() {
+  std::fill(below_.begin(), below_.end(), none);
+  std::fill(above_.begin(), above_.end(), none);
   std::fill(lower_.begin(), lower_.end(), -infinity);
   std::fill(upper_.begin(), upper_.end(), infinity);
   several_.clear();
@@ -140,20 +147,31 @@ void AffineForms::watch_none() {
   for (Threshold& threshold : thresholds_) threshold.side = 0;
 }
 
+void AffineForms::set_nearest_below(std::size_t state, std::size_t place) {
+  below_[state] = place;
+  lower_[state] = place == none ? -infinity : thresholds_[place].value;
+}
+
+void AffineForms::set_nearest_above(std::size_t state, std::size_t place) {
+  above_[state] = place;
+  upper_[state] = place == none ? infinity : thresholds_[place].value;
+}
+
 void AffineForms::watch(std::size_t i, int sign) {
   Form& form = forms_[i];
   form.sign = sign;
-  if (!is_threshold(form)) {
+  if (!form.threshold) {
     several_.push_back(i);
     return;
   }
-  const std::size_t state = terms_[form.first].column;
-  Threshold& threshold = thresholds_[place_[i]];
-  threshold.side = sign * factor(i) > 0.0 ? 1 : -1;
-  if (threshold.side > 0) {
-    lower_[state] = std::max(lower_[state], threshold.value);
+  const std::size_t column = state(i);
+  const std::size_t place = place_[i];
+  const int side = sign * factor(i) > 0.0 ? 1 : -1;
+  thresholds_[place].side = side;
+  if (side > 0) {
+    if (below_[column] == none || place > below_[column]) set_nearest_below(column, place);
   } else {
-    upper_[state] = std::min(upper_[state], threshold.value);
+    if (place < above_[column]) set_nearest_above(column, place);
   }
 }
 
@@ -161,21 +179,23 @@ void AffineForms::ignore(std::size_t i) {
   Form& form = forms_[i];
   if (form.sign == 0) return;
   form.sign = 0;
-  if (!is_threshold(form)) {
+  if (!form.threshold) {
     std::erase(several_, i);
     return;
   }
-  const std::size_t state = terms_[form.first].column;
-  thresholds_[place_[i]].side = 0;
-  double lower = -infinity;
-  double upper = infinity;
-  for (std::size_t k = first_[state]; k < first_[state + 1]; ++k) {
-    const auto& [value, function, side] = thresholds_[k];
-    lower = side > 0 ? std::max(lower, value) : lower;
-    upper = side < 0 ? std::min(upper, value) : upper;
+  const std::size_t column = state(i);
+  const std::size_t place = place_[i];
+  thresholds_[place].side = 0;
+  if (place == below_[column]) {
+    std::size_t k = place;
+    while (k > first_[column] && thresholds_[k - 1].side <= 0) --k;
+    set_nearest_below(column, k > first_[column] ? k - 1 : none);
   }
-  lower_[state] = lower;
-  upper_[state] = upper;
+  if (place == above_[column]) {
+    std::size_t k = place + 1;
+    while (k < first_[column + 1] && thresholds_[k].side >= 0) ++k;
+    set_nearest_above(column, k < first_[column + 1] ? k : none);
+  }
 }
 
 bool AffineForms::reaches_zero(const Form& form, const StepBounds& bounds) const {
@@ -219,20 +239,29 @@ bool AffineForms::may_vanish(const StepBounds& bounds) const {
 }
 
 void AffineForms::append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const {
+  // Of time, over the length of the step, with a thousand roundings.
+  const double time = std::max(std::abs(bounds.begin), std::abs(bounds.end));
+  const double resolution = std::min(16.0 * margin * time / (bounds.end - bounds.begin), 1.0);
   for (std::size_t state = 0; state < lower_.size(); ++state) {
     if (!reaches_threshold(state, bounds)) continue;
     const double low = bounds.low[state];
     const double high = bounds.high[state];
-    const double largest = std::max(std::abs(low), std::abs(high));
-    for (std::size_t k = first_[state]; k < first_[state + 1]; ++k) {
-      const auto& threshold = thresholds_[k];
-      if (threshold.side == 0) continue;
-      // In units of the state, with twice the room for rounding: most thresholds are far from its bounds.
-      const double room = 2.0 * margin * (largest + std::abs(threshold.value));
-      const double distance = threshold.side > 0 ? low - threshold.value : threshold.value - high;
-      if (!(distance > room) && reaches_zero(forms_[threshold.function], bounds)) {
-        suspects.push_back(threshold.function);
+    // What the state reaches behind its nearest threshold by more than this is not reached before it, whatever the
+    // roundings of both, nor at the same time, as far as that can be resolved.
+    const double beside =
+        std::max(resolution * (high - low), 0x1p10 * margin * std::max(std::abs(low), std::abs(high)));
+    const auto append = [&](const Threshold& threshold) {
+      if (reaches_zero(forms_[threshold.function], bounds)) suspects.push_back(threshold.function);
+    };
+    if (below_[state] != none) {
+      for (std::size_t k = below_[state] + 1; k-- > first_[state];) {
+        if (lower_[state] - thresholds_[k].value > beside) break;
+        if (thresholds_[k].side > 0) append(thresholds_[k]);
       }
+    }
+    for (std::size_t k = above_[state]; k < first_[state + 1]; ++k) {  // nowhere if there is none
+      if (thresholds_[k].value - upper_[state] > beside) break;
+      if (thresholds_[k].side < 0) append(thresholds_[k]);
     }
   }
   for (const std::size_t i : several_) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -20,8 +21,9 @@ struct StepBounds {
 
 /// Forms phi_i(t, x) = offset_i + rate_i t + sum_k a_k x_k, one for every event function of a mode that is affine.
 ///
-/// A form of one state is a threshold of that state. Of the thresholds of a state on the same side only the nearest can
-/// be the first to be reached, so a step is compared with two numbers per state, however many thresholds there are.
+/// A loaded row of one state is a threshold of that state. Of the thresholds of a state on the same side only the
+/// nearest can be the first to be reached, so a step is compared with two numbers per state, and at most these two and
+/// what lies beside them are looked at, however many thresholds there are.
 /// Owns its memory; allocates while forms are set only.
 class AffineForms {
  public:
@@ -43,8 +45,8 @@ class AffineForms {
   void group();
 
   [[nodiscard]] bool has(std::size_t i) const { return forms_[i].known; }
-  /// Whether the form is one of one state: its value has the roundings of the function itself, up to its factor's.
-  [[nodiscard]] bool is_threshold(std::size_t i) const { return is_threshold(forms_[i]); }
+  /// Whether the form is a threshold: its value has the roundings of the function itself, up to its factor's.
+  [[nodiscard]] bool is_threshold(std::size_t i) const { return forms_[i].threshold; }
   /// Of a threshold: the state, and its factor.
   [[nodiscard]] std::size_t state(std::size_t i) const { return terms_[forms_[i].first].column; }
   [[nodiscard]] double factor(std::size_t i) const { return terms_[forms_[i].first].coefficient; }
@@ -59,7 +61,7 @@ class AffineForms {
   void watch_none();
   /// From now on function i, whose sign is `sign` (+1, -1), is among those that may_vanish and append_suspects look at.
   void watch(std::size_t i, int sign);
-  /// No longer. Cost: the thresholds of the same state.
+  /// No longer. Cost: of the nearest threshold of a state, the way to the next one that is watched.
   void ignore(std::size_t i);
   /// Whether any watched function may vanish within the bounds; true where a bound is not finite. Cost: O(n_x), and the
   /// terms of the forms of several states.
@@ -67,7 +69,8 @@ class AffineForms {
   /// Whether function i, which is zero or has the sign `sign` where the step starts, gets away from there into that
   /// sign at once and stays: by bounds of the mean slopes of the states (in place of their values).
   [[nodiscard]] bool leaves(std::size_t i, int sign, const StepBounds& mean_slopes) const;
-  /// The watched functions that may, in no particular order.
+  /// The watched functions that may, but for thresholds that are reached behind another one of their state, and later
+  /// than that; in no particular order.
   void append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const;
 
  private:
@@ -78,6 +81,7 @@ class AffineForms {
     double offset = 0.0;
     int sign = 0;  ///< 0 = not watched
     bool known = false;
+    bool threshold = false;
   };
   struct Term {
     std::size_t column = 0;
@@ -88,10 +92,12 @@ class AffineForms {
     std::size_t function = 0;
     int side = 0;  ///< of the state while watched: +1 above it, -1 below; 0 = not watched
   };
-  [[nodiscard]] static bool is_threshold(const Form& form) { return form.count == 1 && form.rate == 0.0; }
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   [[nodiscard]] bool reaches_zero(const Form& form, const StepBounds& bounds) const;
   [[nodiscard]] double terms(const Form& form, const StepBounds& bounds) const;
   [[nodiscard]] bool reaches_threshold(std::size_t state, const StepBounds& bounds) const;
+  void set_nearest_below(std::size_t state, std::size_t place);
+  void set_nearest_above(std::size_t state, std::size_t place);
 
   Form form_of(const evaluation::AffineRows& rows, std::size_t j);
 
@@ -99,11 +105,12 @@ class AffineForms {
   std::size_t loaded_terms_ = 0;
   std::vector<Form> forms_;  ///< one per function
   std::vector<Term> terms_;
-  std::vector<Threshold> thresholds_;  ///< state by state
-  std::vector<std::size_t> first_;     ///< of every state among them, and their number
-  std::vector<std::size_t> place_;     ///< by function: among them
-  std::vector<double> lower_, upper_;  ///< nearest watched thresholds of every state
-  std::vector<std::size_t> several_;   ///< watched functions that are not thresholds
+  std::vector<Threshold> thresholds_;       ///< state by state, ascending
+  std::vector<std::size_t> first_;          ///< of every state among them, and their number
+  std::vector<std::size_t> place_;          ///< by function: among them
+  std::vector<std::size_t> below_, above_;  ///< by state: places of the nearest watched ones, or none
+  std::vector<double> lower_, upper_;       ///< their values
+  std::vector<std::size_t> several_;        ///< watched functions that are not thresholds
 };
 
 }  // namespace saltus::event_integrator

@@ -106,11 +106,26 @@ double StepControl::factor(double error_norm) {
   __builtin_unreachable();
 }
 
+/// Where the error of a step of the same length grows from step to step (the predictive controller of Gustafsson;
+/// Hairer & Wanner, (IV.8.25)), the next one has to be shorter by as much, at most 1. Before the first rejection steps
+/// are short enough for other reasons: there it would cost a few per cent, behind it saves a tenth to a fifth.
+double StepControl::growth(double error_norm) {
+  const double root = std::sqrt(std::sqrt(std::sqrt(std::max(error_norm, least_error))));
+  const bool known = any_rejected_ && previous_root_ > 0.0;
+  const double share = known ? std::clamp(change_ * previous_root_ / root, gains(method_).smallest, 1.0) : 1.0;
+  previous_root_ = root;
+  return share;
+}
+
 double StepControl::accepted(double error_norm) {
   const Gains gain = gains(method_);
   const double raw = safety * factor(error_norm);
   const double largest = last_rejected_ ? 1.0 : gain.largest;
   last_rejected_ = false;
+  if (method_ == Method::dop853) {
+    change_ = std::clamp(raw * growth(error_norm), gain.smallest, largest);
+    return change_;
+  }
   // An increase that is worth less than a factorisation.
   if (method_ == Method::radau5 && raw >= 1.0 && raw <= 1.2) return 1.0;
   return std::clamp(raw, gain.smallest, largest);
@@ -118,8 +133,10 @@ double StepControl::accepted(double error_norm) {
 
 double StepControl::rejected(double error_norm) {
   const Gains gain = gains(method_);
-  last_rejected_ = true;
-  return std::clamp(safety / std::pow(error_norm, gain.exponent), gain.smallest, safety);
+  last_rejected_ = any_rejected_ = true;
+  const double factor = std::clamp(safety / std::pow(error_norm, gain.exponent), gain.smallest, safety);
+  change_ *= factor;
+  return factor;
 }
 
 bool StiffnessWatch::looks_stiff(const Stepper& stepper) {

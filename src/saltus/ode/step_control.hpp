@@ -5,8 +5,9 @@
 
 namespace saltus::ode {
 
-/// PI controller (Gustafsson; Hairer & Wanner IV.2; dop853 and radau5: without memory of errors): a value, one per run;
-/// reset at every restart.
+/// PI controller (Gustafsson; Hairer & Wanner IV.2) of dopri5; dop853 and radau5 without memory of errors, but dop853,
+/// once a step was rejected, foresees that the error per step goes on growing as it did: a value, one per run; reset at
+/// every restart.
 class StepControl {
  public:
   explicit StepControl(Method method);
@@ -18,9 +19,13 @@ class StepControl {
 
  private:
   [[nodiscard]] double factor(double error_norm);
+  [[nodiscard]] double growth(double error_norm);
 
   Method method_;
-  double previous_logarithm_;  ///< of the error of the step before
+  double previous_logarithm_;   ///< of the error of the step before
+  double previous_root_ = 0.0;  ///< dop853: eighth root of that error, 0 = none
+  double change_ = 1.0;         ///< of the step since
+  bool any_rejected_ = false;
   bool last_rejected_ = false;
 };
 

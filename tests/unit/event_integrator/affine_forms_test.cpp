@@ -76,11 +76,48 @@ TEST_F(Forms, OnlyWhatIsWatchedAndReachedIsSuspect) {
   EXPECT_EQ(suspects(0, 1, {1.2, 3.5}, {1.8, 3.6}), Indices{});
   EXPECT_EQ(suspects(0, 1, {0.9, 3.5}, {1.8, 3.6}), (Indices{0}));
   EXPECT_EQ(suspects(0, 1, {1.2, 3.5}, {2.0, 3.6}), (Indices{2}));
-  EXPECT_EQ(suspects(0, 1, {1.2, 4.5}, {3.5, 4.6}), (Indices{1, 2}));
+  EXPECT_EQ(suspects(0, 1, {1.2, 4.5}, {3.5, 4.6}), (Indices{2}));  // the one at 3 lies behind that at 2
   EXPECT_EQ(suspects(0, 1, {1.2, 1.7}, {1.8, 3.6}), (Indices{3}));
   EXPECT_EQ(suspects(4.5, 5.0, {1.2, 3.5}, {1.8, 3.6}), (Indices{4}));
   forms.watch_none();
   EXPECT_EQ(suspects(0, 10, {-9, -9}, {9, 9}), Indices{});
+}
+
+TEST(Thresholds, BehindTheNearestOneNothingIsSuspectButWhatLiesBesideIt) {
+  // Of one state: it lies above 0.5 (twice), 0.5 - 1e-15 and 0.1, and below 2, 2 + 1e-10 and 3.
+  const std::vector<double> at{2.0, 0.1, 0.5, 3.0, 0.5 - 1e-15, 2.0 + 1e-10, 0.5};
+  evaluation::AffineRows rows;
+  rows.start = {0};
+  for (const double value : at) {
+    rows.start.push_back(rows.start.back() + 1);
+    rows.column.push_back(0);
+    rows.coefficient.push_back(2.0);
+    rows.rate.push_back(0.0);
+    rows.offset.push_back(-2.0 * value);
+  }
+  AffineForms forms(1);
+  forms.load(rows);
+  forms.reset(at.size());
+  for (std::size_t i = 0; i < at.size(); ++i) forms.use_row(i, i);
+  forms.group();
+  for (std::size_t i = 0; i < at.size(); ++i) forms.watch(i, at[i] < 1.0 ? 1 : -1);
+  const auto suspects = [&](double low, double high, double begin = 0.0, double end = 1.0) {
+    std::vector<std::size_t> found;
+    forms.append_suspects({begin, end, &low, &high}, found);
+    std::sort(found.begin(), found.end());
+    return found;
+  };
+  EXPECT_EQ(suspects(0.0, 1.5), (Indices{2, 4, 6}));
+  EXPECT_EQ(suspects(1.0, 4.0), (Indices{0}));
+  EXPECT_EQ(suspects(0.0, 4.0), (Indices{0, 2, 4, 6}));
+  for (const std::size_t i : {2U, 4U, 6U}) forms.ignore(i);
+  EXPECT_EQ(suspects(0.0, 4.0), (Indices{0, 1}));
+  // A step from 1 to 1 + 1e-4 does not tell times apart that far.
+  EXPECT_EQ(suspects(1.0, 4.0, 1.0, 1.0 + 1e-4), (Indices{0, 5}));
+  forms.ignore(0);
+  forms.watch(0, 1);  // crossed
+  EXPECT_EQ(suspects(2.5, 2.6), (Indices{5}));
+  EXPECT_EQ(suspects(1.5, 2.5), (Indices{0, 5}));
 }
 
 TEST_F(Forms, WhatIsIgnoredHidesNothing) {

@@ -127,11 +127,21 @@ TEST_F(NativeStepsTest, WhereStagesAreUndefined) {
   EXPECT_GE(expect_same_bits(b, 3, {1e-3, 1e-3}), 1U);
 }
 
+TEST_F(NativeStepsTest, OfTenStatesBesideSurfacesAndAlongOne) {
+  // Along a surface so many states have no steps of their own.
+  Builder b("ten");
+  std::vector<SX> x;
+  for (int i = 0; i < 10; ++i) x.push_back(b.state("x" + std::to_string(i), {0.1 * i - 0.45}));
+  b.dynamics("x0", 0.3 * x[9] - b.sign(x[0]));
+  for (std::size_t i = 1; i < 10; ++i) b.dynamics("x" + std::to_string(i), 2 * b.step(x[i - 1]) - x[i]);
+  EXPECT_GE(expect_same_bits(b, 8), 2U);
+}
+
 TEST_F(NativeStepsTest, ALargeFieldGoesWithoutThem) {
   Builder b("large");
   std::vector<SX> x;
-  for (int i = 0; i < 9; ++i) x.push_back(b.state("x" + std::to_string(i), {0.1 * i}));
-  for (int i = 0; i < 9; ++i) b.dynamics("x" + std::to_string(i), -x[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < 13; ++i) x.push_back(b.state("x" + std::to_string(i), {0.1 * i}));
+  for (int i = 0; i < 13; ++i) b.dynamics("x" + std::to_string(i), -x[static_cast<std::size_t>(i)]);
   const auto system = b.build();
   ASSERT_TRUE(system.has_value());
   const auto kernel = evaluation::ModelKernel::compile(*system, NativeCode::on);

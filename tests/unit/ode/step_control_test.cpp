@@ -72,6 +72,32 @@ TEST(StepControl, dopri5_remembers_the_last_error_and_dop853_does_not) {
   EXPECT_NEAR(plain.accepted(0.1), 0.9 * std::pow(0.1, -0.125), 1e-14);
 }
 
+TEST(StepControl, dop853_foresees_growing_errors_behind_a_rejection) {
+  // The error of steps of length 1 grows fourfold from one to the next: 256^(1/8) = 2 would be its step ratio.
+  const auto error = [](double length, int step) { return std::pow(length, 8) * std::pow(4.0, step) * 0.01; };
+  StepControl control(Method::dop853);
+  double h = control.rejected(error(2.0, 0)) * 2.0;
+  h *= control.accepted(error(h, 0));
+  int rejections = 0;
+  for (int step = 1; step < 30; ++step) {
+    if (error(h, step) > 1.0) {
+      ++rejections;
+      h *= control.rejected(error(h, step));
+    }
+    ASSERT_LE(error(h, step), 1.0);
+    ASSERT_GE(error(h, step), 0.1) << "steps are not shorter than they need be";
+    h *= control.accepted(error(h, step));
+  }
+  EXPECT_LE(rejections, 1);
+}
+
+TEST(StepControl, dop853_takes_falling_errors_for_no_reason_to_grow_more) {
+  StepControl control(Method::dop853);
+  static_cast<void>(control.rejected(2.0));
+  static_cast<void>(control.accepted(0.9));
+  EXPECT_NEAR(control.accepted(0.1), 0.9 * std::pow(0.1, -0.125), 1e-14);
+}
+
 double first_step(Method method, RightHandSide f, std::vector<double> x, double span, const Tolerances& tolerances) {
   std::vector<double> slope(x.size());
   f(0.0, x.data(), slope.data());
