@@ -119,8 +119,7 @@ EventSearch::Parts EventSearch::parts_of(const std::vector<std::size_t>& which) 
 }
 
 /// Rounding and tolerance levels of some functions for the step that starts at (t, x).
-void EventSearch::rescale(double t, const double* x, const std::vector<std::size_t>& which) {
-  const Parts parts = parts_of(which);
+void EventSearch::rescale(double t, const double* x, const std::vector<std::size_t>& which, const Parts& parts) {
   if (parts.phi || parts.nested) kernel_.scales(t, x, state_.alpha.data(), magnitude_.data(), slope_.data());
   if (parts.exits) field_.exits(t, x, exits_.data());
   if (parts.pressure) find_pressure(t, x);

@@ -64,6 +64,14 @@ class EventSearch {
 
   /// Sets up the functions of a mode at (t, x). `zero_order` (n_psi): zeros that surfaces have at this point.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
+  /// The same, in a model without nesting, cells, regions, user functions and jumps: modes that slide on what one of
+  /// the last modes has slid on need their signs only.
+  void enter_again(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
+  /// The same where one surface was crossed since, with no sliding before and behind; only while crosses(). Cost: O(1),
+  /// and the thresholds of the same state.
+  void cross(std::size_t surface, const ModeState& state, double t, const double* x);
+  /// Whether crossings change signs of surfaces only.
+  [[nodiscard]] bool crosses() const { return flips_ && state_.sliding.empty() && held_.empty(); }
   /// Whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
   [[nodiscard]] bool may_vanish(const ode::Stepper& stepper);
   /// The first sign change in (0, 1] of any function.
@@ -115,11 +123,29 @@ class EventSearch {
     bool pressure = false;
   };
 
+  /// The functions of a mode, as a later one with the same sliding set can use them: see the members.
+  struct Kept {
+    ModeState state;
+    std::vector<EventFunction> functions;
+    std::vector<ExitValues> exits;
+    AffineForms forms;
+    std::vector<std::size_t> curved, of_surface;
+    Parts curved_parts;
+    std::size_t first_exit = 0, users = 0, users_end = 0;
+    bool flips = false;
+    std::vector<bool> prefilter;
+  };
+
+  void exchange(Kept& kept);
+  void keep();
   void start_at(double t);
   [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
   void set_forms(const double* x);
   void sort_functions();
-  void rescale(double t, const double* x, const std::vector<std::size_t>& which);
+  void rescale(double t, const double* x, const std::vector<std::size_t>& which) {
+    rescale(t, x, which, parts_of(which));
+  }
+  void rescale(double t, const double* x, const std::vector<std::size_t>& which, const Parts& parts);
   void set_noise(std::size_t i, const double* x);
   [[nodiscard]] bool is_threshold(std::size_t i) const;
   [[nodiscard]] Parts parts_of(const std::vector<std::size_t>& which) const;
@@ -127,6 +153,8 @@ class EventSearch {
   [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
   [[nodiscard]] std::size_t exit_function(std::size_t row) const { return first_exit_ + 2 * row; }
   bool turn_exits(double t, const double* x);
+  void forget_specials();
+  void turn(std::size_t surface, const ModeState& state, int zero_order);
   bool flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
   void read_start(double t, const double* x);
   void read_values(double t, const double* x, const std::vector<std::size_t>& which);
@@ -183,7 +211,9 @@ class EventSearch {
   bool any_nesting_ = false;             ///< some functions of the kernel hold selections
   bool nested_ = false;                  ///< there are functions nested around the sliding surface
   bool flips_ = false;                   ///< surfaces and plain exits only: crossings change little
-  std::vector<bool> prefilter_;          ///< five samples may show that the function stays away from zero
+  std::vector<Kept> kept_;               ///< the last ones, with different sliding sets
+  std::size_t next_kept_ = 0;
+  std::vector<bool> prefilter_;  ///< five samples may show that the function stays away from zero
 };
 
 }  // namespace saltus::event_integrator

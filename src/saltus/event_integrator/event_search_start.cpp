@@ -40,6 +40,36 @@ bool EventSearch::turn_exits(double t, const double* x) {
   return true;
 }
 
+/// Zeros at the start of the mode before are history.
+void EventSearch::forget_specials() {
+  for (const std::size_t i : special_) {
+    functions_[i].zero_order = 0;
+    functions_[i].offset = 0.0;
+    if (forms_.has(i)) forms_.watch(i, functions_[i].sign);
+  }
+}
+
+/// The sign of a surface outside the mode, which may have a zero here.
+void EventSearch::turn(std::size_t surface, const ModeState& state, int zero_order) {
+  const std::size_t i = of_surface_[surface];
+  state_.mode[surface] = state.mode[surface];
+  state_.alpha[surface] = state.alpha[surface];
+  functions_[i].sign = state.mode[surface];
+  functions_[i].zero_order = zero_order;
+  forms_.ignore(i);
+}
+
+void EventSearch::cross(std::size_t surface, const ModeState& state, double t, const double* x) {
+  start_at(t);
+  forget_specials();
+  turn(surface, state, 1);
+  const std::size_t i = of_surface_[surface];
+  inspected_.assign(1, i);
+  read_values(t, x, inspected_);
+  functions_[i].offset = point_[i];
+  special_ = inspected_;
+}
+
 /// A crossing, of surfaces that nothing else of the mode depends on but the exits of what is slid on: only signs
 /// change, and these. Returns false if the mode is another one than that: it is entered afresh. Cost: O(1) for each
 /// surface crossed, but for the comparison of the modes.
@@ -55,19 +85,11 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
   for_each_nonzero(zero_order, [&](std::size_t j) {
     if (state.mode[j] == state_.mode[j]) inspected_.push_back(j);
   });
-  for (const std::size_t i : special_) {
-    functions_[i].zero_order = 0;
-    functions_[i].offset = 0.0;
-    if (forms_.has(i)) forms_.watch(i, functions_[i].sign);
-  }
+  forget_specials();
   for (std::size_t& entry : inspected_) {
     const std::size_t j = entry;
     entry = of_surface_[j];
-    state_.mode[j] = state.mode[j];
-    state_.alpha[j] = state.alpha[j];
-    functions_[entry].sign = state.mode[j];
-    functions_[entry].zero_order = zero_order[j];
-    forms_.ignore(entry);
+    turn(j, state, zero_order[j]);
   }
   for (std::size_t row = 0; row < state.sliding.size(); ++row) {
     const int arriving = arriving_sign(exits_[row]);
@@ -89,8 +111,12 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
 
 /// Values of the functions that are looked at where a mode starts, and what follows for those at zero.
 void EventSearch::read_start(double t, const double* x) {
-  rescale(t, x, inspected_);
-  read_values(t, x, inspected_);
+  Parts parts = parts_of(inspected_);
+  // Exits have just been evaluated here; again they would be the same but for selections that are iterated.
+  if (field_.solve() == SlidingSolve::decoupled) parts.exits = false;
+  rescale(t, x, inspected_, parts);
+  evaluate_parts(t, x, parts);
+  for (const std::size_t i : inspected_) point_[i] = value(i, t, x);
   read_user_signs();
   for (const std::size_t i : inspected_) {
     auto& function = functions_[i];

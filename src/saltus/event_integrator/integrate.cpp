@@ -34,7 +34,7 @@ bool is_affine(const model::System& system) {
 }  // namespace
 
 Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-         const StepObserver& observer)
+         const StepObserver& observer, Way way)
     : kernel_(kernel),
       options_(options),
       observer_(observer),
@@ -48,6 +48,8 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       locator_(options.method, kernel.states(), stepper_, field_, search_, tolerances_),
       single_surface_(surroundings_),
       surface_pair_(surroundings_),
+      field_memory_(kernel),
+      slope_beyond_(at(kernel.states())),
       user_events_(kernel, system),
       jumps_(kernel, system, options.from),
       holding_(kernel, system),
@@ -65,6 +67,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       evaluations_before_(kernel.field_evaluations()),
       series_(options.until - options.from) {
   mode_atol_ = tolerances_.atol;
+  ordinary_ = way == Way::short_where_ordinary && has_ordinary_switches();
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (i >= system.discrete_states.size() || !system.discrete_states[i]) continuous_.push_back(i);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/switching/surface_decision.hpp"
 
@@ -47,14 +48,7 @@ void ModeField::enter(const ModeState& state) {
     kernel_.prepare_field(alpha_.data(), constants_[0]);
     return;
   }
-  const auto m = static_cast<Eigen::Index>(sliding_.size());
-  rows_.resize(m, kernel_.states());
-  rates_.resize(m);
-  residual_.resize(m);
-  normal_matrix_.resize(m, m);
-  exits_.assign(sliding_.size(), {});
-  coordinate_.assign(sliding_.size(), -1);
-  constant_row_.assign(sliding_.size(), false);
+  resize_rows();
   if (same_single) {
     solve_ = SlidingSolve::decoupled;
   } else {
@@ -66,6 +60,7 @@ void ModeField::enter(const ModeState& state) {
     higher_order_.emplace(kernel_);
     higher_order_->enter(*state.higher, sliding_, state.alpha);
   }
+  single_ = is_single() ? sliding_.front() : -1;
   if (sliding_.size() != 1) return;
   between_.clear();
   for (std::size_t corner = 0; corner < 2; ++corner) {
@@ -81,6 +76,55 @@ void ModeField::enter(const ModeState& state) {
   }
 }
 
+void ModeField::resize_rows() {
+  const auto m = static_cast<Eigen::Index>(sliding_.size());
+  rows_.resize(m, kernel_.states());
+  rates_.resize(m);
+  residual_.resize(m);
+  normal_matrix_.resize(m, m);
+  exits_.assign(sliding_.size(), {});
+  coordinate_.assign(sliding_.size(), -1);
+  constant_row_.assign(sliding_.size(), false);
+}
+
+void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& other) {
+  start_alpha_[surface] = alpha_[surface] = other.alpha[surface];
+  constants_[0] = other;
+}
+
+void ModeField::slide_from_region(std::size_t surface, double selection, Region side,
+                                  const evaluation::FieldConstants& other) {
+  start_alpha_[surface] = alpha_[surface] = selection;
+  if (side == Region::below) std::swap(constants_[0], constants_[1]);
+  constants_[side == Region::below ? 0 : 1] = other;
+  for (std::size_t corner = 0; corner < 2; ++corner) corner_[corner] = constants_[corner].alpha;
+  const int j = static_cast<int>(surface);
+  sliding_.assign(1, j);
+  between_.assign(1, surface);
+  if (single_ != j) {
+    resize_rows();
+    find_groups();
+    SALTUS_ASSERT(is_single());
+    single_ = j;
+  }
+  solve_ = SlidingSolve::decoupled;
+  refer_to_constants();
+}
+
+void ModeField::leave_to(Region side) {
+  const auto j = at(sliding_.front());
+  start_alpha_[j] = alpha_[j] = side == Region::below ? 0.0 : 1.0;
+  if (side == Region::above) std::swap(constants_[0], constants_[1]);
+  sliding_.clear();
+  solve_ = SlidingSolve::none;
+}
+
+/// For native steps on one surface.
+void ModeField::refer_to_constants() {
+  sliding_constants_ = {
+      constants_[0].values.data(), constants_[1].values.data(), rows_.data(), rates_[0], row_square_, coordinate_[0]};
+}
+
 void ModeField::gradients(double t, const double* x) {
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
     if (constant_row_[row]) continue;
@@ -94,8 +138,7 @@ void ModeField::gradients(double t, const double* x) {
     constant_row_[row] = kernel_.is_affine(j) && kernel_.inner(j).empty();
     if (sliding_.size() != 1) continue;
     row_square_ = rows_.squaredNorm();
-    sliding_constants_ = {
-        constants_[0].values.data(), constants_[1].values.data(), rows_.data(), rates_[0], row_square_, coordinate_[0]};
+    refer_to_constants();
   }
 }
 

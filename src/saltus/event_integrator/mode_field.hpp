@@ -50,6 +50,17 @@ class ModeField {
   ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha);
 
   void enter(const ModeState& state);
+  /// The same where nothing is nested, there are no groups of regions and f is affine in the selections, without
+  /// looking at any selection but that of `surface`; constants are those of the other region. Allocates nothing but
+  /// where a surface is not the one that was slid on last.
+  /// From one region to the other one:
+  void cross(std::size_t surface, const evaluation::FieldConstants& other);
+  /// From a region onto its border with the other one, which is `side` of the surface:
+  void slide_from_region(std::size_t surface, double selection, Region side, const evaluation::FieldConstants& other);
+  /// From the only surface that is slid on to one of its sides:
+  void leave_to(Region side);
+  /// Of the last evaluation, while one surface is slid on: normal components of the fields of both sides.
+  [[nodiscard]] const ExitValues& sides() const { return exits_.front(); }
   [[nodiscard]] SlidingSolve solve() const { return solve_; }
   [[nodiscard]] int codimension() const { return static_cast<int>(sliding_.size()); }
 
@@ -82,6 +93,8 @@ class ModeField {
  private:
   [[nodiscard]] ode::RightHandSideStages native_stages() const;
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
+  void resize_rows();
+  void refer_to_constants();
   void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]; not for one affine surface
   void gradients(double t, const double* x);
   [[nodiscard]] double normal_velocity(std::size_t row, const std::vector<double>& f) const;
@@ -142,6 +155,7 @@ class ModeField {
   };
   std::array<ExitRow, 8> exit_rows_;  ///< the last ones
   std::size_t next_exit_row_ = 0;
+  int single_ = -1;                                 ///< the surface that rows and groups are of, if it is one
   std::vector<bool> constant_row_;                  ///< gradient known once and for all in this mode
   std::vector<int> coordinate_;                     ///< the only nonzero column of a row, or -1
   evaluation::SlidingConstants sliding_constants_;  ///< of one surface with a constant gradient

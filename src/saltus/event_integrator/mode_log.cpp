@@ -49,6 +49,18 @@ std::size_t ModeLog::append(const std::vector<int>& mode, const std::vector<doub
   return ends_.size() - 1;
 }
 
+std::size_t ModeLog::append_change(std::size_t function, int mode, double alpha) {
+  SALTUS_ASSERT(!ends_.empty() && function < last_mode_.size());
+  int& last_mode = last_mode_[function];
+  double& last_alpha = last_alpha_[function];
+  if (mode == last_mode && bits(alpha) == bits(last_alpha)) return ends_.size() - 1;
+  changes_.push_back({function, last_mode, mode, alpha});
+  last_mode = mode;
+  last_alpha = alpha;
+  ends_.push_back(changes_.size());
+  return ends_.size() - 1;
+}
+
 void ModeLog::append_changed(std::vector<std::size_t>& functions) const {
   if (ends_.size() < 2) return;
   for (std::size_t k = ends_[ends_.size() - 2]; k < ends_.back(); ++k) {

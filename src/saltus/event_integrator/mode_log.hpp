@@ -14,6 +14,11 @@ class ModeLog {
   /// @return its number
   /// Cost: one comparison of all, memory for the differences only.
   std::size_t append(const std::vector<int>& mode, const std::vector<double>& alpha);
+  /// Appends the last mode with one function changed, unless that is no change, bit for bit. Cost: O(1).
+  /// @return its number
+  std::size_t append_change(std::size_t function, int mode, double alpha);
+  /// Of one function in the last mode.
+  [[nodiscard]] int last_mode(std::size_t function) const { return last_mode_[function]; }
   [[nodiscard]] std::size_t size() const { return ends_.size(); }
   /// Appends to `functions` those whose mode differs between the last two, ascending.
   void append_changed(std::vector<std::size_t>& functions) const;

@@ -180,6 +180,22 @@ bool Recorder::switched(double t, const std::vector<double>& x, const ModeState&
   return true;
 }
 
+void Recorder::switched(double t, const std::vector<double>& x, const SurfaceSwitch& change) {
+  const auto j = at(change.surface);
+  const auto& columns = listed_columns_[j];
+  listed_before_.assign(columns.size(), change.before);
+  listed_after_.assign(columns.size(), change.after);
+  auto& event = begin(t, result::kind_of_switch(listed_before_, listed_after_));
+  for (const std::size_t column : columns) add_surface(event, column);
+  set_states(event, x, x);
+  event.mode = recording_.modes.append_change(j, change.before, change.alpha_before);
+  event.mode_after = recording_.modes.append_change(j, change.after, change.alpha_after);
+  recording_.text += system_.switching[j].name;
+  recording_.text += ": ";
+  recording_.text += change.reason;
+  event.reason.end = recording_.text.size();
+}
+
 bool Recorder::started(double t, const std::vector<double>& x, const Transition& transition,
                        const std::vector<int>& surfaces) {
   columns_.clear();

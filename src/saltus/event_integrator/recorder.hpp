@@ -23,6 +23,14 @@ struct Passage {
   const ModeState& after;
 };
 
+/// A switch of one surface that changes nothing else.
+struct SurfaceSwitch {
+  int surface = 0;
+  int before = 0, after = 0;  ///< modes
+  double alpha_before = 0.0, alpha_after = 0.0;
+  std::string_view reason;
+};
+
 /// One execution of a jump.
 struct ExecutedJump {
   int jump = 0;
@@ -41,6 +49,22 @@ class Recorder {
   void row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event);
   /// A switch, if a listed switching function changes its mode; returns whether it did.
   bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
+  /// The same for the one surface that changes; it is listed, and the last mode recorded is the one before but for its
+  /// own selection. Cost: O(1).
+  void switched(double t, const std::vector<double>& x, const SurfaceSwitch& change);
+  /// Whether a surface is listed.
+  [[nodiscard]] bool lists(int surface) const { return !listed_columns_[static_cast<std::size_t>(surface)].empty(); }
+  /// A row in the mode before or behind the last event, with its selections.
+  void row_before_last_event(const std::vector<double>& x, const std::vector<double>& alpha) {
+    const auto& event = recording_.event_list.back();
+    append_row(event.t, x, alpha, event.mode);
+  }
+  /// Where only the selection of `surface` may differ from that of the mode behind it.
+  void row_behind_last_event(const std::vector<double>& x, const std::vector<double>& alpha, std::size_t surface) {
+    const auto& event = recording_.event_list.back();
+    const int mode = recording_.modes.last_mode(surface);
+    append_row(event.t, x, alpha, recording_.modes.append_change(surface, mode, alpha[surface]));
+  }
   /// A start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
   bool started(double t, const std::vector<double>& x, const Transition& transition, const std::vector<int>& surfaces);
   /// An event of [[events]].

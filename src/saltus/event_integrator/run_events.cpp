@@ -165,6 +165,7 @@ Run::Arrival Run::arrive(RowBefore row) {
 
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
+  if (is_ordinary(located) && switch_shortly(located)) return running_ ? Step::taken : Step::failed;
   const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
   if (located.t > t_) search_.forget_user_zeros();
@@ -222,7 +223,10 @@ Run::Step Run::depart(const Arrival& arrival) {
   }
   if (event) last_event_time_ = t_;
   if (running_ && !too_many_events()) {
-    if (event) accumulate_switches();
+    if (event) {
+      note_tightening_switch();
+      accumulate_switches();
+    }
     accumulate_jumps();
   }
   if (recorder_.events() > arrival.events && running_) watch_for_families();

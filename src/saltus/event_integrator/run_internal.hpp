@@ -1,6 +1,6 @@
 // A run in progress: the state of the engine between its sources. integrate.cpp begins and ends it, run_steps.cpp takes
-// the steps, run_events.cpp handles what they meet, run_jumps.cpp and run_limits.cpp jumps and their accumulation,
-// run_spirals.cpp that of switches.
+// the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it, run_jumps.cpp and
+// run_limits.cpp jumps and their accumulation, run_spirals.cpp that of switches.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "saltus/event_integrator/cells.hpp"
 #include "saltus/event_integrator/event_search.hpp"
 #include "saltus/event_integrator/families.hpp"
+#include "saltus/event_integrator/field_memory.hpp"
 #include "saltus/event_integrator/holding.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/event_integrator/jumps.hpp"
@@ -39,8 +40,12 @@ inline constexpr const char* resting_reason =
 /// The run in progress: where it is, and the work spaces of its parts. One object per call of integrate().
 class Run {
  public:
+  /// How switches are decided and entered: the ordinary ones by the short way, or all by the one that covers
+  /// everything.
+  enum class Way { short_where_ordinary, general };
+
   Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-      const StepObserver& observer);
+      const StepObserver& observer, Way way = Way::short_where_ordinary);
 
   CompactIntegration to_end();
 
@@ -82,6 +87,12 @@ class Run {
   [[nodiscard]] std::string undefined_beyond();
   Step accept(double t_new);
   Step handle(const Located& located);
+  [[nodiscard]] bool has_ordinary_switches() const;
+  [[nodiscard]] bool is_ordinary(const Located& located) const;
+  bool switch_shortly(const Located& located);
+  bool meet(const Located& located, int surface);
+  bool leave(const Located& located, int surface, FunctionKind exit);
+  void go_on_behind(const Located& located, const SurfaceSwitch& change);
   Arrival arrive(RowBefore row);
   Step depart(const Arrival& arrival);
   void choose(Transition& transition);
@@ -108,6 +119,8 @@ class Run {
   bool enter(const Transition& transition);
   void begin_spiral();
   void note_tightening_switch();
+  void note_tightening_switch(const SurfaceSwitch& change);
+  void note_labels();
   void note_switch_rates();
   void follow_shrinking();
   void accumulate_switches();
@@ -188,6 +201,10 @@ class Run {
   Locator locator_;
   SingleSurface single_surface_;
   SurfacePair surface_pair_;
+  bool ordinary_ = false;  ///< the model and the options have nothing that a switch of one surface might concern
+  FieldMemory field_memory_;
+  std::vector<int> zero_order_;       ///< n_psi
+  std::vector<double> slope_beyond_;  ///< of the region on the other side of a surface
   UserEvents user_events_;
   Jumps jumps_;
   Holding holding_;

@@ -50,6 +50,11 @@ void Run::note_tightening_switch() {
     switch_labels_.push_back(label_of(static_cast<int>(j), state_.mode[j]));
   });
   if (!holds) return switch_laps_.clear();
+  note_labels();
+}
+
+/// The switches of switch_labels_, at this time.
+void Run::note_labels() {
   switch_laps_.add(t_, switch_labels_, x_);
   // A limit asks for the rates of those switches only behind which laps have shrunk twice.
   if (switch_laps_.shrinks()) note_switch_rates();
@@ -96,9 +101,19 @@ void Run::follow_shrinking() {
   tolerances_.atol = mode_atol_ * lap_share_;
 }
 
-/// If the switches up to here have a limit that nothing else precedes, the run goes on from there.
+/// The same for one surface, listed, with no jump; `before` is its mode and selection before.
+void Run::note_tightening_switch(const SurfaceSwitch& change) {
+  if (!series_.tightens()) return switch_laps_.clear();
+  switch_labels_.assign(1, label_of(change.surface, change.after));
+  // What the rates of the switch are found from.
+  before_ = state_;
+  set_surface(before_, change.surface, change.before, change.alpha_before);
+  note_labels();
+}
+
+/// Behind a switch that was noted: if those up to here have a limit that nothing else precedes, the run goes on from
+/// there.
 void Run::accumulate_switches() {
-  note_tightening_switch();
   follow_shrinking();
   if (switch_laps_.empty()) return;
   const auto limit = switch_laps_.limit(shortest_switch_lap_);

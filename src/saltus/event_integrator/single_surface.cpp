@@ -12,6 +12,30 @@ namespace saltus::event_integrator {
 
 using switching::Drift;
 
+namespace {
+
+/// Where each side goes by its velocity, if that is clear of zero; false where one is not finite.
+bool find_drifts(switching::SurfaceSituation& situation) {
+  auto& [below, above, arrival] = situation;
+  if (!std::isfinite(below.velocity) || !std::isfinite(above.velocity)) return false;
+  const double scale = std::max(std::abs(below.velocity), std::abs(above.velocity));
+  for (auto* side : {&below, &above}) {
+    if (std::abs(side->velocity) > sign_tolerance * scale) side->drift = side->velocity > 0.0 ? Drift::up : Drift::down;
+  }
+  return true;
+}
+
+bool is_plain(const switching::SurfaceDecision& decision, int mode_before) {
+  return decision.verdict == switching::Verdict::decided && decision.other_modes.empty() &&
+         decision.mode != mode_before;
+}
+
+switching::Arrival arrival_from(int side) {
+  return side < 0 ? switching::Arrival::from_below : switching::Arrival::from_above;
+}
+
+}  // namespace
+
 SingleSurface::SingleSurface(const Surroundings& surroundings)
     : surroundings_(surroundings),
       is_inner_(at(surroundings.kernel.switching_functions()), false),
@@ -51,14 +75,15 @@ double SingleSurface::velocity(const Occasion& occasion, int surface, double sel
   const auto& kernel = surroundings_.kernel;
   alpha_[at(surface)] = selection;
   kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
-  return velocity(occasion, surface, f_);
+  return velocity(occasion.t, occasion.x, surface, alpha_, f_);
 }
 
-/// The same with the field that belongs to alpha_.
-double SingleSurface::velocity(const Occasion& occasion, int surface, const std::vector<double>& f) {
+/// The same with the field that belongs to `alpha`.
+double SingleSurface::velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
+                               const std::vector<double>& f) {
   if (!is_finite(f)) return std::numeric_limits<double>::quiet_NaN();
   double velocity = 0.0;
-  surroundings_.kernel.gradient(surface, occasion.t, occasion.x, alpha_.data(), row_.data(), &velocity);
+  surroundings_.kernel.gradient(surface, t, x, alpha.data(), row_.data(), &velocity);
   for (std::size_t i = 0; i < f.size(); ++i) velocity += row_[i] == 0.0 ? 0.0 : row_[i] * f[i];
   return velocity;
 }
@@ -75,14 +100,10 @@ bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Tr
   auto& [below, above, arrival] = situation;
   // Outside of surfaces the side that the solution comes from is that of its own field.
   const int known = slope != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
-  below.velocity = known < 0 ? velocity(occasion, j, *slope) : velocity(occasion, j, 0.0);
-  above.velocity = known > 0 ? velocity(occasion, j, *slope) : velocity(occasion, j, 1.0);
-  if (!std::isfinite(below.velocity) || !std::isfinite(above.velocity)) return false;
-  const double scale = std::max(std::abs(below.velocity), std::abs(above.velocity));
-  for (auto* side : {&below, &above}) {
-    if (std::abs(side->velocity) > sign_tolerance * scale) side->drift = side->velocity > 0.0 ? Drift::up : Drift::down;
-  }
-  arrival = before.mode[at(j)] < 0 ? switching::Arrival::from_below : switching::Arrival::from_above;
+  below.velocity = known < 0 ? velocity(occasion.t, occasion.x, j, alpha_, *slope) : velocity(occasion, j, 0.0);
+  above.velocity = known > 0 ? velocity(occasion.t, occasion.x, j, alpha_, *slope) : velocity(occasion, j, 1.0);
+  if (!find_drifts(situation)) return false;
+  arrival = arrival_from(before.mode[at(j)]);
   int exit = 0;  // to the side whose field ends the sliding
   if (before.mode[at(j)] == 0) {
     arrival = switching::Arrival::along;
@@ -95,11 +116,51 @@ bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Tr
   }
   if (below.drift == Drift::stays || above.drift == Drift::stays) return false;
   const auto decision = switching::decide_surface(situation);
-  const bool plain = decision.verdict == switching::Verdict::decided && decision.other_modes.empty();
-  if (!plain || decision.mode == before.mode[at(j)] || (exit != 0 && decision.mode != exit)) return false;
+  if (!is_plain(decision, before.mode[at(j)]) || (exit != 0 && decision.mode != exit)) return false;
   fill(before, occasion, decision, transition);
   const bool alone = before.sliding.size() == (exit != 0 ? 1U : 0U);
   return alone || select_others(occasion, transition.state);
+}
+
+std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState& before, int surface, double t,
+                                                                const double* x, const std::vector<double>& below,
+                                                                const std::vector<double>& above) {
+  switching::SurfaceSituation situation;
+  situation.below.velocity = velocity(t, x, surface, before.alpha, below);
+  situation.above.velocity = velocity(t, x, surface, before.alpha, above);
+  if (!find_drifts(situation)) return std::nullopt;
+  if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return std::nullopt;
+  situation.arrival = arrival_from(before.mode[at(surface)]);
+  auto decision = switching::decide_surface(situation);
+  if (!is_plain(decision, before.mode[at(surface)])) return std::nullopt;
+  return decision;
+}
+
+std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeState& before, int surface,
+                                                                     const Place& place, const ExitValues& velocities,
+                                                                     Region side) {
+  const auto& kernel = surroundings_.kernel;
+  const double* x = place.x;
+  switching::SurfaceSituation situation;
+  situation.below.velocity = velocities.below;
+  situation.above.velocity = velocities.above;
+  if (!find_drifts(situation)) return std::nullopt;
+  double rate = 0.0;
+  kernel.gradient(surface, place.t, x, before.alpha.data(), row_.data(), &rate);
+  double terms = std::abs(rate * place.t);
+  for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * x[i]);
+  const double noise = 8.0 * rounding_unit * terms;
+  // What ProjectedFields::motion looks at first, and clear of what makes it look further.
+  const double bend = kernel.lie_derivative(surface, 2, place.t, x, before.alpha.data());
+  const double moved = std::abs(bend) * 0.5 * place.time_scale * place.time_scale;
+  if (!(moved > 2.0 * noise) || !std::isfinite(moved)) return std::nullopt;
+  const bool is_below = side == Region::below;
+  (is_below ? situation.below : situation.above) = {0.0, bend > 0.0 ? Drift::up : Drift::down};
+  if ((is_below ? situation.above : situation.below).drift == Drift::stays) return std::nullopt;
+  situation.arrival = switching::Arrival::along;
+  auto decision = switching::decide_surface(situation);
+  if (!is_plain(decision, 0) || decision.mode != (is_below ? -1 : 1)) return std::nullopt;
+  return decision;
 }
 
 /// The selections of several surfaces, or of others than this one, from the new mode's own field.

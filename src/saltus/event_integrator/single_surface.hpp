@@ -1,6 +1,7 @@
 // The usual event, decided without detours: one surface is met or left, and nothing else happens there.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "saltus/event_integrator/mode_field.hpp"
@@ -28,10 +29,29 @@ class SingleSurface {
   [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition,
                             const std::vector<double>* slope = nullptr);
 
+  /// The same answer where the solution slides on nothing, from the fields of both sides, f(alpha_surface = 0) and
+  /// f(alpha_surface = 1), n_x each, in a model without nesting, regions and discrete states; nullopt where it is not
+  /// as clear. Cost: the gradient of the surface.
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide(const ModeState& before, int surface, double t,
+                                                                 const double* x, const std::vector<double>& below,
+                                                                 const std::vector<double>& above);
+  /// A point, and a step of the integrator.
+  struct Place {
+    double t = 0.0;
+    const double* x = nullptr;
+    double time_scale = 0.0;
+  };
+  /// The same at an exit from sliding on this surface alone, where the field of `side` has become tangent to it, from
+  /// the normal components of both fields; `before` has the selection of that side. Cost: a second derivative.
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_exit(const ModeState& before, int surface,
+                                                                      const Place& place, const ExitValues& velocities,
+                                                                      Region side);
+
  private:
   [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
   double velocity(const Occasion& occasion, int surface, double selection);
-  double velocity(const Occasion& occasion, int surface, const std::vector<double>& f);
+  double velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
+                  const std::vector<double>& f);
   void fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
             Transition& transition) const;
   bool select_others(const Occasion& occasion, ModeState& state);

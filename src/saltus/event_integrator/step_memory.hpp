@@ -15,6 +15,10 @@ class StepMemory {
   /// The solution goes on in `mode` from t; any mode before ends here.
   /// @return the step to start with: the remembered one, or `proposed`
   [[nodiscard]] double change(const std::vector<int>& mode, double t, double proposed);
+  /// The same where the mode differs from the one before in this surface only. Cost: one comparison of modes.
+  [[nodiscard]] double change(const std::vector<int>& mode, std::size_t surface, double t, double proposed);
+  /// Mark of the mode that differs from the one that lasts in this surface: different modes rarely have the same.
+  [[nodiscard]] std::size_t mark_with(std::size_t surface, int mode) const;
   /// Behind each accepted step: what the step control proposes for the next one.
   void accepted(double proposed);
 
@@ -25,6 +29,8 @@ class StepMemory {
     std::vector<int> mode;
     double step = 0.0;
   };
+  void end(double t);
+  double begin(const std::vector<int>& mode, std::size_t mark, double t, double proposed);
 
   std::array<Entry, capacity> entries_;
   std::size_t used_ = 0;

@@ -7,17 +7,37 @@ namespace saltus::event_integrator {
 bool SwitchSeries::repeats(double t, const std::vector<int>& before, const std::vector<int>& after) {
   if (before == after) return false;
   times_[switches_++ % remembered] = t;
-  if (t != last_) noted_ = 0;
+  if (t != last_) {
+    noted_ = 0;
+    surface_change_.reset();
+  }
   last_ = t;
+  if (surface_change_) {
+    auto& change = append();
+    change.first = change.second = before;
+    change.first[surface_change_->surface] = surface_change_->before;
+    surface_change_.reset();
+  }
   const auto end = changes_.begin() + static_cast<std::ptrdiff_t>(noted_);
   const auto same = [&](const Change& change) { return change.first == before && change.second == after; };
   if (std::any_of(changes_.begin(), end, same)) return true;
-  // The storage of changes at earlier times is used again.
-  if (noted_ == changes_.size()) changes_.emplace_back();
-  changes_[noted_].first = before;
-  changes_[noted_].second = after;
-  ++noted_;
+  auto& change = append();
+  change.first = before;
+  change.second = after;
   return false;
+}
+
+/// The storage of changes at earlier times is used again.
+SwitchSeries::Change& SwitchSeries::append() {
+  if (noted_ == changes_.size()) changes_.emplace_back();
+  return changes_[noted_++];
+}
+
+void SwitchSeries::note(double t, std::size_t surface, int before) {
+  times_[switches_++ % remembered] = t;
+  noted_ = 0;
+  last_ = t;
+  surface_change_ = {surface, before};
 }
 
 bool SwitchSeries::shrinks(double t) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,10 @@ class SwitchSeries {
   /// Whether the solution changes from `before` to `after` at t, as it already did at this very time: a loop. Notes the
   /// change. There and back once is none: a surface may be touched more shallowly than time resolves.
   [[nodiscard]] bool repeats(double t, const std::vector<int>& before, const std::vector<int>& after);
+  /// Notes that one surface has left the mode `before` at t, later than any change noted so far: no loop. Cost: O(1).
+  void note(double t, std::size_t surface, int before);
+  /// Of the last change noted.
+  [[nodiscard]] double last() const { return last_; }
   /// Counts an event at t; whether there were too many in too short a time.
   [[nodiscard]] bool too_dense(double t);
   /// Whether the switches before t have followed each other ever faster, down to a scale on which no model lives: a run
@@ -28,10 +33,17 @@ class SwitchSeries {
 
  private:
   using Change = std::pair<std::vector<int>, std::vector<int>>;
+  Change& append();
   double span_;
   double last_ = 0.0;
   std::vector<Change> changes_;  ///< the first `noted_` of them are those at last_
   std::size_t noted_ = 0;
+  /// The only change at last_, noted by its surface: the mode behind it is the one that the next change comes from.
+  struct SurfaceChange {
+    std::size_t surface = 0;
+    int before = 0;
+  };
+  std::optional<SurfaceChange> surface_change_;
   /// Two laps of up to four switches, and one to start from.
   static constexpr std::size_t remembered = 9;
   std::array<double, remembered> times_{};  ///< of the last switches, in turn

@@ -1,0 +1,127 @@
+// The ordinary switch: one surface is reached from beside it, and crossed or slid on, or left where one of its fields
+// is tangent, and nothing else happens there. What other switches need is left out: copies of modes, occasions,
+// transitions. The answers are those of the general way, bit for bit; where one is not clear that way is taken.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saltus/event_integrator/run_internal.hpp"
+
+namespace saltus::event_integrator {
+
+/// Whether nothing but switching functions that hold no selections depends on modes, and nobody has asked for more
+/// than one solution.
+bool Run::has_ordinary_switches() const {
+  const auto& system = surroundings_.system;
+  for (int j = 0; j < kernel_.switching_functions(); ++j) {
+    if (!kernel_.inner(j).empty()) return false;
+  }
+  return surroundings_.affine_in_alpha && kernel_.event_functions() == kernel_.switching_functions() &&
+         kernel_.region_groups().empty() && system.events.empty() && jumps_.none() && options_.choices.empty() &&
+         options_.layers.corners.empty();
+}
+
+/// Whether one listed surface is reached in a region, or left by the solution that slides on it alone, behind the last
+/// switch.
+bool Run::is_ordinary(const Located& located) const {
+  if (!ordinary_ || located.functions.size() != 1 || state_.higher || !families_.idle()) return false;
+  const auto& function = search_.functions()[located.functions.front()];
+  const bool surface = function.kind == FunctionKind::surface && search_.crosses();
+  const bool exit = (function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above) &&
+                    state_.sliding.size() == 1 && field_.solve() == SlidingSolve::decoupled;
+  return (surface || exit) && recorder_.lists(function.index) && located.t > t_ && located.t != series_.last();
+}
+
+/// Goes on behind an ordinary switch; otherwise nothing has happened.
+bool Run::switch_shortly(const Located& located) {
+  const auto& function = search_.functions()[located.functions.front()];
+  return function.kind == FunctionKind::surface ? meet(located, function.index)
+                                                : leave(located, function.index, function.kind);
+}
+
+/// A surface that is reached in a region.
+bool Run::meet(const Located& located, int surface) {
+  const auto j = at(surface);
+  const double t = located.t;
+  const double* x = located.x.data();
+  const int mode = state_.mode[j];
+  const double alpha = state_.alpha[j];
+  field_(t, x, slope_.data());
+  state_.alpha[j] = 1.0 - alpha;
+  const auto& constants = field_memory_.of(state_.alpha, step_memory_.mark_with(j, -mode));
+  state_.alpha[j] = alpha;
+  kernel_.prepared_field(t, x, constants, slope_beyond_.data());
+  const auto decision = mode < 0 ? single_surface_.decide(state_, surface, t, x, slope_, slope_beyond_)
+                                 : single_surface_.decide(state_, surface, t, x, slope_beyond_, slope_);
+  if (!decision) return false;
+  const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
+  x_ = located.x;
+  if (change.after != 0) {
+    field_.cross(j, constants);
+    slope_.swap(slope_beyond_);
+  } else {
+    field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
+    field_.project(t, x_.data());
+    field_(t, x_.data(), slope_.data());
+    if (!is_finite(slope_)) {
+      field_.enter(state_);
+      return false;
+    }
+  }
+  go_on_behind(located, change);
+  return true;
+}
+
+/// The only surface that is slid on, where the field of one side has become tangent to it.
+bool Run::leave(const Located& located, int surface, FunctionKind exit) {
+  const auto j = at(surface);
+  const double t = located.t;
+  const double* x = located.x.data();
+  field_(t, x, slope_.data());
+  const double alpha = field_.alpha()[j];
+  constexpr double lost = 1e-9;  // as in SingleSurface
+  if (!is_finite(slope_) || !(alpha >= -lost && alpha <= 1.0 + lost)) return false;
+  const auto side = exit == FunctionKind::exit_below ? Region::below : Region::above;
+  const double before = std::exchange(state_.alpha[j], side == Region::below ? 0.0 : 1.0);
+  const auto decision = single_surface_.decide_exit(state_, surface, {t, x, h_scale_}, field_.sides(), side);
+  state_.alpha[j] = before;
+  if (!decision) return false;
+  x_ = located.x;
+  state_.alpha[j] = alpha;
+  field_.leave_to(side);
+  field_(t, x_.data(), slope_.data());
+  go_on_behind(located, {surface, 0, decision->mode, alpha, decision->alpha, decision->reason});
+  return true;
+}
+
+/// The field is that of the mode behind, and x_ and slope_ are there.
+void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
+  const auto j = at(change.surface);
+  t_ = located.t;
+  arrival_row_ = recorder_.rows();
+  recorder_.switched(t_, x_, change);
+  recorder_.row_before_last_event(located.x, state_.alpha);
+  set_surface(state_, change.surface, change.after, change.alpha_after);
+  stepper_.restart();
+  stiffness_.reset();
+  if (change.before != 0 && change.after != 0) {
+    search_.cross(j, state_, t_, x_.data());
+  } else {
+    set_corner_alpha(state_);
+    zero_order_.assign(state_.mode.size(), 0);
+    zero_order_[j] = change.after == 0 ? 0 : 2;
+    search_.enter_again(state_, zero_order_, t_, x_.data());
+  }
+  recorder_.row_behind_last_event(x_, change.after == 0 ? field_.alpha() : state_.alpha, j);
+  series_.note(t_, j, change.before);
+  control_.reset();
+  h_ = step_memory_.change(state_.mode, j, t_, h_);
+  const auto& times = options_.output.times;
+  while (next_output_ < times.size() && times[next_output_] <= t_) ++next_output_;
+  last_event_time_ = t_;
+  if (too_many_events()) return;
+  note_tightening_switch(change);
+  accumulate_switches();
+}
+
+}  // namespace saltus::event_integrator

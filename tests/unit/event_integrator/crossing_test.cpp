@@ -1,0 +1,160 @@
+// The short way behind ordinary switches and the general one give the same recording, bit for bit.
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "saltus/event_integrator/run_internal.hpp"
+#include "systems.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+constexpr auto all_methods = {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5};
+
+CompactIntegration run(const model::System& system, const IntegrationOptions& options, Run::Way way) {
+  auto kernel = evaluation::ModelKernel::compile(system);
+  EXPECT_TRUE(kernel.has_value());
+  const StepObserver none;
+  return Run(*kernel, system, options, none, way).to_end();
+}
+
+void expect_same_bits(const std::vector<double>& a, const std::vector<double>& b, const std::string& what) {
+  ASSERT_EQ(a.size(), b.size()) << what;
+  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0) << what;
+}
+
+void expect_same(const Recording& a, const Recording& b) {
+  ASSERT_EQ(a.event_list.size(), b.event_list.size());
+  for (std::size_t k = 0; k < a.event_list.size(); ++k) {
+    const auto& one = a.event_list[k];
+    const auto& other = b.event_list[k];
+    EXPECT_EQ(one.t, other.t) << k;
+    EXPECT_EQ(one.kind, other.kind) << k;
+    EXPECT_EQ(one.x, other.x) << k;
+    EXPECT_EQ(one.x_after, other.x_after) << k;
+    EXPECT_EQ(one.mode, other.mode) << k;
+    EXPECT_EQ(one.mode_after, other.mode_after) << k;
+    EXPECT_EQ(one.unique, other.unique) << k;
+    EXPECT_EQ(one.surfaces.begin, other.surfaces.begin) << k;
+    EXPECT_EQ(one.surfaces.end, other.surfaces.end) << k;
+    EXPECT_EQ(one.reason.begin, other.reason.begin) << k;
+    EXPECT_EQ(one.reason.end, other.reason.end) << k;
+  }
+  EXPECT_EQ(a.surfaces, b.surfaces);
+  EXPECT_EQ(a.text, b.text);
+  EXPECT_EQ(a.row_modes, b.row_modes);
+  expect_same_bits(a.states, b.states, "states at events");
+  expect_same_bits(a.row_times, b.row_times, "times of rows");
+  expect_same_bits(a.row_states, b.row_states, "states of rows");
+  expect_same_bits(a.row_outputs, b.row_outputs, "outputs");
+  ASSERT_EQ(a.modes.size(), b.modes.size());
+  ModeLog::Reader one(a.modes), other(b.modes);
+  for (std::size_t k = 0; k < a.modes.size(); ++k) {
+    one.seek(k);
+    other.seek(k);
+    ASSERT_EQ(one.mode(), other.mode()) << k;
+    expect_same_bits(one.alpha(), other.alpha(), "selections");
+  }
+}
+
+/// Returns how many evaluations of the field the short way saves.
+long compare(const model::System& system, IntegrationOptions options) {
+  const auto quick = run(system, options, Run::Way::short_where_ordinary);
+  const auto full = run(system, options, Run::Way::general);
+  EXPECT_EQ(quick.status.termination, full.status.termination) << quick.status.message << full.status.message;
+  EXPECT_EQ(quick.status.message, full.status.message);
+  EXPECT_EQ(quick.status.time_reached, full.status.time_reached);
+  EXPECT_EQ(quick.statistics.steps, full.statistics.steps);
+  EXPECT_EQ(quick.statistics.rejected, full.statistics.rejected);
+  expect_same(quick.recording, full.recording);
+  return full.statistics.rhs_evaluations - quick.statistics.rhs_evaluations;
+}
+
+IntegrationOptions options_of(ode::Method method, double until, OutputTimes::Rows rows) {
+  IntegrationOptions options;
+  options.method = method;
+  options.tolerances = {1e-8, 1e-10};
+  options.until = until;
+  options.output.rows = rows;
+  if (rows == OutputTimes::Rows::at_times) {
+    for (int k = 1; k <= 20; ++k) options.output.times.push_back(until * k / 20);
+  }
+  return options;
+}
+
+/// The short way is taken, which takes fewer evaluations.
+void expect_agreement(const model::System& system, double until) {
+  for (const auto method : all_methods) {
+    for (const auto rows : {OutputTimes::Rows::at_steps, OutputTimes::Rows::at_times}) {
+      EXPECT_GT(compare(system, options_of(method, until, rows)), 0) << static_cast<int>(method);
+    }
+  }
+}
+
+TEST(ShortWay, EntersAndLeavesSlidingAsTheGeneralOne) { expect_agreement(testing::stick_slip(), 40.0); }
+
+TEST(ShortWay, PassesTangentialExitsAsTheGeneralOne) { expect_agreement(testing::relay(), 6.0); }
+
+TEST(ShortWay, TouchesSeveralIndependentSurfacesAsTheGeneralOne) { expect_agreement(testing::friction_blocks(), 20.0); }
+
+TEST(ShortWay, CrossesSurfacesThatDependOnTimeAsTheGeneralOne) {
+  auto system = testing::blank(2, 2);
+  testing::add_surface(system, "moving", system.x(0) - 0.3 * system.t);
+  testing::add_surface(system, "curved", system.x(0) * system.x(1) - 0.1);
+  testing::set_field(system,
+                     {system.x(1) + 0.3 * system.alpha(0), -system.x(0) + 0.2 * system.alpha(1) - 0.1 * system.x(1)},
+                     {1.0, 0.1});
+  expect_agreement(system, 20.0);
+}
+
+/// Switches that tighten towards an equilibrium: laps, tolerances that follow them, and the limit.
+TEST(ShortWay, FollowsAccumulationsAsTheGeneralOne) {
+  auto system = testing::blank(2, 2);
+  testing::add_surface(system, "x", system.x(0));
+  testing::add_surface(system, "y", system.x(1));
+  const auto a = 2 * system.alpha(0) - 1, b = 2 * system.alpha(1) - 1;
+  testing::set_field(system, {-b - 0.3 * a, a - 0.3 * b}, {1.0, 0.4});
+  expect_agreement(system, 30.0);
+}
+
+/// x' = A x + b + sum_j c_j sgn(n_j . x - d_j): crossings, sliding on one surface and on several, their meetings.
+model::System random_system(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto number = [&] { return 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0; };
+  const int n = 2 + static_cast<int>(seed % 3);
+  const int surfaces = 1 + static_cast<int>(seed / 3 % 4);
+  auto system = testing::blank(n, surfaces);
+  for (int j = 0; j < surfaces; ++j) {
+    casadi::SX psi = 0.3 * number();
+    for (int i = 0; i < n; ++i) psi += (seed % 2 == 0 && i != j % n ? 0.0 : number()) * system.x(i);
+    testing::add_surface(system, "s" + std::to_string(j), psi);
+  }
+  std::vector<casadi::SX> f;
+  std::vector<double> start;
+  for (int i = 0; i < n; ++i) {
+    casadi::SX rate = 0.3 * number() - 0.2 * system.x(i);
+    for (int k = 0; k < n; ++k) rate += (k == i ? 0.0 : 2.0 * number()) * system.x(k);
+    for (int j = 0; j < surfaces; ++j) rate += number() * (2 * system.alpha(j) - 1);
+    f.push_back(rate);
+    start.push_back(number());
+  }
+  testing::set_field(system, f, start);
+  return system;
+}
+
+TEST(ShortWay, AgreesOnRandomSystems) {
+  long saved = 0;
+  for (std::uint32_t seed = 0; seed < 120; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto method = *(all_methods.begin() + seed % 3);
+    saved += compare(random_system(seed), options_of(method, 8.0, OutputTimes::Rows::at_steps));
+  }
+  EXPECT_GT(saved, 500);
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
