@@ -64,8 +64,6 @@ Simulator Simulator::from_text(std::string_view toml, const Relabelling& relabel
 
 const pipeline::SimulateOptions& Simulator::options() const { return parts_->options; }
 
-bool Simulator::has_jumps() const { return !parts_->system.jumps.empty(); }
-
 void Simulator::set_initial_state(const std::vector<double>& x) { parts_->system.initial_state = x; }
 
 void Simulator::set_until(double t) { parts_->options.until = t; }

@@ -31,7 +31,6 @@ class Simulator {
 
   /// The options of the model file, with native code off: compiling would take longer than these runs.
   [[nodiscard]] const pipeline::SimulateOptions& options() const;
-  [[nodiscard]] bool has_jumps() const;
   void set_initial_state(const std::vector<double>& x);
   void set_until(double t);
   [[nodiscard]] result::Result run(const pipeline::SimulateOptions& options) const;
