@@ -123,5 +123,41 @@ class OptionsWithoutEffectTest(ToolTest):
             self.assertTrue(err.startswith(f"{arguments[0]} {arguments[1].split('=')[0]}: error: until (-1)"), err)
 
 
+class UndefinedTest(ToolTest):
+    MODEL = """
+[model]
+name = "undefined"
+[states]
+x = 1
+y = 0
+[dynamics]
+x = "-1"
+y = "sign({})"
+[simulate]
+until = 3
+"""
+
+    def stop(self, function, *arguments):
+        self.write("m.toml", self.MODEL.format(function))
+        self.run_tool("simulate", "m.toml", "--out", "r.json", *arguments, code=3)
+        status = json.loads((self.folder / "r.json").read_text())["status"]
+        self.assertEqual(status["termination"], "evaluation_failed", status)
+        self.assertAlmostEqual(status["time_reached"], 1.0, delta=1e-4)
+        return status["message"]
+
+    def test_a_switching_function_that_ends_is_named(self):
+        for function, name in (("log(x) + 100 + x", "log(x)+100+x"), ("sqrt(x) + 1", "sqrt(x)+1")):
+            for arguments in (["--integrator", "dopri5"], ["--integrator", "dop853"], ["--integrator", "radau5"],
+                              ["--method", "fesd"], ["--method", "timestepping"]):
+                with self.subTest(function=function, arguments=arguments):
+                    message = self.stop(function, *arguments)
+                    self.assertIn(f"'{name}' is not finite beyond t = ", message)
+                    self.assertIn("guard the expression with if(", message)
+
+    def test_a_condition_that_ends_is_named(self):
+        self.MODEL = self.MODEL.replace("[simulate]", "[[events]]\nwhen = \"sqrt(x) - 7\"\n[simulate]")
+        self.assertIn("an expression of [[events]] or [[jumps]] is not finite beyond t = ", self.stop("x + 5"))
+
+
 if __name__ == "__main__":
     main()

@@ -85,6 +85,7 @@ class Run {
   Step attempt();
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
+  [[nodiscard]] std::string undefined_function_beyond();
   Step accept(double t_new);
   Step handle(const Located& located);
   [[nodiscard]] bool has_ordinary_switches() const;

@@ -91,6 +91,26 @@ std::string Run::undefined_beyond() {
   return {};
 }
 
+/// The switching function, event or jump that is undefined a little further along the right-hand side, in words; empty
+/// if none is found.
+std::string Run::undefined_function_beyond() {
+  std::vector<double> values;
+  std::vector<std::size_t> all(search_.functions().size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  for (double h = smallest_step(); h <= 1e6 * smallest_step(); h *= 4.0) {
+    for (std::size_t i = 0; i < x_.size(); ++i) row_x_[i] = x_[i] + h * slope_[i];
+    search_.evaluate(t_ + h, row_x_.data(), all, values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto& function = search_.functions()[i];
+      if (std::isfinite(values[i]) || is_cell_end(function.kind)) continue;
+      const bool named = at(function.index) < surroundings_.system.switching.size();
+      return named ? fmt::format("the switching function '{}'", surroundings_.system.switching[at(function.index)].name)
+                   : std::string("an expression of [[events]] or [[jumps]]");
+    }
+  }
+  return {};
+}
+
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
   std::vector<double> values;
@@ -113,6 +133,13 @@ Run::Step Run::undefined_step() {
   }
   if (stopped_by_singularity()) return Step::failed;
   const std::string states = undefined_beyond();
+  const std::string function = states.empty() ? undefined_function_beyond() : std::string();
+  if (!function.empty()) {
+    fail(Termination::evaluation_failed,
+         fmt::format("{} is not finite beyond {}; guard the expression with if(…), or end the simulation before",
+                     function, where()));
+    return Step::failed;
+  }
   if (states.empty()) {
     fail(Termination::step_size_too_small,
          fmt::format(

@@ -1,6 +1,7 @@
 // Without switch detection: elements of equal length, every stage with its own active set.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -36,6 +37,10 @@ void Run::advance_fixed_element(const FixedSpan& span) {
       ++statistics_.rejected;
       part /= 2;
       if (part > 0) continue;
+      if (auto undefined = undefined_beyond()) {
+        stop(result::Termination::evaluation_failed, std::move(*undefined));
+        return;
+      }
       stop(result::Termination::not_converged,
            fmt::format("no active sets of the stages were found for the element at t = {:.10g}; more "
                        "simulate.timestepping.steps, or method = \"fesd\"",

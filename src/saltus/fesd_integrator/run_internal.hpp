@@ -103,6 +103,8 @@ class Run {
   }
   /// What a derivative of the field that is not finite here (a root of zero) means for elements; nullopt: all are.
   [[nodiscard]] std::optional<std::string> steep_here();
+  /// What is not finite a little further along the right-hand side, in words; nullopt if all is.
+  std::optional<std::string> undefined_beyond();
   /// By the problem, because no active sets were found; stops with this where that is of no help.
   void fall_back(double end, result::Termination termination, std::string message);
   [[nodiscard]] bool solve_guessed(const std::vector<ElementGuess>& guesses, std::vector<ActiveSet>& sets);

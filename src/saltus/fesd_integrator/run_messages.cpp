@@ -1,5 +1,7 @@
 // What a run says of itself where its numbers mean less than they seem to.
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +18,32 @@ std::string Run::coarse_message(const Coarseness::Worst& worst) const {
       "the elements are coarse: their estimated errors add up to {:.2g} of the largest |{}|, of the element at t = "
       "{:.6g} alone {:.2g}; take more simulate.fesd.steps",
       worst.sum, facts_.state_names[worst.state], worst.t, worst.error);
+}
+
+std::optional<std::string> Run::undefined_beyond() {
+  kernel_.evaluate(t_, x_.data(), selections_.data(), held_.data(), at_switch_);
+  const std::vector<double> slope = at_switch_.f;
+  std::vector<double> ahead(x_.size());
+  constexpr double first = 1e-14, last = 1e-3, factor = 8.0;  // of a simulation step
+  for (double part = first; part <= last; part *= factor) {
+    const double h = part * nominal_;
+    for (std::size_t k = 0; k < x_.size(); ++k) ahead[k] = x_[k] + h * slope[k];
+    kernel_.evaluate(t_ + h, ahead.data(), selections_.data(), held_.data(), at_switch_);
+    const auto undefined = [](const std::vector<double>& values) {
+      return static_cast<std::size_t>(
+          std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }) - values.begin());
+    };
+    const auto message = [&](std::string_view what, const std::string& name) {
+      return fmt::format(
+          "the {} of '{}' is not finite beyond t = {:.10g}; guard the expression with if(…), or end the "
+          "simulation before",
+          what, name, t_);
+    };
+    if (const auto k = undefined(at_switch_.f); k < x_.size()) return message("right-hand side", facts_.state_names[k]);
+    if (const auto j = undefined(at_switch_.indicator); j < facts_.selections.size())
+      return message("switching function", facts_.selections[j].name);
+  }
+  return std::nullopt;
 }
 
 std::string Run::undetermined_message() const {

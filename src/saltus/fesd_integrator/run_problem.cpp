@@ -104,8 +104,10 @@ std::optional<std::string> Run::steep_here() {
 }
 
 void Run::fall_back(double end, result::Termination termination, std::string message) {
-  if (auto steep = steep_here()) {
-    stop(result::Termination::evaluation_failed, std::move(*steep));
+  auto reason = steep_here();
+  if (!reason) reason = undefined_beyond();
+  if (reason) {
+    stop(result::Termination::evaluation_failed, std::move(*reason));
     return;
   }
   StepProblem* problem = can_fall_back() ? options_.fallback() : nullptr;

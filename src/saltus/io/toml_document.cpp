@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -147,8 +148,36 @@ std::string_view shortened(std::string_view description) {
   return has_prefix ? description.substr(colon + 2) : description;
 }
 
+/// What a person meant who wrote this line, if it is one of the usual slips: another message, a remedy.
+struct Slip {
+  std::string message;
+  std::string remedy;
+};
+
+std::optional<Slip> usual_slip(std::string_view line, std::size_t column, std::string_view description) {
+  for (const std::string_view quote : {"\u201C", "\u201D", "\u2018", "\u2019"}) {
+    if (line.find(quote) == std::string_view::npos) continue;
+    return Slip{fmt::format("not valid TOML: typographic quotes ({})", quote), "write straight quotes: x = \"-x\""};
+  }
+  if (column > line.size() && description.find("control characters") != std::string_view::npos) {
+    return Slip{"not valid TOML: a text in quotes does not end on its line", "close the quotes where the text ends"};
+  }
+  const auto prime = line.find('\''), equal = line.find('=');
+  const bool primed =
+      prime != std::string_view::npos && prime > 0 && prime < equal && line.find('\'', prime + 1) > equal;
+  if (primed && description.find("expected '='") != std::string_view::npos) {
+    return Slip{fmt::format("not valid TOML: {}", shortened(description)),
+                fmt::format("right-hand sides stand under the state's name, without a prime: {} = \"…\"",
+                            line.substr(0, prime))};
+  }
+  return std::nullopt;
+}
+
 Error syntax_error(const SourceText& source, const toml::parse_error& failure) {
   const auto& position = failure.source().begin;
+  if (auto slip = usual_slip(source.line(position.line), position.column, failure.description())) {
+    return {ErrorCode::parse_failure, std::move(slip->message), std::move(slip->remedy), source.location(position), {}};
+  }
   std::string remedy = "see toml.io for the syntax of TOML";
   const std::string_view description = failure.description();
   const bool is_number = description.find("could not be interpreted as a value") != std::string_view::npos;

@@ -154,7 +154,10 @@ Expected<void> check_options(const ModelFile& model) {
   auto problem = pipeline::find_problem(model.simulate);
   if (!problem) return {};
   auto& error = problem->error;
-  error.location.file = model.description.file;
+  error.location = {model.description.file, 1, 1};
+  for (const auto& [table, location] : model.table_locations) {
+    if (table == "simulate") error.location = location;
+  }
   for (const auto& [key, location] : model.option_locations) {
     if (key == problem->key) error.location = location;
   }

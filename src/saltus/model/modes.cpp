@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/expression/parser.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
 
@@ -60,6 +61,12 @@ class ModeReader {
       if ((other.indicator != nullptr) != (mode.indicator != nullptr)) {
         return mode_error(mode, "`when` and `indicator` in one group",
                           "give all modes of a group the same form, or another group = \"…\"");
+      }
+      if (mode.indicator && expression::to_text(*mode.indicator) == expression::to_text(*other.indicator)) {
+        return mode_error(mode,
+                          fmt::format("the modes in lines {} and {} have the same indicator", other.location.line,
+                                      mode.location.line),
+                          "only one of two modes with one indicator could be active: join them, or correct one");
       }
       if (mode.name && mode.name == other.name) {
         return mode_error(mode, fmt::format("two modes are named '{}'", *mode.name), "rename one of them");

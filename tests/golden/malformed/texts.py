@@ -23,7 +23,7 @@ FILES = {
     "other language": ("def f(x):\n    return -x\n", "1:5", "not valid TOML"),
     "json": ('{"model": {"name": "m"}}\n', "1:1", "not valid TOML"),
     # not TOML
-    "unclosed string": (with_line(9, 'x = "v'), 9, "not valid TOML"),
+    "unclosed string": (with_line(9, 'x = "v'), 9, "a text in quotes does not end on its line", "close the quotes"),
     "unclosed string of many lines": (with_line(9, 'x = """v'), 12, "not valid TOML"),
     "unclosed table": (with_line(5, "[states"), 5, "not valid TOML"),
     "unclosed inline table": (with_line(6, "x = { initial = 1"), 6, "not valid TOML"),
@@ -34,7 +34,7 @@ FILES = {
     "two values in a line": (with_line(6, "x = 1 v = 0"), 6, "not valid TOML"),
     "bad escape": (with_line(9, r'x = "v \ 2"'), 9, "not valid TOML"),
     "bad character code": (with_line(9, r'x = "\uD800"'), 9, "not valid TOML"),
-    "curly quotes": (with_line(9, "x = “v”"), 9, "not valid TOML"),
+    "curly quotes": (with_line(9, "x = \u201Cv\u201D"), "9:5", "typographic quotes (\u201C)", "write straight quotes"),
     "bare expression": (with_line(9, "x = -v"), 9, "expressions stand in quotes"),
     "bare function": (with_line(9, "x = sin(t)"), 9, "expressions stand in quotes"),
     "bare fraction": (with_line(4, "mu = 4/5"), 4, "expressions stand in quotes"),
@@ -52,6 +52,7 @@ FILES = {
     # CRLF and a byte order mark move no line and no column
     "line ends of Windows": (GOOD.replace("\n", "\r\n").replace("mu*sign", "nu*sign"), "10:11", "unknown name 'nu'"),
     "byte order mark": (b"\xef\xbb\xbf" + GOOD.replace("[model]", "[modl]").encode(), "1:2", "unknown table [modl]"),
+    "prime of a derivative": (with_line(9, "x' = \"v\""), 9, "expected '='", "without a prime: x ="),
     # huge
     "key without end": (after(".".join(["a"] * 20000) + " = 1\n"), None, "a key has more than 32 parts"),
     "quoted key without end": (after(".".join(['"a"'] * 20000) + " = 1\n"), None, "a key has more than 32 parts"),

@@ -14,7 +14,7 @@ FILES = {
     "no dynamics of a state": (with_line(9, ""), "6:1", "the state 'x' has no right-hand side", 'add x = "…"'),
     "no dynamics": ("[model]\nname = 'm'\n[states]\nx = 1\n[simulate]\nuntil = 1\n", "4:1", "'x' has no right-hand side"),
     "event without when": (after("[[events]]\nname = 'e'\n"), 13, "this event has no `when`"),
-    "no end time": (with_line(12, "rtol = 1e-6"), None, "no end time", "--until"),
+    "no end time": (with_line(12, "rtol = 1e-6"), "11:2", "no end time", "--until"),
     # of the wrong kind
     "name a number": (with_line(2, "name = 3"), "2:8", "expected a name in quotes, found the number 3"),
     "name a list": (with_line(2, "name = ['m']"), 2, "expected a name in quotes, found a list"),
