@@ -8,7 +8,7 @@ const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
       "format.js", "series.js", "panels.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
-      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js"
+      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
@@ -423,4 +423,11 @@ test("entries of a matrix are shaded by logarithm", () => {
   assert.equal(saltus.heat(0, 100), 0);
   assert.equal(saltus.heat(null, 100), 0);
   assert.equal(saltus.heat(0, 0), 0);
+});
+
+test("options of other methods are told from those of the one that ran", () => {
+  for (const name of ["simulate.rtol", "simulate.event.integrator", "simulate.initial_mode.fesd.x"])
+    assert.ok(!saltus.isOfOtherMethod(name, "event"), name);
+  for (const name of ["simulate.event.integrator", "simulate.timestepping.steps", "simulate.smoothed.epsilon"])
+    assert.ok(saltus.isOfOtherMethod(name, "fesd"), name);
 });

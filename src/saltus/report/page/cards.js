@@ -101,7 +101,27 @@ saltus.finalCard = (result) => {
   return saltus.card(
       "End state",
       saltus.pairTable([["t", saltus.exact(final.t)], ...names.map((name, i) => [name, saltus.exact(values[i])])]),
-      ...(surfaces.length > 0 ? [saltus.plainTable(["ψ", "mode", "α"], surfaces)] : []));
+      ...(surfaces.length > 0 ? [saltus.plainTable(["ψ", "mode", "α"], surfaces)] : []),
+      ...(result.regions.length > 0 ?
+              [saltus.plainTable(
+                  ["region", "θ"], result.regions.map((name, i) => [name, saltus.selection(final.theta[i])]))] :
+              []));
+};
+
+/** Whether an option stands in the table of another method than the one that ran. */
+saltus.isOfOtherMethod = (name, method) =>
+    ["event", "smoothed", "fesd", "timestepping"].some(
+        (other) => other !== method && name.startsWith(`simulate.${other}.`));
+
+/** The options in force, those of other methods folded away. */
+saltus.optionsCard = (result) => {
+  const ofOther = ([name]) => saltus.isOfOtherMethod(name, result.method);
+  const table = (options) => saltus.pairTable(options.map(([name, value]) => [name, saltus.optionText(value)]));
+  const others = result.options.filter(ofOther);
+  const fold = saltus.element(
+      "details", {}, saltus.element("summary", {class: "quiet"}, `${others.length} of other methods`), table(others));
+  return saltus.card(
+      "Options", table(result.options.filter((option) => !ofOther(option))), ...(others.length > 0 ? [fold] : []));
 };
 
 saltus.optionText = (value) => {
@@ -128,11 +148,7 @@ saltus.infoCards = (result) => {
         model.parameters.length > 0 ?
             saltus.pairTable(model.parameters.map(([name, value]) => [name, saltus.exact(value)])) :
             quiet("The model has none.")),
-    saltus.card(
-        "Options",
-        result.options.length > 0 ?
-            saltus.pairTable(result.options.map(([name, value]) => [name, saltus.optionText(value)])) :
-            quiet("None are recorded.")),
+    result.options.length > 0 ? saltus.optionsCard(result) : saltus.card("Options", quiet("None are recorded.")),
     saltus.card("Statistics", saltus.pairTable(numbers)),
   ];
 };
