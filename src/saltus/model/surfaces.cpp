@@ -57,8 +57,11 @@ class Profiler {
     const double distance = std::sqrt(std::abs(psi_here_ / psi_nearby_));
     const double part = std::isfinite(distance) ? std::max(jump_tolerance, 10.0 * distance) : jump_tolerance;
     // Where a surface lies on a break of a table, values may vanish on it and be constant away from it: their size says
-    // nothing then.
-    const double most = cells_ ? bound_[target] : std::min(bound_[target], 1e-5 * size);
+    // nothing then. Values may also vanish where both branches do: that of their neighbours counts, too.
+    const double around = std::max(std::abs(nearby_[target][0]), std::abs(nearby_[target][2]));
+    const double most = cells_
+                            ? bound_[target]
+                            : std::min(bound_[target], 1e-5 * (std::isfinite(around) ? std::max(size, around) : size));
     const double rounding = std::isfinite(bound_[target]) ? most : 0.0;
     return found > part * reference + rounding;
   }

@@ -37,6 +37,19 @@ TEST(Surfaces, AnInnerSurfaceWithoutJumpIsAKink) {
   EXPECT_EQ(columns(system), Names{"abs(x)-1"});
 }
 
+TEST(Surfaces, BranchesThatVanishAtTheStartAreNoJump) {
+  // At x = 0, y = 1/2, t = 0 both branches are 0 but for roundings, which must not be compared with their own size.
+  const System system = built({.states = {{"x", "0"}, {"y", "0.5"}},
+                               .dynamics = {{"x",
+                                             "-1.5 - 1.6*x + sign(y - 0.5 + max(0.5*x + y - 0.5 + "
+                                             "0.5*sin(1.71399*t), y - 0.5))"},
+                                            {"y", "1"}}});
+  EXPECT_EQ(columns(system).size(), 1U);
+  // However small the unit, a jump is one.
+  const System small = built({.states = {{"x", "0"}}, .dynamics = {{"x", "1e-25*(x - sign(x))"}}});
+  EXPECT_EQ(columns(small), Names{"x"});
+}
+
 TEST(Surfaces, AnInnerJumpIsListed) {
   const System system =
       built({.states = {{"x", "0.5"}, {"v", "0"}}, .dynamics = {{"x", "1"}, {"v", "-sign(v + step(x))"}}});
