@@ -21,7 +21,7 @@ class FieldMemory {
   [[nodiscard]] const evaluation::FieldConstants& of(const std::vector<double>& alpha, std::size_t mark);
 
  private:
-  static constexpr std::size_t capacity = 32;
+  static constexpr std::size_t capacity = 64;
 
   const evaluation::ModelKernel& kernel_;
   struct Entry {

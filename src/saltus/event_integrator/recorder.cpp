@@ -32,6 +32,15 @@ Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& s
   recording_.n_x = at(kernel.states());
   recording_.n_u = at(kernel.controls());
   recording_.n_y = at(kernel.outputs());
+  // Lists that start empty are moved at every second of the first events.
+  constexpr std::size_t first_events = 32;
+  recording_.event_list.reserve(first_events);
+  recording_.surfaces.reserve(first_events);
+  recording_.states.reserve(first_events * recording_.n_x);
+  recording_.text.reserve(64 * first_events);
+  recording_.row_times.reserve(2 * first_events);
+  recording_.row_modes.reserve(2 * first_events);
+  recording_.row_states.reserve(2 * first_events * recording_.n_x);
   for (std::size_t c = 0; c < system.columns.size(); ++c) {
     const auto j = at(system.columns[c].function);
     if (system.switching[j].role == model::SwitchingRole::listed) listed_columns_[j].push_back(c);

@@ -121,7 +121,6 @@ class Run {
   void begin_spiral();
   void note_tightening_switch();
   void note_tightening_switch(const SurfaceSwitch& change);
-  void note_labels();
   void note_switch_rates();
   void follow_shrinking();
   void accumulate_switches();

@@ -50,11 +50,6 @@ void Run::note_tightening_switch() {
     switch_labels_.push_back(label_of(static_cast<int>(j), state_.mode[j]));
   });
   if (!holds) return switch_laps_.clear();
-  note_labels();
-}
-
-/// The switches of switch_labels_, at this time.
-void Run::note_labels() {
   switch_laps_.add(t_, switch_labels_, x_);
   // A limit asks for the rates of those switches only behind which laps have shrunk twice.
   if (switch_laps_.shrinks()) note_switch_rates();
@@ -105,10 +100,11 @@ void Run::follow_shrinking() {
 void Run::note_tightening_switch(const SurfaceSwitch& change) {
   if (!series_.tightens()) return switch_laps_.clear();
   switch_labels_.assign(1, label_of(change.surface, change.after));
-  // What the rates of the switch are found from.
+  switch_laps_.add(t_, switch_labels_, x_);
+  if (!switch_laps_.shrinks()) return;
   before_ = state_;
   set_surface(before_, change.surface, change.before, change.alpha_before);
-  note_labels();
+  note_switch_rates();
 }
 
 /// Behind a switch that was noted: if those up to here have a limit that nothing else precedes, the run goes on from

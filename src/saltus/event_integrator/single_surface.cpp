@@ -82,8 +82,14 @@ double SingleSurface::velocity(const Occasion& occasion, int surface, double sel
 double SingleSurface::velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
                                const std::vector<double>& f) {
   if (!is_finite(f)) return std::numeric_limits<double>::quiet_NaN();
-  double velocity = 0.0;
-  surroundings_.kernel.gradient(surface, t, x, alpha.data(), row_.data(), &velocity);
+  double rate = 0.0;
+  surroundings_.kernel.gradient(surface, t, x, alpha.data(), row_.data(), &rate);
+  return along_row(f, rate);
+}
+
+/// row_ . f + rate.
+double SingleSurface::along_row(const std::vector<double>& f, double rate) const {
+  double velocity = rate;
   for (std::size_t i = 0; i < f.size(); ++i) velocity += row_[i] == 0.0 ? 0.0 : row_[i] * f[i];
   return velocity;
 }
@@ -126,9 +132,11 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
                                                                 const double* x, const std::vector<double>& below,
                                                                 const std::vector<double>& above) {
   switching::SurfaceSituation situation;
-  situation.below.velocity = velocity(t, x, surface, before.alpha, below);
-  situation.above.velocity = velocity(t, x, surface, before.alpha, above);
-  if (!find_drifts(situation)) return std::nullopt;
+  double rate = 0.0;
+  surroundings_.kernel.gradient(surface, t, x, before.alpha.data(), row_.data(), &rate);
+  situation.below.velocity = along_row(below, rate);
+  situation.above.velocity = along_row(above, rate);
+  if (!is_finite(below) || !is_finite(above) || !find_drifts(situation)) return std::nullopt;
   if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return std::nullopt;
   situation.arrival = arrival_from(before.mode[at(surface)]);
   auto decision = switching::decide_surface(situation);

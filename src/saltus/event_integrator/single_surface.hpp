@@ -49,6 +49,7 @@ class SingleSurface {
 
  private:
   [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
+  [[nodiscard]] double along_row(const std::vector<double>& f, double rate) const;
   double velocity(const Occasion& occasion, int surface, double selection);
   double velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
                   const std::vector<double>& f);
