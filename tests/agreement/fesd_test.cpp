@@ -19,7 +19,7 @@ using pipeline::Reformulation;
 /// What finite elements with switch detection are not for, and why.
 const std::map<std::string, std::string> beyond_the_method{
     {"filippov-spiral", "switches accumulate"},
-    {"super-twisting", "switches accumulate, and the field has no derivative on the surface"},
+    {"super-twisting", "switches accumulate, and a root has no derivative on the surface: below"},
     {"smoothed-pss", "stiff"},
 };
 
@@ -84,6 +84,39 @@ TEST_P(Fesd, DefaultsFindAllSwitches) {
 INSTANTIATE_TEST_SUITE_P(References, Fesd, testing::ValuesIn(cases()), [](const auto& c) {
   return test_name(c.param.problem) + (c.param.form == Reformulation::step ? "_step" : "_stewart");
 });
+
+class FesdSuperTwisting : public testing::TestWithParam<Reformulation> {};
+
+/// The element beside a crossing is a series in the root of time: fewer digits than elsewhere (docs/fesd.md).
+TEST_P(FesdSuperTwisting, AgreesAsFarAsRootsLetIt) {
+  const Simulator model = Simulator::from_catalogue("super-twisting");
+  const auto event = model.run(model.options());
+  pipeline::SimulateOptions options = model.options();
+  options.method = pipeline::Method::fesd;
+  options.fesd.reformulation = GetParam();
+  const auto run = [&](int stages, long steps) {
+    options.fesd.stages = stages;
+    options.fesd.steps = steps;
+    auto result = model.run(options);
+    EXPECT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+    return result;
+  };
+  const auto expect_near = [&](const result::Result& result, double first, double later) {
+    ASSERT_GE(result.events.size(), 8u);
+    for (std::size_t k = 0; k < 8; ++k) {
+      EXPECT_NEAR(result.events[k].t, event.events[k].t, k < 2 ? first : later) << k;
+      EXPECT_EQ(result.events[k].kind, event.events[k].kind) << k;
+    }
+    EXPECT_EQ(result.events.back().kind, result::EventKind::accumulation);
+    EXPECT_NEAR(result.events.back().t, event.events.back().t, later);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(result.final.x[i], event.final.x[i], 1e-12);
+    EXPECT_NEAR(result.final.alpha[0], 0.5, 1e-6);
+  };
+  expect_near(run(2, 100), 2e-5, 2e-3);
+  expect_near(run(5, 800), 1e-10, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Forms, FesdSuperTwisting, testing::Values(Reformulation::step, Reformulation::stewart));
 
 TEST(FesdReferences, MostOfTheCatalogueIsCompared) { EXPECT_GE(cases().size(), 70u); }
 

@@ -67,13 +67,16 @@ fesd = { reformulation = "stewart" }
                                   "--set", "simulate.fesd.error_limit=off", code=3)
         self.assertIn("problem with complementarities of the step at t =", " ".join(errors.split()))
 
-    def test_roots_of_zero_are_told(self):
-        # sqrt(|x|) has no derivative where the model starts.
-        _, errors = self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet", "--out", "r.json", code=3)
-        for part in ("x1 has no finite derivative by x1 at t = 0", "method = \"event\""):
-            self.assertIn(part, " ".join(errors.split()))
-        status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
-        self.assertEqual(status["termination"], "evaluation_failed")
+    def test_a_super_twisting_controller_comes_to_rest(self):
+        self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet", "--out", "r.json", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertEqual(result["events"][-1]["kind"], "accumulation")
+        self.assertEqual(result["final"]["x"], [0, 0])
+
+    def test_derivatives_of_roots_are_refused(self):
+        _, errors = self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet",
+                                  "--set", "simulate.fesd.sensitivities=true", code=2)
+        self.assertIn("sensitivities do not cover roots", " ".join(errors.split()))
 
     def test_roots_of_zero_in_a_switching_function_are_told(self):
         (self.folder / "root.toml").write_text(

@@ -16,7 +16,9 @@ using casadi::SX;
 struct StageKernel::Implementation {
   std::vector<double> parameters;
   std::size_t n_x = 0, n_selections = 0;
+  std::vector<double> root_exponents;
   mutable model::ModelFunction everything, values, indicators;
+  mutable model::ModelFunction with_roots;  ///< null without roots
   mutable evaluation::NativeFunctions native;
   mutable long evaluations = 0;
 };
@@ -41,7 +43,17 @@ Expected<StageKernel> StageKernel::compile(const reformulation::Dcs& dcs, std::v
     kernel->values =
         model::ModelFunction("saltus_stage_values", {dcs.t, dcs.x, dcs.selection, dcs.held, dcs.p}, {f, psi});
     kernel->indicators = model::ModelFunction("saltus_stage_indicators", {dcs.t, dcs.x, dcs.held, dcs.p}, {psi});
-    auto started = kernel->native.start(native, {&kernel->everything, &kernel->values, &kernel->indicators});
+    kernel->root_exponents = dcs.root_exponents;
+    if (!dcs.root_exponents.empty()) {
+      const SX rooted = without_lifting(dcs, with_inputs(dcs, dcs.with_roots)), base = with_inputs(dcs, dcs.root_bases);
+      kernel->with_roots = model::ModelFunction(
+          "saltus_stage_roots", {dcs.t, dcs.x, dcs.selection, dcs.held, dcs.p, dcs.roots},
+          {rooted, psi, SX::jacobian(rooted, dcs.x), SX::jacobian(rooted, dcs.selection), SX::jacobian(psi, dcs.x),
+           SX::jacobian(psi, dcs.t), base, SX::jacobian(base, dcs.x), SX::jacobian(rooted, dcs.roots)});
+    }
+    std::vector<model::ModelFunction*> functions{&kernel->everything, &kernel->values, &kernel->indicators};
+    if (!kernel->with_roots.is_null()) functions.push_back(&kernel->with_roots);
+    auto started = kernel->native.start(native, std::move(functions));
     if (!started) return tl::unexpected(started.error());
     return StageKernel(std::move(kernel));
   } catch (const std::exception& error) {
@@ -56,6 +68,15 @@ Expected<StageKernel> StageKernel::compile(const reformulation::Dcs& dcs, std::v
 std::size_t StageKernel::states() const { return implementation_->n_x; }
 std::size_t StageKernel::selections() const { return implementation_->n_selections; }
 long StageKernel::evaluations() const { return implementation_->evaluations; }
+
+const std::vector<double>& StageKernel::root_exponents() const { return implementation_->root_exponents; }
+
+void StageKernel::size(RootValues& values) const {
+  const std::size_t n_x = states(), n = root_exponents().size();
+  values.base.resize(n);
+  values.base_x.resize(n * n_x);
+  values.f_root.resize(n_x * n);
+}
 
 void StageKernel::size(StageValues& values) const {
   const std::size_t n_x = states(), n = selections();
@@ -75,6 +96,17 @@ void StageKernel::evaluate(double t, const double* x, const double* selection, c
   const std::array<double*, 6> out{values.f.data(),           values.indicator.data(),   values.f_x.data(),
                                    values.f_selection.data(), values.indicator_x.data(), values.indicator_t.data()};
   kernel.native.call(kernel.everything, in, out);
+}
+
+void StageKernel::evaluate(double t, const double* x, const double* selection, const double* held, const double* root,
+                           StageValues& values, RootValues& roots) const {
+  auto& kernel = *implementation_;
+  ++kernel.evaluations;
+  const std::array<const double*, 6> in{&t, x, selection, held, kernel.parameters.data(), root};
+  const std::array<double*, 9> out{values.f.data(),           values.indicator.data(),   values.f_x.data(),
+                                   values.f_selection.data(), values.indicator_x.data(), values.indicator_t.data(),
+                                   roots.base.data(),         roots.base_x.data(),       roots.f_root.data()};
+  kernel.native.call(kernel.with_roots, in, out);
 }
 
 void StageKernel::values(double t, const double* x, const double* selection, const double* held,

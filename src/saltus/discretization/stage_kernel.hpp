@@ -24,6 +24,13 @@ struct StageValues {
   std::vector<double> indicator_t;  ///< n_selections
 };
 
+/// What Dcs::roots are to a point: unknowns of their own; matrices by columns.
+struct RootValues {
+  std::vector<double> base;    ///< n_roots
+  std::vector<double> base_x;  ///< n_roots by n_x
+  std::vector<double> f_root;  ///< n_x by n_roots
+};
+
 /// All functions take t, x (n_x), the selections (n_selections) and what is held (n_held), and write to the caller's
 /// memory. Values that are not finite mark points where the model is undefined. The work space is inside: one kernel
 /// per thread.
@@ -41,12 +48,19 @@ class StageKernel {
   [[nodiscard]] std::size_t states() const;
   [[nodiscard]] std::size_t selections() const;
 
+  /// Exponents of Dcs::roots.
+  [[nodiscard]] const std::vector<double>& root_exponents() const;
   /// Makes `values` as large as evaluate() needs it.
   void size(StageValues& values) const;
+  void size(RootValues& values) const;
   /// Everything of StageValues.
   void evaluate(double t, const double* x, const double* selection, const double* held, StageValues& values) const;
   /// f and the indicators of StageValues; their derivatives stay as they are.
   void values(double t, const double* x, const double* selection, const double* held, StageValues& values) const;
+  /// The same as evaluate() at given values of the roots, and what these are unknowns for: f_x and f_selection are
+  /// those at fixed roots. Only for systems that have some.
+  void evaluate(double t, const double* x, const double* selection, const double* held, const double* root,
+                StageValues& values, RootValues& roots) const;
   /// f alone.
   void field(double t, const double* x, const double* selection, const double* held, double* f) const;
   /// The indicators alone.

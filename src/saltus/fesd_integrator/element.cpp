@@ -10,6 +10,7 @@
 #include "saltus/base/contracts.hpp"
 #include "saltus/fesd_integrator/dense_system_internal.hpp"
 #include "saltus/fesd_integrator/element_polynomial_internal.hpp"
+#include "saltus/fesd_integrator/root_unknowns_internal.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
@@ -37,9 +38,19 @@ struct ElementSolver::Implementation {
   std::vector<Index> offset;                        // of the unknowns of each stage
   std::vector<const ActiveSet*> sets;
   Eigen::VectorXd end, row, mu;
+  RootUnknowns roots;
+  Eigen::MatrixXd A;  // of the tableau, with the factors of the element's warp
+  Eigen::VectorXd b, c;
+  TimeWarp warp;
 
   Implementation(const discretization::StageKernel& kernel_in, discretization::ButcherTableau tableau_in)
-      : kernel(kernel_in), tableau(std::move(tableau_in)), polynomial(tableau) {
+      : kernel(kernel_in),
+        tableau(std::move(tableau_in)),
+        polynomial(tableau),
+        roots(kernel_in, static_cast<std::size_t>(tableau.stages())),
+        A(tableau.A),
+        b(tableau.b),
+        c(tableau.c) {
     n_x = static_cast<Index>(kernel.states());
     n_psi = static_cast<Index>(kernel.selections());
     n_s = tableau.stages();
@@ -58,6 +69,18 @@ struct ElementSolver::Implementation {
     mu.resize(n_psi);
   }
 
+  void set_warp(const TimeWarp& wanted) {
+    if (warp == wanted) return;
+    warp = wanted;
+    for (Index m = 0; m < n_s; ++m) {
+      const double factor = warp.slope(tableau.c(m));
+      c(m) = warp.at(tableau.c(m));
+      b(m) = tableau.b(m) * factor;
+      A.col(m) = tableau.A.col(m) * factor;
+    }
+  }
+  /// Stages of Euler's method from the left end.
+  void guess_by_euler(const Point& left, const double* held, Element& element);
   [[nodiscard]] const ActiveSet& set(Index stage) const { return *sets[static_cast<std::size_t>(stage)]; }
   /// Whether the selections of a stage are known: taken from the left end.
   [[nodiscard]] bool known(Index stage) const { return left_limit && stage == 0; }
@@ -114,10 +137,13 @@ struct ElementSolver::Implementation {
 void ElementSolver::Implementation::evaluate(const Element& element, const double* held, Parts parts) {
   for (Index m = 0; m < n_s; ++m) {
     auto& at = values[static_cast<std::size_t>(m)];
-    const double t = element.t + element.h * tableau.c(m);
+    const double t = element.t + element.h * c(m);
     const double* state = element.stage_states.data() + m * n_x;
     const double* selections = element.stage_selections.data() + m * n_psi;
-    if (parts == Parts::values) {
+    if (!roots.empty()) {
+      roots.evaluate(static_cast<std::size_t>(m), t, state, selections, held, values[static_cast<std::size_t>(m)]);
+      find_directions(m, at);
+    } else if (parts == Parts::values) {
       kernel.values(t, state, selections, held, at);
     } else {
       kernel.evaluate(t, state, selections, held, at);
@@ -134,7 +160,7 @@ void ElementSolver::Implementation::assemble_right(const Element& element) {
     const double* state = element.stage_states.data() + m * n_x;
     for (Index i = 0; i < n_x; ++i) residual[i] = element.x[static_cast<std::size_t>(i)] - state[i];
     for (Index l = 0; l < n_s; ++l) {
-      const double weight = element.h * tableau.A(m, l);
+      const double weight = element.h * A(m, l);
       if (weight == 0.0) continue;
       const double* f = values[static_cast<std::size_t>(l)].f.data();
       for (Index i = 0; i < n_x; ++i) residual[i] += weight * f[i];
@@ -153,7 +179,7 @@ void ElementSolver::Implementation::assemble_matrix(const Element& element) {
   const auto place = [&](Index stage) { return offset[static_cast<std::size_t>(stage)]; };
   for (Index m = 0; m < n_s; ++m) {
     for (Index l = 0; l < n_s; ++l) {
-      const double weight = element.h * tableau.A(m, l);
+      const double weight = element.h * A(m, l);
       if (weight == 0.0) continue;
       const double* f_x = values[static_cast<std::size_t>(l)].f_x.data();
       double* block = matrix.data() + place(l) * rows + place(m);
@@ -161,7 +187,7 @@ void ElementSolver::Implementation::assemble_matrix(const Element& element) {
         for (Index i = 0; i < n_x; ++i) block[i] = -weight * f_x[i];
       }
       if (unknowns(l) > 0) {
-        matrix.block(place(m), place(l) + n_x, n_x, unknowns(l)) = -tableau.A(m, l) * directions_of(l);
+        matrix.block(place(m), place(l) + n_x, n_x, unknowns(l)) = -A(m, l) * directions_of(l);
       }
     }
     for (Index i = 0; i < n_x; ++i) matrix(place(m) + i, place(m) + i) += 1.0;
@@ -179,9 +205,9 @@ void ElementSolver::Implementation::assemble_matrix(const Element& element) {
       for (Index l = 0; l < n_s; ++l) {
         const auto& stage = values[static_cast<std::size_t>(l)];
         matrix.block(equation, place(l), 1, n_x) =
-            element.h * tableau.b(l) * row.transpose() * ConstMatrix(stage.f_x.data(), n_x, n_x);
+            element.h * b(l) * row.transpose() * ConstMatrix(stage.f_x.data(), n_x, n_x);
         if (unknowns(l) > 0) {
-          matrix.block(equation, place(l) + n_x, 1, unknowns(l)) = tableau.b(l) * row.transpose() * directions_of(l);
+          matrix.block(equation, place(l) + n_x, 1, unknowns(l)) = b(l) * row.transpose() * directions_of(l);
         }
       }
     }
@@ -191,11 +217,14 @@ void ElementSolver::Implementation::assemble_matrix(const Element& element) {
 double ElementSolver::Implementation::update(Element& element) {
   Eigen::Map<Eigen::MatrixXd> states(element.stage_states.data(), n_x, n_s);
   const auto step = system.right();
-  double change = 0.0;
+  double change = 0.0, root_change = 0.0;
   for (Index m = 0; m < n_s; ++m) {
     const Index begin = offset[static_cast<std::size_t>(m)];
     change = std::max(change, step.segment(begin, n_x).cwiseAbs().maxCoeff());
     states.col(m) += step.segment(begin, n_x);
+    const bool feels = A.col(m).cwiseAbs().maxCoeff() > 0.0;  // not behind a warp: nothing depends on the last stage
+    if (!roots.empty())
+      root_change = std::max(root_change, roots.update(static_cast<std::size_t>(m), step.data() + begin, feels));
     double* all = element.stage_selections.data() + m * n_psi;
     const auto& sliding = set(m).sliding();
     for (Index k = 0; k < unknowns(m); ++k) {
@@ -206,7 +235,16 @@ double ElementSolver::Implementation::update(Element& element) {
     }
   }
   const double scale = std::max(size(element), states.cwiseAbs().maxCoeff());
-  return scale > 0.0 ? change / scale : change;
+  // Roots by their own size: near the surface they are small, and all that moves the state there.
+  return std::max(scale > 0.0 ? change / scale : change, root_change);
+}
+
+void ElementSolver::Implementation::guess_by_euler(const Point& left, const double* held, Element& element) {
+  kernel.field(left.t, left.x.data(), left.selections.data(), held, end.data());
+  Eigen::Map<Eigen::MatrixXd> states(element.stage_states.data(), n_x, n_s);
+  for (Index m = 0; m < n_s; ++m) {
+    states.col(m) = ConstVector(left.x.data(), n_x) + element.h * c(m) * end;
+  }
 }
 
 /// NOTE: without this the methods with c_s != 1 lose half their order on curved surfaces.
@@ -288,6 +326,14 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     }
     self.sets[m]->selections(self.mu.data(), selections);
   }
+  self.set_warp(element.warp);
+  if (!self.roots.empty()) {
+    if (guess == Guess::left_end) self.guess_by_euler(left, held, element);
+    for (std::size_t m = 0; m < n_s; ++m) {
+      self.roots.start(m, element.t + h * self.c(static_cast<Index>(m)), element.stage_states.data() + m * n_x,
+                       element.stage_selections.data() + m * n_psi, held);
+    }
+  }
   const bool slides = !sets.front().sliding().empty();
   const bool at_end = self.explicit_method && sets.size() == 1 && slides;
   double before = std::numeric_limits<double>::infinity();
@@ -299,7 +345,7 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     if (at_end) {
       self.end = ConstVector(element.x.data(), self.n_x);
       for (std::size_t m = 0; m < n_s; ++m) {
-        self.end += h * self.tableau.b(static_cast<Index>(m)) * ConstVector(self.values[m].f.data(), self.n_x);
+        self.end += h * self.b(static_cast<Index>(m)) * ConstVector(self.values[m].f.data(), self.n_x);
       }
       self.kernel.evaluate(element.t + h, self.end.data(), element.stage_selections.data() + (n_s - 1) * n_psi, held,
                            self.values[n_s]);
@@ -314,14 +360,24 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     // Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are
     // roundings. With the matrix of the step before, a step leaves 2 change / before of itself.
     const bool quadratic = factorised ? change * change <= 1e-17 * before : change <= 1e-9 && before <= 1e-3;
-    if (change <= 1e-15 || quadratic || (change <= 1e-12 && change >= 0.25 * before)) break;
+    const double rounding = self.roots.empty() ? 1e-12 : 1e-9;
+    if (change <= 1e-15 || quadratic || (change <= rounding && change >= 0.25 * before)) break;
     constexpr double near = 1e-4;
-    factorised = !factorised && change <= near && !at_end && self.system.is_factorised();
+    factorised = !factorised && change <= near && !at_end && self.system.is_factorised() && self.roots.empty();
     before = change;
   }
   for (std::size_t m = 0; m < n_s; ++m) {
-    self.kernel.field(element.t + h * self.tableau.c(static_cast<Index>(m)), element.stage_states.data() + m * n_x,
-                      element.stage_selections.data() + m * n_psi, held, element.stage_slopes.data() + m * n_x);
+    const auto stage = static_cast<Index>(m);
+    const double t = element.t + h * self.c(stage);
+    const double* state = element.stage_states.data() + m * n_x;
+    const double* selections = element.stage_selections.data() + m * n_psi;
+    double* slope = element.stage_slopes.data() + m * n_x;
+    if (self.roots.empty()) {
+      self.kernel.field(t, state, selections, held, slope);
+      continue;
+    }
+    self.roots.field(m, t, state, selections, held, slope);
+    Vector(slope, self.n_x) *= self.warp.slope(self.tableau.c(stage));
   }
   element.size =
       std::max(self.size(element), ConstMatrix(element.stage_states.data(), self.n_x, self.n_s).cwiseAbs().maxCoeff());
@@ -349,11 +405,11 @@ bool ElementSolver::determined() const {
 }
 
 void ElementSolver::interpolate(const Element& element, double theta, double* x) const {
-  implementation_->polynomial.evaluate(element, theta, x);
+  implementation_->polynomial.evaluate(element, element.warp.inverse(theta), x);
 }
 
-void ElementSolver::slope(const Element& element, double theta, double* slope) const {
-  implementation_->polynomial.slope(element, theta, slope);
+void ElementSolver::slope(const Element& element, double tau, double* slope) const {
+  implementation_->polynomial.slope(element, tau, slope);
 }
 
 void ElementSolver::extrapolate(const Element& element, double h, Element& next) const {
@@ -367,6 +423,15 @@ void ElementSolver::extrapolate(const Element& element, double h, Element& next)
 }
 
 const std::vector<double>& ElementSolver::watch_points() const { return implementation_->polynomial.watch_points(); }
+
+int ElementSolver::watch_stage(std::size_t point) const {
+  const auto& self = *implementation_;
+  for (Index m = 0; m < self.n_s; ++m) {
+    if (self.tableau.c(m) == watch_points()[point] && !self.known(m) && !self.explicit_method)
+      return static_cast<int>(m);
+  }
+  return -1;
+}
 
 void ElementSolver::watch_state(const Element& element, std::size_t point, double* x) const {
   implementation_->polynomial.watch_state(element, point, x);

@@ -15,7 +15,7 @@ void ElementRecorder::add(const Element& element, const std::vector<double>& lef
                           double end, const double* held) {
   point(element.t, element.x.data(), left.data(), held);
   for (std::size_t m = 0; m < nodes_.size(); ++m) {
-    const double t = nodes_[m] == 1.0 ? end : element.t + nodes_[m] * element.h;
+    const double t = nodes_[m] == 1.0 ? end : element.t + element.warp.at(nodes_[m]) * element.h;
     point(t, element.stage_states.data() + m * element.x.size(),
           element.stage_selections.data() + m * indicators_.size(), held);
   }

@@ -5,6 +5,19 @@
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::fesd_integrator {
+namespace {
+
+Error no_derivatives() {
+  return {
+      ErrorCode::not_available,
+      "sensitivities do not cover roots of what is zero on a surface (sqrt(abs(x))): the equations of elements have "
+      "infinite derivatives there",
+      "leave simulate.fesd.sensitivities out",
+      {},
+      {}};
+}
+
+}  // namespace
 
 Expected<Integration> integrate(const model::System& system, const reformulation::Dcs& dcs,
                                 const IntegrationOptions& options, const StepObserver& observer) {
@@ -14,6 +27,7 @@ Expected<Integration> integrate(const model::System& system, const reformulation
   if (!functions) return tl::unexpected(functions.error());
   const Facts known = facts(system, dcs);
   if (!options.sensitivities) return Run(*kernel, *functions, known, options, observer, nullptr).run();
+  if (!dcs.root_exponents.empty()) return tl::unexpected(no_derivatives());
   const auto tangent = discretization::TangentKernel::compile(dcs, system.parameter_values, options.native);
   if (!tangent) return tl::unexpected(tangent.error());
   SensitivityPropagation propagation(*tangent, options.tableau);

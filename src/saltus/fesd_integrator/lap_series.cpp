@@ -36,6 +36,25 @@ bool LapSeries::shrinks() const {
   return false;
 }
 
+std::optional<double> LapSeries::next_switch() const {
+  if (switches_.size() < 3) return std::nullopt;
+  const double last = back(0).t - back(1).t, before = back(1).t - back(2).t;
+  constexpr double shrinking = 0.7;
+  return last > 0.0 && last < shrinking * before ? std::optional(last * last / before) : std::nullopt;
+}
+
+double LapSeries::last_change() const {
+  for (std::size_t period = 1; period <= longest_period; ++period) {
+    if (count_[period] <= period) continue;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < back(0).x.size(); ++i) {
+      largest = std::max(largest, std::abs(back(0).x[i] - back(period).x[i]));
+    }
+    return largest;
+  }
+  return 0.0;
+}
+
 std::optional<LapSeries::Limit> LapSeries::limit_of(std::size_t period, Wanted wanted) const {
   if (count_[period] < (laps - 1) * period || switches_.size() <= 3 * period) return std::nullopt;
   const auto lap = [&](std::size_t k) { return back(k * period).t - back((k + 1) * period).t; };

@@ -35,6 +35,12 @@ class LapSeries {
   [[nodiscard]] std::optional<Limit> limit(Wanted wanted) const;
   /// Whether the last two laps of some period have shrunk.
   [[nodiscard]] bool shrinks() const;
+  /// The time to the next switch, if it is to the last one what that was to the one before; nullopt if that is not
+  /// shorter.
+  [[nodiscard]] std::optional<double> next_switch() const;
+  [[nodiscard]] double last_time() const { return switches_.empty() ? 0.0 : back(0).t; }
+  /// The largest change of a state in the last lap of the shortest sequence that shrinks; 0 without one.
+  [[nodiscard]] double last_change() const;
   void clear();
 
  private:

@@ -19,11 +19,13 @@ ProjectedField::ProjectedField(const discretization::StageKernel& kernel)
   const std::size_t n = kernel.selections();
   work_->system.reserve(static_cast<Eigen::Index>(n));
   work_->unknown.resize(n);
+  in_no_equation_.resize(n);
 }
 ProjectedField::ProjectedField(ProjectedField&&) noexcept = default;
 ProjectedField::~ProjectedField() = default;
 
-bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections) {
+bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections,
+                           double rounding) {
   const auto& sliding = set.sliding();
   const std::size_t count = sliding.size(), n_x = kernel_.states(), n = kernel_.selections();
   double* unknown = work_->unknown.data();
@@ -43,7 +45,7 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
     system.reset(static_cast<Eigen::Index>(count));
     auto matrix = system.matrix();
     auto right = system.right();
-    double size = 0.0;
+    double size = 0.0, gradients = 0.0;
     for (std::size_t k = 0; k < count; ++k) {
       double rate = set.surface(k, values_.indicator_t.data());
       size = std::max(size, std::abs(rate));
@@ -51,6 +53,7 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
         const double gradient = set.surface(k, values_.indicator_x.data() + i * n);
         if (gradient == 0.0) continue;
         rate += gradient * values_.f[i];
+        gradients = std::max(gradients, std::abs(gradient));
         size = std::max(size, std::abs(gradient * values_.f[i]));
         for (std::size_t l = 0; l < count; ++l) {
           const auto j = static_cast<std::size_t>(sliding[l].selection);
@@ -63,7 +66,8 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
       }
       right(static_cast<Eigen::Index>(k)) = -rate;
     }
-    const bool solved = system.solve(1e-11 * size);
+    for (std::size_t l = 0; l < count; ++l) in_no_equation_[l] = matrix.col(static_cast<Eigen::Index>(l)).isZero(0.0);
+    const bool solved = system.solve(1e-11 * size + rounding * gradients);
     regular_ = system.is_factorised();
     if (!solved) return false;
     double change = 0.0;

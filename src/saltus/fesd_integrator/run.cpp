@@ -46,6 +46,7 @@ Run::Run(const discretization::StageKernel& kernel, const discretization::PointF
   chain_.determined.resize(static_cast<std::size_t>(options.elements));
   between_x_.resize(facts.n_x);
   kernel.size(at_switch_);
+  kernel.size(at_roots_);
 }
 
 void Run::stop(result::Termination termination, std::string message) {
@@ -148,6 +149,7 @@ void Run::start() {
     static_cast<void>(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), std::nullopt));
   }
   recorder_.started(t_, x_, found, held_.data(), functions);
+  if (warp_behind(nominal_) > 1) laps_.add({t_, set_.modes(), x_, 0.0});
   row_here();
 }
 

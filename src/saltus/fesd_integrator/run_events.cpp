@@ -70,6 +70,7 @@ double Run::refined_event(const Element& element, const std::vector<double>& sel
   constexpr int most_iterations = 20;
   for (int i = 0; i < most_iterations; ++i) {
     const Point left{element.t, element.x, selections, element.size};
+    shorter_.warp = {element.warp.left, 1};
     if (solver_.solve(left, theta * element.h, {&set_, 1}, held_.data(), ElementSolver::Guess::left_end, shorter_) !=
         ElementSolver::Outcome::solved) {
       break;

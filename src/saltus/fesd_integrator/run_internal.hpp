@@ -49,7 +49,14 @@ class Run {
   /// Whether a condition ends along elements of half that length, a quarter, …, as far as it may end between them.
   [[nodiscard]] bool jumps_over(const Point& left, double h, int halvings);
   /// Lengths such that `count` elements end where the condition does: h, or nullopt if it does not end there.
-  [[nodiscard]] std::optional<double> locate(int count, double guess, const Violation& violation, double longest);
+  [[nodiscard]] std::optional<double> locate(int count, double guess, const Violation& violation, double longest,
+                                             TimeWarp warp);
+  /// Warps of an element of length h that begins here, and of one that ends where a root of the mode at hand is zero,
+  /// which it is inside `beyond`; 1 where no root is zero.
+  [[nodiscard]] int warp_behind(double h);
+  [[nodiscard]] int warp_before(const Element& beyond);
+  template <class Take>
+  void for_each_root(double t, const double* x, Take&& take);
   struct Located {
     int count = 0;
     double h = 0.0;
@@ -64,7 +71,7 @@ class Run {
                                                    std::size_t element);
 
   /// Where the part of a simulation step that is tried next ends.
-  [[nodiscard]] double part_end(double end) const;
+  [[nodiscard]] double part_end(double end);
   /// Whether an element's estimated error is beyond its share, and shorter ones are allowed; notes the share.
   [[nodiscard]] bool too_coarse(const Element& element, const std::vector<double>& errors);
   /// Length of parts behind elements of length h with the shares that were noted.
@@ -82,6 +89,10 @@ class Run {
   /// Of the time of a switch in hand, by what closed the elements before it.
   [[nodiscard]] double resolution_of(const Condition& condition, const std::vector<double>& selections_before);
   [[nodiscard]] bool put_on_surfaces(const ActiveSet& set, double t, std::vector<double>& x);
+  /// The same with d psi / dt = 0 of the surfaces that no selection moves at once, at most `farthest` away.
+  [[nodiscard]] bool put_at_rest(const ActiveSet& set, double t, std::vector<double>& x, double farthest);
+  /// Elements that resolve laps which shrink.
+  void follow_laps();
   /// True if the run has gone on from the limit of a sequence of switches, before anything that is held changes.
   bool go_to_limit(LapSeries::Wanted wanted);
   void hold_behind();
@@ -181,12 +192,15 @@ class Run {
   double size_ = 0.0;          ///< of the largest state of late
   double nominal_ = 0.0;       ///< length of a simulation step
   double mean_ = 0.0;          ///< length of elements of the part in hand
+  double lap_part_ = 0.0;      ///< length of parts of simulation steps while laps shrink; 0: any
   double longest_part_ = 0.0;  ///< of a simulation step that is divided for its errors
   double share_ = 0.0;         ///< the largest of the chain in hand, Coarseness::share
   Chain chain_;
   Coarseness coarseness_;
   LapSeries laps_;
   discretization::StageValues at_switch_;
+  discretization::RootValues at_roots_;
+  std::vector<double> zero_roots_;
   int divided_for_look_ = 0;         ///< halvings of the step in hand because it jumped over a switch
   std::optional<Element> previous_;  ///< the last element, if the next one continues it
   int decisions_here_ = 0;

@@ -63,6 +63,62 @@ bool Run::put_on_surfaces(const ActiveSet& set, double t, std::vector<double>& x
   return false;
 }
 
+bool Run::put_at_rest(const ActiveSet& set, double t, std::vector<double>& x, double farthest) {
+  if (!put_on_surfaces(set, t, x)) return false;
+  const std::size_t n = kernel_.selections(), n_x = x.size(), count = set.sliding().size();
+  std::vector<double> middle(n, 0.5);
+  for (std::size_t j = 0; j < n; ++j) {
+    if (set.modes()[j] != 0) middle[j] = selections_[j];
+  }
+  struct Rate {
+    double value = 0.0;
+    bool moved = false;  // by a selection, at once
+  };
+  const auto rate_of = [&](std::size_t k, const std::vector<double>& at) {
+    kernel_.evaluate(t, at.data(), middle.data(), held_.data(), at_switch_);
+    Rate rate{set.surface(k, at_switch_.indicator_t.data()), false};
+    for (std::size_t i = 0; i < n_x; ++i) {
+      const double gradient = set.surface(k, at_switch_.indicator_x.data() + i * n);
+      rate.value += gradient * at_switch_.f[i];
+      for (const Sliding& entry : set.sliding()) {
+        double along = at_switch_.f_selection[static_cast<std::size_t>(entry.selection) * n_x + i];
+        if (entry.reference >= 0) along -= at_switch_.f_selection[static_cast<std::size_t>(entry.reference) * n_x + i];
+        rate.moved = rate.moved || gradient * along != 0.0;
+      }
+    }
+    return rate;
+  };
+  // One after the other: as a rule there is one.
+  for (std::size_t k = 0; k < count; ++k) {
+    const Rate rate = rate_of(k, x);
+    if (rate.moved || rate.value == 0.0) continue;
+    std::vector<double> gradient(n_x);
+    double square = 0.0, noise = 0.0;
+    for (std::size_t i = 0; i < n_x; ++i) {
+      // Central differences with the step of least error.
+      const double step = 6e-6 * std::max(size_, std::abs(x[i]));
+      auto above = x, below = x;
+      above[i] += step;
+      below[i] -= step;
+      gradient[i] = (rate_of(k, above).value - rate_of(k, below).value) / (2.0 * step);
+      square += gradient[i] * gradient[i];
+      noise += 1e-14 * size_ * std::abs(gradient[i]);
+    }
+    if (std::abs(rate.value) <= noise) continue;
+    if (!(square > 0.0)) return false;
+    auto moved = x;
+    double distance = 0.0;
+    for (std::size_t i = 0; i < n_x; ++i) {
+      moved[i] -= rate.value * gradient[i] / square;
+      distance = std::max(distance, std::abs(moved[i] - x[i]));
+    }
+    if (!(distance <= farthest) || !put_on_surfaces(set, t, moved)) return false;
+    if (std::abs(rate_of(k, moved).value) > std::max(noise, 1e-3 * std::abs(rate.value))) return false;
+    x = std::move(moved);
+  }
+  return true;
+}
+
 /// If the switches up to here have a limit that nothing else precedes, and a set continues from there, the run goes on
 /// with that.
 bool Run::go_to_limit(LapSeries::Wanted wanted) {
@@ -70,7 +126,9 @@ bool Run::go_to_limit(LapSeries::Wanted wanted) {
   const auto limit = laps_.limit(wanted);
   if (!limit || limit->t > options_.until) return false;
   if (held_.next_change(t_, limit->t, x_.data()) < limit->t) return false;
+  const double farthest = laps_.last_change();
   laps_.clear();
+  lap_part_ = 0.0;
   // What a lap changes is at rest behind it: on all of its surfaces, in all of its regions.
   std::vector<int> at_zero, modes = set_.modes();
   for (std::size_t j = 0; j < modes.size(); ++j) {
@@ -85,7 +143,7 @@ bool Run::go_to_limit(LapSeries::Wanted wanted) {
     if (entry.reference >= 0) at_zero.push_back(entry.reference);
   }
   auto x = limit->x;
-  if (!put_on_surfaces(ActiveSet(facts_.parts, modes), limit->t, x)) return false;
+  if (!put_at_rest(ActiveSet(facts_.parts, modes), limit->t, x, farthest)) return false;
   auto found = transition_.continuations(
       {limit->t, x, held_.data(), nullptr, at_zero, size_, nominal_ / options_.elements / 128.0});
   if (found.empty()) return false;

@@ -22,12 +22,26 @@ constexpr double shortest_for_errors = 1e-3;
 /// Modes that follow each other at one time; behind them elements are shortened.
 constexpr int most_decisions_at_this_length = 4;
 
+/// Between switches of laps that shrink, where the surface has roots: what is lost there is lost in every lap.
+constexpr int elements_per_switch = 16;
+
 }  // namespace
 
-double Run::part_end(double end) const {
+void Run::follow_laps() {
+  const auto next = kernel_.root_exponents().empty() ? std::nullopt : laps_.next_switch();
+  lap_part_ = next ? *next * options_.elements / elements_per_switch : 0.0;
+}
+
+double Run::part_end(double end) {
   const double remaining = end - t_;
-  if (!(longest_part_ < nominal_) || remaining <= longest_part_) return end;
-  return t_ + remaining / std::ceil(remaining / longest_part_ * (1.0 - 1e-12));
+  double longest = longest_part_;
+  if (lap_part_ > 0.0) {
+    // Where the next switch does not come, laps have ended.
+    if (t_ - laps_.last_time() > lap_part_ * elements_per_switch) lap_part_ = 0.0;
+    if (lap_part_ > 0.0) longest = std::min(longest, lap_part_);
+  }
+  if (!(longest < nominal_) || remaining <= longest) return end;
+  return t_ + remaining / std::ceil(remaining / longest * (1.0 - 1e-12));
 }
 
 bool Run::too_coarse(const Element& element, const std::vector<double>& errors) {
@@ -55,11 +69,13 @@ Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
   share_ = 0.0;
   chain_.left[0] = selections_;
   Point& left = begin_here();
+  const int behind = previous_ ? 1 : warp_behind(h);
   for (int i = 0; i < count; ++i) {
     auto& element = chain_.elements[static_cast<std::size_t>(i)];
+    element.warp = {i == 0 ? behind : 1, 1};
     auto guess = ElementSolver::Guess::left_end;
     const Element* last = i > 0 ? &chain_.elements[static_cast<std::size_t>(i - 1)] : previous_ ? &*previous_ : nullptr;
-    if (last != nullptr && h <= 2.0 * last->h) {
+    if (last != nullptr && h <= 2.0 * last->h && last->warp.is_none()) {
       solver_.extrapolate(*last, h, element);
       guess = ElementSolver::Guess::stages;
     }
@@ -97,7 +113,9 @@ bool Run::jumps_over(const Point& left, double h, int halvings) {
   if (halvings == 0) return false;
   Point from = left;
   Element half;
+  const int behind = chain_.elements[chain_.count - 1].warp.left;
   for (int i = 0; i < 2; ++i) {
+    half.warp = {from.t == chain_.elements[chain_.count - 1].t ? behind : 1, 1};
     Violation ignored;
     if (solver_.solve(from, 0.5 * h, {&set_, 1}, held_.data(), ElementSolver::Guess::left_end, half) !=
         ElementSolver::Outcome::solved) {
@@ -112,7 +130,7 @@ bool Run::jumps_over(const Point& left, double h, int halvings) {
   return false;
 }
 
-std::optional<double> Run::locate(int count, double guess, const Violation& violation, double longest) {
+std::optional<double> Run::locate(int count, double guess, const Violation& violation, double longest, TimeWarp warp) {
   // Secant steps from the root of the interpolant, inside the bracket (lower: the condition holds; upper: it does not).
   double lower = 0.0, upper = std::numeric_limits<double>::infinity();
   double h = guess, h_before = 0.0, value_before = 0.0;
@@ -127,14 +145,13 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
     auto selections = selections_;
     for (int k = 0; k < count; ++k) {
       auto& element = chain_.elements[static_cast<std::size_t>(k)];
-      const bool warm = i > 0 || k > 0 || previous_;
-      if (i > 0) {
-        // stage values of the last try
-      } else if (k > 0) {
-        solver_.extrapolate(chain_.elements[static_cast<std::size_t>(k - 1)], h, element);
-      } else if (previous_) {
-        solver_.extrapolate(*previous_, h, element);
-      }
+      const Element* last = k > 0       ? &chain_.elements[static_cast<std::size_t>(k - 1)]
+                            : previous_ ? &*previous_
+                                        : nullptr;
+      element.warp = {k == 0 ? warp.left : 1, k + 1 == count ? warp.right : 1};
+      const bool continues = last != nullptr && last->warp.is_none() && element.warp.is_none();
+      const bool warm = i > 0 || continues;  // i > 0: stage values of the last try
+      if (i == 0 && continues) solver_.extrapolate(*last, h, element);
       auto outcome = solver_.solve(left, h, {&set_, 1}, held_.data(),
                                    warm ? ElementSolver::Guess::stages : ElementSolver::Guess::left_end, element);
       if (outcome != ElementSolver::Outcome::solved) {
@@ -201,7 +218,8 @@ std::optional<Run::Located> Run::find_switch(int elements, double remaining, Vio
     int count = std::clamp(static_cast<int>(std::lround(elements * tau / remaining)), 1, elements - 1);
     const bool divides = !fits_bounds(elements, remaining, tau, count);
     if (divides) count = elements;
-    const auto h = locate(count, tau / count, violation, remaining / count);
+    const TimeWarp warp{previous_ ? 1 : warp_behind(tau), warp_before(chain_.elements[element])};
+    const auto h = locate(count, tau / count, violation, remaining / count, warp);
     if (!h) return std::nullopt;
     // The elements as they are now, all conditions: does another end before?
     Violation other;
@@ -223,6 +241,7 @@ std::optional<Run::Located> Run::find_switch(int elements, double remaining, Vio
       if (at >= *h * count * (1.0 - 1e-12)) continue;  // at the same time
       if (same && k + 1 == count && other.theta > 1.0 - 1e-9) continue;
       earlier = true;
+      element = index;
       tau = at;
       violation = other;
     }
@@ -328,11 +347,14 @@ void Run::advance(double end) {
     if (!stopped() && !(set_ == before)) {
       const double resolution = laps_.shrinks() ? resolution_of(closing, selections) : 0.0;
       laps_.add({t_, set_.modes(), x_, resolution});
+      follow_laps();
+      if (set_.sliding().size() > before.sliding().size()) lap_part_ = 0.0;  // no switch is next
       if (go_to_limit(LapSeries::Wanted::resolved)) {
         next_part();
         continue;
       }
     }
+    if (lap_part_ > 0.0) next_part();
     if (located->count == 0 && decisions_here_ > most_decisions_at_this_length) {
       // A decision looks at what is just behind; elements so long see something else.
       ++statistics_.rejected;

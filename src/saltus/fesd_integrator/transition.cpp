@@ -181,8 +181,12 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
   const auto& set = candidate.set;
   candidate.selections.resize(kernel_.selections());
   set.selections(unknown.data(), candidate.selections.data());
-  if (!projected_.solve(decision.t, decision.x.data(), set, decision.held, candidate.selections.data())) return -1.0;
+  const double rounding = ProjectedField::rounding_of_rates(decision.size, decision.trial_length);
+  if (!projected_.solve(decision.t, decision.x.data(), set, decision.held, candidate.selections.data(), rounding)) {
+    return -1.0;
+  }
   projected_.rates(rate_);
+  if (!take_from_trial(decision, candidate)) return -1.0;
   double least = 1.0;
   for (const Condition& condition : set.conditions()) {
     if (std::find(group.members.begin(), group.members.end(), condition.selection) == group.members.end()) continue;
@@ -206,6 +210,24 @@ ElementSolver::Outcome Transition::solve_trial(const Decision& decision, const C
   const Point left{decision.t, {decision.x.begin(), decision.x.end()}, candidate.selections, decision.size};
   return solver_.solve(left, decision.trial_length, {&candidate.set, 1}, decision.held, ElementSolver::Guess::left_end,
                        trial_);
+}
+
+/// Selections that follow from a higher derivative of their surface are those of a short element.
+bool Transition::take_from_trial(const Decision& decision, Continuation& candidate) {
+  const auto& sliding = candidate.set.sliding();
+  bool any = false;
+  for (std::size_t k = 0; k < sliding.size(); ++k) any = any || projected_.in_no_equation(k);
+  if (projected_.regular() || !any) return true;
+  if (solve_trial(decision, candidate) != ElementSolver::Outcome::solved) return false;
+  const std::size_t n = kernel_.selections();
+  const double* last = trial_.stage_selections.data() + trial_.stage_selections.size() - n;
+  for (std::size_t k = 0; k < sliding.size(); ++k) {
+    if (!projected_.in_no_equation(k)) continue;
+    const double change = last[at(sliding[k].selection)] - candidate.selections[at(sliding[k].selection)];
+    candidate.selections[at(sliding[k].selection)] += change;
+    if (sliding[k].reference >= 0) candidate.selections[at(sliding[k].reference)] -= change;
+  }
+  return true;
 }
 
 bool Transition::passes_trial(const Decision& decision, const Group& group, const Continuation& candidate) {

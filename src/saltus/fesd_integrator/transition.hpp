@@ -62,6 +62,7 @@ class Transition {
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
                                    Continuation& candidate);
   [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate);
+  [[nodiscard]] bool take_from_trial(const Decision& decision, Continuation& candidate);
   [[nodiscard]] bool passes_trial(const Decision& decision, const Group& group, const Continuation& candidate);
 
   const discretization::StageKernel& kernel_;

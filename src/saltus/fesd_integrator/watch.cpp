@@ -37,22 +37,39 @@ void indicator_noise(const discretization::StageValues& values, double t, double
 
 Watch::Watch(const discretization::StageKernel& kernel, const ElementSolver& solver)
     : kernel_(kernel), solver_(solver), projected_(kernel), defect_(solver), points_(solver.watch_points().size()) {
-  const auto& thetas = solver.watch_points();
-  for (const double node : ode::interpolation_nodes()) {
-    for (std::size_t k = 0; k < points_; ++k) to_nodes_.push_back(lagrange(thetas, k, node));
-  }
-  constexpr int samples = 200;
-  for (int i = 0; i <= samples; ++i) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < points_; ++k) sum += std::abs(lagrange(thetas, k, static_cast<double>(i) / samples));
-    lebesgue_ = std::max(lebesgue_, sum);
-  }
-  lebesgue_ *= 1.01;  // between the samples
+  interpolations_.push_back(interpolation_for({}));
   indicators_.resize(points_ * kernel.selections());
   selections_.resize(points_ * kernel.selections());
   values_.resize(points_);
   x_.resize(kernel.states());
   kernel.size(left_);
+}
+
+Watch::Interpolation Watch::interpolation_for(const TimeWarp& warp) const {
+  Interpolation made{warp, {}, {}, 1.0};
+  for (const double tau : solver_.watch_points()) made.thetas.push_back(warp.at(tau));
+  for (const double node : ode::interpolation_nodes()) {
+    for (std::size_t k = 0; k < points_; ++k) made.to_nodes.push_back(lagrange(made.thetas, k, node));
+  }
+  constexpr int samples = 200;
+  for (int i = 0; i <= samples; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < points_; ++k) {
+      sum += std::abs(lagrange(made.thetas, k, static_cast<double>(i) / samples));
+    }
+    made.lebesgue = std::max(made.lebesgue, sum);
+  }
+  made.lebesgue *= 1.01;  // between the samples
+  return made;
+}
+
+/// Those of few warps are asked for; they are kept.
+std::size_t Watch::find_interpolation(const TimeWarp& warp) {
+  for (std::size_t k = 0; k < interpolations_.size(); ++k) {
+    if (interpolations_[k].warp == warp) return k;
+  }
+  interpolations_.push_back(interpolation_for(warp));
+  return interpolations_.size() - 1;
 }
 
 double Watch::noise(const Condition& condition) const {
@@ -68,20 +85,23 @@ double Watch::end_value(const ActiveSet& set, const Condition& condition) const 
 Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const double* held,
                           std::vector<double>& selections, Violation& earliest, std::span<const int> only) {
   const std::size_t n = kernel_.selections();
-  const auto& thetas = solver_.watch_points();
+  interpolation_ = find_interpolation(element.warp);
+  const auto& thetas = interpolations_[interpolation_].thetas;
   const bool slides = !set.sliding().empty();
   // Gradients at the left end give the rounding level; between the ends of an element it is the same.
   kernel_.evaluate(element.t, element.x.data(), selections.data(), held, left_);
   indicator_noise(left_, element.t + element.h, element.size, noise_);
   find_errors(element, set, held, selections);
   may_miss_ = false;
+  const double rounding = ProjectedField::rounding_of_rates(element.size, element.h);
   for (std::size_t i = 0; i < points_; ++i) {
     const double t = element.t + thetas[i] * element.h;
     double* at = selections_.data() + i * n;
     std::copy(selections.begin(), selections.end(), at);
     solver_.watch_state(element, i, x_.data());
     if (slides) {
-      if (!projected_.solve(t, x_.data(), set, held, at)) return Answer::not_finite;
+      if (!projected_.solve(t, x_.data(), set, held, at, rounding)) return Answer::not_finite;
+      if (!projected_.regular()) take_from_stages(element, set, i, at);
       std::copy(at, at + n, selections.begin());
     }
     kernel_.indicators(t, x_.data(), held, indicators_.data() + i * n);
@@ -94,17 +114,34 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
       values_[i] = set.value(condition, indicators_.data() + i * n, selections_.data() + i * n);
       if (!std::isfinite(values_[i])) return Answer::not_finite;
     }
-    first_change(set, element.h, condition, earliest, found);
+    first_change(set, element, condition, earliest, found);
   }
   return found ? Answer::violated : Answer::holds;
+}
+
+/// Selections that the projected field does not determine, where a stage has them (second-order sliding).
+void Watch::take_from_stages(const Element& element, const ActiveSet& set, std::size_t point, double* selections) {
+  const int stage = solver_.watch_stage(point);
+  if (stage < 0) return;
+  const std::size_t n = kernel_.selections();
+  const double* known = element.stage_selections.data() + static_cast<std::size_t>(stage) * n;
+  for (std::size_t k = 0; k < set.sliding().size(); ++k) {
+    if (!projected_.in_no_equation(k)) continue;
+    const Sliding& entry = set.sliding()[k];
+    const auto j = static_cast<std::size_t>(entry.selection);
+    const double change = known[j] - selections[j];
+    selections[j] = known[j];
+    if (entry.reference >= 0) selections[static_cast<std::size_t>(entry.reference)] -= change;
+  }
 }
 
 void Watch::find_errors(const Element& element, const ActiveSet& set, const double* held,
                         const std::vector<double>& selections) {
   const double* f = left_.f.data();
+  const TimeWarp& warp = element.warp;
   if (const double place = defect_.place(); place > 0.0) {
-    const double t = element.t + place * element.h;
-    solver_.interpolate(element, place, x_.data());
+    const double theta = warp.at(place), t = element.t + theta * element.h;
+    solver_.interpolate(element, theta, x_.data());
     at_place_ = selections;
     slope_.resize(x_.size());
     if (set.sliding().empty() || projected_.solve(t, x_.data(), set, held, at_place_.data())) {
@@ -112,7 +149,11 @@ void Watch::find_errors(const Element& element, const ActiveSet& set, const doub
     }
     f = slope_.data();
   }
-  defect_.errors(element, f, left_.f.data(), errors_);
+  if (warp.is_none()) {
+    defect_.errors(element, f, left_.f.data(), errors_);
+  } else {
+    find_warped_errors(element, set, f, held, selections);
+  }
   // What errors of one component do to another one within the element.
   const std::size_t n = kernel_.selections(), n_x = errors_.size();
   slope_ = errors_;
@@ -126,13 +167,32 @@ void Watch::find_errors(const Element& element, const ActiveSet& set, const doub
   }
 }
 
+/// Where the element begins at the zero of a root, the derivatives there are infinite: those in its middle are taken.
+void Watch::find_warped_errors(const Element& element, const ActiveSet& set, const double* f, const double* held,
+                               const std::vector<double>& selections) {
+  const std::size_t n_x = x_.size();
+  std::vector<double> slope(n_x), left_slope(n_x);
+  const double factor = element.warp.slope(defect_.place()), left_factor = element.warp.slope(0.0);
+  for (std::size_t i = 0; i < n_x; ++i) {
+    slope[i] = factor * f[i];
+    left_slope[i] = left_factor * left_.f[i];
+  }
+  defect_.errors(element, slope.data(), left_slope.data(), errors_);
+  constexpr double middle = 0.5;
+  const double t = element.t + middle * element.h;
+  solver_.interpolate(element, middle, x_.data());
+  at_place_ = selections;
+  if (!set.sliding().empty()) static_cast<void>(projected_.solve(t, x_.data(), set, held, at_place_.data()));
+  kernel_.evaluate(t, x_.data(), at_place_.data(), held, left_);
+}
+
 double Watch::error_of(const ActiveSet& set, const Condition& condition) const {
   if (condition.kind != Condition::Kind::side) {
     // Selections are functions of the state whose derivatives nobody has: how much they bend in this element.
     const double last = values_.back() - values_.front();
     double bend = 0.0;
     for (std::size_t k = 0; k < points_; ++k) {
-      bend = std::max(bend, std::abs(values_[k] - values_.front() - solver_.watch_points()[k] * last));
+      bend = std::max(bend, std::abs(values_[k] - values_.front() - interpolations_[interpolation_].thetas[k] * last));
     }
     return bend;
   }
@@ -151,15 +211,18 @@ double Watch::left_rate(const ActiveSet& set, const Condition& condition) {
   return set.side(condition.selection, rates_.data());
 }
 
-void Watch::first_change(const ActiveSet& set, double h, const Condition& condition, Violation& earliest, bool& found) {
+void Watch::first_change(const ActiveSet& set, const Element& element, const Condition& condition, Violation& earliest,
+                         bool& found) {
+  const double h = element.h;
+  const Interpolation& interpolation = interpolations_[interpolation_];
   const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
   constexpr double safety = 2.0;
   const double error = safety * error_of(set, condition);
-  if (0.5 * (*low + *high) > lebesgue_ * 0.5 * (*high - *low) + error) return;
+  if (0.5 * (*low + *high) > interpolation.lebesgue * 0.5 * (*high - *low) + error) return;
   const double level = noise(condition);
   std::array<double, ode::event_nodes> nodes{};
   for (std::size_t node = 0; node < nodes.size(); ++node) {
-    for (std::size_t k = 0; k < points_; ++k) nodes[node] += to_nodes_[node * points_ + k] * values_[k];
+    for (std::size_t k = 0; k < points_; ++k) nodes[node] += interpolation.to_nodes[node * points_ + k] * values_[k];
   }
   nodes.front() = values_.front();
   nodes.back() = values_.back();
@@ -171,7 +234,8 @@ void Watch::first_change(const ActiveSet& set, double h, const Condition& condit
     constexpr double tangent = 1e-3;
     const double largest = std::max(std::abs(*low), std::abs(*high));
     const bool side = condition.kind == Condition::Kind::side;
-    zero_order = side && std::abs(left_rate(set, condition)) * h <= tangent * largest ? 2 : 1;
+    const bool flat = side && std::abs(left_rate(set, condition)) * h <= tangent * largest;
+    zero_order = flat ? 2 : 1;
   }
   if (!may_miss_ && error > level && std::isfinite(error)) {
     // Less what the error may grow to from the left end, where there is none.

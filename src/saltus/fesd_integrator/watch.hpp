@@ -18,7 +18,7 @@ namespace saltus::fesd_integrator {
 /// A condition that does not hold behind `theta` of an element.
 struct Violation {
   Condition condition;
-  double theta = 0.0;
+  double theta = 0.0;  ///< a part of the time
   double slope = 0.0;  ///< d value / dt there
 };
 
@@ -51,19 +51,32 @@ class Watch {
 
  private:
   [[nodiscard]] double left_rate(const ActiveSet& set, const Condition& condition);
-  void first_change(const ActiveSet& set, double h, const Condition& condition, Violation& earliest, bool& found);
+  void first_change(const ActiveSet& set, const Element& element, const Condition& condition, Violation& earliest,
+                    bool& found);
   /// What an error of the state makes of a condition.
   [[nodiscard]] double error_of(const ActiveSet& set, const Condition& condition) const;
   void find_errors(const Element& element, const ActiveSet& set, const double* held,
                    const std::vector<double>& selections);
+  void take_from_stages(const Element& element, const ActiveSet& set, std::size_t point, double* selections);
+  void find_warped_errors(const Element& element, const ActiveSet& set, const double* f, const double* held,
+                          const std::vector<double>& selections);
 
   const discretization::StageKernel& kernel_;
   const ElementSolver& solver_;
   ProjectedField projected_;
   Defect defect_;
   std::size_t points_ = 0;
-  double lebesgue_ = 1.0;           ///< of the interpolation at the watch points
-  std::vector<double> to_nodes_;    ///< values at the nodes of ode::interpolation_nodes() from those at watch points
+  /// At the watch points, in time: where a root is zero signs bend less in time than in tau.
+  struct Interpolation {
+    TimeWarp warp;
+    std::vector<double> thetas;    ///< of the watch points
+    std::vector<double> to_nodes;  ///< values at ode::interpolation_nodes() from those at watch points
+    double lebesgue = 1.0;
+  };
+  [[nodiscard]] Interpolation interpolation_for(const TimeWarp& warp) const;
+  [[nodiscard]] std::size_t find_interpolation(const TimeWarp& warp);
+  std::vector<Interpolation> interpolations_;
+  std::size_t interpolation_ = 0;   ///< of the element in hand
   std::vector<double> indicators_;  ///< one row per watch point
   std::vector<double> selections_;
   std::vector<double> values_, x_, noise_, rates_;

@@ -79,6 +79,13 @@ struct Dcs {
   casadi::SX lifting;     ///< one row per lifted variable, 0 = lifting(selection, lifted); row k is beta_k - product
   std::vector<DcsPart> parts;
 
+  // Powers base^c, c in (0, 1), of what is zero on a surface: sqrt(|x|) sign(x). They are in f as odd functions of
+  // their bases, which elements that end at the surface need, and as 0 while the solution slides on it.
+  casadi::SX roots;                    ///< symbols of their values; 0 x 1 without any
+  casadi::SX root_bases;               ///< over t, x, u, p, held
+  std::vector<double> root_exponents;  ///< c
+  casadi::SX with_roots;               ///< f over these symbols, too; smooth where they are 0
+
   std::vector<Surface> surfaces;
   casadi::SX surface_alpha;  ///< alpha of each surface over `selection`
   std::vector<HeldSymbol> held_symbols;

@@ -167,8 +167,12 @@ class RegionWalk {
 /// which costs a multiplier and changes nothing else.
 std::vector<std::vector<std::uint64_t>> signatures(const std::vector<SX>& fields, const Unnested& unnested,
                                                    const model::System& system) {
-  const casadi::Function function("fields", {system.t, system.x, system.u, system.p, column(unnested.held)},
-                                  {SX::horzcat(fields)});
+  std::vector<SXElem> roots, away;
+  for (const auto& root : unnested.roots) roots.push_back(root.symbol);
+  for (const auto& side : unnested.away) away.push_back(side.symbol);
+  const casadi::Function function(
+      "fields", {system.t, system.x, system.u, system.p, column(unnested.held), column(roots), column(away)},
+      {SX::horzcat(fields)});
   std::vector<std::vector<std::uint64_t>> result(fields.size());
   for (const double phase : {0.3, 1.7, 2.9}) {
     double angle = phase;
@@ -180,6 +184,8 @@ std::vector<std::vector<std::uint64_t>> signatures(const std::vector<SX>& fields
     std::vector<casadi::DM> point{numbers(1), numbers(system.state_names.size()), numbers(system.control_names.size())};
     point.emplace_back(system.parameter_values);
     point.push_back(numbers(unnested.held.size()));
+    point.push_back(numbers(roots.size()));
+    point.emplace_back(std::vector<double>(away.size(), 1.0));
     const auto values = std::vector<double>(casadi::DM::densify(function(point).front()));
     const std::size_t n_x = values.size() / fields.size();
     for (std::size_t i = 0; i < values.size(); ++i) {

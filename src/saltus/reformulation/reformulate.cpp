@@ -2,6 +2,7 @@
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/reformulation/forms_internal.hpp"
+#include "saltus/reformulation/surface_roots_internal.hpp"
 
 namespace saltus::reformulation {
 namespace {
@@ -82,6 +83,7 @@ Expected<Reformulated> reformulated(const model::System& system, const Reformula
   if (!system.jumps.empty()) return tl::unexpected(no_jumps());
   auto unnested = unnest(system);
   if (!unnested) return tl::unexpected(unnested.error());
+  take_roots(system, *unnested);
   Reformulated result{common_part(system, *unnested), {}};
   auto collected = options.reformulation == Form::step
                        ? Expected<Collected>(fill_step_form(system, *unnested, options.lifting, result))
@@ -89,6 +91,7 @@ Expected<Reformulated> reformulated(const model::System& system, const Reformula
   if (!collected) return tl::unexpected(collected.error());
   result.dcs.selection = column(collected->selection);
   result.dcs.indicator = column(collected->indicator);
+  finish_roots(*unnested, result.dcs);
   take_rest(*unnested, result.dcs);
   return result;
 }

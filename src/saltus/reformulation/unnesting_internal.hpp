@@ -16,6 +16,19 @@ struct IndicatorPart {
   std::vector<SXElem> indicator;
 };
 
+/// A power with an exponent in (0, 1) of what is zero on a surface; of its value in f there is a symbol.
+struct SurfaceRoot {
+  SXElem symbol, base;
+  double exponent = 0.5;
+  int surface = 0;
+};
+
+/// A symbol in f that is 1 on both sides of a surface, 0 while it slides.
+struct AwayFromSurface {
+  int surface = 0;
+  SXElem symbol;
+};
+
 /// A System in selections of which none is inside another.
 struct Unnested {
   std::vector<Surface> surfaces;
@@ -23,6 +36,8 @@ struct Unnested {
   std::vector<IndicatorPart> indicator_parts;
   std::vector<HeldSymbol> held_symbols;
   std::vector<SXElem> held;
+  std::vector<SurfaceRoot> roots;  ///< of take_roots()
+  std::vector<AwayFromSurface> away;
 
   SX f;  ///< multi-affine in the selections with filippov
   SX alpha, outputs, input;

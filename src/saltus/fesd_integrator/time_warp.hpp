@@ -1,0 +1,27 @@
+// Time inside an element whose solution has no Taylor series at an end.
+#pragma once
+
+namespace saltus::fesd_integrator {
+
+/// t(tau) = t_left + h phi(tau), phi' = tau^(a-1) (1-tau)^(b-1) / B(a, b), phi(0) = 0, phi(1) = 1. Behind a crossing of
+/// psi = 0 with xdot = f(x, |psi|^(p/q)) the solution is a series in (t - t_left)^(1/q), so one in tau with a = q;
+/// before it likewise with b = q. The identity for a = b = 1.
+struct TimeWarp {
+  int left = 1;   ///< a
+  int right = 1;  ///< b
+
+  [[nodiscard]] bool is_none() const { return left == 1 && right == 1; }
+  [[nodiscard]] bool operator==(const TimeWarp&) const = default;
+  /// phi and its derivative.
+  [[nodiscard]] double at(double tau) const;
+  [[nodiscard]] double slope(double tau) const;
+  /// tau with phi(tau) = theta, 0 <= theta <= 1. Cost: some Newton steps.
+  [[nodiscard]] double inverse(double theta) const;
+};
+
+/// The smallest q for which q * exponent is an integer, at most `most_warped` (other exponents have series whose first
+/// terms are smooth with that).
+inline constexpr int most_warped = 4;
+[[nodiscard]] int warp_for(double exponent);
+
+}  // namespace saltus::fesd_integrator
