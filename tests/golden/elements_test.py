@@ -62,9 +62,12 @@ fesd = { reformulation = "stewart" }
         self.assertEqual(status["termination"], "evaluation_failed")
 
     def test_a_step_without_active_sets_is_tried_as_a_problem_with_complementarities(self):
-        # One stage of Radau IIA does not come to rest where both surfaces meet: neither finds a solution, and both say so.
-        _, errors = self.run_tool("simulate", "twisting", "--method", "fesd", "--quiet", "--set", "simulate.fesd.stages=1",
-                                  "--set", "simulate.fesd.error_limit=off", code=3)
+        # A selection with a double root at its bound: neither finds a solution, and both say so.
+        (self.folder / "double.toml").write_text(
+            '[model]\nname = "double"\ninclusion = "aizerman_pyatnitskii"\n[states]\nx = 1\ny = -1\n[dynamics]\n'
+            'x = "-sign(x)*(1 + 0.5*sign(x)) + 0.4*sin(t) - 0.3"\ny = "sign(x)^3 - 0.5*sign(x)^2 - y"\n'
+            '[simulate]\nuntil = 4\n', encoding="utf-8")
+        _, errors = self.run_tool("simulate", "double.toml", "--method", "fesd", "--quiet", code=3)
         self.assertIn("problem with complementarities of the step at t =", " ".join(errors.split()))
 
     def test_a_super_twisting_controller_comes_to_rest(self):

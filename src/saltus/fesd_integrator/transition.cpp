@@ -181,7 +181,9 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
   const auto& set = candidate.set;
   candidate.selections.resize(kernel_.selections());
   set.selections(unknown.data(), candidate.selections.data());
-  const double rounding = ProjectedField::rounding_of_rates(decision.size, decision.trial_length);
+  // What begins to slide between switches that accumulate has a rate, however small.
+  const bool begins = decision.before != nullptr && set.sliding().size() > decision.before->sliding().size();
+  const double rounding = begins ? 0.0 : ProjectedField::rounding_of_rates(decision.size, decision.trial_length);
   if (!projected_.solve(decision.t, decision.x.data(), set, decision.held, candidate.selections.data(), rounding)) {
     return -1.0;
   }
