@@ -108,6 +108,10 @@ class OptionsWithoutEffectTest(ToolTest):
         err = self.warnings("simulate", "--method", "timestepping")
         self.assertIn("friction.toml:11: simulate.timestepping.step_bounds has no effect: elements of method", err)
         self.assertNotIn("simulate.fesd", err)
+        # "the same keys as fesd" (interface.md), the same values, too.
+        err = self.warnings("simulate", "--method", "timestepping", "--set",
+                            "simulate.timestepping.step_equilibration=l2_relaxed")
+        self.assertIn("step_equilibration has no effect: elements of method", err)
 
     def test_nothing_is_told_of_options_that_work(self):
         self.assertEqual(self.warnings("simulate", "--rtol", "1e-9", "--integrator", "radau5"), "")

@@ -67,7 +67,7 @@ class Settings(RequestTest):
         "simulate.output.times=[1, 0]": ["found 0 at place 2, after 1"],
         "simulate.output.times=[0, x]": ["expected a list of finite, increasing numbers"],
         "simulate.fesd.stages=half": ["expected a whole number >= 1, found \"half\""],
-        "simulate.timestepping.step_equilibration=none": ["is not available in this version", "use direct or mlcp"],
+        "simulate.timestepping.step_equilibration=exact": ['expected "direct" or "mlcp" or "none"', 'found "exact"'],
         "simulate.event.integrator=ode45": ['expected "dopri5" or "dop853" or "radau5", found "ode45"'],
         "simulate.initial_mode.w=1": ["unknown switching function 'w'", "known: v"],
         "simulate.inputs.u=sin(t)": ["expected the name of a control, found 'u'", "declare it in [controls]"],

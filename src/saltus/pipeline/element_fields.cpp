@@ -9,29 +9,20 @@ namespace saltus::pipeline {
 namespace {
 
 constexpr Choices<Scheme, 5> schemes{
-    "scheme",
     {"radau_iia", "gauss_legendre", "lobatto_iiia", "lobatto_iiic", "explicit"},
-    {Scheme::radau_iia, Scheme::gauss_legendre, Scheme::lobatto_iiia, Scheme::lobatto_iiic, Scheme::explicit_rk},
-    5};
-constexpr Choices<Representation, 2> representations{
-    "representation", {"integral", "differential"}, {Representation::integral, Representation::differential}, 2};
-constexpr Choices<Reformulation, 2> reformulations{
-    "reformulation", {"step", "stewart"}, {Reformulation::step, Reformulation::stewart}, 2};
+    {Scheme::radau_iia, Scheme::gauss_legendre, Scheme::lobatto_iiia, Scheme::lobatto_iiic, Scheme::explicit_rk}};
+constexpr Choices<Representation, 2> representations{{"integral", "differential"},
+                                                     {Representation::integral, Representation::differential}};
+constexpr Choices<Reformulation, 2> reformulations{{"step", "stewart"}, {Reformulation::step, Reformulation::stewart}};
 constexpr Choices<CrossComplementarity, 5> cross_complementarities{
-    "cross_complementarity",
     {"stage_stage", "fe_stage", "stage_fe", "fe_fe", "paper"},
     {CrossComplementarity::stage_stage, CrossComplementarity::fe_stage, CrossComplementarity::stage_fe,
-     CrossComplementarity::fe_fe, CrossComplementarity::paper},
-    5};
-// The modes that determine the lengths of elements exactly come first: with fixed lengths the others mean nothing.
-constexpr Choices<StepEquilibration, 8> equilibrations(std::size_t available) {
-  return {"step_equilibration",
-          {"direct", "mlcp", "none", "heuristic_mean", "heuristic_diff", "l2_relaxed", "l2_relaxed_scaled", "paper"},
-          {StepEquilibration::direct, StepEquilibration::mlcp, StepEquilibration::none,
-           StepEquilibration::heuristic_mean, StepEquilibration::heuristic_diff, StepEquilibration::l2_relaxed,
-           StepEquilibration::l2_relaxed_scaled, StepEquilibration::paper},
-          available};
-}
+     CrossComplementarity::fe_fe, CrossComplementarity::paper}};
+constexpr Choices<StepEquilibration, 8> step_equilibrations{
+    {"direct", "mlcp", "none", "heuristic_mean", "heuristic_diff", "l2_relaxed", "l2_relaxed_scaled", "paper"},
+    {StepEquilibration::direct, StepEquilibration::mlcp, StepEquilibration::none, StepEquilibration::heuristic_mean,
+     StepEquilibration::heuristic_diff, StepEquilibration::l2_relaxed, StepEquilibration::l2_relaxed_scaled,
+     StepEquilibration::paper}};
 
 /// The options of one of the two methods.
 constexpr auto of_fesd = [](auto& o) -> auto& { return o.fesd; };
@@ -39,9 +30,6 @@ constexpr auto of_timestepping = [](auto& o) -> auto& { return o.timestepping; }
 
 template <auto part>
 constexpr bool is_fesd = std::is_same_v<std::remove_const_t<decltype(part)>, std::remove_const_t<decltype(of_fesd)>>;
-template <auto part>
-constexpr auto step_equilibrations = equilibrations(is_fesd<part> ? 8 : 2);
-
 template <auto part>
 constexpr auto scheme = [](auto& o) -> auto& {
   return part(o).scheme;
@@ -193,12 +181,11 @@ constexpr std::array fields_of{
                 "Which products are summed up; the solutions are the same.",
                 set_choice<cross_complementarity<part>, cross_complementarities>,
                 record_choice<cross_complementarity<part>, cross_complementarities>},
-    OptionField{"step_equilibration",
-                is_fesd<part> ? "direct, mlcp, none, heuristic_mean|diff, l2_relaxed[_scaled], paper" : "direct, mlcp",
+    OptionField{"step_equilibration", "direct, mlcp, none, heuristic_mean|diff, l2_relaxed[_scaled], paper",
                 is_fesd<part> ? "Lengths where nothing switches: the first two are exact, the others slow, for studies."
-                              : "Lengths are fixed: both mean the same.",
-                set_choice<step_equilibration<part>, step_equilibrations<part>>,
-                record_choice<step_equilibration<part>, step_equilibrations<part>>},
+                              : "Lengths are fixed: all mean the same.",
+                set_choice<step_equilibration<part>, step_equilibrations>,
+                record_choice<step_equilibration<part>, step_equilibrations>},
     OptionField{"lifting", "a whole number >= 2, or \"off\"",
                 "Most factors in products of selections, longer ones are lifted; the solutions are the same.",
                 set_lifting<part>, record_lifting<part>},

@@ -31,7 +31,7 @@ std::string without_event_method(Method method, std::string_view key) {
 std::string within_elements(const SimulateOptions& options, std::string_view key) {
   const bool fixed = options.method == Method::timestepping;
   const auto equilibration = options.fesd.step_equilibration;
-  if (fixed && (key == "step_bounds" || key == "rho" || key == "equilibration_scale")) {
+  if (fixed && (key == "step_bounds" || key == "rho" || key == "equilibration_scale" || key == "step_equilibration")) {
     return "elements of method \"timestepping\" have fixed lengths";
   }
   const bool scaled = equilibration == StepEquilibration::l2_relaxed_scaled;

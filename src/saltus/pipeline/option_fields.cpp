@@ -32,19 +32,14 @@ void record_until(const SimulateOptions& options, std::string_view key, OptionRe
   if (options.until) record.emplace_back(key, *options.until);
 }
 
-constexpr Choices<Method, 4> methods{"method",
-                                     {"event", "smoothed", "fesd", "timestepping"},
-                                     {Method::event, Method::smoothed, Method::fesd, Method::timestepping},
-                                     4};
-constexpr Choices<Integrator, 3> integrators{
-    "integrator", {"dopri5", "dop853", "radau5"}, {Integrator::dopri5, Integrator::dop853, Integrator::radau5}, 3};
-constexpr Choices<Native, 3> natives{
-    "native =", {"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}, 3};
+constexpr Choices<Method, 4> methods{{"event", "smoothed", "fesd", "timestepping"},
+                                     {Method::event, Method::smoothed, Method::fesd, Method::timestepping}};
+constexpr Choices<Integrator, 3> integrators{{"dopri5", "dop853", "radau5"},
+                                             {Integrator::dopri5, Integrator::dop853, Integrator::radau5}};
+constexpr Choices<Native, 3> natives{"native =", {"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
 constexpr Choices<Selection, 4> selections{
-    "selection",
     {"active_dominant", "passive_dominant", "scaled", "report"},
-    {Selection::active_dominant, Selection::passive_dominant, Selection::scaled, Selection::report},
-    4};
+    {Selection::active_dominant, Selection::passive_dominant, Selection::scaled, Selection::report}};
 
 Expected<void> set_output_word(SimulateOptions& options, std::string_view, const OptionValue& value) {
   if (const auto* word = std::get_if<std::string>(&value); word == nullptr || *word != "steps") {

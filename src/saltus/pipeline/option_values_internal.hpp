@@ -26,14 +26,6 @@ inline Error out_of_range(std::string_view expected, const OptionValue& found) {
   return {ErrorCode::invalid_option, fmt::format("expected {}, found {}", expected, to_text(found)), "", {}, {}};
 }
 
-inline Error later(std::string_view what, std::string_view instead) {
-  return {ErrorCode::not_available,
-          fmt::format("{} is not available in this version; a later one brings it", what),
-          fmt::format("use {}", instead),
-          {},
-          {}};
-}
-
 /// The number a value states, whether it was written 1 or 1.0; NaN if it is none.
 inline double number_in(const OptionValue& value) {
   if (const auto* real = std::get_if<double>(&value)) return *real;
@@ -89,13 +81,11 @@ void record_count(const SimulateOptions& options, std::string_view key, OptionRe
   record.emplace_back(key, std::int64_t{access(options)});
 }
 
-/// The spellings of an enum in the order of its enumerators; the first `available` of them run in this version.
+/// The spellings of an enum, and what they stand for.
 template <class Enum, std::size_t n>
 struct Choices {
-  std::string_view what;
   std::array<std::string_view, n> names;
   std::array<Enum, n> values;
-  std::size_t available;
 };
 
 template <auto access, const auto& choices>
@@ -109,13 +99,7 @@ Expected<void> set_choice(SimulateOptions& options, std::string_view, const Opti
     if (!nearest_names(*word, known).empty()) error.remedy = suggest(*word, known);
     return tl::unexpected(std::move(error));
   }
-  const auto position = static_cast<std::size_t>(found - known.begin());
-  if (position >= choices.available) {
-    const std::vector<std::string> usable(known.begin(), known.begin() + static_cast<long>(choices.available));
-    return tl::unexpected(
-        later(fmt::format("{} \"{}\"", choices.what, *word), fmt::format("{}", fmt::join(usable, " or "))));
-  }
-  access(options) = choices.values[position];
+  access(options) = choices.values[static_cast<std::size_t>(found - known.begin())];
   return {};
 }
 
