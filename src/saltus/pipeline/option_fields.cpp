@@ -36,7 +36,7 @@ constexpr Choices<Method, 4> methods{{"event", "smoothed", "fesd", "timestepping
                                      {Method::event, Method::smoothed, Method::fesd, Method::timestepping}};
 constexpr Choices<Integrator, 3> integrators{{"dopri5", "dop853", "radau5"},
                                              {Integrator::dopri5, Integrator::dop853, Integrator::radau5}};
-constexpr Choices<Native, 3> natives{"native =", {"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
+constexpr Choices<Native, 3> natives{{"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
 constexpr Choices<Selection, 4> selections{
     {"active_dominant", "passive_dominant", "scaled", "report"},
     {Selection::active_dominant, Selection::passive_dominant, Selection::scaled, Selection::report}};
