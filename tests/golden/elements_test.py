@@ -76,6 +76,27 @@ fesd = { reformulation = "stewart" }
         self.assertEqual(result["events"][-1]["kind"], "accumulation")
         self.assertEqual(result["final"]["x"], [0, 0])
 
+    def run_terminal(self, exponent, *options):
+        (self.folder / "terminal.toml").write_text(
+            '[model]\nname = "terminal"\n[states]\nx = 1\n[dynamics]\n'
+            f'x = "-abs(x)^({exponent})*sign(x) + 0.5*cos(2*t)"\n[simulate]\nuntil = 10\n', encoding="utf-8")
+        self.run_tool("simulate", "terminal.toml", "--method", "fesd", "--quiet", "--out", "r.json", *options, code=0)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
+    def test_cubic_roots_are_crossed_with_few_stages(self):
+        # x(10) by the methods "event" (rtol = 1e-13) and "fesd" (four stages, 400 steps), which agree to 4e-13.
+        for stages, error in ((1, 2e-3), (2, 2e-7), (3, 2e-8), (4, 1e-9)):
+            result = self.run_terminal("1/3", "--set", f"simulate.fesd.stages={stages}")
+            self.assertAlmostEqual(result["final"]["x"][0], 0.0524269211251, delta=error)
+            # Elements whose polynomials could not be those of a constant field were divided 400 times over.
+            self.assertLess(result["statistics"]["steps"], 2000)
+
+    def test_switches_that_roundings_repeat_do_not_stop_time(self):
+        # x leaves 0 like (0.5 cos 2t)^4: laps that seem to shrink to 1e-23 where time has roundings of 1e-16.
+        result = self.run_terminal("1/4", "--until", "2.5", "--set", "simulate.fesd.stages=4")
+        self.assertAlmostEqual(result["final"]["x"][0], 3.21380053e-4, delta=1e-9)
+        self.assertLess(result["statistics"]["steps"], 2000)
+
     def test_derivatives_of_roots_are_refused(self):
         _, errors = self.run_tool("simulate", "super-twisting", "--method", "fesd", "--quiet",
                                   "--set", "simulate.fesd.sensitivities=true", code=2)

@@ -30,10 +30,12 @@ void Run::for_each_root(double t, const double* x, Take&& take) {
 int Run::warp_behind(double h) {
   int warp = 1;
   if (kernel_.root_exponents().empty()) return warp;
+  const int most = most_warped(solver_.tableau().stages());
   for_each_root(t_, x_.data(), [&](double exponent, double base, double rate, double gradient) {
     constexpr double near = 1e-9;  // of the element
     constexpr double roundings = 64.0 * std::numeric_limits<double>::epsilon();
-    if (std::abs(base) <= near * h * rate + roundings * gradient * size_) warp = std::max(warp, warp_for(exponent));
+    if (std::abs(base) <= near * h * rate + roundings * gradient * size_)
+      warp = std::max(warp, warp_for(exponent, most));
   });
   return warp;
 }
@@ -41,8 +43,9 @@ int Run::warp_behind(double h) {
 int Run::warp_before(const Element& beyond) {
   int warp = 1;
   if (kernel_.root_exponents().empty()) return warp;
+  const int most = most_warped(solver_.tableau().stages());
   for_each_root(beyond.t + beyond.h, beyond.end.data(), [&](double exponent, double base, double, double) {
-    if (base < 0.0) warp = std::max(warp, warp_for(exponent));
+    if (base < 0.0) warp = std::max(warp, warp_for(exponent, most));
   });
   return warp;
 }

@@ -30,6 +30,10 @@ constexpr int elements_per_switch = 16;
 void Run::follow_laps() {
   const auto next = kernel_.root_exponents().empty() ? std::nullopt : laps_.next_switch();
   lap_part_ = next ? *next * options_.elements / elements_per_switch : 0.0;
+  // Laps this short are those of roundings, and elements at the roundings of t would get nowhere.
+  constexpr double shortest_followed = 1e-10, roundings = 64.0 * rounding;
+  if (lap_part_ <= std::max(shortest_followed * nominal_, options_.elements * roundings * std::abs(t_)))
+    lap_part_ = 0.0;
 }
 
 double Run::part_end(double end) {

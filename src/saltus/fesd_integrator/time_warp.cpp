@@ -58,12 +58,17 @@ double TimeWarp::inverse(double theta) const {
   return tau;
 }
 
-int warp_for(double exponent) {
+int warp_for(double exponent, int most) {
   constexpr double rounding = 1e-12;
-  for (int q = 2; q <= most_warped; ++q) {
+  for (int q = 2; q <= most; ++q) {
     if (std::abs(q * exponent - std::round(q * exponent)) <= rounding) return q;
   }
-  return most_warped;
+  return most;
+}
+
+int most_warped(int stages) {
+  constexpr int most = 4;
+  return std::min(stages, most);
 }
 
 }  // namespace saltus::fesd_integrator

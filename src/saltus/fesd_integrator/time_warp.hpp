@@ -19,9 +19,11 @@ struct TimeWarp {
   [[nodiscard]] double inverse(double theta) const;
 };
 
-/// The smallest q for which q * exponent is an integer, at most `most_warped` (other exponents have series whose first
+/// The smallest q <= `most` for which q * exponent is an integer, or `most` (other exponents have series whose first
 /// terms are smooth with that).
-inline constexpr int most_warped = 4;
-[[nodiscard]] int warp_for(double exponent);
+[[nodiscard]] int warp_for(double exponent, int most);
+/// With more than its number of stages the polynomials of a method are not those of a constant field: d phi / d tau has
+/// the degree q - 1. 2 with one stage: without a warp f at the surface, where its derivative is infinite, has a weight.
+[[nodiscard]] int most_warped(int stages);
 
 }  // namespace saltus::fesd_integrator

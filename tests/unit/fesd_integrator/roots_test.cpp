@@ -181,8 +181,11 @@ TEST(TimeWarp, GoesFromOneEndToTheOther) {
     }
   }
   EXPECT_EQ((TimeWarp{2, 1}.at(0.25)), 0.0625);
-  EXPECT_EQ(warp_for(0.5), 2);
-  EXPECT_EQ(warp_for(2.0 / 3.0), 3);
+  EXPECT_EQ(warp_for(0.5, 4), 2);
+  EXPECT_EQ(warp_for(2.0 / 3.0, 4), 3);
+  EXPECT_EQ(warp_for(2.0 / 3.0, 2), 2);
+  EXPECT_EQ(warp_for(0.5, 1), 1);
+  EXPECT_EQ(warp_for(0.7, 4), 4);
 }
 
 }  // namespace
