@@ -48,15 +48,19 @@ void EventSeries::add(double t, const std::vector<int>& jumps, const std::vector
   recent.jumps = jumps;
   Entry& entry = entries_.append();
   entry.t = t;
+  entry.only = jumps.size() == 1 ? jumps.front() : several;
   entry.jumps = jumps;
   entry.x = x;
   for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
-    const bool repeats = back(0).jumps == back(period).jumps;
-    const bool shrinks =
-        repeats && entries_.size() > 2 * period && t - back(period).t < back(period).t - back(2 * period).t;
+    if (!repeats(0, period)) {
+      laps_[period] = 0;
+      continue;
+    }
+    const double before = back(period).t;
+    const bool shrinks = entries_.size() > 2 * period && t - before < before - back(2 * period).t;
     if (laps_[period] == 0 || !shrinks) {
-      start_[period] = back(period).t;
-      laps_[period] = repeats ? 1 : 0;
+      start_[period] = before;
+      laps_[period] = 1;
     } else {
       ++laps_[period];
     }
@@ -70,7 +74,7 @@ bool EventSeries::shrinks() const {
 std::vector<double> EventSeries::durations(std::size_t period, std::size_t skipped) const {
   std::vector<double> result;
   for (std::size_t lap = skipped; lap < skipped + most_laps && (lap + 1) * period < entries_.size(); ++lap) {
-    if (back(lap * period).jumps != back((lap + 1) * period).jumps) break;
+    if (!repeats(lap * period, (lap + 1) * period)) break;
     result.push_back(back(lap * period).t - back((lap + 1) * period).t);
     // Before the sequence began to shrink its durations say nothing.
     if (result.size() > 1 && !(result.back() > result[result.size() - 2])) {
@@ -104,8 +108,6 @@ std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
 }
 
 std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::vector<double>& shortest) const {
-  // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
-  if (laps_[period] < 2 * period || entries_.size() <= 2 * period) return std::nullopt;
   const auto now = durations(period, 0);
   const double t = back(0).t;
   const double resolution = rounding_unit * std::abs(t);
@@ -135,6 +137,13 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::
 
 std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double>& shortest) const {
   if (recent_.size() < many || entries_.empty()) return std::nullopt;
+  const double t = recent_.back(0).t;
+  double drowning = 0.0;
+  for (std::size_t k = 0; k < recent_.size(); ++k) {
+    drowning = std::max(drowning, longest(shortest, recent_.back(k).jumps));
+  }
+  const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * drowning);
+  if (t - recent_.front().t > static_cast<double>(many) * resolved) return std::nullopt;
   std::vector<int> jumps;
   for (std::size_t k = 0; k < recent_.size(); ++k) {
     const auto& executed = recent_.back(k).jumps;
@@ -142,14 +151,13 @@ std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double
   }
   std::sort(jumps.begin(), jumps.end());
   jumps.erase(std::unique(jumps.begin(), jumps.end()), jumps.end());
-  const double t = recent_.back(0).t;
-  const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * longest(shortest, jumps));
-  if (t - recent_.front().t > static_cast<double>(many) * resolved) return std::nullopt;
   return SeriesLimit{t, back(0).x, std::move(jumps), resolved, true};
 }
 
 std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortest) const {
   for (std::size_t period = 1; period <= longest_period; ++period) {
+    // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
+    if (laps_[period] < 2 * period || entries_.size() <= 2 * period) continue;
     if (auto found = limit_of(period, shortest)) return found;
   }
   return end_of_rattling(shortest);
@@ -157,14 +165,15 @@ std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortes
 
 std::optional<SeriesLimit> EventSeries::nearly() const {
   for (std::size_t period = 1; period <= longest_period && entries_.size() > 2 * period; ++period) {
-    if (back(0).jumps != back(period).jumps || back(period).jumps != back(2 * period).jumps) continue;
-    const auto now = durations(period, 0);
-    if (now.size() < 2) continue;
+    if (!repeats(0, period) || !repeats(period, 2 * period)) continue;
+    const double lap = back(0).t - back(period).t;
+    const double before = back(period).t - back(2 * period).t;
+    if (!(before > lap)) continue;
     // Of a shorter period that repeats, too, the longer ones are multiples.
-    if (!(now[0] <= hundredth * now[1])) return std::nullopt;
+    if (!(lap <= hundredth * before)) return std::nullopt;
     // What would remain.
-    if (now[0] * (now[0] / now[1]) <= 1e-7 * (back(0).t - entries_.front().t)) {
-      return SeriesLimit{back(0).t, back(0).x, last_jumps(period), now[0], false};
+    if (lap * (lap / before) <= 1e-7 * (back(0).t - entries_.front().t)) {
+      return SeriesLimit{back(0).t, back(0).x, last_jumps(period), lap, false};
     }
   }
   return std::nullopt;
@@ -172,7 +181,7 @@ std::optional<SeriesLimit> EventSeries::nearly() const {
 
 std::optional<double> EventSeries::closed_lap() const {
   for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
-    if (back(0).jumps == back(period).jumps) return back(0).t - back(period).t;
+    if (repeats(0, period)) return back(0).t - back(period).t;
   }
   return std::nullopt;
 }

@@ -23,13 +23,15 @@ class LastItems {
  public:
   /// A new last item; its members hold what an earlier one has left there.
   Item& append() {
-    last_ = (last_ + 1) % capacity;
+    last_ = last_ + 1 == capacity ? 0 : last_ + 1;
     if (last_ == items_.size()) items_.emplace_back();
     size_ = std::min(size_ + 1, capacity);
     return items_[last_];
   }
   /// `steps` before the last one, less than size().
-  [[nodiscard]] const Item& back(std::size_t steps) const { return items_[(last_ + capacity - steps) % capacity]; }
+  [[nodiscard]] const Item& back(std::size_t steps) const {
+    return items_[steps <= last_ ? last_ - steps : last_ + capacity - steps];
+  }
   [[nodiscard]] const Item& front() const { return back(size_ - 1); }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
@@ -77,9 +79,11 @@ class EventSeries {
  private:
   struct Entry {
     double t = 0.0;
+    int only = 0;  ///< the jump, if it is one alone; otherwise `several`
     std::vector<int> jumps;
     std::vector<double> x;
   };
+  static constexpr int several = -1;
   static constexpr std::size_t longest_period = 8;
   struct Recent {
     double t = 0.0;
@@ -90,6 +94,12 @@ class EventSeries {
   /// Laps whose durations give the ratio, at most: more average out the rounding of t where the ratio is near 1.
   static constexpr std::size_t most_laps = 48;
   [[nodiscard]] const Entry& back(std::size_t steps) const { return entries_.back(steps); }
+  /// Whether the entries so many steps before the last one are of the same jumps.
+  [[nodiscard]] bool repeats(std::size_t steps, std::size_t earlier) const {
+    const Entry& a = back(steps);
+    const Entry& b = back(earlier);
+    return a.only == b.only && (a.only != several || a.jumps == b.jumps);
+  }
   [[nodiscard]] std::optional<SeriesLimit> limit_of(std::size_t period, const std::vector<double>& shortest) const;
   [[nodiscard]] std::optional<SeriesLimit> end_of_rattling(const std::vector<double>& shortest) const;
   [[nodiscard]] std::vector<double> extrapolated(std::size_t period, double ratio) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace saltus::event_integrator {
 namespace {
@@ -21,6 +22,21 @@ AffineForms::AffineForms(std::size_t states)
       above_(states, none),
       lower_(states, -infinity),
       upper_(states, infinity) {}
+
+void AffineForms::swap(AffineForms& other) noexcept {
+  table_.swap(other.table_);
+  std::swap(loaded_terms_, other.loaded_terms_);
+  forms_.swap(other.forms_);
+  terms_.swap(other.terms_);
+  thresholds_.swap(other.thresholds_);
+  first_.swap(other.first_);
+  place_.swap(other.place_);
+  below_.swap(other.below_);
+  above_.swap(other.above_);
+  lower_.swap(other.lower_);
+  upper_.swap(other.upper_);
+  several_.swap(other.several_);
+}
 
 void AffineForms::load(const evaluation::AffineRows& rows) {
   terms_.clear();
@@ -91,6 +107,20 @@ double AffineForms::value(std::size_t i, double t, const double* x) const {
     sum += terms_[k].coefficient * x[terms_[k].column];
   }
   return sum + form.offset;
+}
+
+std::optional<double> AffineForms::rate_along(std::size_t i, const double* f) const {
+  const Form& form = forms_[i];
+  double sum = form.rate;
+  double sizes = std::abs(form.rate);
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    const double term = terms_[k].coefficient * f[terms_[k].column];
+    sum += term;
+    sizes += std::abs(term);
+  }
+  constexpr double clear = 1e3 * std::numeric_limits<double>::epsilon();
+  if (!(std::abs(sum) > clear * sizes)) return std::nullopt;
+  return sum;
 }
 
 ode::BernsteinCoefficients AffineForms::along(std::size_t i, const ode::DenseStep& step) const {

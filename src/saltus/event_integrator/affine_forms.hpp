@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -28,6 +29,7 @@ struct StepBounds {
 class AffineForms {
  public:
   explicit AffineForms(std::size_t states);
+  void swap(AffineForms& other) noexcept;
   /// Rows for use_row, which stay the same from mode to mode.
   void load(const evaluation::AffineRows& rows);
   /// No forms, for `functions` functions; then use_row and set, then group.
@@ -51,6 +53,8 @@ class AffineForms {
   [[nodiscard]] std::size_t state(std::size_t i) const { return terms_[forms_[i].first].column; }
   [[nodiscard]] double factor(std::size_t i) const { return terms_[forms_[i].first].coefficient; }
   [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
+  /// d phi_i / dt along f (n_x); nullopt where that is no more than the rounding of its terms.
+  [[nodiscard]] std::optional<double> rate_along(std::size_t i, const double* f) const;
   /// Bernstein coefficients of the form along a step.
   [[nodiscard]] ode::BernsteinCoefficients along(std::size_t i, const ode::DenseStep& step) const;
   /// Sum of the sizes of the terms that a value is the sum of, at most this over the step: what its rounding follows

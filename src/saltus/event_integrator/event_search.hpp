@@ -85,6 +85,11 @@ class EventSearch {
   /// Rounding of a candidate: at the start of the step, or where rescale() was called last.
   void rescale(double t, const double* x) { rescale(t, x, candidates_); }
   [[nodiscard]] double noise(std::size_t function) const { return noise_[function]; }
+  /// d phi / dt of an exit along f (n_x), the field of its side; nullopt where it has no affine form, or is no more
+  /// than its rounding. Cost: the terms of the form.
+  [[nodiscard]] std::optional<double> exit_rate(std::size_t function, const std::vector<double>& f) const {
+    return forms_.has(function) ? forms_.rate_along(function, f.data()) : std::nullopt;
+  }
   /// What the tolerances leave of it, at least its rounding.
   [[nodiscard]] double accuracy(std::size_t function) const { return accuracy_[function]; }
   /// Signs of the user functions in force, 0 where not known yet.

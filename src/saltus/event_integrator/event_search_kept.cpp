@@ -12,7 +12,7 @@ void EventSearch::exchange(Kept& kept) {
   std::swap(state_.sliding, kept.state.sliding);
   functions_.swap(kept.functions);
   exits_.swap(kept.exits);
-  std::swap(forms_, kept.forms);
+  forms_.swap(kept.forms);
   curved_.swap(kept.curved);
   of_surface_.swap(kept.of_surface);
   std::swap(curved_parts_, kept.curved_parts);

@@ -61,6 +61,10 @@ class ModeField {
   void leave_to(Region side);
   /// Of the last evaluation, while one surface is slid on: normal components of the fields of both sides.
   [[nodiscard]] const ExitValues& sides() const { return exits_.front(); }
+  /// While one surface is slid on, f affine in its selection: the field of a side.
+  void of_side(Region side, double t, const double* x, double* xdot) const {
+    kernel_.prepared_field(t, x, constants_[side == Region::below ? 0 : 1], xdot);
+  }
   [[nodiscard]] SlidingSolve solve() const { return solve_; }
   [[nodiscard]] int codimension() const { return static_cast<int>(sliding_.size()); }
 

@@ -35,8 +35,7 @@ bool Run::is_ordinary(const Located& located) const {
 /// Goes on behind an ordinary switch; otherwise nothing has happened.
 bool Run::switch_shortly(const Located& located) {
   const auto& function = search_.functions()[located.functions.front()];
-  return function.kind == FunctionKind::surface ? meet(located, function.index)
-                                                : leave(located, function.index, function.kind);
+  return function.kind == FunctionKind::surface ? meet(located, function.index) : leave(located, function);
 }
 
 /// A surface that is reached in a region.
@@ -73,7 +72,8 @@ bool Run::meet(const Located& located, int surface) {
 }
 
 /// The only surface that is slid on, where the field of one side has become tangent to it.
-bool Run::leave(const Located& located, int surface, FunctionKind exit) {
+bool Run::leave(const Located& located, const EventFunction& exit) {
+  const int surface = exit.index;
   const auto j = at(surface);
   const double t = located.t;
   const double* x = located.x.data();
@@ -81,15 +81,17 @@ bool Run::leave(const Located& located, int surface, FunctionKind exit) {
   const double alpha = field_.alpha()[j];
   constexpr double lost = 1e-9;  // as in SingleSurface
   if (!is_finite(slope_) || !(alpha >= -lost && alpha <= 1.0 + lost)) return false;
-  const auto side = exit == FunctionKind::exit_below ? Region::below : Region::above;
+  const auto side = exit.kind == FunctionKind::exit_below ? Region::below : Region::above;
+  field_.of_side(side, t, x, slope_beyond_.data());
+  const SingleSurface::Motions motions{field_.sides(), search_.exit_rate(located.functions.front(), slope_beyond_)};
   const double before = std::exchange(state_.alpha[j], side == Region::below ? 0.0 : 1.0);
-  const auto decision = single_surface_.decide_exit(state_, surface, {t, x, h_scale_}, field_.sides(), side);
+  const auto decision = single_surface_.decide_exit(state_, surface, {t, x, h_scale_}, motions, side);
   state_.alpha[j] = before;
   if (!decision) return false;
   x_ = located.x;
   state_.alpha[j] = alpha;
   field_.leave_to(side);
-  field_(t, x_.data(), slope_.data());
+  slope_.swap(slope_beyond_);
   go_on_behind(located, {surface, 0, decision->mode, alpha, decision->alpha, decision->reason});
   return true;
 }

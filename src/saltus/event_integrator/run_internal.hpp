@@ -92,7 +92,7 @@ class Run {
   [[nodiscard]] bool is_ordinary(const Located& located) const;
   bool switch_shortly(const Located& located);
   bool meet(const Located& located, int surface);
-  bool leave(const Located& located, int surface, FunctionKind exit);
+  bool leave(const Located& located, const EventFunction& exit);
   void go_on_behind(const Located& located, const SurfaceSwitch& change);
   Arrival arrive(RowBefore row);
   Step depart(const Arrival& arrival);

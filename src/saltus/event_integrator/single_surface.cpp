@@ -145,13 +145,13 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
 }
 
 std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeState& before, int surface,
-                                                                     const Place& place, const ExitValues& velocities,
+                                                                     const Place& place, const Motions& motions,
                                                                      Region side) {
   const auto& kernel = surroundings_.kernel;
   const double* x = place.x;
   switching::SurfaceSituation situation;
-  situation.below.velocity = velocities.below;
-  situation.above.velocity = velocities.above;
+  situation.below.velocity = motions.velocities.below;
+  situation.above.velocity = motions.velocities.above;
   if (!find_drifts(situation)) return std::nullopt;
   double rate = 0.0;
   kernel.gradient(surface, place.t, x, before.alpha.data(), row_.data(), &rate);
@@ -159,7 +159,7 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeS
   for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * x[i]);
   const double noise = 8.0 * rounding_unit * terms;
   // What ProjectedFields::motion looks at first, and clear of what makes it look further.
-  const double bend = kernel.lie_derivative(surface, 2, place.t, x, before.alpha.data());
+  const double bend = motions.bend ? *motions.bend : kernel.lie_derivative(surface, 2, place.t, x, before.alpha.data());
   const double moved = std::abs(bend) * 0.5 * place.time_scale * place.time_scale;
   if (!(moved > 2.0 * noise) || !std::isfinite(moved)) return std::nullopt;
   const bool is_below = side == Region::below;

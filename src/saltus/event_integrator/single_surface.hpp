@@ -41,10 +41,16 @@ class SingleSurface {
     const double* x = nullptr;
     double time_scale = 0.0;
   };
-  /// The same at an exit from sliding on this surface alone, where the field of `side` has become tangent to it, from
-  /// the normal components of both fields; `before` has the selection of that side. Cost: a second derivative.
+  /// At an exit: normal components of both fields, and the second derivative of psi along the tangent one, if it is
+  /// known.
+  struct Motions {
+    ExitValues velocities;
+    std::optional<double> bend;
+  };
+  /// The same at an exit from sliding on this surface alone, where the field of `side` has become tangent to it;
+  /// `before` has the selection of that side. Cost: the gradient, and a second derivative that is not known.
   [[nodiscard]] std::optional<switching::SurfaceDecision> decide_exit(const ModeState& before, int surface,
-                                                                      const Place& place, const ExitValues& velocities,
+                                                                      const Place& place, const Motions& motions,
                                                                       Region side);
 
  private:

@@ -52,6 +52,30 @@ TEST_F(Forms, EvaluateTheirRows) {
   EXPECT_FALSE(forms.has(5));
 }
 
+TEST_F(Forms, TheirRatesAlongAFieldAreKnownWhereTheyAreMoreThanRounding) {
+  const double f[] = {0.5, 4.0};
+  const double expected[] = {0.5, 0.5, -0.5, 3.5, 1.0};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(forms.rate_along(i, f), expected[i]);
+  const double equal[] = {3.0, 3.0 * (1.0 + 4.0 * std::numeric_limits<double>::epsilon())};
+  EXPECT_FALSE(forms.rate_along(3, equal));
+  const double undefined[] = {std::numeric_limits<double>::quiet_NaN(), 1.0};
+  EXPECT_FALSE(forms.rate_along(0, undefined));
+}
+
+TEST_F(Forms, SwappedTheyAnswerForEachOther) {
+  AffineForms other(2);
+  other.load(rows());
+  other.reset(1);
+  other.use_row(0, 3);
+  other.group();
+  other.watch(0, +1);
+  forms.swap(other);
+  const double x[] = {1.5, 4.0};
+  EXPECT_EQ(forms.value(0, 1.0, x), 2.5);
+  EXPECT_EQ(suspects(0.0, 1.0, {0.0, 0.5}, {1.0, 2.0}), Indices{0});
+  EXPECT_EQ(other.value(1, 1.0, x), -1.5);
+}
+
 TEST_F(Forms, LeaveTheirStartWhereNoMeanSlopeTurnsThemBack) {
   // Mean slopes of x1 between 1 and 2, of x2 between -1 and 1.
   const double low[] = {1.0, -1.0};
