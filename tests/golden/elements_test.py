@@ -1,6 +1,7 @@
 """Methods fesd and timestepping at the command line; their accuracy has its tests in tests/agreement and tests/order."""
 
 import json
+import math
 
 import tool
 
@@ -61,13 +62,24 @@ fesd = { reformulation = "stewart" }
         status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
         self.assertEqual(status["termination"], "evaluation_failed")
 
+    def run_to_end_of_selection(self, start, field, code):
+        (self.folder / "root.toml").write_text(
+            f'[model]\nname = "root"\ninclusion = "aizerman_pyatnitskii"\n[states]\nx = {start}\n[dynamics]\n'
+            f'x = "{field}"\n[simulate]\nuntil = 4\n', encoding="utf-8")
+        return self.run_tool("simulate", "root.toml", "--method", "fesd", "--quiet", "--out", "r.json", code=code)[1]
+
+    def test_sliding_ends_at_a_double_root_of_a_selection(self):
+        # s + s^2/2 = 0.4 sin t - 0.3, the root of s and -2 - s meet at -1: sin t = -1/2. And its mirror image.
+        for start, field, mode in ((1, "-sign(x)*(1 + 0.5*sign(x)) + 0.4*sin(t) - 0.3", -1),
+                                   (-1, "-sign(x)*(1 - 0.5*sign(x)) - 0.4*sin(t) + 0.3", 1)):
+            self.run_to_end_of_selection(start, field, code=0)
+            end = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["events"][-1]
+            self.assertEqual((end["kind"], end["mode_after"]), ("leave_sliding", [mode]))
+            self.assertAlmostEqual(end["t"], 7 * math.pi / 6, delta=1e-9)
+
     def test_a_step_without_active_sets_is_tried_as_a_problem_with_complementarities(self):
-        # A selection with a double root at its bound: neither finds a solution, and both say so.
-        (self.folder / "double.toml").write_text(
-            '[model]\nname = "double"\ninclusion = "aizerman_pyatnitskii"\n[states]\nx = 1\ny = -1\n[dynamics]\n'
-            'x = "-sign(x)*(1 + 0.5*sign(x)) + 0.4*sin(t) - 0.3"\ny = "sign(x)^3 - 0.5*sign(x)^2 - y"\n'
-            '[simulate]\nuntil = 4\n', encoding="utf-8")
-        _, errors = self.run_tool("simulate", "double.toml", "--method", "fesd", "--quiet", code=3)
+        # A selection with a fourfold root at its bound: neither finds a solution, and both say so.
+        errors = self.run_to_end_of_selection(1, "-((1 + sign(x))^4 - 1)/2 + 0.4*sin(t) - 0.3", code=3)
         self.assertIn("problem with complementarities of the step at t =", " ".join(errors.split()))
 
     def test_a_super_twisting_controller_comes_to_rest(self):

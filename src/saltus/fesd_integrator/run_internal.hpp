@@ -88,6 +88,11 @@ class Run {
               const std::vector<double>& selections_before, const double* held_before);
   /// Of the time of a switch in hand, by what closed the elements before it.
   [[nodiscard]] double resolution_of(const Condition& condition, const std::vector<double>& selections_before);
+  /// Where elements have no solution any more: whether a selection that slides has met another root at its bound, with
+  /// which it goes out of the real numbers. The run has gone on from there then.
+  [[nodiscard]] bool left_at_double_root();
+  /// What slides is on its surfaces, whatever its rounding.
+  [[nodiscard]] std::vector<int> on_surfaces() const;
   [[nodiscard]] bool put_on_surfaces(const ActiveSet& set, double t, std::vector<double>& x);
   /// The same with d psi / dt = 0 of the surfaces that no selection moves at once, at most `farthest` away.
   [[nodiscard]] bool put_at_rest(const ActiveSet& set, double t, std::vector<double>& x, double farthest);

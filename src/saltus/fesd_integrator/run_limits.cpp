@@ -138,10 +138,7 @@ bool Run::go_to_limit(LapSeries::Wanted wanted) {
     if (changes) at_zero.push_back(static_cast<int>(j));
     modes[j] = 0;
   }
-  for (const Sliding& entry : set_.sliding()) {
-    at_zero.push_back(entry.selection);
-    if (entry.reference >= 0) at_zero.push_back(entry.reference);
-  }
+  for (const int j : on_surfaces()) at_zero.push_back(j);
   auto x = limit->x;
   if (!put_at_rest(ActiveSet(facts_.parts, modes), limit->t, x, farthest)) return false;
   auto found = transition_.continuations(

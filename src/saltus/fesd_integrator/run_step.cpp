@@ -313,8 +313,10 @@ void Run::advance(double end) {
       limit = t_ + 0.5 * remaining;
       previous_.reset();
       if (0.5 * remaining <= shortest * nominal_ || !(limit > t_)) {
-        fall_back(end, result::Termination::not_converged,
-                  fmt::format("the equations of an element have no solution that was found at t = {:.10g}", t_));
+        if (!left_at_double_root()) {
+          fall_back(end, result::Termination::not_converged,
+                    fmt::format("the equations of an element have no solution that was found at t = {:.10g}", t_));
+        }
         next_part();
       }
       continue;
@@ -339,11 +341,7 @@ void Run::advance(double end) {
     divided_for_look_ = 0;
     const ActiveSet before = set_;
     const auto selections = selections_;
-    std::vector<int> at_zero;  // what slides is on its surfaces, whatever its rounding
-    for (const Sliding& entry : before.sliding()) {
-      at_zero.push_back(entry.selection);
-      if (entry.reference >= 0) at_zero.push_back(entry.reference);
-    }
+    std::vector<int> at_zero = on_surfaces();
     if (located->condition.kind == Condition::Kind::side) at_zero.push_back(located->condition.selection);
     const Condition closing = located->condition;
     decide(std::move(at_zero), "located by the elements before it", before, selections, held_.data());
