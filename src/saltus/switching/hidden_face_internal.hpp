@@ -26,6 +26,8 @@ class HiddenFace {
 
   [[nodiscard]] int surfaces() const { return surfaces_; }
   [[nodiscard]] const std::vector<int>& free() const { return free_; }
+  /// The velocities at the corners of the zone where two selections vary and g is multi-affine in them; else none.
+  [[nodiscard]] const MultiAffine* pair() const { return tabulated_ && free_.size() == 2 ? &face_ : nullptr; }
   [[nodiscard]] double speed(int j) const { return speed_[static_cast<std::size_t>(j)]; }  ///< max |v_j| at corners
   [[nodiscard]] long evaluations() const { return evaluations_; }
 

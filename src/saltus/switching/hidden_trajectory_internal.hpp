@@ -11,6 +11,7 @@
 #include "saltus/switching/hidden_dynamics.hpp"
 #include "saltus/switching/hidden_face_internal.hpp"
 #include "saltus/switching/hidden_recurrence_internal.hpp"
+#include "saltus/switching/hidden_series_internal.hpp"
 #include "saltus/switching/matrix_stability.hpp"
 
 namespace saltus::switching {
@@ -53,14 +54,22 @@ class HiddenTrajectory {
     double theta = 1.0;
   };
 
+  class RungeKuttaStep;
+  class SeriesStep;
+
   void enter_zones();
   Status cross_corner();
   Status cross_strip();
   Status cross_interior();
+  std::optional<Status> cross_pair(double fastest, int& steps);
   [[nodiscard]] double tolerance_here() const;
-  StepEvent first_event(ode::Stepper& stepper);
+  template <class Step>
+  StepEvent first_event(Step& step);
   void look_for_boundary(int j, StepEvent& event);
-  void look_for_maximum(int j, const ode::Stepper& stepper, StepEvent& event);
+  template <class Step>
+  void look_for_maximum(int j, const Step& step, StepEvent& event);
+  void end_step(const StepEvent& event, double h, const double* u_new);
+  std::optional<Status> look_for_rest_at(int step);
   Status at_boundary(int j);
   Status pass_section(std::uint64_t event);
   void perturb();
@@ -82,6 +91,9 @@ class HiddenTrajectory {
   Recurrence recurrence_;
   std::optional<ode::Stepper> stepper_, stiff_stepper_;  ///< made when they are first needed
   ode::DenseStep dense_;
+  PairSeries series_;
+  std::vector<double> series_end_, series_slope_;
+  int next_look_ = 0, pause_ = 0;  ///< of looks for rest, in steps within a zone
   bool stiff_ = false;
   double h_ = 0.0;  ///< proposed where the trajectory is still in the zone of its last step; else 0
   std::vector<double> low_, high_, point_, point_velocity_, root_, derivatives_, matrix_, jacobian_here_, step_;
