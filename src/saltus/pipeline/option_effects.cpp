@@ -7,25 +7,11 @@
 namespace saltus::pipeline {
 namespace {
 
-std::string_view table_of(Method method) {
-  switch (method) {
-    case Method::event:
-      return "event";
-    case Method::fesd:
-      return "fesd";
-    case Method::timestepping:
-      return "timestepping";
-    case Method::smoothed:
-      return "smoothed";
-  }
-  __builtin_unreachable();
-}
-
 /// Of the method "event", which the other methods do not look at; "smoothed" takes its steps with that engine.
 std::string without_event_method(Method method, std::string_view key) {
   if (method == Method::smoothed && key == "event.max_step") return "";
   if (method == Method::smoothed && key == "event.integrator") return "method \"smoothed\" takes its steps with radau5";
-  return fmt::format("it is for method \"event\", and this is method \"{}\"", table_of(method));
+  return fmt::format("it is for method \"event\", and this is method \"{}\"", name(method));
 }
 
 std::string within_elements(const SimulateOptions& options, std::string_view key) {
@@ -45,14 +31,28 @@ std::string within_elements(const SimulateOptions& options, std::string_view key
 
 }  // namespace
 
+std::string_view name(Method method) {
+  switch (method) {
+    case Method::event:
+      return "event";
+    case Method::fesd:
+      return "fesd";
+    case Method::timestepping:
+      return "timestepping";
+    case Method::smoothed:
+      return "smoothed";
+  }
+  __builtin_unreachable();
+}
+
 bool is_of_method(const SimulateOptions& options, std::string_view key) {
-  return key.substr(0, key.find('.')) == table_of(options.method) && key.find('.') != std::string_view::npos;
+  return key.substr(0, key.find('.')) == name(options.method) && key.find('.') != std::string_view::npos;
 }
 
 std::string without_effect(const SimulateOptions& options, std::string_view key) {
   const bool elements = options.method == Method::fesd || options.method == Method::timestepping;
   if (elements && (key == "rtol" || key == "atol")) {
-    return fmt::format("the accuracy of method \"{}\" is that of its steps (steps, stages)", table_of(options.method));
+    return fmt::format("the accuracy of method \"{}\" is that of its steps (steps, stages)", name(options.method));
   }
   if (key.starts_with("event.scaling.") && options.method == Method::event &&
       options.event.selection != Selection::scaled)
@@ -64,8 +64,8 @@ std::string without_effect(const SimulateOptions& options, std::string_view key)
   if (table == "event" && options.method != Method::event) return without_event_method(options.method, key);
   constexpr std::array others{"smoothed", "fesd", "timestepping"};
   for (const std::string_view other : others) {
-    if (table == other && table != table_of(options.method)) {
-      return fmt::format("it is for method \"{}\", and this is method \"{}\"", other, table_of(options.method));
+    if (table == other && table != name(options.method)) {
+      return fmt::format("it is for method \"{}\", and this is method \"{}\"", other, name(options.method));
     }
   }
   return "";

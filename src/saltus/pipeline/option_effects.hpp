@@ -8,6 +8,9 @@
 
 namespace saltus::pipeline {
 
+/// The name of a method, and of its table in [simulate].
+[[nodiscard]] std::string_view name(Method method);
+
 /// Why an option has no effect on a simulation with these options.
 /// @param key  dotted, as in simulate_keys()
 /// @return words that go on "has no effect: "; empty if it has one

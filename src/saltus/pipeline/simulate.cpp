@@ -11,6 +11,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
+#include "saltus/pipeline/option_effects.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/pipeline/step_observer_internal.hpp"
@@ -200,20 +201,6 @@ Expected<Integrand> integrand(const model::System& system, const SimulateOptions
   return smoothed::regularise(system, options.smoothed.epsilon).map([](auto regularisation) {
     return Integrand(std::move(regularisation));
   });
-}
-
-std::string_view name(Method method) {
-  switch (method) {
-    case Method::event:
-      return "event";
-    case Method::fesd:
-      return "fesd";
-    case Method::timestepping:
-      return "timestepping";
-    case Method::smoothed:
-      return "smoothed";
-  }
-  __builtin_unreachable();
 }
 
 result::Result frame(const model::System& system, const SimulateOptions& options) {
