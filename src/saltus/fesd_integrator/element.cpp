@@ -141,7 +141,7 @@ void ElementSolver::Implementation::evaluate(const Element& element, const doubl
     const double* state = element.stage_states.data() + m * n_x;
     const double* selections = element.stage_selections.data() + m * n_psi;
     if (!roots.empty()) {
-      roots.evaluate(static_cast<std::size_t>(m), t, state, selections, held, values[static_cast<std::size_t>(m)]);
+      roots.evaluate(static_cast<std::size_t>(m), t, state, selections, held, at);
       find_directions(m, at);
     } else if (parts == Parts::values) {
       kernel.values(t, state, selections, held, at);
@@ -222,9 +222,10 @@ double ElementSolver::Implementation::update(Element& element) {
     const Index begin = offset[static_cast<std::size_t>(m)];
     change = std::max(change, step.segment(begin, n_x).cwiseAbs().maxCoeff());
     states.col(m) += step.segment(begin, n_x);
-    const bool feels = A.col(m).cwiseAbs().maxCoeff() > 0.0;  // not behind a warp: nothing depends on the last stage
-    if (!roots.empty())
-      root_change = std::max(root_change, roots.update(static_cast<std::size_t>(m), step.data() + begin, feels));
+    if (!roots.empty()) {
+      const bool felt = A.col(m).cwiseAbs().maxCoeff() > 0.0;  // behind a warp nothing depends on the last stage
+      root_change = std::max(root_change, roots.update(static_cast<std::size_t>(m), step.data() + begin, felt));
+    }
     double* all = element.stage_selections.data() + m * n_psi;
     const auto& sliding = set(m).sliding();
     for (Index k = 0; k < unknowns(m); ++k) {

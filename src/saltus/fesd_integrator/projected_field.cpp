@@ -88,6 +88,17 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
   return false;
 }
 
+void ProjectedField::take_undetermined(const ActiveSet& set, const double* known, double* selections) const {
+  for (std::size_t k = 0; k < set.sliding().size(); ++k) {
+    if (!in_no_equation(k)) continue;
+    const Sliding& entry = set.sliding()[k];
+    const auto j = static_cast<std::size_t>(entry.selection);
+    const double change = known[j] - selections[j];
+    selections[j] = known[j];
+    if (entry.reference >= 0) selections[static_cast<std::size_t>(entry.reference)] -= change;
+  }
+}
+
 void ProjectedField::rates(std::vector<double>& rate) const {
   const std::size_t n_x = kernel_.states(), n = kernel_.selections();
   rate.assign(values_.indicator_t.begin(), values_.indicator_t.end());

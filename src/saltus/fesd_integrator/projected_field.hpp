@@ -32,6 +32,8 @@ class ProjectedField {
   [[nodiscard]] bool regular() const { return regular_; }
   /// Whether the k-th selection that slides is in none of them: it follows from a higher derivative of its surface.
   [[nodiscard]] bool in_no_equation(std::size_t k) const { return in_no_equation_[k]; }
+  /// Gives those of `selections` that are in no equation the values they have in `known` (n_selections each).
+  void take_undetermined(const ActiveSet& set, const double* known, double* selections) const;
   [[nodiscard]] const discretization::StageValues& values() const { return values_; }
   /// Rates d psi / dt (or d g / dt) of all indicators along values().f.
   void rates(std::vector<double>& rate) const;

@@ -223,12 +223,7 @@ bool Transition::take_from_trial(const Decision& decision, Continuation& candida
   if (solve_trial(decision, candidate) != ElementSolver::Outcome::solved) return false;
   const std::size_t n = kernel_.selections();
   const double* last = trial_.stage_selections.data() + trial_.stage_selections.size() - n;
-  for (std::size_t k = 0; k < sliding.size(); ++k) {
-    if (!projected_.in_no_equation(k)) continue;
-    const double change = last[at(sliding[k].selection)] - candidate.selections[at(sliding[k].selection)];
-    candidate.selections[at(sliding[k].selection)] += change;
-    if (sliding[k].reference >= 0) candidate.selections[at(sliding[k].reference)] -= change;
-  }
+  projected_.take_undetermined(candidate.set, last, candidate.selections.data());
   return true;
 }
 

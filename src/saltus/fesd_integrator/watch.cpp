@@ -124,15 +124,7 @@ void Watch::take_from_stages(const Element& element, const ActiveSet& set, std::
   const int stage = solver_.watch_stage(point);
   if (stage < 0) return;
   const std::size_t n = kernel_.selections();
-  const double* known = element.stage_selections.data() + static_cast<std::size_t>(stage) * n;
-  for (std::size_t k = 0; k < set.sliding().size(); ++k) {
-    if (!projected_.in_no_equation(k)) continue;
-    const Sliding& entry = set.sliding()[k];
-    const auto j = static_cast<std::size_t>(entry.selection);
-    const double change = known[j] - selections[j];
-    selections[j] = known[j];
-    if (entry.reference >= 0) selections[static_cast<std::size_t>(entry.reference)] -= change;
-  }
+  projected_.take_undetermined(set, element.stage_selections.data() + static_cast<std::size_t>(stage) * n, selections);
 }
 
 void Watch::find_errors(const Element& element, const ActiveSet& set, const double* held,
