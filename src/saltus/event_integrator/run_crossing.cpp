@@ -79,8 +79,7 @@ bool Run::leave(const Located& located, const EventFunction& exit) {
   const double* x = located.x.data();
   field_(t, x, slope_.data());
   const double alpha = field_.alpha()[j];
-  constexpr double lost = 1e-9;  // as in SingleSurface
-  if (!is_finite(slope_) || !(alpha >= -lost && alpha <= 1.0 + lost)) return false;
+  if (!is_finite(slope_) || !SingleSurface::is_within_bounds(alpha)) return false;
   const auto side = exit.kind == FunctionKind::exit_below ? Region::below : Region::above;
   field_.of_side(side, t, x, slope_beyond_.data());
   const SingleSurface::Motions motions{field_.sides(), search_.exit_rate(located.functions.front(), slope_beyond_)};

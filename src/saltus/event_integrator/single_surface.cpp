@@ -65,9 +65,7 @@ bool SingleSurface::applies(const ModeState& before, const Occasion& occasion) c
   if (is_inner_[at(j)] || surroundings_.system.switching[at(j)].role == model::SwitchingRole::discrete) return false;
   const auto exits = occasion.exit_below.size() + occasion.exit_above.size();
   if (arrives) return exits == 0;
-  // Away from its bound the selection may have been lost in a two-fold point: the full decision looks closer.
-  constexpr double lost = 1e-9;
-  return exits == 1 && before.alpha[at(j)] >= -lost && before.alpha[at(j)] <= 1.0 + lost;
+  return exits == 1 && is_within_bounds(before.alpha[at(j)]);
 }
 
 /// Normal component of the field of one side; not finite if the field is not.

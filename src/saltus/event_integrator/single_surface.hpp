@@ -35,6 +35,12 @@ class SingleSurface {
   [[nodiscard]] std::optional<switching::SurfaceDecision> decide(const ModeState& before, int surface, double t,
                                                                  const double* x, const std::vector<double>& below,
                                                                  const std::vector<double>& above);
+  /// Whether the selection of what was slid on lies within its bounds at an exit, to rounding: away from them it may
+  /// have been lost in a two-fold point, where the full decision looks closer.
+  [[nodiscard]] static bool is_within_bounds(double alpha) {
+    constexpr double rounding = 1e-9;
+    return alpha >= -rounding && alpha <= 1.0 + rounding;
+  }
   /// A point, and a step of the integrator.
   struct Place {
     double t = 0.0;
