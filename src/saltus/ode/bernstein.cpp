@@ -1,6 +1,7 @@
 #include "saltus/ode/bernstein.hpp"
 
 #include "saltus/ode/bernstein_data_internal.hpp"
+#include "saltus/ode/ratio_form_internal.hpp"
 
 namespace saltus::ode {
 
@@ -31,27 +32,24 @@ BernsteinCoefficients to_bernstein(std::span<const double, event_nodes> values) 
   return coefficients;
 }
 
-namespace {
-
-/// Corner cutting down to two coefficients, those of the tangent at theta.
-std::array<double, 2> tangent(const BernsteinCoefficients& coefficients, double theta) {
+double evaluate(const BernsteinCoefficients& coefficients, double theta) {
   BernsteinCoefficients b = coefficients;
-  for (std::size_t level = b.size() - 1; level > 1; --level) {
+  for (std::size_t level = b.size() - 1; level > 0; --level) {
     for (std::size_t i = 0; i < level; ++i) b[i] = (1.0 - theta) * b[i] + theta * b[i + 1];
   }
-  return {b[0], b[1]};
+  return b.front();
 }
 
-}  // namespace
-
-double evaluate(const BernsteinCoefficients& coefficients, double theta) {
-  const auto [first, second] = tangent(coefficients, theta);
-  return (1.0 - theta) * first + theta * second;
-}
-
-double derivative(const BernsteinCoefficients& coefficients, double theta) {
-  const auto [first, second] = tangent(coefficients, theta);
-  return event_degree * (second - first);
+double derivative(const BernsteinCoefficients& b, double theta) {
+  const bool from_start = theta <= 0.5;
+  const double far = 1.0 - theta;
+  const double ratio = from_start ? theta / far : far / theta;
+  const auto difference = [&](std::size_t i) { return binomials_of_7[i] * (b[i + 1] - b[i]); };
+  const double sum = from_start ? seventh_degree(difference, ratio)
+                                : seventh_degree([&](std::size_t i) { return difference(7 - i); }, ratio);
+  const double nearer = from_start ? far : theta;
+  const double square = nearer * nearer;
+  return event_degree * (sum * (square * square) * (square * nearer));
 }
 
 }  // namespace saltus::ode

@@ -26,7 +26,7 @@ using BernsteinCoefficients = std::array<double, event_nodes>;
 /// single coefficients amplify errors of the values by up to 184, values of the polynomial by less than 3.
 [[nodiscard]] BernsteinCoefficients to_bernstein(std::span<const double, event_nodes> values);
 
-/// Value, and derivative with respect to theta, at theta (de Casteljau).
+/// Value (de Casteljau), and derivative with respect to theta, at theta in [0, 1].
 [[nodiscard]] double evaluate(const BernsteinCoefficients& coefficients, double theta);
 [[nodiscard]] double derivative(const BernsteinCoefficients& coefficients, double theta);
 

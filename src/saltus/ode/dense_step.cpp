@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
+#include "saltus/ode/lanes_internal.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::ode {
@@ -95,27 +97,45 @@ constexpr double binomial(std::size_t n, std::size_t k) {
   return value;
 }
 
+/// Bernstein coefficients, two at a time, with a last one that is nobody's.
+using BernsteinPairs = std::array<Pair, (event_nodes + 1) / 2>;
+
 /// Bernstein coefficients, of degree event_degree, of the products 1, s, s r, s^2 r, s^2 r^2, ... which the nested form
-/// is a sum of: s^a r^b is the sum of C(N - a - b, i - a) / C(N, i) times B_i.
+/// is a sum of: s^a r^b is the sum of C(N - a - b, i - a) / C(N, i) times B_i, i = a ... N - b.
 constexpr auto products = [] {
   constexpr std::size_t degree = event_degree;
-  std::array<BernsteinCoefficients, degree> table{};
+  std::array<BernsteinPairs, degree> table{};
   for (std::size_t k = 0; k < table.size(); ++k) {
     const std::size_t a = (k + 1) / 2;
     const std::size_t b = k / 2;
-    for (std::size_t i = a; i + b <= degree; ++i) table[k][i] = binomial(degree - k, i - a) / binomial(degree, i);
+    double numbers[event_nodes + 1] = {};
+    for (std::size_t i = a; i + b <= degree; ++i) numbers[i] = binomial(degree - k, i - a) / binomial(degree, i);
+    for (std::size_t q = 0; q < table[k].size(); ++q) table[k][q] = Pair{numbers[2 * q], numbers[2 * q + 1]};
   }
   return table;
 }();
 
+/// Adds a coefficient of the nested form, where its product is not 0.
+template <std::size_t k>
+inline void add_product(double coefficient, BernsteinPairs& b) {
+  const Pair both{coefficient, coefficient};
+  for (std::size_t q = (k + 1) / 4; q <= (event_degree - k / 2) / 2; ++q) b[q] += products[k][q] * both;
+}
+
+template <std::size_t degree, std::size_t... k>
+inline void add_products(const double* coefficients, std::size_t n, std::size_t i, BernsteinPairs& b,
+                         std::index_sequence<k...>) {
+  static_assert(degree < products.size());
+  (add_product<k + 1>(coefficients[(k + 1) * n + i], b), ...);
+}
+
 template <std::size_t degree>
 BernsteinCoefficients bernstein_form(const double* coefficients, std::size_t n, std::size_t i, double end) {
-  static_assert(degree < products.size());
+  BernsteinPairs pairs;
+  pairs.fill(Pair{coefficients[i], coefficients[i]});
+  add_products<degree>(coefficients, n, i, pairs, std::make_index_sequence<degree>{});
   BernsteinCoefficients b;
-  b.fill(coefficients[i]);
-  for (std::size_t k = 1; k <= degree; ++k) {
-    for (std::size_t j = 0; j < b.size(); ++j) b[j] += products[k][j] * coefficients[k * n + i];
-  }
+  for (std::size_t q = 0; q + 1 < pairs.size(); ++q) store(b.data() + 2 * q, pairs[q]);
   b.back() = end;
   return b;
 }

@@ -36,7 +36,9 @@ inline void advance(const ExplicitStep& step, double* __restrict result) {
   const double* x = step.start;
   const double* stages = step.stages;
   const double h = step.h;
-  for (std::size_t i = 0; i < n; ++i) result[i] = x[i] + h * stage_sum<Tableau::a, row>(stages, n, i);
+  for_lanes(n, [&]<class Value>(Lanes<Value>, std::size_t i) {
+    store(result + i, load<Value>(x + i) + h * stage_sum<Tableau::a, row, Value>(stages, n, i));
+  });
 }
 
 /// Evaluates one stage at the argument it leaves behind; false if its slope, the first or the last argument is not
@@ -84,14 +86,16 @@ template <std::size_t last, class Size>
 inline void hermite_coefficients(const ExplicitStep& step, double* __restrict result) {
   const std::size_t n = size_of<Size>(step);
   const double* slope_new = step.stages + last * n;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double difference = step.x_new[i] - step.start[i];
-    const double bend = step.h * step.stages[i] - difference;
-    result[i] = step.start[i];
-    result[n + i] = difference;
-    result[2 * n + i] = bend;
-    result[3 * n + i] = difference - step.h * slope_new[i] - bend;
-  }
+  const double h = step.h;
+  for_lanes(n, [&]<class Value>(Lanes<Value>, std::size_t i) {
+    const Value start = load<Value>(step.start + i);
+    const Value difference = load<Value>(step.x_new + i) - start;
+    const Value bend = h * load<Value>(step.stages + i) - difference;
+    store(result + i, start);
+    store(result + n + i, difference);
+    store(result + 2 * n + i, bend);
+    store(result + 3 * n + i, difference - h * load<Value>(slope_new + i) - bend);
+  });
 }
 constexpr std::size_t hermite_count = 4;
 
@@ -101,7 +105,9 @@ inline void dense_row(const ExplicitStep& step, double* __restrict result) {
   const std::size_t n = size_of<Size>(step);
   const double* stages = step.stages;
   const double h = step.h;
-  for (std::size_t i = 0; i < n; ++i) result[i] = h * stage_sum<Tableau::dense, row>(stages, n, i);
+  for_lanes(n, [&]<class Value>(Lanes<Value>, std::size_t i) {
+    store(result + i, h * stage_sum<Tableau::dense, row, Value>(stages, n, i));
+  });
 }
 
 template <class Tableau, class Size, std::size_t... row>

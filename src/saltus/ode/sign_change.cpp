@@ -9,6 +9,8 @@
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/bernstein.hpp"
+#include "saltus/ode/only_zero_internal.hpp"
+#include "saltus/ode/ratio_form_internal.hpp"
 
 namespace saltus::ode {
 namespace {
@@ -64,6 +66,7 @@ Verdict judge(const BernsteinCoefficients& b, double noise) {
 /// Whether a polynomial is high at first, then near, then low: it has one sign change, and everything before is high or
 /// near.
 bool falls_once(const BernsteinCoefficients& b, double noise) {
+  if (!(b.back() < -noise)) return false;
   std::size_t k = 0;
   while (k < b.size() && b[k] > noise) ++k;
   if (k == 0) return false;
@@ -150,9 +153,7 @@ SignChange narrow(SignChange bracket, Function&& value) {
 class Scaled {
  public:
   explicit Scaled(const BernsteinCoefficients& b) : c_(b) {
-    constexpr BernsteinCoefficients binomials{1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0};
-    static_assert(event_degree == 8);
-    for (std::size_t i = 0; i < c_.size(); ++i) c_[i] *= binomials[i];
+    for (std::size_t i = 0; i < c_.size(); ++i) c_[i] *= binomials_of_8[i];
   }
 
   [[nodiscard]] double operator()(double theta) const {
@@ -216,15 +217,16 @@ double high_before(const BernsteinCoefficients& p, double low, double noise) {
 std::optional<SignChange> first_sign_change(const BernsteinCoefficients& coefficients, int sign, int zero_order,
                                             double noise) {
   SALTUS_ASSERT((sign == 1 || sign == -1) && zero_order >= 0 && zero_order <= 2 && noise >= 0.0);
-  if (certainly_no_sign_change(coefficients, sign, zero_order, noise)) return std::nullopt;
   BernsteinCoefficients p = coefficients;
   for (double& value : p) value *= sign;
+  if (zero_order == 0 && falls_once(p, noise)) {  // what the parts below come to, without them
+    const auto change = only_zero(p);
+    return change ? *change : narrow({0.0, 1.0}, Scaled(p));
+  }
+  if (certainly_no_sign_change(coefficients, sign, zero_order, noise)) return std::nullopt;
   std::fill_n(p.begin(), zero_order, 0.0);
   if (!(p.front() >= -noise)) return SignChange{0.0, 0.0};
 
-  if (zero_order == 0 && falls_once(p, noise)) {  // what the parts below come to, without them
-    return narrow({0.0, 1.0}, Scaled(p));
-  }
   const auto descent = first_descent(p, noise);
   if (!descent) return std::nullopt;
   const Quotient quotient(p, zero_order);

@@ -38,6 +38,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double safety = 0.9;
 // An error far below the tolerance says nothing about the next step: it counts as this much.
 constexpr double least_error = 1e-4;
+const double least_logarithm = std::log(least_error);
 
 /// Root mean square in units of the tolerances at x; a scale of 0 (x_i = 0, atol = 0) is replaced by the smallest one.
 class WeightedNorm {
@@ -84,7 +85,7 @@ bool slope_behind_euler_step(RightHandSide f, double t, const double* x, const d
 
 }  // namespace
 
-StepControl::StepControl(Method method) : method_(method), previous_logarithm_(std::log(least_error)) {}
+StepControl::StepControl(Method method) : method_(method), previous_logarithm_(least_logarithm) {}
 
 void StepControl::reset() { *this = StepControl(method_); }
 
@@ -95,7 +96,7 @@ double StepControl::factor(double error_norm) {
       const Gains gain = gains(method_);
       const double logarithm = std::log(error_norm);
       const double factor = std::exp(gain.beta * previous_logarithm_ - gain.exponent * logarithm);
-      previous_logarithm_ = error_norm > least_error ? logarithm : std::log(least_error);
+      previous_logarithm_ = error_norm > least_error ? logarithm : least_logarithm;
       return factor;
     }
     case Method::dop853:
