@@ -125,6 +125,11 @@ std::optional<double> AffineForms::rate_along(std::size_t i, const double* f) co
 
 ode::BernsteinCoefficients AffineForms::along(std::size_t i, const ode::DenseStep& step) const {
   const Form& form = forms_[i];
+  if (form.threshold) {
+    auto b = step.bernstein(terms_[form.first].column);
+    for (double& value : b) value = terms_[form.first].coefficient * value + form.offset;
+    return b;
+  }
   ode::BernsteinCoefficients b{};
   if (form.rate != 0.0) {
     for (std::size_t j = 0; j < b.size(); ++j)

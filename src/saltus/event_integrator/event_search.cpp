@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "saltus/event_integrator/cells.hpp"
 #include "saltus/event_integrator/event_search_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -59,6 +60,20 @@ bool stays_far(const std::array<double, 5>& v, int sign) {
 }
 
 }  // namespace
+
+/// The sign to which a function that is zero at the start moves; 0 if it stays.
+int EventSearch::sign_behind_zero(const ode::BernsteinCoefficients& coefficients, double noise) {
+  for (const double b : coefficients) {
+    if (std::abs(b) > noise) return sign_of(b);
+  }
+  return 0;
+}
+
+/// The argument of a cell may be undefined where a branch that is not taken holds it; a step that looks beyond the end
+/// of its region may find it defined there.
+EventSearch::Finding EventSearch::not_finite(const EventFunction& function, double at_start) {
+  return {is_cell_end(function.kind) && !std::isfinite(at_start), {}};
+}
 
 EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
                          const ode::Tolerances& tolerances)
@@ -198,6 +213,10 @@ double EventSearch::value(std::size_t i, double t, const double* x) const {
 
 void EventSearch::evaluate(double t, const double* x, const std::vector<std::size_t>& which,
                            std::vector<double>& values) {
+  if (which.size() == 1 && is_threshold(which.front())) {  // the usual event
+    values.assign(1, forms_.value(which.front(), t, x) - functions_[which.front()].offset);
+    return;
+  }
   evaluate_parts(t, x, parts_of(which));
   values.resize(which.size());
   for (std::size_t k = 0; k < which.size(); ++k) values[k] = value(which[k], t, x);
@@ -321,56 +340,56 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
   return false;
 }
 
+/// The first sign change of an affine function along the whole step, from the polynomials of the states.
+EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::size_t i) const {
+  const auto& function = functions_[i];
+  auto coefficients = forms_.along(i, step);
+  double size = 0.0;
+  bool finite = true;
+  for (double& b : coefficients) {
+    b -= function.offset;
+    finite = finite && std::isfinite(b);
+    size = std::max(size, std::abs(b));
+  }
+  if (!finite) return not_finite(function, coefficients.front());
+  const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise_[i]) : function.sign;
+  if (sign == 0) return {};
+  // The form has other roundings than the function, whose own terms may be smaller.
+  const double noise = std::max({noise_[i], 8.0 * epsilon * forms_.terms(i, bounds_), 8.0 * epsilon * size});
+  const auto change = ode::first_sign_change(coefficients, sign, function.zero_order, noise);
+  if (!change) return {};
+  const double theta = 0.5 * (change->lower + change->upper);
+  return {true, Hit{i, theta, ode::derivative(coefficients, theta) / step.h, sign}};
+}
+
 /// The first sign change of one function between two nodes' ends, from the samples or, along the whole step, its form.
 EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, double to, std::size_t i) {
+  if (forms_.has(i) && from == 0.0 && to == 1.0) return find_along(step, i);
   const auto& function = functions_[i];
   std::array<double, ode::event_nodes> values;
-  ode::BernsteinCoefficients coefficients;
-  const bool exact = forms_.has(i) && from == 0.0 && to == 1.0;
-  if (exact) {
-    coefficients = forms_.along(i, step);
-    for (double& b : coefficients) b -= function.offset;
-  } else {
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+    return not_finite(function, values.front());
   }
-  const auto is_number = [](double v) { return std::isfinite(v); };
-  const auto& known = exact ? coefficients : values;
-  if (!std::all_of(known.begin(), known.end(), is_number)) {
-    // The argument of a cell may be undefined where a branch that is not taken holds it; a step that looks beyond the
-    // end of its region may find it defined there.
-    const bool is_cell = function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower;
-    return {is_cell && !is_number(known.front()), {}};
-  }
-  if (!exact) coefficients = ode::to_bernstein(values);
-  int sign = function.sign;
-  if (sign == 0) {  // a user function at zero: it gets the sign it moves to
-    const auto first =
-        std::find_if(coefficients.begin(), coefficients.end(), [&](double b) { return std::abs(b) > noise_[i]; });
-    if (first == coefficients.end()) return {};
-    sign = sign_of(*first);
-  }
-  const int zero_order = from == 0.0 ? function.zero_order : 0;
+  const auto coefficients = ode::to_bernstein(values);
+  const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise_[i]) : function.sign;
+  if (sign == 0) return {};
+  double size = 0.0;
+  for (const double b : coefficients) size = std::max(size, std::abs(b));
   if (!forms_.has(i)) {
     const bool is_exit = !uses_phi(function);
     // Where the interpolant stays away from zero it need not be better than that distance; functions of time only, or
     // with a vanishing gradient, have no other measure than their own size.
     double margin = std::numeric_limits<double>::max();
-    double size = 0.0;
-    for (const double b : coefficients) {
-      margin = std::min(margin, sign * b);
-      size = std::max(size, std::abs(b));
-    }
+    for (const double b : coefficients) margin = std::min(margin, sign * b);
     const double wanted = std::max({accuracy_[i], 0.125 * margin, 0.1 * tolerances_.rtol * size});
     if (chebyshev_tail(values) > wanted || (!is_exit && misses(step, from, to, i, coefficients, wanted))) {
       return {false, {}};
     }
   }
-  double noise = noise_[i];
-  // The form has other roundings than the function, whose own terms may be smaller.
+  double noise = std::max(noise_[i], 8.0 * epsilon * size);
   if (forms_.has(i)) noise = std::max(noise, 8.0 * epsilon * forms_.terms(i, bounds_));
-  for (const double b : coefficients) noise = std::max(noise, 8.0 * epsilon * std::abs(b));
-  if (ode::certainly_no_sign_change(coefficients, sign, zero_order, noise)) return {};
-  const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise);
+  const auto change = ode::first_sign_change(coefficients, sign, from == 0.0 ? function.zero_order : 0, noise);
   if (!change) return {};
   const double local = 0.5 * (change->lower + change->upper);
   return {true,

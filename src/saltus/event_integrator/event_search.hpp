@@ -166,7 +166,10 @@ class EventSearch {
   void sort(std::size_t i);
   void find_candidates();
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
+  [[nodiscard]] Finding find_along(const ode::DenseStep& step, std::size_t i) const;
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
+  static Finding not_finite(const EventFunction& function, double at_start);
+  static int sign_behind_zero(const ode::BernsteinCoefficients& coefficients, double noise);
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
               const ode::BernsteinCoefficients& coefficients, double accuracy);
   [[nodiscard]] bool is_far(std::size_t i) const;

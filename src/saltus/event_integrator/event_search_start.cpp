@@ -20,7 +20,7 @@ int arriving_sign(const ExitValues& exit) { return exit.below >= exit.above ? +1
 void EventSearch::start_at(double t) {
   if (zeros_at_ && *zeros_at_ != t) {
     for (const std::size_t i : special_) functions_[i].zero_order = 0;
-    user_vanishes_.assign(user_vanishes_.size(), false);
+    if (!user_vanishes_.empty()) user_vanishes_.assign(user_vanishes_.size(), false);
   }
   zeros_at_ = t;
 }
@@ -133,6 +133,10 @@ void EventSearch::read_start(double t, const double* x) {
 
 /// Values of some functions into point_.
 void EventSearch::read_values(double t, const double* x, const std::vector<std::size_t>& which) {
+  if (which.size() == 1 && is_threshold(which.front())) {
+    point_[which.front()] = forms_.value(which.front(), t, x) - functions_[which.front()].offset;
+    return;
+  }
   evaluate_parts(t, x, parts_of(which));
   for (const std::size_t i : which) point_[i] = value(i, t, x);
 }
@@ -312,7 +316,7 @@ void EventSearch::read_user_signs() {
 }
 
 bool EventSearch::settle(double t, const double* x) {
-  user_vanishes_.assign(user_vanishes_.size(), false);
+  if (!user_vanishes_.empty()) user_vanishes_.assign(user_vanishes_.size(), false);
   zeros_at_ = t;
   if (special_.empty()) return false;
   bool unknown = false;
