@@ -14,11 +14,11 @@ using result::Termination;
 
 bool Run::fire_user_events(const std::vector<double>& x_before, const ModeState& before) {
   const auto fired = user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs());
-  for (const int event : fired) {
-    recorder_.user(t_, {x_before, x_, before, state_}, event);
+  for (const std::size_t event : fired) {
+    recorder_.user(t_, {x_before, x_, before, state_}, static_cast<int>(event));
     if (user_events_.stops(event) && running_) {
       fail(Termination::stopped_by_event,
-           fmt::format("stopped by the event '{}'", surroundings_.system.events[at(event)].name));
+           fmt::format("stopped by the event '{}'", surroundings_.system.events[event].name));
     }
   }
   return !fired.empty();

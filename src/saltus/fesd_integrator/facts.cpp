@@ -57,11 +57,7 @@ Facts facts(const model::System& system, const reformulation::Dcs& dcs) {
                           symbol.column, symbol.at_zero});
   }
   for (const auto& event : dcs.events) {
-    const int direction = event.direction == model::Direction::both ? 0
-                          : event.direction == model::Direction::up ? 1
-                                                                    : -1;
-    facts.events.push_back({event.name, event.guards.numel() > 0, event.true_at_equality, direction,
-                            event.action == model::AtEvent::stop});
+    facts.events.push_back({event.name, model::rule_of(event), event.action == model::AtEvent::stop});
   }
   return facts;
 }

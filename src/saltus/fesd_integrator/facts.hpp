@@ -7,6 +7,7 @@
 
 #include "saltus/fesd_integrator/active_set.hpp"
 #include "saltus/model/cells.hpp"
+#include "saltus/model/event_rules.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::model {
@@ -41,9 +42,7 @@ struct HeldFact {
 
 struct EventFact {
   std::string name;
-  bool condition = false;
-  std::vector<bool> true_at_equality;  ///< of the guards of a condition
-  int direction = 0;                   ///< +1 up, -1 down, 0 both
+  model::EventRule rule;
   bool stop = false;
 };
 

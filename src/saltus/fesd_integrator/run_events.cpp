@@ -132,7 +132,7 @@ bool Run::record_user_events(const Element& element, const std::vector<double>& 
 bool Run::fire(const std::vector<std::size_t>& fired, double t, const std::vector<double>& x,
                const std::vector<double>& selections) {
   for (const std::size_t event : fired) {
-    const bool condition = facts_.events[event].condition;
+    const bool condition = facts_.events[event].rule.condition;
     recorder_.user(t, x, {&set_, &selections, held_.data()}, event,
                    condition ? "edge of a condition of [[events]]" : "zero of an expression of [[events]]");
     if (!facts_.events[event].stop) continue;

@@ -7,16 +7,17 @@
 
 #include "saltus/discretization/point_functions.hpp"
 #include "saltus/fesd_integrator/facts.hpp"
+#include "saltus/model/event_rules.hpp"
 
 namespace saltus::fesd_integrator {
 
 /// Signs of the event functions and truths of the conditions as they were last, and what a change of them means.
 class UserEvents {
  public:
-  /// Both must outlive it.
+  /// The functions must outlive it.
   UserEvents(const discretization::PointFunctions& functions, const std::vector<EventFact>& facts);
 
-  [[nodiscard]] bool empty() const { return facts_.empty(); }
+  [[nodiscard]] bool empty() const { return signs_.empty(); }
   [[nodiscard]] std::size_t functions() const { return signs_.size(); }
   /// The sign of a function as it was last; 0 at a zero it started from.
   [[nodiscard]] int sign(std::size_t function) const { return signs_[function]; }
@@ -28,10 +29,9 @@ class UserEvents {
 
  private:
   const discretization::PointFunctions& functions_;
-  const std::vector<EventFact>& facts_;
+  model::EventStates states_;
   std::vector<double> values_;
-  std::vector<int> signs_, states_;
-  bool started_ = false;
+  std::vector<int> signs_;
 };
 
 }  // namespace saltus::fesd_integrator
