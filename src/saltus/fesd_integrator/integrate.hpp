@@ -41,7 +41,7 @@ struct IntegrationOptions {
   /// more than this over the run; nullopt: they are not.
   std::optional<double> error_limit;
   double step_bounds = 1.0;  ///< gamma: lengths within (1 - gamma, 1 + gamma) times their mean
-  long max_steps = 1000000;  ///< elements
+  long max_steps = 1000000;  ///< elements, and simulation steps that were divided
   long max_events = 100000;
   /// Rows at these times instead of at the ends of all elements; ascending, inside [from, until].
   enum class Rows { at_elements, at_times };

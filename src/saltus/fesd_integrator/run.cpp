@@ -77,11 +77,7 @@ Integration Run::run() {
       }
       if (!stopped() && !facts_.held.empty()) hold_behind();
     }
-    if (stopped() || !observer_) continue;
-    const Progress progress{t_, static_cast<long>(statistics_.steps), static_cast<long>(recorder_.events())};
-    if (observer_(progress) == Continue::no) {
-      stop(result::Termination::stopped_by_user, fmt::format("stopped at t = {:.10g}", t_));
-    }
+    show_progress();
   }
   Integration integration;
   if (recorder_.trajectory().t.empty() || !recorder_.ends_at(t_)) {
@@ -174,13 +170,31 @@ void Run::continue_with(const std::vector<Continuation>& found) {
   if (!all && !undetermined_) undetermined_ = undetermined_message();
 }
 
+void Run::show_progress() {
+  if (stopped() || !observer_) return;
+  const Progress progress{t_, static_cast<long>(statistics_.steps), static_cast<long>(recorder_.events())};
+  if (observer_(progress) == Continue::no) {
+    stop(result::Termination::stopped_by_user, fmt::format("stopped at t = {:.10g}", t_));
+  }
+}
+
 bool Run::step_counts() {
   ++statistics_.steps;
-  if (statistics_.steps < options_.max_steps) return true;
+  return within_max_steps();
+}
+
+bool Run::within_max_steps() {
+  if (statistics_.steps + statistics_.rejected < options_.max_steps) return true;
   stop(result::Termination::iteration_limit,
-       fmt::format("max_steps = {} elements reached at t = {:.10g}; raise simulate.max_steps or take fewer steps",
-                   options_.max_steps, t_));
+       fmt::format("max_steps = {} reached at t = {:.10g} ({} elements, {} tries that were divided); raise "
+                   "simulate.max_steps or take fewer steps",
+                   options_.max_steps, t_, statistics_.steps, statistics_.rejected));
   return false;
+}
+
+void Run::reject() {
+  ++statistics_.rejected;
+  if (within_max_steps()) show_progress();
 }
 
 void Run::hold_behind() {

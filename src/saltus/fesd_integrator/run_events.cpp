@@ -13,41 +13,74 @@ namespace saltus::fesd_integrator {
 namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
+/// Of an element in which an event function is too fast for one interpolant: 2^10 parts resolve a thousand zeros.
+constexpr int most_halvings = 10;
 
 }  // namespace
 
-/// The earliest zero of an event function in the part of an element behind `from`; functions that are at zero there
-/// have no sign to change.
-std::optional<Run::EventZero> Run::first_event_zero(const Element& element, const std::vector<double>& selections,
-                                                    double from) {
-  const auto& nodes = ode::interpolation_nodes();
+/// Values of the event functions at a part of an element, into event_values_: at the nodes of an interpolant, then at
+/// those where it is checked.
+void Run::sample_events(const Element& element, const std::vector<double>& selections, const Stretch& part) {
   const std::size_t n = user_events_.functions();
-  event_values_.resize(nodes.size() * n);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double theta = from + nodes[i] * (1.0 - from);
+  event_values_.resize((ode::event_nodes + ode::event_degree) * n);
+  double* values = event_values_.data();
+  const auto sample = [&](double node) {
+    const double theta = part.from + node * (part.to - part.from);
     event_state(element, selections, theta);
     functions_.event_values(element.t + theta * element.h, between_x_.data(), between_selections_.data(), held_.data(),
-                            event_values_.data() + i * n);
-  }
+                            values);
+    values += n;
+  };
+  for (const double node : ode::interpolation_nodes()) sample(node);
+  for (const double node : ode::check_nodes()) sample(node);
+}
+
+/// The earliest zero of an event function in a part of an element; functions that are at zero where the first part
+/// begins have no sign to change. Parts in which an interpolant may miss a zero are halved.
+std::optional<Run::EventZero> Run::first_event_zero(const Element& element, const std::vector<double>& selections,
+                                                    const Stretch& part) {
+  const std::size_t n = user_events_.functions();
+  sample_events(element, selections, part);
   std::optional<EventZero> first;
+  bool resolved = true;
   for (std::size_t k = 0; k < n; ++k) {
     const int sign = user_events_.sign(k);
     if (sign == 0) continue;
     std::array<double, ode::event_nodes> values{};
     double largest = 0.0;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = event_values_[i * n + k];
       largest = std::max(largest, std::abs(values[i]));
     }
     if (!std::isfinite(largest)) continue;
     const double noise = 16.0 * rounding * std::max(largest, element.size);
-    const int zero_order = std::abs(values.front()) <= noise ? 1 : 0;
-    const auto change = ode::first_sign_change(ode::to_bernstein(values), sign, zero_order, noise);
+    const auto coefficients = ode::to_bernstein(values);
+    double error = 0.0;
+    for (std::size_t i = 0; i < ode::check_nodes().size(); ++i) {
+      const double value = event_values_[(values.size() + i) * n + k];
+      error = std::max(error, std::abs(value - ode::evaluate(coefficients, ode::check_nodes()[i])));
+    }
+    // What an interpolant of this error leaves of a zero, Newton's method mends; twenty times the error cannot be
+    // missing between the nodes where it was looked at.
+    constexpr double close = 1e-3, seen = 20.0;
+    const bool away = ode::certainly_no_sign_change(coefficients, sign, 0, -std::max(noise, seen * error));
+    if (!(error <= std::max(close * largest, noise)) && !away && part.halvings > 0) {
+      resolved = false;
+      break;
+    }
+    // What the last zero has left is the rounding of its time.
+    const bool crossed = part.crossed == k;
+    const int zero_order = crossed || (part.behind_zeros && std::abs(values.front()) <= noise) ? 1 : 0;
+    const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise);
     if (!change) continue;
-    const double theta = from + change->upper * (1.0 - from);
+    const double theta = part.from + change->upper * (part.to - part.from);
     if (!first || theta < first->theta) first = EventZero{k, theta};
   }
-  return first;
+  if (resolved) return first;
+  const double middle = 0.5 * (part.from + part.to);
+  first =
+      first_event_zero(element, selections, {part.from, middle, part.halvings - 1, part.behind_zeros, part.crossed});
+  return first ? first : first_event_zero(element, selections, {middle, part.to, part.halvings - 1, false, {}});
 }
 
 /// State and selections inside an element, into between_x_ and between_selections_.
@@ -109,11 +142,29 @@ double Run::refined_event(const Element& element, const std::vector<double>& sel
   return found;
 }
 
+/// What is at zero where an element begins gets the sign that it has behind, which is no change.
+void Run::settle_event_signs(const Element& element, const std::vector<double>& selections) {
+  constexpr double nearest = 1e-6, farthest = 1e-2;
+  const auto unsettled = [&] {
+    for (std::size_t k = 0; k < user_events_.functions(); ++k) {
+      if (user_events_.sign(k) == 0) return true;
+    }
+    return false;
+  };
+  for (double theta = nearest; theta < farthest && unsettled(); theta *= 4.0) {
+    event_state(element, selections, theta);
+    static_cast<void>(user_events_.update(element.t + theta * element.h, between_x_.data(), between_selections_.data(),
+                                          held_.data(), std::nullopt));
+  }
+}
+
 bool Run::record_user_events(const Element& element, const std::vector<double>& left, double end) {
+  settle_event_signs(element, left);
   double from = 0.0;
+  std::optional<std::size_t> crossed;
   constexpr int most_per_element = 1000;
   for (int count = 0; count < most_per_element; ++count) {
-    const auto zero = first_event_zero(element, left, from);
+    const auto zero = first_event_zero(element, left, {from, 1.0, most_halvings, true, crossed});
     if (!zero) break;
     event_state(element, left, zero->theta);
     std::vector<double> x = between_x_, at = between_selections_;
@@ -122,6 +173,7 @@ bool Run::record_user_events(const Element& element, const std::vector<double>& 
     emit_times(&element, left, t);
     const auto fired = user_events_.update(t, x.data(), at.data(), held_.data(), zero->function);
     if (fire(fired, t, x, at)) return false;
+    crossed = zero->function;
     from = std::min(1.0, std::max(theta, zero->theta));
     if (from >= 1.0) break;
   }

@@ -34,7 +34,8 @@ void Run::advance_fixed_element(const FixedSpan& span) {
   while (done < whole && !stopped()) {
     const double fraction = static_cast<double>(part) / static_cast<double>(whole);
     if (!fixed_.solve(begin_here(), fraction * span.h, set_, held_.data(), chain_.elements[0])) {
-      ++statistics_.rejected;
+      reject();
+      if (stopped()) return;
       part /= 2;
       if (part > 0) continue;
       if (auto undefined = undefined_beyond()) {

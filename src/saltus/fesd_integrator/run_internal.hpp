@@ -145,8 +145,17 @@ class Run {
     std::size_t function = 0;
     double theta = 0.0;
   };
+  /// Of an element in which zeros of event functions are looked for.
+  struct Stretch {
+    double from = 0.0, to = 1.0;
+    int halvings = 0;                    ///< that are left
+    bool behind_zeros = false;           ///< what is zero where it begins was so before
+    std::optional<std::size_t> crossed;  ///< the function whose zero was found where it begins
+  };
+  void sample_events(const Element& element, const std::vector<double>& selections, const Stretch& part);
   [[nodiscard]] std::optional<EventZero> first_event_zero(const Element& element, const std::vector<double>& selections,
-                                                          double from);
+                                                          const Stretch& part);
+  void settle_event_signs(const Element& element, const std::vector<double>& selections);
   void event_state(const Element& element, const std::vector<double>& selections, double theta);
   [[nodiscard]] double refined_event(const Element& element, const std::vector<double>& selections,
                                      const EventZero& zero, std::vector<double>& x, std::vector<double>& at);
@@ -158,7 +167,12 @@ class Run {
   void stop(result::Termination termination, std::string message);
   [[nodiscard]] bool stopped() const { return status_.has_value(); }
   [[nodiscard]] bool stopped_where_not_finite();
+  /// Counts an element; whether the run goes on.
   [[nodiscard]] bool step_counts();
+  [[nodiscard]] bool within_max_steps();
+  /// Counts a try that is divided. A run that gets no further ends, too, and tells its observer until then.
+  void reject();
+  void show_progress();
 
   const discretization::StageKernel& kernel_;
   const discretization::PointFunctions& functions_;

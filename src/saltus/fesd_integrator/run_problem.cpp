@@ -135,7 +135,8 @@ void Run::advance_by_problem(StepProblem& problem, double end, int halvings_allo
       halvings = 0;
       continue;
     }
-    ++statistics_.rejected;
+    reject();
+    if (stopped()) return;
     limit = t_ + 0.5 * (limit - t_);
     if (++halvings <= halvings_allowed) continue;
     stop(solution.elements.empty() ? solution.termination : result::Termination::not_converged,

@@ -92,6 +92,50 @@ TEST(Coarse, ErrorsOfElementsAreEstimatedAndTold) {
   EXPECT_EQ(fine.status.message, "");
 }
 
+/// x = t, and 50 zeros of an event in two steps, which the polynomial of one element cannot follow.
+TEST(Coarse, FastEventsAreFoundInLongElements) {
+  model::Builder builder("clock");
+  const SX x = builder.state("x", {0.0});
+  builder.dynamics("x", 1.0);
+  builder.event(sin(40.0 * x));
+  const auto integration = run(*builder.build(), 4.0, {.steps = 2});
+  const double half_turn = std::acos(-1.0) / 40.0;
+  ASSERT_EQ(integration.events.size(), 50u);  // the zero at the start is none
+  for (std::size_t k = 0; k < integration.events.size(); ++k) {
+    EXPECT_NEAR(integration.events[k].t, static_cast<double>(k + 1) * half_turn, 1e-14 * 40.0) << k;
+  }
+}
+
+/// Steps that are divided again and again must end, and can be stopped by hand until then.
+TEST(Coarse, DividedStepsCountAndAreShown) {
+  const auto system = fast();
+  const auto dcs = reformulation::reformulate(system, {Form::step, std::nullopt});
+  ASSERT_TRUE(dcs.has_value());
+  IntegrationOptions options;
+  options.tableau = *discretization::butcher_tableau(TableauFamily::radau_iia, 2);
+  options.until = 10.0;
+  options.steps = 1;
+  options.error_limit = 1e-6;
+  options.max_steps = 3;  // the one step is divided more often before its first part is short enough
+  int asked = 0;
+  const auto count = [&](const Progress& progress) {
+    ++asked;
+    EXPECT_EQ(progress.t, 0.0);
+    return Continue::yes;
+  };
+  const auto limited = integrate(system, *dcs, options, count);
+  ASSERT_TRUE(limited.has_value());
+  EXPECT_EQ(limited->status.termination, result::Termination::iteration_limit);
+  EXPECT_EQ(limited->statistics.rejected, options.max_steps);
+  EXPECT_EQ(limited->statistics.steps, 0);
+  EXPECT_EQ(asked, options.max_steps - 1);
+  const auto refuse = [](const Progress&) { return Continue::no; };
+  const auto stopped = integrate(system, *dcs, options, refuse);
+  ASSERT_TRUE(stopped.has_value());
+  EXPECT_EQ(stopped->status.termination, result::Termination::stopped_by_user);
+  EXPECT_EQ(stopped->statistics.rejected, 1);
+}
+
 /// 31 oscillations in 8 steps: every method with two stages and more is brought below the limit.
 TEST(Coarse, StepsAreDividedUntilErrorsAddUpToTheLimit) {
   for (const auto& [family, stages] :
