@@ -48,7 +48,9 @@ void ModeField::enter(const ModeState& state) {
     kernel_.prepare_field(alpha_.data(), constants_[0]);
     return;
   }
-  resize_rows();
+  // Cells may change a gradient that is constant in each.
+  const bool same_rows = same_single && constant_row_.front() && kernel_.cells() == 0;
+  if (!same_rows) resize_rows();
   if (same_single) {
     solve_ = SlidingSolve::decoupled;
   } else {
@@ -74,6 +76,7 @@ void ModeField::enter(const ModeState& state) {
       between_.push_back(i);
     }
   }
+  if (same_rows) refer_to_constants();
 }
 
 void ModeField::resize_rows() {
@@ -117,6 +120,18 @@ void ModeField::leave_to(Region side) {
   if (side == Region::above) std::swap(constants_[0], constants_[1]);
   sliding_.clear();
   solve_ = SlidingSolve::none;
+}
+
+void ModeField::pass(std::size_t surface, const std::vector<double>& alpha,
+                     FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of) {
+  const auto slid = at(sliding_.front());
+  start_alpha_[surface] = alpha_[surface] = alpha[surface];
+  start_alpha_[slid] = alpha_[slid] = alpha[slid];
+  for (std::size_t corner = 0; corner < 2; ++corner) {
+    corner_[corner][surface] = alpha[surface];
+    constants_[corner] = constants_of(corner_[corner]);
+  }
+  refer_to_constants();
 }
 
 /// For native steps on one surface.

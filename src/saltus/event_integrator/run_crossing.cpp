@@ -1,6 +1,7 @@
-// The ordinary switch: one surface is reached from beside it, and crossed or slid on, or left where one of its fields
-// is tangent, and nothing else happens there. What other switches need is left out: copies of modes, occasions,
-// transitions. The answers are those of the general way, bit for bit; where one is not clear that way is taken.
+// The ordinary switch: one surface is reached from beside it, in a region or while the solution slides on another one,
+// or left where one of its fields is tangent, and nothing else happens there. What other switches need is left out:
+// most copies of modes, occasions and transitions. The answers are those of the general way, bit for bit; where one is
+// not clear that way is taken.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,21 +22,22 @@ bool Run::has_ordinary_switches() const {
          options_.layers.corners.empty();
 }
 
-/// Whether one listed surface is reached in a region, or left by the solution that slides on it alone, behind the last
-/// switch.
+/// Whether one listed surface is reached in a region or while sliding on one, or left by the solution that slides on it
+/// alone, behind the last switch.
 bool Run::is_ordinary(const Located& located) const {
   if (!ordinary_ || located.functions.size() != 1 || state_.higher || !families_.idle()) return false;
   const auto& function = search_.functions()[located.functions.front()];
-  const bool surface = function.kind == FunctionKind::surface && search_.crosses();
-  const bool exit = (function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above) &&
-                    state_.sliding.size() == 1 && field_.solve() == SlidingSolve::decoupled;
+  const bool slides = state_.sliding.size() == 1 && field_.solve() == SlidingSolve::decoupled;
+  const bool surface = function.kind == FunctionKind::surface && (search_.crosses() || slides);
+  const bool exit = (function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above) && slides;
   return (surface || exit) && recorder_.lists(function.index) && located.t > t_ && located.t != series_.last();
 }
 
 /// Goes on behind an ordinary switch; otherwise nothing has happened.
 bool Run::switch_shortly(const Located& located) {
   const auto& function = search_.functions()[located.functions.front()];
-  return function.kind == FunctionKind::surface ? meet(located, function.index) : leave(located, function);
+  if (function.kind != FunctionKind::surface) return leave(located, function);
+  return state_.sliding.empty() ? meet(located, function.index) : pass(located, function.index);
 }
 
 /// A surface that is reached in a region.
@@ -69,6 +71,81 @@ bool Run::meet(const Located& located, int surface) {
   }
   go_on_behind(located, change);
   return true;
+}
+
+/// A surface that is reached while the solution slides on another one.
+bool Run::pass(const Located& located, int surface) {
+  const auto j = at(surface);
+  const int slid = state_.sliding.front();
+  field_(located.t, located.x.data(), slope_.data());
+  const double selection = field_.alpha()[at(slid)];
+  if (!is_finite(slope_) || !std::isfinite(selection)) return false;
+  state_.alpha[at(slid)] = selection;
+  before_ = state_;
+  if (!decide_passing(located, slid, surface)) return false;
+  const auto& next = transition_.state;
+  // The usual way: the solution goes on sliding across it.
+  const bool across = next.mode[at(slid)] == 0 && next.mode[j] == -before_.mode[j];
+  x_ = located.x;
+  if (across) {
+    const std::size_t mark = step_memory_.mark_with(j, next.mode[j]);
+    field_.pass(j, next.alpha, [&](const std::vector<double>& alpha) -> const evaluation::FieldConstants& {
+      return field_memory_.of(alpha, mark);
+    });
+  } else {
+    field_.enter(next);
+  }
+  field_.project(located.t, x_.data());
+  field_(located.t, x_.data(), slope_.data());
+  if (!is_finite(slope_)) {
+    field_.enter(state_);
+    return false;
+  }
+  t_ = located.t;
+  arrival_row_ = recorder_.rows();
+  recorder_.switched(t_, x_, before_, transition_);
+  recorder_.row_before(t_, located.x, before_, recorder_.events() - 1);
+  state_ = next;
+  stepper_.restart();
+  stiffness_.reset();
+  search_.enter(state_, transition_.zero_order, t_, x_.data());
+  if (across) {
+    recorder_.row(t_, x_, state_.mode, field_.alpha());
+    series_.note(t_, j, before_.mode[j]);
+    h_ = step_memory_.change(state_.mode, j, t_, h_);
+  } else {
+    row(t_, x_);
+    static_cast<void>(series_.repeats(t_, before_.mode, state_.mode));  // this is the first one at t
+    h_ = step_memory_.change(state_.mode, t_, h_);
+  }
+  end_switch();
+  if (too_many_events()) return true;
+  note_tightening_switch();
+  accumulate_switches();
+  if (running_) watch_for_families();
+  return true;
+}
+
+/// The transition behind; false where neither of the quick decisions knows it.
+bool Run::decide_passing(const Located& located, int slid, int reached) {
+  occasion_.t = located.t;
+  occasion_.x = located.x.data();
+  occasion_.time_scale = h_scale_;
+  occasion_.at_zero = {std::min(slid, reached), std::max(slid, reached)};
+  occasion_.touched.assign(1, reached);
+  for (auto* none : {&occasion_.exit_below, &occasion_.exit_above, &occasion_.coalesced, &occasion_.destabilised}) {
+    none->clear();
+  }
+  return single_surface_.decide(before_, occasion_, transition_) ||
+         surface_pair_.decide(before_, occasion_, transition_);
+}
+
+/// What follows a switch that was recorded and entered.
+void Run::end_switch() {
+  control_.reset();
+  const auto& times = options_.output.times;
+  while (next_output_ < times.size() && times[next_output_] <= t_) ++next_output_;
+  last_event_time_ = t_;
 }
 
 /// The only surface that is slid on, where the field of one side has become tangent to it.
@@ -115,11 +192,8 @@ void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
   }
   recorder_.row_behind_last_event(x_, change.after == 0 ? field_.alpha() : state_.alpha, j);
   series_.note(t_, j, change.before);
-  control_.reset();
   h_ = step_memory_.change(state_.mode, j, t_, h_);
-  const auto& times = options_.output.times;
-  while (next_output_ < times.size() && times[next_output_] <= t_) ++next_output_;
-  last_event_time_ = t_;
+  end_switch();
   if (too_many_events()) return;
   note_tightening_switch(change);
   accumulate_switches();

@@ -92,6 +92,9 @@ class Run {
   [[nodiscard]] bool is_ordinary(const Located& located) const;
   bool switch_shortly(const Located& located);
   bool meet(const Located& located, int surface);
+  bool pass(const Located& located, int surface);
+  bool decide_passing(const Located& located, int slid, int reached);
+  void end_switch();
   bool leave(const Located& located, const EventFunction& exit);
   void go_on_behind(const Located& located, const SurfaceSwitch& change);
   Arrival arrive(RowBefore row);

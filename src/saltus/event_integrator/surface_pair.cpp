@@ -25,6 +25,7 @@ SurfacePair::SurfacePair(const Surroundings& surroundings)
     : surroundings_(surroundings),
       f_(at(surroundings.kernel.states())),
       rows_{f_, f_},
+      corners_(surroundings.kernel),
       field_(surroundings.kernel, surroundings.affine_in_alpha) {
   const auto& kernel = surroundings.kernel;
   any_ = surroundings.affine_in_alpha && kernel.switching_functions() > 1 && kernel.region_groups().empty();
@@ -58,9 +59,8 @@ bool SurfacePair::find_normals(const Occasion& occasion) {
   return true;
 }
 
-/// Normal components of the field that belongs to alpha_; false if it is not finite.
-bool SurfacePair::find_velocities(const Occasion& occasion, std::array<double, 2>& velocities) {
-  surroundings_.kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
+/// Normal components of the field in f_; false if it is not finite.
+bool SurfacePair::project(std::array<double, 2>& velocities) const {
   if (!is_finite(f_)) return false;
   for (std::size_t k = 0; k < 2; ++k) {
     velocities[k] = rates_[k];
@@ -72,10 +72,19 @@ bool SurfacePair::find_velocities(const Occasion& occasion, std::array<double, 2
 /// Whether all of the four fields are clear of both surfaces.
 bool SurfacePair::find_table(const Occasion& occasion) {
   scales_ = {0.0, 0.0};
+  const auto& kernel = surroundings_.kernel;
+  // Constants of fields hold those of cells.
+  const bool same_constants = kernel.cells() == 0;
+  const std::size_t pair = at(occasion.at_zero[0]) * alpha_.size() + at(occasion.at_zero[1]);
   for (std::size_t corner = 0; corner < 4; ++corner) {
     for (std::size_t k = 0; k < 2; ++k) alpha_[at(occasion.at_zero[k])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+    if (same_constants) {
+      kernel.prepared_field(occasion.t, occasion.x, corners_.of(alpha_, 4 * pair + corner), f_.data());
+    } else {
+      kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
+    }
     std::array<double, 2> velocities{};
-    if (!find_velocities(occasion, velocities)) return false;
+    if (!project(velocities)) return false;
     for (std::size_t k = 0; k < 2; ++k) {
       velocities_[k][corner] = velocities[k];
       scales_[k] = std::max(scales_[k], std::abs(velocities[k]));
@@ -98,8 +107,9 @@ bool SurfacePair::moves_there(const Occasion& occasion, ModeState& state) {
   for (const int surface : state.sliding) {
     if (!(alpha_[at(surface)] >= 0.0 && alpha_[at(surface)] <= 1.0)) return false;
   }
+  surroundings_.kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
   std::array<double, 2> velocities{};
-  if (!find_velocities(occasion, velocities)) return false;
+  if (!project(velocities)) return false;
   for (std::size_t k = 0; k < 2; ++k) {
     const int mode = state.mode[at(occasion.at_zero[k])];
     if (mode != 0 && !(mode * velocities[k] > sign_tolerance * scales_[k])) return false;

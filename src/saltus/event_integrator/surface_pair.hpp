@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "saltus/event_integrator/field_memory.hpp"
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/event_integrator/transition.hpp"
@@ -30,7 +31,7 @@ class SurfacePair {
  private:
   [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
   bool find_normals(const Occasion& occasion);
-  bool find_velocities(const Occasion& occasion, std::array<double, 2>& velocities);
+  [[nodiscard]] bool project(std::array<double, 2>& velocities) const;
   bool find_table(const Occasion& occasion);
   bool moves_there(const Occasion& occasion, ModeState& state);
   bool slides_on_both(const Occasion& occasion, ModeState& state);
@@ -45,6 +46,7 @@ class SurfacePair {
   std::array<double, 2> rates_{};
   std::array<double, 2> scales_{};  ///< largest normal components
   std::array<std::array<double, 4>, 2> velocities_{};
+  FieldMemory corners_;  ///< of the four regions that meet
   ModeField field_;
 };
 

@@ -101,6 +101,26 @@ TEST(ShortWay, PassesTangentialExitsAsTheGeneralOne) { expect_agreement(testing:
 
 TEST(ShortWay, TouchesSeveralIndependentSurfacesAsTheGeneralOne) { expect_agreement(testing::friction_blocks(), 20.0); }
 
+/// An oscillator drives s, which slides on 0, and r, which passes 0.2 meanwhile; `coupling` of each selection is in the
+/// other rate, and bends the surface that is slid on.
+model::System sliding_across(double coupling) {
+  auto system = testing::blank(4, 2);
+  testing::add_surface(system, "s", system.x(2) - coupling * system.x(2) * system.x(2));
+  testing::add_surface(system, "r", system.x(3) - 0.2);
+  const auto s = 2 * system.alpha(0) - 1, r = 2 * system.alpha(1) - 1;
+  testing::set_field(system,
+                     {system.x(1), -system.x(0), 0.5 * system.x(0) - 2 * s + coupling * r,
+                      1.5 * system.x(1) - 0.2 * system.x(3) - 0.05 * r + 0.25 * coupling * s},
+                     {0.5, 0.8, 0.0, 0.7});
+  return system;
+}
+
+TEST(ShortWay, PassesASurfaceThatTheSlidingFeelsAsTheGeneralOne) { expect_agreement(sliding_across(0.2), 20.0); }
+
+TEST(ShortWay, PassesASurfaceWhileSlidingOnOneThatDoesNotFeelItAsTheGeneralOne) {
+  expect_agreement(sliding_across(0.0), 20.0);
+}
+
 TEST(ShortWay, CrossesSurfacesThatDependOnTimeAsTheGeneralOne) {
   auto system = testing::blank(2, 2);
   testing::add_surface(system, "moving", system.x(0) - 0.3 * system.t);
