@@ -10,24 +10,12 @@
 namespace saltus::event_integrator {
 namespace {
 
-/// Laps that must shrink before a sequence is believed to have a limit.
-constexpr std::size_t fewest_laps = 4;
 constexpr double hundredth = 0.01;
 
 double longest(const std::vector<double>& shortest, const std::vector<int>& jumps) {
   double result = 0.0;
   for (const int jump : jumps) result = std::max(result, shortest[at(jump)]);
   return result;
-}
-
-/// Ratio of successive durations, over as many laps as it takes to shrink to a third: the rounding of t is divided by
-/// their number.
-double ratio_of(const std::vector<double>& durations) {
-  const double first = durations[0] / durations[1];
-  if (!(first < 1.0)) return first;
-  const double wanted = std::ceil(1.0 / (1.0 - first));
-  const double laps = std::min(wanted, static_cast<double>(durations.size() - 1));
-  return std::pow(durations[0] / durations[static_cast<std::size_t>(laps)], 1.0 / laps);
 }
 
 }  // namespace
@@ -71,18 +59,26 @@ bool EventSeries::shrinks() const {
   return std::any_of(std::begin(laps_), std::end(laps_), [](std::size_t laps) { return laps >= 2; });
 }
 
-std::vector<double> EventSeries::durations(std::size_t period, std::size_t skipped) const {
-  std::vector<double> result;
-  for (std::size_t lap = skipped; lap < skipped + most_laps && (lap + 1) * period < entries_.size(); ++lap) {
+EventSeries::Durations EventSeries::durations(std::size_t period, std::size_t skipped, std::size_t most) const {
+  Durations result;
+  for (std::size_t lap = skipped; lap < skipped + most && (lap + 1) * period < entries_.size(); ++lap) {
     if (!repeats(lap * period, (lap + 1) * period)) break;
-    result.push_back(back(lap * period).t - back((lap + 1) * period).t);
+    const double duration = back(lap * period).t - back((lap + 1) * period).t;
     // Before the sequence began to shrink its durations say nothing.
-    if (result.size() > 1 && !(result.back() > result[result.size() - 2])) {
-      result.pop_back();
-      break;
-    }
+    if (result.count > 0 && !(duration > result.of[result.count - 1])) break;
+    result.of[result.count++] = duration;
   }
   return result;
+}
+
+double EventSeries::ratio(std::size_t period, std::size_t skipped) const {
+  const auto last = durations(period, skipped, 2);
+  const double first = last.of[0] / last.of[1];
+  if (!(first < 1.0)) return first;
+  const double wanted = std::min(std::ceil(1.0 / (1.0 - first)), static_cast<double>(most_laps));
+  const auto all = durations(period, skipped, std::min(static_cast<std::size_t>(wanted) + 1, most_laps));
+  const double laps = std::min(wanted, static_cast<double>(all.count - 1));
+  return std::pow(all.of[0] / all.of[static_cast<std::size_t>(laps)], 1.0 / laps);
 }
 
 std::vector<double> EventSeries::extrapolated(std::size_t period, double ratio) const {
@@ -108,31 +104,34 @@ std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
 }
 
 std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::vector<double>& shortest) const {
-  const auto now = durations(period, 0);
+  const auto now = durations(period, 0, fewest_laps);
   const double t = back(0).t;
   const double resolution = rounding_unit * std::abs(t);
-  const auto jumps = last_jumps(period);
-  const double drowning = longest(shortest, jumps);
-  if (now.size() >= 2 && now[0] <= std::max(16.0 * resolution, hundredth * drowning)) {
+  double drowning = 0.0;
+  for (std::size_t k = 0; k < period; ++k) drowning = std::max(drowning, longest(shortest, back(k).jumps));
+  if (now.count >= 2 && now.of[0] <= std::max(16.0 * resolution, hundredth * drowning)) {
     // Laps that shrink fast leave little, but not nothing. Long ones are here because psi leaves its surface
     // tangentially, with no rate: their limit is where they are.
-    const double fast = now[0] / now[1];
-    if (!(fast <= 0.5 && now[0] <= 1e-6 * (t - start_[period]))) return SeriesLimit{t, back(0).x, jumps, now[0], false};
-    return SeriesLimit{t + now[0] * fast / (1.0 - fast), extrapolated(period, fast), jumps, now[0], false};
+    const double fast = now.of[0] / now.of[1];
+    if (!(fast <= 0.5 && now.of[0] <= 1e-6 * (t - start_[period]))) {
+      return SeriesLimit{t, back(0).x, last_jumps(period), now.of[0], false};
+    }
+    const double left = now.of[0] * fast / (1.0 - fast);
+    return SeriesLimit{t + left, extrapolated(period, fast), last_jumps(period), now.of[0], false};
   }
-  if (laps_[period] < fewest_laps * period || now.size() < fewest_laps) return std::nullopt;
-  const auto before = durations(period, 1);
-  const double ratio = ratio_of(now);
-  const double ratio_before = ratio_of(before);
-  if (!(ratio < 1.0 && ratio_before < 1.0)) return std::nullopt;
-  const double remaining = now[0] * ratio / (1.0 - ratio);
-  const double remaining_before = before[0] * ratio_before / (1.0 - ratio_before);
+  if (laps_[period] < fewest_laps * period || now.count < fewest_laps) return std::nullopt;
+  const double ratio_now = ratio(period, 0);
+  if (!(ratio_now < 1.0)) return std::nullopt;
+  const double remaining = now.of[0] * ratio_now / (1.0 - ratio_now);
   const double taken = t - start_[period];
-  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && now[0] > drowning) return std::nullopt;
+  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && now.of[0] > drowning) return std::nullopt;
+  const double ratio_before = ratio(period, 1);
+  if (!(ratio_before < 1.0)) return std::nullopt;
+  const double remaining_before = now.of[1] * ratio_before / (1.0 - ratio_before);
   // A fiftieth of what remains is 2e-10 of the time taken.
   const double difference = (t + remaining) - (back(period).t + remaining_before);
   if (std::abs(difference) > 0.02 * remaining + 4.0 * resolution) return std::nullopt;
-  return SeriesLimit{t + remaining, extrapolated(period, ratio), jumps, now[0], false};
+  return SeriesLimit{t + remaining, extrapolated(period, ratio_now), last_jumps(period), now.of[0], false};
 }
 
 std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double>& shortest) const {

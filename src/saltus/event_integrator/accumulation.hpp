@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -104,8 +105,17 @@ class EventSeries {
   [[nodiscard]] std::optional<SeriesLimit> end_of_rattling(const std::vector<double>& shortest) const;
   [[nodiscard]] std::vector<double> extrapolated(std::size_t period, double ratio) const;
   [[nodiscard]] std::vector<int> last_jumps(std::size_t entries) const;
-  /// Durations of the laps behind the entry `skipped` laps ago, the last one first, as far as jumps repeat.
-  [[nodiscard]] std::vector<double> durations(std::size_t period, std::size_t skipped) const;
+  /// Laps that must shrink before a sequence is believed to have a limit.
+  static constexpr std::size_t fewest_laps = 4;
+  struct Durations {
+    std::array<double, most_laps> of;  ///< laps, the last one first
+    std::size_t count = 0;
+  };
+  /// Of the laps behind the entry `skipped` laps ago, at most so many, as far as jumps repeat and laps shrink.
+  [[nodiscard]] Durations durations(std::size_t period, std::size_t skipped, std::size_t most) const;
+  /// Of successive durations, at least two of which there are, over as many laps as it takes to shrink to a third: the
+  /// rounding of t is divided by their number.
+  [[nodiscard]] double ratio(std::size_t period, std::size_t skipped) const;
 
   LastItems<Entry, longest_period*(most_laps + 2)> entries_;
   LastItems<Recent, many> recent_;             ///< for rattling
