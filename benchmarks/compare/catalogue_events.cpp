@@ -1,0 +1,174 @@
+// What an event costs in steps of its own run, for every model of a folder with at least ten events, and as many steps
+// without one: a table.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/integrate.hpp"
+#include "saltus/io/toml_model.hpp"
+#include "saltus/model/build.hpp"
+
+namespace compare {
+namespace {
+
+namespace evaluation = saltus::evaluation;
+namespace event_integrator = saltus::event_integrator;
+namespace model = saltus::model;
+namespace ode = saltus::ode;
+using Clock = std::chrono::steady_clock;
+
+constexpr long fewest_events = 10;
+constexpr std::size_t fewest_steps = 10;  ///< without an event, by which events are measured
+constexpr int fewest_runs = 20;
+constexpr int most_runs = 200;
+constexpr double wanted_seconds = 0.5;
+
+double nanoseconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::nano>(Clock::now() - begin).count();
+}
+
+/// Shortest of many: what reading the clock twice takes.
+double clock_nanoseconds() {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 10000; ++k) {
+    const auto begin = Clock::now();
+    shortest = std::min(shortest, nanoseconds_since(begin));
+  }
+  return shortest;
+}
+
+/// From the end of one step of the run to that of the next one. Every run is the same, so the shortest time of all runs
+/// is that in which nothing else was done on the machine.
+struct Interval {
+  double nanoseconds = std::numeric_limits<double>::infinity();
+  long events = 0;
+};
+
+struct Cost {
+  long events = 0;
+  std::size_t steps = 0;  ///< that end at no event
+  double step = 0.0;      ///< median over these, ns
+  double event = 0.0;     ///< median of the time that a step to an event takes longer than such a step, by its events
+};
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Cost cost_of(const std::vector<Interval>& intervals, double clock) {
+  std::vector<double> steps, events;
+  Cost cost;
+  for (const auto& interval : intervals) {
+    if (interval.events == 0) steps.push_back(interval.nanoseconds - clock);
+  }
+  cost.steps = steps.size();
+  if (steps.empty()) return cost;
+  cost.step = median(steps);
+  for (const auto& interval : intervals) {
+    if (interval.events == 0) continue;
+    cost.events += interval.events;
+    const double longer = interval.nanoseconds - clock - cost.step;
+    for (long k = 0; k < interval.events; ++k) events.push_back(longer / static_cast<double>(interval.events));
+  }
+  if (!events.empty()) cost.event = median(events);
+  return cost;
+}
+
+/// No events if the run does not complete.
+Cost measure(const evaluation::ModelKernel& kernel, const model::System& system,
+             const event_integrator::IntegrationOptions& options, double clock) {
+  std::vector<Interval> intervals;
+  const auto begin = Clock::now();
+  for (int run = 0; run < fewest_runs || (run < most_runs && nanoseconds_since(begin) < 1e9 * wanted_seconds); ++run) {
+    std::size_t number = 0;
+    long events_before = -1;
+    Clock::time_point last;
+    const auto observe = [&](const event_integrator::Progress& progress) {
+      const double passed = nanoseconds_since(last);
+      if (events_before >= 0) {  // the first step has the start of the run before it
+        if (number == intervals.size()) intervals.emplace_back();
+        auto& interval = intervals[number++];
+        interval.nanoseconds = std::min(interval.nanoseconds, passed);
+        interval.events = progress.events - events_before;
+      }
+      events_before = progress.events;
+      last = Clock::now();
+      return event_integrator::Continue::yes;
+    };
+    const auto result = event_integrator::integrate_compact(kernel, system, options, observe);
+    if (result.status.termination != saltus::result::Termination::completed) return {};
+  }
+  return cost_of(intervals, clock);
+}
+
+struct Summary {
+  std::vector<double> in_steps;
+
+  void print(const char* method) {
+    if (in_steps.empty()) return;
+    std::sort(in_steps.begin(), in_steps.end());
+    const auto below = std::count_if(in_steps.begin(), in_steps.end(), [](double steps) { return steps < 5.0; });
+    std::printf("- %s: median %.1f steps, from %.1f to %.1f, in %td of %zu models less than 5\n", method,
+                in_steps[in_steps.size() / 2], in_steps.front(), in_steps.back(), below, in_steps.size());
+  }
+};
+
+int table(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  const double clock = clock_nanoseconds();
+  const struct {
+    ode::Method method;
+    const char* name;
+  } methods[]{{ode::Method::dop853, "dop853"}, {ode::Method::dopri5, "dopri5"}};
+  Summary summaries[2];
+  std::printf("| model | method | events | other steps | step, ns | event, ns | event in steps |\n");
+  std::printf("| --- | --- | ---: | ---: | ---: | ---: | ---: |\n");
+  for (const auto& file : files) {
+    const auto read = saltus::io::read_model(file);
+    if (!read) continue;
+    const auto system = model::build(read->description);
+    if (!system) continue;
+    auto kernel = evaluation::ModelKernel::compile(*system, evaluation::NativeCode::on);
+    if (!kernel) continue;
+    event_integrator::IntegrationOptions options;
+    options.tolerances = {1e-8, 1e-10};
+    options.from = read->simulate.from;
+    options.until = read->simulate.until.value_or(1.0);
+    options.output.rows = event_integrator::OutputTimes::Rows::at_times;
+    for (std::size_t m = 0; m < 2; ++m) {
+      options.method = methods[m].method;
+      const Cost cost = measure(*kernel, *system, options, clock);
+      if (cost.events < fewest_events || cost.steps < fewest_steps || !(cost.step > 0.0)) continue;
+      // What is left of spirals are the steps behind their limits, which are others.
+      if (cost.steps < static_cast<std::size_t>(cost.events) / 4) continue;
+      const double in_steps = cost.event / cost.step;
+      summaries[m].in_steps.push_back(in_steps);
+      std::printf("| %s | %s | %ld | %zu | %.0f | %.0f | %.1f |\n", file.stem().c_str(), methods[m].name, cost.events,
+                  cost.steps, cost.step, cost.event, in_steps);
+      std::fflush(stdout);
+    }
+  }
+  std::printf("\n");
+  for (std::size_t m = 0; m < 2; ++m) summaries[m].print(methods[m].name);
+  return 0;
+}
+
+}  // namespace
+}  // namespace compare
+
+int main(int count, char** arguments) {
+  if (count == 2) return compare::table(arguments[1]);
+  std::fprintf(stderr, "usage: compare_catalogue_events FOLDER\n");
+  return 2;
+}
