@@ -15,6 +15,10 @@ constexpr double affine_match = 1e-6;  ///< to which two factors of an affine re
 constexpr double large = 1e6;          ///< times the cube: what happens inside it no longer matters
 constexpr double growing = 1.001;      ///< per lap, at large amplitudes
 constexpr double neutral = 1e-7;       ///< factors closer to 1 are not told from it
+/// Of the durations of successive laps of a cycle. What slides along one surface before it enters the square comes in
+/// at one point, closer and closer from lap to lap, although its laps grow (by a third and more, or they spiral in or
+/// out more slowly and are told by their factors).
+constexpr double same_period = 0.01;
 
 double excursion(double u) { return std::max({0.0, -u, u - 1.0}); }
 
@@ -63,6 +67,8 @@ Lap Recurrence::compare(std::size_t now_number, std::size_t before_number, std::
   now.distance[lag] = distance;
   now.ratio[lag] = before.distance[lag] > 0.0 ? distance / before.distance[lag] : 0.0;
   now.compared[lag] = before.compared[lag] + 1;
+  now.period[lag] = now.time - before.time;
+  const bool periodic = std::abs(now.period[lag] - before.period[lag]) <= same_period * now.period[lag];
   const double ratio = now.ratio[lag];
   const double ratio_before = before.ratio[lag];
   const double remaining = distance * ratio / (1.0 - ratio);
@@ -77,7 +83,8 @@ Lap Recurrence::compare(std::size_t now_number, std::size_t before_number, std::
              ((affine && ratio > 1.0 + neutral) ||
               (now.amplitude > large && std::min(ratio, ratio_before) > growing))) {
     lap.kind = Lap::Kind::spiral_out;
-  } else if ((now.compared[lag] > 2 && distance <= close * size && std::max(ratio, ratio_before) <= shrinking) ||
+  } else if ((now.compared[lag] > 2 && distance <= close * size && std::max(ratio, ratio_before) <= shrinking &&
+              periodic) ||
              (affine && ratio < 1.0 - neutral && remaining < 0.01 * size)) {
     lap.kind = Lap::Kind::cycle;
     lap.remaining = remaining;
@@ -116,6 +123,7 @@ Lap Recurrence::pass(std::uint64_t section, const std::vector<double>& u, const 
   }
   now.distance.fill(0.0);
   now.ratio.fill(0.0);
+  now.period.fill(0.0);
   now.compared.fill(0);
   Lap found;
   std::size_t lag = 0;

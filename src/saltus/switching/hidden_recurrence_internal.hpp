@@ -24,8 +24,9 @@ struct Lap {
 /// earlier ones of the same section (cycles may pass a section more than once).
 ///
 /// A cycle is taken for proven where the distances of successive passages shrink geometrically towards a limit that is
-/// close, or are 0 up to rounding; a spiral, and a cycle of slow attraction, where only closed-form zones were visited:
-/// there the return map is affine, and the ratio of two distances is its factor.
+/// close and laps of one duration lie between them, or are 0 up to rounding; a spiral, and a cycle of slow attraction,
+/// where only closed-form zones were visited: there the return map is affine, and the ratio of two distances is its
+/// factor.
 class Recurrence {
  public:
   explicit Recurrence(int surfaces);
@@ -49,7 +50,7 @@ class Recurrence {
     long count = 0;
     double time = 0.0;
     double amplitude = 0.0;
-    std::array<double, lags> distance{}, ratio{};
+    std::array<double, lags> distance{}, ratio{}, period{};
     std::array<int, lags> compared{};  ///< laps in a row
   };
 
