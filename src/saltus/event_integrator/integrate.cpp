@@ -63,6 +63,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       slope_(x_.size()),
       row_x_(x_.size()),
       row_slope_(x_.size()),
+      dense_slope_(x_.size()),
       families_(surroundings_),
       evaluations_before_(kernel.field_evaluations()),
       series_(options.until - options.from) {

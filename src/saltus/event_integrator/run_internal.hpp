@@ -178,6 +178,8 @@ class Run {
   [[nodiscard]] double span() const { return options_.until - options_.from; }
   /// Of the last attempt: discrete states take no part in it.
   [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }
+  double defect();
+  double confirmed_error();
   [[nodiscard]] std::string where() const;
 
   auto right_hand_side() {
@@ -198,6 +200,7 @@ class Run {
   double first_lap_ = 0.0;      ///< duration of the first one that was closed
   LimitsInARow limits_in_a_row_;
   ode::DenseStep dense_;
+  bool dense_is_last_ = false;  ///< dense_ is that of the last attempt
   Cells cells_;
   CellChange cell_change_ = CellChange::none;  ///< at the event being handled
   EventSearch search_;
@@ -222,7 +225,7 @@ class Run {
 
   double t_;
   std::vector<double> x_, slope_;
-  std::vector<double> row_x_, row_slope_;
+  std::vector<double> row_x_, row_slope_, dense_slope_;
   std::vector<double> gradient_;
   std::vector<std::size_t> continuous_;  ///< states that are not discrete
   double error_share_ = 1.0;             ///< the mean square over the continuous states to that over all, its root

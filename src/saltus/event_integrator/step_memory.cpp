@@ -33,8 +33,11 @@ double StepMemory::begin(const std::vector<int>& mode, std::size_t mark, double 
   lasts_ = true;
   for (current_ = 0; current_ < used_; ++current_) {
     const auto& entry = entries_[current_];
-    if (entry.mark == mark && entry.mode == mode) return entry.step > 0.0 ? entry.step : proposed;
+    if (entry.mark != mark || entry.mode != mode) continue;
+    is_new_ = !(entry.step > 0.0);
+    return is_new_ ? proposed : entry.step;
   }
+  is_new_ = true;
   current_ = next_;
   next_ = (next_ + 1) % capacity;
   used_ = std::min(used_ + 1, capacity);

@@ -21,6 +21,8 @@ class StepMemory {
   [[nodiscard]] std::size_t mark_with(std::size_t surface, int mode) const;
   /// Behind each accepted step: what the step control proposes for the next one.
   void accepted(double proposed);
+  /// Whether the next step is the first one of its mode as far as is remembered: its length comes from another field.
+  [[nodiscard]] bool is_guess() const { return is_new_ && !first_accepted_; }
 
  private:
   static constexpr std::size_t capacity = 32;
@@ -38,6 +40,7 @@ class StepMemory {
   std::size_t current_ = 0;      ///< of the mode that lasts
   bool lasts_ = false;           ///< there is one
   bool first_accepted_ = false;  ///< in it
+  bool is_new_ = true;           ///< no step of it is remembered
   double proposed_ = 0.0;        ///< behind its first accepted step
   double start_ = 0.0;
 };
