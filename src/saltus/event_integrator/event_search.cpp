@@ -61,10 +61,11 @@ bool stays_far(const std::array<double, 5>& v, int sign) {
 
 }  // namespace
 
-/// The sign to which a function that is zero at the start moves; 0 if it stays.
-int EventSearch::sign_behind_zero(const ode::BernsteinCoefficients& coefficients, double noise) {
-  for (const double b : coefficients) {
-    if (std::abs(b) > noise) return sign_of(b);
+/// The sign to which a function that is zero at the start moves; 0 if it stays. By its values or, where these were not
+/// sampled, coefficients: of a multiple zero the first ones are roundings of the largest.
+int EventSearch::sign_behind_zero(const std::array<double, ode::event_nodes>& values, double noise) {
+  for (const double value : values) {
+    if (std::abs(value) > noise) return sign_of(value);
   }
   return 0;
 }
@@ -352,10 +353,10 @@ EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::si
     size = std::max(size, std::abs(b));
   }
   if (!finite) return not_finite(function, coefficients.front());
-  const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise_[i]) : function.sign;
-  if (sign == 0) return {};
   // The form has other roundings than the function, whose own terms may be smaller.
   const double noise = std::max({noise_[i], 8.0 * epsilon * forms_.terms(i, bounds_), 8.0 * epsilon * size});
+  const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise) : function.sign;
+  if (sign == 0) return {};
   const auto change = ode::first_sign_change(coefficients, sign, function.zero_order, noise);
   if (!change) return {};
   const double theta = 0.5 * (change->lower + change->upper);
@@ -372,7 +373,7 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
     return not_finite(function, values.front());
   }
   const auto coefficients = ode::to_bernstein(values);
-  const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise_[i]) : function.sign;
+  const int sign = function.sign == 0 ? sign_behind_zero(values, noise_[i]) : function.sign;
   if (sign == 0) return {};
   double size = 0.0;
   for (const double b : coefficients) size = std::max(size, std::abs(b));

@@ -169,7 +169,7 @@ class EventSearch {
   [[nodiscard]] Finding find_along(const ode::DenseStep& step, std::size_t i) const;
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
   static Finding not_finite(const EventFunction& function, double at_start);
-  static int sign_behind_zero(const ode::BernsteinCoefficients& coefficients, double noise);
+  static int sign_behind_zero(const std::array<double, ode::event_nodes>& values, double noise);
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
               const ode::BernsteinCoefficients& coefficients, double accuracy);
   [[nodiscard]] bool is_far(std::size_t i) const;

@@ -146,6 +146,12 @@ bool Decider::check() {
         motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
       }
     }
+    const bool is_kink = s_.system.switching[at(j)].role == model::SwitchingRole::kink;
+    if (is_kink && motion.side.drift == switching::Drift::stays) {
+      // A state at rest there: both sides are the same.
+      transition_.zero_order[at(j)] = 2;
+      continue;
+    }
     if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode, motion);
     transition_.zero_order[at(j)] = std::min(motion.order, 2);
   }

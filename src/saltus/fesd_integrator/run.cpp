@@ -33,7 +33,7 @@ Run::Run(const discretization::StageKernel& kernel, const discretization::PointF
       recorder_(functions, facts),
       element_recorder_(options.record_elements ? std::optional<ElementRecorder>({kernel, facts, options.tableau})
                                                 : std::nullopt),
-      user_events_(functions, facts.events),
+      user_events_(functions, facts.events, options.until - options.from),
       t_(options.from),
       x_(facts.initial_state),
       selections_(kernel.selections()),
@@ -242,9 +242,7 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
   recorder_.switched(t_, x_, {&before, &selections_before, held_before}, found, held_.data(), reason);
   continue_with(found);
   previous_.reset();
-  if (!user_events_.empty()) {
-    fire(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), std::nullopt), t_, x_, selections_);
-  }
+  fire_events_here();
   if (static_cast<long>(recorder_.events()) >= options_.max_events) {
     stop(result::Termination::iteration_limit,
          fmt::format("max_events = {} reached at t = {:.10g}; raise simulate.max_events if they are meant",

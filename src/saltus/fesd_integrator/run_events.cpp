@@ -68,8 +68,7 @@ std::optional<Run::EventZero> Run::first_event_zero(const Element& element, cons
       resolved = false;
       break;
     }
-    // What the last zero has left is the rounding of its time.
-    const bool crossed = part.crossed == k;
+    const bool crossed = user_events_.crosses_at(k, element.t + part.from * element.h);
     const int zero_order = crossed || (part.behind_zeros && std::abs(values.front()) <= noise) ? 1 : 0;
     const auto change = ode::first_sign_change(coefficients, sign, zero_order, noise);
     if (!change) continue;
@@ -78,9 +77,8 @@ std::optional<Run::EventZero> Run::first_event_zero(const Element& element, cons
   }
   if (resolved) return first;
   const double middle = 0.5 * (part.from + part.to);
-  first =
-      first_event_zero(element, selections, {part.from, middle, part.halvings - 1, part.behind_zeros, part.crossed});
-  return first ? first : first_event_zero(element, selections, {middle, part.to, part.halvings - 1, false, {}});
+  first = first_event_zero(element, selections, {part.from, middle, part.halvings - 1, part.behind_zeros});
+  return first ? first : first_event_zero(element, selections, {middle, part.to, part.halvings - 1, false});
 }
 
 /// State and selections inside an element, into between_x_ and between_selections_.
@@ -145,26 +143,18 @@ double Run::refined_event(const Element& element, const std::vector<double>& sel
 /// What is at zero where an element begins gets the sign that it has behind, which is no change.
 void Run::settle_event_signs(const Element& element, const std::vector<double>& selections) {
   constexpr double nearest = 1e-6, farthest = 1e-2;
-  const auto unsettled = [&] {
-    for (std::size_t k = 0; k < user_events_.functions(); ++k) {
-      if (user_events_.sign(k) == 0) return true;
-    }
-    return false;
-  };
-  for (double theta = nearest; theta < farthest && unsettled(); theta *= 4.0) {
+  for (double theta = nearest; theta < farthest && user_events_.unsettled(); theta *= 4.0) {
     event_state(element, selections, theta);
-    static_cast<void>(user_events_.update(element.t + theta * element.h, between_x_.data(), between_selections_.data(),
-                                          held_.data(), std::nullopt));
+    user_events_.settle(element.t + theta * element.h, between_x_.data(), between_selections_.data(), held_.data());
   }
 }
 
 bool Run::record_user_events(const Element& element, const std::vector<double>& left, double end) {
   settle_event_signs(element, left);
   double from = 0.0;
-  std::optional<std::size_t> crossed;
   constexpr int most_per_element = 1000;
-  for (int count = 0; count < most_per_element; ++count) {
-    const auto zero = first_event_zero(element, left, {from, 1.0, most_halvings, true, crossed});
+  for (int count = 0; count < most_per_element && from < 1.0; ++count) {
+    const auto zero = first_event_zero(element, left, {from, 1.0, most_halvings, true});
     if (!zero) break;
     event_state(element, left, zero->theta);
     std::vector<double> x = between_x_, at = between_selections_;
@@ -173,12 +163,24 @@ bool Run::record_user_events(const Element& element, const std::vector<double>& 
     emit_times(&element, left, t);
     const auto fired = user_events_.update(t, x.data(), at.data(), held_.data(), zero->function);
     if (fire(fired, t, x, at)) return false;
-    crossed = zero->function;
     from = std::min(1.0, std::max(theta, zero->theta));
-    if (from >= 1.0) break;
   }
   emit_times(&element, left, end);
   return true;
+}
+
+/// What gets to zero at a switch has its zero there, whether it goes on or stays (v where a block sticks).
+void Run::fire_events_here() {
+  if (user_events_.empty()) return;
+  const auto take = [&](std::optional<std::size_t> crossed) {
+    return fire(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), crossed), t_, x_, selections_);
+  };
+  if (take(std::nullopt)) return;
+  const double noise = 16.0 * rounding * size_;
+  for (std::size_t k = 0; k < user_events_.functions(); ++k) {
+    const bool reached = user_events_.reaches_zero(k, noise) && !user_events_.crosses_at(k, t_);
+    if (reached && user_events_.sign(k) != 0 && take(k)) return;
+  }
 }
 
 bool Run::fire(const std::vector<std::size_t>& fired, double t, const std::vector<double>& x,

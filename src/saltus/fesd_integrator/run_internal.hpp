@@ -148,9 +148,8 @@ class Run {
   /// Of an element in which zeros of event functions are looked for.
   struct Stretch {
     double from = 0.0, to = 1.0;
-    int halvings = 0;                    ///< that are left
-    bool behind_zeros = false;           ///< what is zero where it begins was so before
-    std::optional<std::size_t> crossed;  ///< the function whose zero was found where it begins
+    int halvings = 0;           ///< that are left
+    bool behind_zeros = false;  ///< what is zero where it begins was so before
   };
   void sample_events(const Element& element, const std::vector<double>& selections, const Stretch& part);
   [[nodiscard]] std::optional<EventZero> first_event_zero(const Element& element, const std::vector<double>& selections,
@@ -161,6 +160,8 @@ class Run {
                                      const EventZero& zero, std::vector<double>& x, std::vector<double>& at);
   /// User events and output times of an element that is accepted; false if an event stops the run.
   [[nodiscard]] bool record_user_events(const Element& element, const std::vector<double>& left, double end);
+  /// User events at a switch, behind it.
+  void fire_events_here();
   /// Records events; true if one of them stops the run.
   bool fire(const std::vector<std::size_t>& fired, double t, const std::vector<double>& x,
             const std::vector<double>& selections);

@@ -68,6 +68,7 @@ void Run::accept_guessed(const std::vector<ElementGuess>& guesses, const std::ve
       recorder_.switched(t_, x_, {&before, &selections, held_.data()}, found, held_.data(),
                          "found by the problem of the step");
       continue_with(found);
+      fire_events_here();
     }
     accept(element, selections_, chain_.left[i + 1], i + 1 == guesses.size() ? end : element.t + element.h);
     row_here();

@@ -187,6 +187,40 @@ TEST(Behaviour, UserEventTogetherWithASwitchIsRecordedOnce) {
   EXPECT_EQ(result.events[0].t, result.events[1].t);
 }
 
+/// A user function with a double zero at the start, beside which its interpolant has roundings of both signs.
+TEST(Behaviour, AMultipleZeroOfAUserFunctionAtTheStartIsNoEvent) {
+  for (const double until : {3.0, 4.0, 5.0, 6.0, 7.0}) {
+    Builder b("fall");
+    const SX x = b.state("x", {0});
+    const SX v = b.state("v", {0});
+    b.dynamics("x", v);
+    b.dynamics("v", -0.3);
+    b.event(sin(10.0 * x));
+    const auto result = run(b, until);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    const double turn = std::acos(-1.0) / 1.5;
+    ASSERT_EQ(result.events.size(), static_cast<std::size_t>(until * until / turn)) << until;
+    for (std::size_t k = 0; k < result.events.size(); ++k) {
+      EXPECT_NEAR(result.events[k].t, std::sqrt(static_cast<double>(k + 1) * turn), 1e-12) << until;
+    }
+  }
+}
+
+/// x and v are 0 for good, where max(x, v) has a kink whose function is 0 to any order.
+TEST(Behaviour, AKinkMayBeStoodOn) {
+  Builder b("rest");
+  const SX x = b.state("x", {0});
+  const SX v = b.state("v", {0});
+  b.dynamics("x", v);
+  b.dynamics("v", -x - 0.2 * b.sign(v));
+  b.event(b.max(x, v) - 0.6);
+  const auto result = run(b, 3);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, EventKind::start);
+  EXPECT_EQ(result.final.x, (std::vector<double>{0.0, 0.0}));
+}
+
 TEST(Behaviour, TimeFunctionsMayVanishAtTheStart) {
   Builder b("square wave");
   const SX x = b.state("x", {1});

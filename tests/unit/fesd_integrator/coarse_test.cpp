@@ -106,6 +106,39 @@ TEST(Coarse, FastEventsAreFoundInLongElements) {
   }
 }
 
+/// Two functions with one zero, and one that is 0 from a switch on.
+TEST(Coarse, EventsThatCoincideFireOnce) {
+  model::Builder builder("sticks");
+  const SX x = builder.state("x", {-0.393});
+  const SX v = builder.state("v", {0.0});
+  builder.dynamics("x", v);
+  builder.dynamics("v", -x - 0.2 * builder.sign(v));  // v = 0.193 sin t up to pi, then 0
+  builder.event(v);
+  builder.event(model::greater(v, 0.0));
+  builder.event(x + 0.2);  // at pi / 2, like the next one
+  builder.event(sin(4.0 * builder.time()) + builder.time() * (x + 0.2));
+  const auto integration = run(*builder.build(), 5.0, {.steps = 200});
+  const double pi = std::acos(-1.0);
+  std::vector<std::pair<std::string, double>> events;
+  for (const auto& event : integration.events) {
+    if (event.kind == result::EventKind::user) events.emplace_back(event.name.value_or(""), event.t);
+  }
+  const auto count = [&](const std::string& name, double t) {
+    return std::count_if(events.begin(), events.end(),
+                         [&](const auto& event) { return event.first == name && std::abs(event.second - t) < 1e-6; });
+  };
+  EXPECT_EQ(count("event1", pi), 1);
+  EXPECT_EQ(count("event2", pi), 1);
+  EXPECT_EQ(count("event3", pi / 2), 1);
+  EXPECT_EQ(count("event4", pi / 2), 1);
+  const auto number = [&](const std::string& name) {
+    return std::count_if(events.begin(), events.end(), [&](const auto& event) { return event.first == name; });
+  };
+  EXPECT_EQ(number("event1"), 1);
+  EXPECT_EQ(number("event2"), 1);
+  EXPECT_EQ(number("event3"), 1);
+}
+
 /// Steps that are divided again and again must end, and can be stopped by hand until then.
 TEST(Coarse, DividedStepsCountAndAreShown) {
   const auto system = fast();
