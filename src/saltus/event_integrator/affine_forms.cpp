@@ -14,6 +14,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // what the search takes for noise at most, so nothing it would find is passed over.
 constexpr double margin = 64.0 * std::numeric_limits<double>::epsilon();
 
+/// Whether a state between low and high gets to one of the thresholds around it, or is not finite.
+inline bool reaches(double low, double high, double lower, double upper) {
+  const double room = margin * std::max(std::abs(low), std::abs(high));
+  return !(low - room > lower) || !(high + room < upper);
+}
+
 }  // namespace
 
 AffineForms::AffineForms(std::size_t states)
@@ -259,18 +265,13 @@ bool AffineForms::leaves(std::size_t i, int sign, const StepBounds& mean_slopes)
   return least > margin * size;
 }
 
-bool AffineForms::reaches_threshold(std::size_t state, const StepBounds& bounds) const {
-  const double low = bounds.low[state];
-  const double high = bounds.high[state];
-  const double room = margin * std::max(std::abs(low), std::abs(high));
-  return !(low - room > lower_[state] && high + room < upper_[state]);
-}
-
 bool AffineForms::may_vanish(const StepBounds& bounds) const {
+  bool any = false;  // without a way out: almost always there is none
   for (std::size_t state = 0; state < lower_.size(); ++state) {
-    if (reaches_threshold(state, bounds)) return true;
+    any |= reaches(bounds.low[state], bounds.high[state], lower_[state], upper_[state]);
   }
-  return std::any_of(several_.begin(), several_.end(), [&](std::size_t i) { return reaches_zero(forms_[i], bounds); });
+  return any ||
+         std::any_of(several_.begin(), several_.end(), [&](std::size_t i) { return reaches_zero(forms_[i], bounds); });
 }
 
 void AffineForms::append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const {
@@ -278,9 +279,9 @@ void AffineForms::append_suspects(const StepBounds& bounds, std::vector<std::siz
   const double time = std::max(std::abs(bounds.begin), std::abs(bounds.end));
   const double resolution = std::min(16.0 * margin * time / (bounds.end - bounds.begin), 1.0);
   for (std::size_t state = 0; state < lower_.size(); ++state) {
-    if (!reaches_threshold(state, bounds)) continue;
     const double low = bounds.low[state];
     const double high = bounds.high[state];
+    if (!reaches(low, high, lower_[state], upper_[state])) continue;
     // What the state reaches behind its nearest threshold by more than this is not reached before it, whatever the
     // roundings of both, nor at the same time, as far as that can be resolved.
     const double beside =

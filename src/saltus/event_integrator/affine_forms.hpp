@@ -99,7 +99,6 @@ class AffineForms {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   [[nodiscard]] bool reaches_zero(const Form& form, const StepBounds& bounds) const;
   [[nodiscard]] double terms(const Form& form, const StepBounds& bounds) const;
-  [[nodiscard]] bool reaches_threshold(std::size_t state, const StepBounds& bounds) const;
   void set_nearest_below(std::size_t state, std::size_t place);
   void set_nearest_above(std::size_t state, std::size_t place);
 

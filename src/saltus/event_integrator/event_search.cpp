@@ -283,7 +283,7 @@ void EventSearch::find_suspects(const ode::DenseStep& step) {
       if (!is_far(i)) suspects_.push_back(i);
     }
   }
-  std::sort(suspects_.begin(), suspects_.end());
+  if (suspects_.size() > 1) std::sort(suspects_.begin(), suspects_.end());
 }
 
 /// The functions that the location of a hit has to look at: it retakes the step, whose end differs from the dense

@@ -25,6 +25,12 @@ std::string_view why_executed(const model::Jump& jump) {
   __builtin_unreachable();
 }
 
+/// What result::kind_of_switch says of it.
+result::EventKind kind_of(const SurfaceSwitch& change) {
+  if (change.after == 0) return result::EventKind::enter_sliding;
+  return change.before == 0 ? result::EventKind::leave_sliding : result::EventKind::crossing;
+}
+
 }  // namespace
 
 Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& system)
@@ -192,9 +198,7 @@ bool Recorder::switched(double t, const std::vector<double>& x, const ModeState&
 void Recorder::switched(double t, const std::vector<double>& x, const SurfaceSwitch& change) {
   const auto j = at(change.surface);
   const auto& columns = listed_columns_[j];
-  listed_before_.assign(columns.size(), change.before);
-  listed_after_.assign(columns.size(), change.after);
-  auto& event = begin(t, result::kind_of_switch(listed_before_, listed_after_));
+  auto& event = begin(t, kind_of(change));
   for (const std::size_t column : columns) add_surface(event, column);
   set_states(event, x, x);
   event.mode = recording_.modes.append_change(j, change.before, change.alpha_before);

@@ -6,7 +6,7 @@ namespace saltus::event_integrator {
 
 bool SwitchSeries::repeats(double t, const std::vector<int>& before, const std::vector<int>& after) {
   if (before == after) return false;
-  times_[switches_++ % remembered] = t;
+  remember(t);
   if (t != last_) {
     noted_ = 0;
     surface_change_.reset();
@@ -33,29 +33,33 @@ SwitchSeries::Change& SwitchSeries::append() {
   return changes_[noted_++];
 }
 
+void SwitchSeries::remember(double t) {
+  std::copy_backward(times_.begin(), times_.end() - 1, times_.end());
+  times_[0] = t;
+  ++switches_;
+}
+
 void SwitchSeries::note(double t, std::size_t surface, int before) {
-  times_[switches_++ % remembered] = t;
+  remember(t);
   noted_ = 0;
   last_ = t;
   surface_change_ = {surface, before};
 }
 
 bool SwitchSeries::shrinks(double t) const {
-  const auto back = [&](std::size_t switches) { return times_[(switches_ - 1 - switches) % remembered]; };
   // The last terms of a geometric series drown in the rounding of t: a fast one is over after a few, and with more in a
   // lap a slow one shrinks by half from lap to lap.
   for (const std::size_t lap : {std::size_t{2}, std::size_t{4}}) {
-    if (switches_ <= 2 * lap || t - back(lap) > 1e-9 * span_) continue;
-    if (back(0) - back(lap) <= 0.5 * (back(lap) - back(2 * lap))) return true;
+    if (switches_ <= 2 * lap || t - times_[lap] > 1e-9 * span_) continue;
+    if (times_[0] - times_[lap] <= 0.5 * (times_[lap] - times_[2 * lap])) return true;
   }
   return false;
 }
 
 bool SwitchSeries::tightens() const {
-  const auto back = [&](std::size_t switches) { return times_[(switches_ - 1 - switches) % remembered]; };
   for (std::size_t lap = 1; lap <= 4 && switches_ > 2 * lap; ++lap) {
     // A cycle that is approached has laps of nearly one length; the slowest spirals known lose eight percent in one.
-    if (back(0) - back(lap) < 0.995 * (back(lap) - back(2 * lap))) return true;
+    if (times_[0] - times_[lap] < 0.995 * (times_[lap] - times_[2 * lap])) return true;
   }
   return false;
 }

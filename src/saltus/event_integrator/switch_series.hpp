@@ -34,6 +34,7 @@ class SwitchSeries {
  private:
   using Change = std::pair<std::vector<int>, std::vector<int>>;
   Change& append();
+  void remember(double t);
   double span_;
   double last_ = 0.0;
   std::vector<Change> changes_;  ///< the first `noted_` of them are those at last_
@@ -46,7 +47,7 @@ class SwitchSeries {
   std::optional<SurfaceChange> surface_change_;
   /// Two laps of up to four switches, and one to start from.
   static constexpr std::size_t remembered = 9;
-  std::array<double, remembered> times_{};  ///< of the last switches, in turn
+  std::array<double, remembered> times_{};  ///< of the last switches, the last one first
   std::size_t switches_ = 0;
   long in_a_row_ = 0;  ///< without the time having advanced noticeably
   double start_ = 0.0;
