@@ -244,10 +244,14 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
 
 Transition decide_behind_jump(const Surroundings& s, const ModeState& before, double t, const double* x,
                               double time_scale, const std::vector<int>& held) {
+  Transition transition;
+  if (s.kernel.switching_functions() == 0) {  // nothing to decide
+    transition.beside.assign(x, x + s.kernel.states());
+    return transition;
+  }
   auto [occasion, state] = read_point(s, t, x, time_scale, held);
   // Selections of the sliding motion before are where a search for the new ones starts.
   for (const int j : held) state.alpha[at(j)] = before.alpha[at(j)];
-  Transition transition;
   if (!finite_at_start(s, t, x, state, transition)) return transition;
   transition = decide_mode(s, state, occasion);
   other_continuations(s, state, occasion, transition);
