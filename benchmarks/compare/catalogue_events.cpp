@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -132,6 +133,13 @@ int table(const std::filesystem::path& folder) {
     const char* name;
   } methods[]{{ode::Method::dop853, "dop853"}, {ode::Method::dopri5, "dopri5"}};
   Summary summaries[2];
+  double load = 0.0;
+  static_cast<void>(getloadavg(&load, 1));
+  std::printf(
+      "# Events in steps of their own runs\n\n"
+      "Made by `compare_catalogue_events`: rtol 1e-8, native code, load average before %.1f. How to read it: "
+      "[benchmarks/README.md](../README.md).\n\n",
+      load);
   std::printf("| model | method | events | other steps | step, ns | event, ns | event in steps |\n");
   std::printf("| --- | --- | ---: | ---: | ---: | ---: | ---: |\n");
   for (const auto& file : files) {
