@@ -124,19 +124,43 @@ fesd = { reformulation = "stewart" }
         status = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]
         self.assertEqual(status["termination"], "evaluation_failed")
 
+    def write_quadrants(self, rates):
+        """The same model by indicators, and by conditions; z' in pp, pm, mp, mm."""
+        fields = {"pp": ("-x-y", "x > 0 and y > 0", -1, -0.7), "pm": ("-x+y", "x > 0 and y < 0", -0.5, 1.2),
+                  "mp": ("x-y", "x < 0 and y > 0", 0.9, -1), "mm": ("x+y", "x < 0 and y < 0", 1, 0.8)}
+        for name, key in (("quad.toml", 0), ("when.toml", 1)):
+            modes = ""
+            for (mode, field), z in zip(fields.items(), rates):
+                region = f'name = "{mode}"\nindicator = "{field[0]}"' if key == 0 else f'when = "{field[1]}"'
+                modes += f'[[modes]]\n{region}\ndynamics = {{ x = {field[2]}, y = {field[3]}, z = {z} }}\n'
+            (self.folder / name).write_text(
+                f'[model]\nname = "quad"\n[states]\nx = 0.7\ny = 0.4\nz = 0\n{modes}[simulate]\nuntil = 3\n',
+                encoding="utf-8")
+
+    def end_of(self, model, *arguments):
+        self.run_tool("simulate", model, "--quiet", "--out", "r.json", *arguments, code=0)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
     def test_four_quadrants_by_indicators_are_told(self):
         # g1 + g4 = g2 + g3: at the origin four weights and three equations, and z feels the one that is free.
-        fields = {"pp": ("-x-y", -1, -0.7, 1), "pm": ("-x+y", -0.5, 1.2, 0), "mp": ("x-y", 0.9, -1, 0), "mm": ("x+y", 1, 0.8, 2)}
-        modes = "".join(f'[[modes]]\nname = "{name}"\nindicator = "{g}"\ndynamics = {{ x = {x}, y = {y}, z = {z} }}\n'
-                        for name, (g, x, y, z) in fields.items())
-        (self.folder / "quad.toml").write_text(
-            f'[model]\nname = "quad"\n[states]\nx = 0.7\ny = 0.4\nz = 0\n{modes}[simulate]\nuntil = 3\n', encoding="utf-8")
-        _, errors = self.run_tool("simulate", "quad.toml", "--quiet", code=3)
-        self.assertIn("state these regions by conditions (when)", " ".join(errors.split()))
-        self.run_tool("simulate", "quad.toml", "--method", "fesd", "--quiet", "--out", "r.json", code=0)
-        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.write_quadrants((1, 0, 0, 2))
+        event, conditions = self.end_of("quad.toml"), self.end_of("when.toml")
+        for x, reference in zip(event["final"]["x"], conditions["final"]["x"]):
+            self.assertAlmostEqual(x, reference, delta=1e-10)
+        self.assertEqual(event["final"]["regions"], [["pp", "pm", "mp", "mm"]])
+        self.assertEqual([e["unique"] for e in event["events"]], [True, False])
+        self.assertIn("soft minima", event["events"][-1]["reason"])
+        result = self.end_of("quad.toml", "--method", "fesd")
         self.assertIn("sliding on pp, pm, mp do not determine all weights", result["status"]["message"])
         self.assertEqual([event["unique"] for event in result["events"]], [True, False])
+
+    def test_four_quadrants_that_move_one_way_agree(self):
+        self.write_quadrants((0.7, -0.7, 2.9, 1.2))  # 1 + x' - y': whatever the weights are, z = t + x - y + const
+        event, elements = self.end_of("quad.toml"), self.end_of("quad.toml", "--method", "fesd")
+        self.assertEqual([e["unique"] for e in event["events"]], [True, True])
+        for run in (event, elements):  # constant fields: exact for both
+            for x, exact in zip(run["final"]["x"], (0, 0, 3 - 0.7 + 0.4)):
+                self.assertAlmostEqual(x, exact, delta=1e-10)
 
     def test_timestepping_divides_elements_that_have_no_active_sets(self):
         for stages in (2, 3, 4):

@@ -44,6 +44,8 @@ void ModeField::enter(const ModeState& state) {
   start_alpha_ = state.alpha;
   alpha_ = state.alpha;
   solve_ = SlidingSolve::none;
+  independent_.clear();
+  ties_known_ = true;
   if (sliding_.empty()) {
     kernel_.prepare_field(alpha_.data(), constants_[0]);
     return;
@@ -155,6 +157,7 @@ void ModeField::gradients(double t, const double* x) {
     row_square_ = rows_.squaredNorm();
     refer_to_constants();
   }
+  find_ties();
 }
 
 ode::Attempt ModeField::attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
@@ -294,10 +297,24 @@ bool ModeField::solve_normal_equations() {
     residual_[0] /= row_square_;
     return row_square_ > 0.0;
   }
+  if (!independent_.empty()) return solve_independent_equations();
   normal_matrix_.noalias() = rows_ * rows_.transpose();
   cholesky_.compute(normal_matrix_);
   if (cholesky_.info() != Eigen::Success) return false;
   cholesky_.solveInPlace(residual_);
+  return true;
+}
+
+/// Rows that depend on others follow them.
+bool ModeField::solve_independent_equations() {
+  base_rows_ = rows_(independent_, Eigen::all);
+  base_residual_ = residual_(independent_);
+  normal_matrix_.noalias() = base_rows_ * base_rows_.transpose();
+  cholesky_.compute(normal_matrix_);
+  if (cholesky_.info() != Eigen::Success) return false;
+  cholesky_.solveInPlace(base_residual_);
+  residual_.setZero();
+  residual_(independent_) = base_residual_;
   return true;
 }
 

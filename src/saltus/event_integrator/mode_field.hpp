@@ -13,8 +13,10 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/higher_order.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/event_integrator/region_ties.hpp"
 #include "saltus/ode/stepper.hpp"
 #include "saltus/switching/bilinear_root.hpp"
+#include "saltus/switching/region_weights.hpp"
 #include "saltus/switching/selection_newton.hpp"
 
 namespace saltus::event_integrator {
@@ -30,7 +32,9 @@ enum class SlidingSolve {
 
 /// Exit functions of one sliding surface; the mode ends where one changes its sign.
 struct ExitValues {
-  double below = 0.0;  ///< > 0 while sliding: the lower region's field still arrives (alpha > 0)
+  /// > 0 while sliding: the lower region's field still arrives (alpha > 0). Of regions by `indicator` that depend on
+  /// each other `below` and -`above` are sums of weights, in no order: what the facets of their polytope leave.
+  double below = 0.0;
   double above = 0.0;  ///< < 0 while sliding: the upper region's field still arrives (alpha < 1)
   /// Keeps its sign while the root exists. Not affine: d g / d alpha. First of a group of coupled surfaces: det G
   /// squared for two, det G for more, relative to the size of g.
@@ -73,6 +77,10 @@ class ModeField {
   [[nodiscard]] SlidingSolve solve() const { return solve_; }
   [[nodiscard]] int codimension() const { return static_cast<int>(sliding_.size()); }
 
+  /// Behind an evaluation: the sliding surfaces whose gradients are taken to be independent: all, but for regions by
+  /// `indicator` whose weights are those of switching::RegionWeights.
+  [[nodiscard]] std::vector<int> independent() const;
+
   /// xdot (n_x); not finite where the model or the sliding selection is undefined.
   void operator()(double t, const double* x, double* xdot) {
     if (solve_ != SlidingSolve::none) return slide(t, x, xdot);
@@ -100,6 +108,16 @@ class ModeField {
   bool project(double t, double* x);
 
  private:
+  /// Regions of a group by `indicator` that slide, as rows, and the reference they are measured against.
+  struct SlidingRegions {
+    int reference = 0;
+    std::vector<std::size_t> rows;
+    /// Where the gradients of `rows` depend on each other.
+    std::optional<switching::RegionWeights> tie = {};
+    RegionBasis basis = {};
+    bool constant = false;  ///< gradients of all rows
+  };
+
   [[nodiscard]] ode::RightHandSideStages native_stages() const;
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
   void resize_rows();
@@ -118,12 +136,17 @@ class ModeField {
   void find_stability();
   [[nodiscard]] bool several_regions(std::size_t row) const;
   void find_regions(const ModeState& state);
+  void find_ties();
+  void find_independent_rows();
+  [[nodiscard]] const SlidingRegions* tie_of(std::size_t row) const;
+  void evaluate_tie(double t, const double* x, SlidingRegions& regions);
   void weigh_references();
   void evaluate_nonaffine(double t, const double* x);
   double selected_velocity(double t, const double* x, std::size_t row, double selection);
   void remove_normal_part(double* xdot);
   void evaluate_higher_order(double t, const double* x);
   [[nodiscard]] bool solve_normal_equations();
+  [[nodiscard]] bool solve_independent_equations();
 
   const evaluation::ModelKernel& kernel_;
   bool affine_in_alpha_;
@@ -143,12 +166,12 @@ class ModeField {
   std::vector<std::size_t> group_size_;           ///< by row, 0 behind the first of a group
   std::vector<std::optional<switching::RootKind>>
       kind_;  ///< by row, for the first of a pair: known once it was evaluated
-  /// Regions of a group by `indicator` that slide, as rows, and the reference they are measured against.
-  struct SlidingRegions {
-    int reference = 0;
-    std::vector<std::size_t> rows;
-  };
   std::vector<SlidingRegions> regions_;
+  bool ties_known_ = false;                ///< of this mode: once gradients are
+  std::vector<Eigen::Index> independent_;  ///< of ties: rows whose gradients are; empty = all
+  Eigen::MatrixXd tie_rows_, tie_rates_, base_rows_;
+  Eigen::VectorXd base_residual_;
+  std::vector<double> theta_;
   std::vector<std::optional<switching::SelectionNewton>> newton_;  ///< by row, for the first of a larger group
   std::vector<double> selections_;                                 ///< of the group at hand
   std::vector<double> speed_;                                      ///< by row: in groups of more than two

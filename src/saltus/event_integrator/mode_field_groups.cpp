@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/regions.hpp"
@@ -81,28 +82,84 @@ bool ModeField::several_regions(std::size_t row) const {
 
 void ModeField::find_regions(const ModeState& state) {
   regions_.clear();
+  independent_.clear();
   for (const auto& group : kernel_.region_groups()) {
-    SlidingRegions regions{reference_of(state, group), {}};
+    SlidingRegions regions;
+    regions.reference = reference_of(state, group);
     for (std::size_t row = 0; row < sliding_.size(); ++row) {
       if (group.holds(sliding_[row])) regions.rows.push_back(row);
     }
     if (!regions.rows.empty()) regions_.push_back(std::move(regions));
   }
+  ties_known_ = std::none_of(regions_.begin(), regions_.end(), [](const auto& r) { return r.rows.size() > 1; });
+}
+
+/// Behind gradients(): which rows of regions depend on others, once in a mode, and how they do.
+void ModeField::find_ties() {
+  if (ties_known_ && independent_.empty()) return;
+  for (auto& regions : regions_) {
+    if (regions.rows.size() < 2 || (ties_known_ && (!regions.tie || regions.constant))) continue;
+    tie_rows_ = rows_(regions.rows, Eigen::all);
+    if (ties_known_) {
+      regions.tie->polytope().move(coordinates_in(regions.basis, tie_rows_));
+      continue;
+    }
+    regions.basis = basis_of(tie_rows_);
+    if (regions.basis.spans_all(tie_rows_.rows())) continue;
+    auto polytope = switching::RegionPolytope::make(coordinates_in(regions.basis, tie_rows_));
+    // Two exits for each row are what there is for the facets.
+    if (!polytope || polytope->facets().size() > 2 * regions.rows.size()) continue;
+    regions.tie.emplace(std::move(*polytope));
+    regions.constant = std::all_of(regions.rows.begin(), regions.rows.end(), [&](auto r) { return constant_row_[r]; });
+  }
+  if (!ties_known_) find_independent_rows();
+  ties_known_ = true;
+}
+
+void ModeField::find_independent_rows() {
+  const auto is_dependent = [&](std::size_t row) {
+    const auto* regions = tie_of(row);
+    if (regions == nullptr) return false;
+    const auto& base = regions->basis.base;
+    return std::none_of(base.begin(), base.end(),
+                        [&](auto k) { return regions->rows[static_cast<std::size_t>(k)] == row; });
+  };
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    if (!is_dependent(row)) independent_.push_back(static_cast<Eigen::Index>(row));
+  }
+  if (independent_.size() == sliding_.size()) independent_.clear();
+}
+
+std::vector<int> ModeField::independent() const {
+  if (independent_.empty()) return sliding_;
+  std::vector<int> surfaces;
+  for (const auto row : independent_) surfaces.push_back(sliding_[static_cast<std::size_t>(row)]);
+  return surfaces;
+}
+
+/// The regions of a row, if they depend on each other.
+const ModeField::SlidingRegions* ModeField::tie_of(std::size_t row) const {
+  for (const auto& regions : regions_) {
+    if (regions.tie && std::binary_search(regions.rows.begin(), regions.rows.end(), row)) return &regions;
+  }
+  return nullptr;
 }
 
 /// The reference of a group has the weight that the others leave; where there are several others, that weight ends the
 /// mode at 0, and none of theirs at 1.
 void ModeField::weigh_references() {
-  for (const auto& [reference, rows] : regions_) {
+  for (const auto& regions : regions_) {
+    const auto& rows = regions.rows;
     double weight = 1.0;
     for (const std::size_t row : rows) weight -= alpha_[at(sliding_[row])];
-    alpha_[at(reference)] = weight;
-    if (rows.size() == 1) continue;
+    alpha_[at(regions.reference)] = weight;
+    if (rows.size() == 1 || regions.tie) continue;
     for (const std::size_t row : rows) exits_[row].above = row == rows.front() ? -weight : -1.0;
   }
 }
 
 bool ModeField::has_loss(std::size_t row) const {
+  if (const auto* regions = tie_of(row)) return regions->rows.front() == row;
   if (several_regions(row)) return false;
   return solve_ == SlidingSolve::nonaffine || (solve_ == SlidingSolve::coupled && group_size_[row] > 1);
 }
@@ -117,6 +174,13 @@ void ModeField::evaluate_groups(double t, const double* x) {
   kernel_.field(t, x, trial_.data(), f_[0].data());
   for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {normal_velocity(row, f_[0]), 0.0, 0.0, 0.0};
   for (const auto& rows : groups_) {
+    const auto tie = std::find_if(regions_.begin(), regions_.end(), [&](const auto& regions) {
+      return regions.tie && regions.rows.front() == rows.front();
+    });
+    if (tie != regions_.end()) {
+      evaluate_tie(t, x, *tie);
+      continue;
+    }
     if (rows.size() == 2 && !several_regions(rows.front())) {
       evaluate_pair(t, x, rows);
       continue;
@@ -159,6 +223,38 @@ void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::
   exits_[rows[0]].stability = root.stability;
 }
 
+/// Regions that depend on each other: their weights from those of the mode. Behind evaluate_groups()'s first corner.
+void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions) {
+  const auto& rows = regions.rows;
+  const auto& base = regions.basis.base;
+  const auto velocities = [&](const std::vector<double>& f, Eigen::Index column) {
+    for (std::size_t k = 0; k < base.size(); ++k) {
+      tie_rates_(static_cast<Eigen::Index>(k), column) = normal_velocity(rows[static_cast<std::size_t>(base[k])], f);
+    }
+  };
+  tie_rates_.resize(static_cast<Eigen::Index>(base.size()), static_cast<Eigen::Index>(rows.size()) + 1);
+  theta_.assign(1, start_alpha_[at(regions.reference)]);
+  velocities(f_[0], 0);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto j = at(sliding_[rows[k]]);
+    trial_[j] = 1.0;
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    trial_[j] = 0.0;
+    velocities(f_[1], static_cast<Eigen::Index>(k) + 1);
+    theta_.push_back(start_alpha_[j]);
+  }
+  const bool found = regions.tie->solve(tie_rates_, theta_.data());
+  const auto facets = regions.tie->polytope().facets().size();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    alpha_[at(sliding_[rows[k]])] = found ? theta_[k + 1] : not_a_number;
+    const auto excess = [&](std::size_t facet) { return facet < facets ? regions.tie->excess(facet) : 1.0; };
+    exits_[rows[k]] = {found ? excess(2 * k) : not_a_number, found ? -excess(2 * k + 1) : not_a_number, 0.0, 0.0};
+    // Weights are as good as the equations are regular.
+    condition_[rows[k]] = 1.0 / std::max(std::abs(regions.tie->determinant()), 1e-6);
+  }
+  exits_[rows[0]].loss = regions.tie->determinant();
+}
+
 /// Largest normal components over all corners where the mode begins: the default speeds of its hidden dynamics.
 void ModeField::find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows) {
   std::vector<double> alpha(rows.size());
@@ -192,7 +288,7 @@ void ModeField::evaluate_many(double t, const double* x, const std::vector<std::
 /// Behind evaluate_groups(): what only the event functions need of groups of more than two.
 void ModeField::find_stability() {
   for (const auto& rows : groups_) {
-    if (rows.size() <= 2) continue;
+    if (rows.size() <= 2 || tie_of(rows[0]) != nullptr) continue;
     const auto& newton = *newton_[rows[0]];
     const auto jacobian = newton.jacobian();
     double size = 1.0;
@@ -212,7 +308,7 @@ void ModeField::find_stability() {
 }
 
 void ModeField::follow(double t, const double* x) {
-  const auto is_large = [](const auto& rows) { return rows.size() > 2; };
+  const auto is_large = [&](const auto& rows) { return rows.size() > 2 || tie_of(rows.front()) != nullptr; };
   if (solve_ != SlidingSolve::coupled || std::none_of(groups_.begin(), groups_.end(), is_large)) return;
   select(t, x);
   if (is_finite(alpha_)) start_alpha_ = alpha_;

@@ -1,7 +1,9 @@
 #include "saltus/event_integrator/regions.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "saltus/event_integrator/projected_fields.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -76,6 +78,25 @@ void note_ties(const ModelKernel& kernel, const ModeState& before, Occasion& occ
     }
     if (occasion.tied.size() > first) occasion.tied.push_back(reference_of(before, group));
   }
+}
+
+void complete_ties(const ModelKernel& kernel, const ModeState& before, Occasion& occasion) {
+  const auto located = occasion.at_zero;
+  for (const auto& group : kernel.region_groups()) {
+    const auto holds = [&](int j) { return group.holds(j); };
+    if (group.count < 3 || std::none_of(located.begin(), located.end(), holds)) continue;
+    const ProjectedFields fields(kernel, occasion);
+    std::vector<double> values(at(kernel.event_functions()));
+    kernel.functions(occasion.t, occasion.x, before.alpha.data(), values.data());
+    for (int j = group.first; j < group.first + group.count; ++j) {
+      if (before.mode[at(j)] == 0 || std::find(located.begin(), located.end(), j) != located.end()) continue;
+      // What two times next to each other differ by, as where events are located.
+      const double rate = fields.velocities(before.alpha, {j}).front();
+      const double resolution = std::max(fields.noise(j), 8.0 * rounding_unit * std::abs(occasion.t * rate));
+      if (std::abs(values[at(j)]) <= resolution) occasion.at_zero.push_back(j);
+    }
+  }
+  std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
 }
 
 bool same_group(const ModelKernel& kernel, int i, int j) {

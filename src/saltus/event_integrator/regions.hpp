@@ -35,6 +35,10 @@ void complete_weights(const evaluation::ModelKernel& kernel, ModeState& state);
 /// Regions of one group that are at its minimum where an occasion is: those at zero, and their references.
 void note_ties(const evaluation::ModelKernel& kernel, const ModeState& before, Occasion& occasion);
 
+/// Adds to those at zero of a group the regions that are so to rounding of psi or of the time: where several reach the
+/// minimum within a few roundings, as at the end of a spiral, which one is located there means nothing.
+void complete_ties(const evaluation::ModelKernel& kernel, const ModeState& before, Occasion& occasion);
+
 /// Whether both are regions of the same group.
 [[nodiscard]] bool same_group(const evaluation::ModelKernel& kernel, int i, int j);
 

@@ -97,6 +97,7 @@ bool Run::change_mode(const Located& located) {
   }
   std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
   occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
+  if (!kernel_.region_groups().empty()) complete_ties(kernel_, state_, occasion);
   note_ties(kernel_, state_, occasion);
   Transition& transition = transition_;
   const bool slope_holds = cells_.empty() && jumps_.none();  // no cell was left, and no guard released, here

@@ -71,13 +71,13 @@ bool Decider::check() {
     transition_.beside = transition_.beyond_spiral->x;
     return true;
   }
-  if (state.sliding.size() > 1 && fields_.gradients_depend(state.alpha, state.sliding)) {
-    return fail_where_surfaces_touch(state.sliding);
-  }
   ModeField field(s_.kernel, s_.affine_in_alpha);
   field.enter(state);
   std::vector<double> xdot(at(s_.kernel.states()));
   field(occasion_.t, occasion_.x, xdot.data());
+  // Regions whose indicators depend on each other follow those that do not.
+  const auto held = field.independent();
+  if (held.size() > 1 && fields_.gradients_depend(state.alpha, held)) return fail_where_surfaces_touch(held);
   transition_.beside = fields_.point_beside(state.alpha);
   const auto is_number = [](double value) { return std::isfinite(value); };
   if (!std::all_of(xdot.begin(), xdot.end(), is_number)) field(occasion_.t, transition_.beside.data(), xdot.data());
@@ -176,9 +176,9 @@ bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
       state.sliding.size() > 1) {
     return fail(
         result::Termination::outside_class,
-        fmt::format("at t = {} more regions meet than their indicators tell apart: that of '{}' follows from those "
-                    "of the others, as with four quadrants, so that their weights are not determined; state "
-                    "these regions by conditions (when) of switching functions",
+        fmt::format("at t = {} more regions meet than their indicators tell apart, for an instant or with too many "
+                    "sides: that of '{}' follows from those of the others, and their weights are not determined; "
+                    "state these regions by conditions (when) of switching functions, or perturb a parameter",
                     occasion_.t, name));
   }
   if (motion.side.drift == switching::Drift::stays) {

@@ -10,6 +10,7 @@
 
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/projected_fields.hpp"
+#include "saltus/event_integrator/region_ties.hpp"
 #include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/event_integrator/transition.hpp"
@@ -17,6 +18,7 @@
 #include "saltus/switching/hidden_dynamics.hpp"
 #include "saltus/switching/intersection.hpp"
 #include "saltus/switching/region_decision.hpp"
+#include "saltus/switching/tied_regions.hpp"
 
 namespace saltus::event_integrator {
 
@@ -56,6 +58,13 @@ struct RegionChoice {
   std::string reason;
 };
 
+/// Regions of a group that meet, the reference first.
+struct MeetingRegions {
+  std::vector<int> candidates;
+  /// Of the gradients of psi of the others, where they depend on each other and their explicit rates do so, too.
+  std::optional<RegionBasis> basis;
+};
+
 /// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
 /// around j.
 bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j);
@@ -87,8 +96,17 @@ class Decider {
   bool decide_regions(const std::vector<int>& group);
   void apply_regions();
   void follow_other_regions();
-  bool goes_on(const std::vector<int>& candidates, switching::RegionSet& set);
-  void step_ahead(const std::vector<int>& candidates, const switching::RegionSet& set, std::vector<double>& x);
+  bool goes_on(const MeetingRegions& meeting, switching::RegionSet& set);
+  void step_ahead(const MeetingRegions& meeting, const switching::RegionSet& set, std::vector<double>& x);
+  bool solve_set(const MeetingRegions& meeting, double t, const double* x, const switching::RegionSet& near,
+                 switching::RegionSet& set);
+  std::vector<switching::RegionSet> sets_that_go_on(const MeetingRegions& meeting);
+  MeetingRegions meeting_of(std::vector<int> candidates);
+  Eigen::MatrixXd region_gradients(const std::vector<int>& candidates, double t, const double* x);
+  switching::RegionTie tie_at(const MeetingRegions& meeting, double t, const double* x);
+  bool coalesces(const MeetingRegions& meeting, const switching::RegionSet& set);
+  bool stays_tied(const MeetingRegions& meeting, const switching::RegionSet& set);
+  bool moves_in_one_way(const MeetingRegions& meeting, const switching::RegionSet& set);
   switching::RegionRates region_rates(const std::vector<int>& candidates, double t, const double* x);
   switching::GroupDecision ask(const std::vector<int>& group, const switching::CornerTable& table);
   bool decide_coupled(const std::vector<int>& group, const switching::CornerTable& table);

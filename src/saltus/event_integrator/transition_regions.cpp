@@ -42,7 +42,8 @@ switching::RegionRates Decider::region_rates(const std::vector<int>& candidates,
 }
 
 /// x := a little later along the motion of a set (midpoint rule).
-void Decider::step_ahead(const std::vector<int>& candidates, const switching::RegionSet& set, std::vector<double>& x) {
+void Decider::step_ahead(const MeetingRegions& meeting, const switching::RegionSet& set, std::vector<double>& x) {
+  const auto& candidates = meeting.candidates;
   const double time = 1e-2 * occasion_.time_scale;
   x.assign(occasion_.x, occasion_.x + s_.kernel.states());
   std::vector<double> f(x.size());
@@ -53,27 +54,45 @@ void Decider::step_ahead(const std::vector<int>& candidates, const switching::Re
     for (std::size_t k = 0; k < own.active.size(); ++k) alpha[at(candidates[at(own.active[k])])] = own.weights[k];
     s_.kernel.field(occasion_.t + 0.5 * (fraction > 0.5 ? time : 0.0), x.data(), alpha.data(), f.data());
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = occasion_.x[i] + fraction * time * f[i];
-    if (fraction < 1.0 &&
-        !switching::solve_region_set(region_rates(candidates, occasion_.t + 0.5 * time, x.data()), set.active, own)) {
-      return;
-    }
+    if (fraction < 1.0 && !solve_set(meeting, occasion_.t + 0.5 * time, x.data(), set, own)) return;
   }
 }
 
 /// Whether a set that is admissible to rounding is so a little later along its own motion. What stays on the verge (an
 /// equilibrium of one of the fields) is marked so, and as not attracting: it is the last to be taken.
-bool Decider::goes_on(const std::vector<int>& candidates, switching::RegionSet& set) {
+bool Decider::goes_on(const MeetingRegions& meeting, switching::RegionSet& set) {
   constexpr double rounding = 1e-14;
   std::vector<double> ahead;
-  step_ahead(candidates, set, ahead);
+  step_ahead(meeting, set, ahead);
   switching::RegionSet later;
-  const auto rates = region_rates(candidates, occasion_.t + 1e-2 * occasion_.time_scale, ahead.data());
-  if (!switching::solve_region_set(rates, set.active, later) || !(later.margin >= -rounding)) return false;
+  if (!solve_set(meeting, occasion_.t + 1e-2 * occasion_.time_scale, ahead.data(), set, later)) return false;
+  if (!(later.margin >= -rounding)) return false;
   if (later.margin <= rounding) {
     set.marginal = true;
     set.attracts = false;
   }
   return true;
+}
+
+/// The weights of a set at a point.
+bool Decider::solve_set(const MeetingRegions& meeting, double t, const double* x, const switching::RegionSet& near,
+                        switching::RegionSet& set) {
+  if (meeting.basis) return switching::solve_region_face(tie_at(meeting, t, x), near.active, near.weights, set);
+  return switching::solve_region_set(region_rates(meeting.candidates, t, x), near.active, set);
+}
+
+std::vector<switching::RegionSet> Decider::sets_that_go_on(const MeetingRegions& meeting) {
+  auto admissible =
+      meeting.basis
+          ? switching::admissible_region_faces(tie_at(meeting, occasion_.t, occasion_.x), marginal)
+          : switching::admissible_region_sets(region_rates(meeting.candidates, occasion_.t, occasion_.x), marginal);
+  std::vector<switching::RegionSet> sets;
+  for (auto& set : admissible) {
+    if (meeting.basis && (coalesces(meeting, set) || !stays_tied(meeting, set))) continue;
+    if (set.margin > marginal || goes_on(meeting, set)) sets.push_back(std::move(set));
+  }
+  switching::merge_same_motions(sets);
+  return sets;
 }
 
 /// A kink, or a time, that is passed where regions meet: nothing slides on it.
@@ -117,14 +136,11 @@ bool Decider::decide_regions(const std::vector<int>& group) {
                             "parameter",
                             occasion_.t, names(s_.system, group), most));
   }
-  std::vector<int> candidates{reference_of(before_, *range)};
-  candidates.insert(candidates.end(), regions.begin(), regions.end());
-  const auto rates = region_rates(candidates, occasion_.t, occasion_.x);
-  std::vector<switching::RegionSet> sets;
-  for (auto& set : switching::admissible_region_sets(rates, marginal)) {
-    if (set.margin > marginal || goes_on(candidates, set)) sets.push_back(std::move(set));
-  }
-  switching::merge_same_motions(sets);
+  std::vector<int> meeting_regions{reference_of(before_, *range)};
+  meeting_regions.insert(meeting_regions.end(), regions.begin(), regions.end());
+  const auto meeting = meeting_of(std::move(meeting_regions));
+  const auto& candidates = meeting.candidates;
+  const auto sets = sets_that_go_on(meeting);
   if (sets.empty()) {
     return fail(result::Termination::no_admissible_mode,
                 fmt::format("the regions {} meet at t = {}, and no set of them continues the solution",
@@ -135,16 +151,23 @@ bool Decider::decide_regions(const std::vector<int>& group) {
     const auto j = candidates[k];
     if (!occasion_.start && before_.mode[at(j)] == 0) before.push_back(static_cast<int>(k));
   }
-  const auto best = switching::preferred_region_set(sets, before);
+  // Sets whose weights are not determined by linear equations have several of them: no jump to others where one ends.
+  std::vector<double> weights;
+  for (const int j : candidates) {
+    if (meeting.basis && !occasion_.start) weights.push_back(before_.alpha[at(j)]);
+  }
+  const auto best = switching::preferred_region_set(sets, before, weights);
   RegionChoice choice{*range, {active_of(candidates, sets[best])}, {}};
   std::vector<int> active;
   for (const auto& region : choice.sets.front()) active.push_back(region.region);
+  const bool one_way = !meeting.basis || moves_in_one_way(meeting, sets[best]);
   choice.reason =
-      fmt::format("{}: {} by Stewart's complementarity system", names(s_.system, candidates), names(s_.system, active));
+      fmt::format("{}: {} by Stewart's complementarity system{}", names(s_.system, candidates),
+                  names(s_.system, active), one_way ? "" : ", which leaves weights open: those of soft minima");
   for (std::size_t k = 0; k < sets.size(); ++k) {
     if (k != best) choice.sets.push_back(active_of(candidates, sets[k]));
   }
-  if (choice.sets.size() > 1) transition_.unique = false;
+  if (choice.sets.size() > 1 || !one_way) transition_.unique = false;
   group_reasons_.push_back(choice.reason);
   region_choices_.push_back(std::move(choice));
   return true;

@@ -107,12 +107,20 @@ void merge_same_motions(std::vector<RegionSet>& sets) {
   });
 }
 
-std::size_t preferred_region_set(const std::vector<RegionSet>& sets, const std::vector<int>& before) {
+std::size_t preferred_region_set(const std::vector<RegionSet>& sets, const std::vector<int>& before,
+                                 const std::vector<double>& weights) {
+  const auto continues = [&](const RegionSet& set) {
+    if (weights.empty()) return false;
+    std::vector<double> change = weights;
+    for (std::size_t k = 0; k < set.active.size(); ++k) change[at(set.active[k])] -= set.weights[k];
+    // Weights of a mode are known to about 1e-8 where it ends.
+    return std::all_of(change.begin(), change.end(), [](double c) { return std::abs(c) <= 1e-6; });
+  };
   const auto rank = [&](const RegionSet& set) {
     const auto kept = std::count_if(before.begin(), before.end(), [&](int region) {
       return std::binary_search(set.active.begin(), set.active.end(), region);
     });
-    return std::make_tuple(set.attracts, kept, set.active.size());
+    return std::make_tuple(set.attracts, continues(set), kept, set.active.size());
   };
   std::size_t best = 0;
   for (std::size_t i = 1; i < sets.size(); ++i) {

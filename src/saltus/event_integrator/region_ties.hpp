@@ -1,0 +1,26 @@
+// Which differences of the indicators of regions that meet depend on each other, from their gradients.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace saltus::event_integrator {
+
+/// Of n - 1 rows grad psi_i, psi_i = g_r - g_i, those that are independent, and the others by these.
+struct RegionBasis {
+  std::vector<Eigen::Index> base;  ///< rows, ascending
+  [[nodiscard]] bool spans_all(Eigen::Index rows) const { return static_cast<Eigen::Index>(base.size()) == rows; }
+};
+
+/// Rows that depend on others to 1e-6 of their lengths, as for surfaces that touch, are not in the basis.
+[[nodiscard]] RegionBasis basis_of(const Eigen::MatrixXd& rows);
+
+/// Coordinates of the reference (0) and of all rows in the basis: n x m, grad psi_i = sum_k y_ik grad psi_base(k).
+[[nodiscard]] Eigen::MatrixXd coordinates_in(const RegionBasis& basis, const Eigen::MatrixXd& rows);
+
+/// The largest part of a row that the basis does not span, relative to the row.
+[[nodiscard]] double remainder(const RegionBasis& basis, const Eigen::MatrixXd& rows);
+
+}  // namespace saltus::event_integrator
