@@ -96,8 +96,26 @@ class Files(tool.ToolTest):
     def test_check(self):
         out, _ = self.run_tool("check", "groups.toml", code=0)
         self.assertIn("first: 2 regions\n    by the smallest indicator: low, high", out)
-        self.assertIn('method "smoothed" does not cover modes by `indicator`', out)
-        _, error = self.run_tool("simulate", "groups.toml", "--method", "smoothed", code=2)
+        self.assertNotIn('method "smoothed" does not cover', out)
+
+    def test_smoothed_has_weights(self):
+        result = self.simulate("--method", "smoothed")
+        self.assertEqual([group["name"] for group in result["region_groups"]], ["first", "second"])
+        self.assertEqual(result["final"]["regions"][1], ["low", "mode2"])
+        for weight in result["final"]["theta"][2:]:
+            self.assertAlmostEqual(weight, 0.5, places=6)
+        for row in result["trajectory"]["theta"]:
+            self.assertAlmostEqual(sum(row[:2]), 1)
+            self.assertAlmostEqual(sum(row[2:]), 1)
+        enter = [event for event in result["events"] if event["kind"] == "enter_sliding"]
+        self.assertEqual(enter[0]["regions_before"][1], ["mode2"])
+        self.assertEqual(enter[0]["regions_after"][1], ["low", "mode2"])
+
+    def test_smoothed_refuses_indicators_that_jump(self):
+        self.write("jumping.toml", GROUPS.replace('indicator = "x"', 'indicator = "x + step(y - 0.25)"'))
+        out, _ = self.run_tool("check", "jumping.toml", code=0)
+        self.assertIn('method "smoothed" does not cover indicators that jump', out)
+        _, error = self.run_tool("simulate", "jumping.toml", "--method", "smoothed", code=2)
         self.assertIn("use --method event", error)
 
     def test_damaged_results_are_refused(self):

@@ -94,7 +94,7 @@ void Run::fail(Termination termination, std::string message) {
 bool Run::enter(const Transition& transition) {
   state_ = transition.state;
   set_references(kernel_, state_);
-  if (!options_.layers.corners.empty()) {
+  if (!options_.layers.empty()) {
     const auto wanted = local_tolerances(options_.tolerances);
     tolerances_ = within_layers(kernel_, options_.layers, wanted, state_, t_, x_.data());
     mode_atol_ = tolerances_.atol;

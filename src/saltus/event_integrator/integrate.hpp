@@ -30,6 +30,10 @@ struct ThinLayers {
   };
   std::vector<Corners> corners;
   double half_width = 0.0;
+  /// Of soft minima: switching functions half_width (log theta_i) + weight_range, positive where a weight matters.
+  std::vector<int> weights;
+  double weight_range = 0.0;
+  [[nodiscard]] bool empty() const { return corners.empty() && weights.empty(); }
 };
 
 /// Checked by the pipeline: from < until, rtol > 0, atol >= 0, max_step > 0.

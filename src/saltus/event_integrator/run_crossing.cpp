@@ -19,7 +19,7 @@ bool Run::has_ordinary_switches() const {
   }
   return surroundings_.affine_in_alpha && kernel_.event_functions() == kernel_.switching_functions() &&
          kernel_.region_groups().empty() && system.events.empty() && jumps_.none() && options_.choices.empty() &&
-         options_.layers.corners.empty();
+         options_.layers.empty();
 }
 
 /// Whether one listed surface is reached in a region or while sliding on one, or left by the solution that slides on it

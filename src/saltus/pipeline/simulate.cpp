@@ -176,6 +176,10 @@ class Integrand {
         if (side.lower != side.upper) layers.corners.push_back({function(side.lower), function(side.upper)});
       }
     }
+    for (const auto& regions : regularisation_->regions) {
+      for (const std::size_t column : regions.columns) layers.weights.push_back(function(column));
+    }
+    layers.weight_range = smoothed::weight_range * regularisation_->epsilon;
     return layers;
   }
   /// What was computed, over the columns of the original system.
@@ -188,6 +192,10 @@ class Integrand {
     run.final.mode = rows.mode.back();
     run.final.alpha = rows.alpha.back();
     run.final.outputs = rows.outputs.back();
+    if (!rows.regions.empty()) {
+      run.final.regions = rows.regions.back();
+      run.final.theta = rows.theta.back();
+    }
     return run;
   }
 

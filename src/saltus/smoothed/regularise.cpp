@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -34,6 +35,8 @@ class Regulariser {
 
  private:
   [[nodiscard]] bool is_listed(int j) const { return original_.switching[at(j)].role == SwitchingRole::listed; }
+  [[nodiscard]] bool is_region(int j) const { return original_.switching[at(j)].role == SwitchingRole::region; }
+  [[nodiscard]] std::optional<Error> add_regions(const model::ModeGroup& group);
   void find_inner(int j);
   void add_function(int j);
   void add_columns();
@@ -167,6 +170,42 @@ void Regulariser::add_function(int j) {
   selections_[at(j)] = std::move(selections);
 }
 
+/// One selection for each region, a soft minimum, and one function that says where it matters.
+std::optional<Error> Regulariser::add_regions(const model::ModeGroup& group) {
+  std::vector<SX> psi;  // -g_i: see without_references()
+  for (int j = group.first; j < group.first + group.regions; ++j) {
+    if (!inner_[at(j)].empty()) {
+      return Error{ErrorCode::not_available,
+                   fmt::format("method \"smoothed\" does not cover indicators that jump; that of '{}' does",
+                               original_.switching[at(j)].name),
+                   "use --method event",
+                   {},
+                   {}};
+    }
+    psi.push_back(on_sides(original_.switching[at(j)].psi, {}));
+  }
+  // Less the largest one: exponents are never positive.
+  SX largest = psi.front();
+  for (const SX& other : psi) largest = SX::fmax(largest, other);
+  SX sum = 0;
+  for (const SX& other : psi) sum += exp((other - largest) / epsilon_);
+  SoftRegions regions;
+  for (int j = group.first; j < group.first + group.regions; ++j) {
+    const SX ahead = psi[at(j - group.first)] - largest;
+    SwitchingFunction weight = original_.switching[at(j)];
+    weight.role = SwitchingRole::listed;
+    weight.named = false;
+    weight.inner.clear();
+    weight.name = fmt::format("weight of {}", original_.switching[at(j)].name);
+    weight.psi = ahead + epsilon_ * (weight_range - log(sum));
+    functions_of_.push_back({add(weight)});
+    selections_[at(j)] = {exp(ahead / epsilon_) / sum};
+    regions.names.push_back(original_.switching[at(j)].name);
+  }
+  result_.regions.push_back(std::move(regions));
+  return std::nullopt;
+}
+
 /// Columns of the regularised system: the edges, and what is passed on.
 void Regulariser::add_columns() {
   auto& columns = result_.system.columns;
@@ -181,7 +220,7 @@ void Regulariser::add_columns() {
                        [j](const auto& original) { return original.function == j; });
   };
   for (int j = 0; j < static_cast<int>(original_.switching.size()); ++j) {
-    if (!is_listed(j) && !has_column(j)) continue;
+    if (is_region(j) || (!is_listed(j) && !has_column(j))) continue;
     Layer layer;
     for (const int i : inner_[at(j)]) layer.inner.push_back(at(layer_of[at(i)]));
     const auto& edges = functions_of_[at(j)];
@@ -194,6 +233,14 @@ void Regulariser::add_columns() {
     }
     layer_of[at(j)] = static_cast<int>(result_.layers.size());
     result_.layers.push_back(std::move(layer));
+  }
+  auto regions = result_.regions.begin();
+  for (const auto& group : original_.mode_groups) {
+    if (group.first < 0) continue;
+    for (int j = group.first; j < group.first + group.regions; ++j) {
+      regions->columns.push_back(column(functions_of_[at(j)].front()));
+    }
+    ++regions;
   }
   for (const auto& original : original_.columns) {
     result_.columns.push_back({original.name, layer_of[at(original.function)], original.orientation});
@@ -218,7 +265,11 @@ void Regulariser::finish() {
   continuous(system.input);
   std::vector<SX> outputs{on_sides(original_.outputs, {})};
   for (const auto& column : original_.columns) outputs.push_back(total(column.function));
+  for (int j = 0; j < static_cast<int>(original_.switching.size()); ++j) {
+    if (is_region(j)) outputs.push_back(total(j));
+  }
   system.outputs = SX::vertcat(outputs);
+  system.mode_groups.clear();
   for (auto& event : system.events) {
     continuous(event.value);
     continuous(event.guards);
@@ -235,14 +286,6 @@ void Regulariser::finish() {
 }
 
 Expected<Regularisation> Regulariser::run() {
-  const auto& groups = original_.mode_groups;
-  if (std::any_of(groups.begin(), groups.end(), [](const auto& group) { return group.first >= 0; })) {
-    return tl::unexpected(Error{ErrorCode::not_available,
-                                "method \"smoothed\" does not cover modes by `indicator`",
-                                "use --method event",
-                                {},
-                                {}});
-  }
   for (int j = 0; j < static_cast<int>(inner_.size()); ++j) find_inner(j);
   std::sort(all_inner_.begin(), all_inner_.end());
   all_inner_.erase(std::unique(all_inner_.begin(), all_inner_.end()), all_inner_.end());
@@ -259,14 +302,37 @@ Expected<Regularisation> Regulariser::run() {
   result_.system = original_;
   result_.epsilon = epsilon_;
   result_.system.switching.clear();
-  for (int j = 0; j < static_cast<int>(inner_.size()); ++j) add_function(j);
+  for (int j = 0; j < static_cast<int>(inner_.size()); ++j) {
+    if (!is_region(j)) add_function(j);
+  }
+  for (const auto& group : original_.mode_groups) {  // behind all others
+    if (group.first < 0) continue;
+    if (auto error = add_regions(group)) return tl::unexpected(std::move(*error));
+  }
   add_columns();
   finish();
   return std::move(result_);
 }
 
+/// The system with every weight in the place of its own, and with -g_i as the function of a region: no reference.
+System without_references(const System& system) {
+  System plain = system;
+  for (const auto& group : system.mode_groups) {
+    if (group.first < 0) continue;
+    const SX none = SX::zeros(group.reference.size1(), group.reference.size2());
+    for (SX* expression : {&plain.f, &plain.f_as_written}) {
+      *expression = SX::substitute(*expression, group.reference, none);
+    }
+    for (auto& function : plain.switching) function.psi = SX::substitute(function.psi, group.reference, none);
+  }
+  return plain;
+}
+
 }  // namespace
 
-Expected<Regularisation> regularise(const System& system, double epsilon) { return Regulariser(system, epsilon).run(); }
+Expected<Regularisation> regularise(const System& system, double epsilon) {
+  const System plain = without_references(system);
+  return Regulariser(plain, epsilon).run();
+}
 
 }  // namespace saltus::smoothed

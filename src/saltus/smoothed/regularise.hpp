@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "saltus/model/system.hpp"
@@ -21,11 +22,23 @@ struct Layer {
   std::vector<Side> sides;         ///< 2^(number of inner layers)
 };
 
+/// The modes of a group by `indicator`: names, and the columns of eps (log theta_i + weight_range) in the regularised
+/// system, positive where a region has a weight that matters.
+struct SoftRegions {
+  std::vector<std::string> names;
+  std::vector<std::size_t> columns;
+};
+
+/// A region is active from a weight of exp(-14), about 1e-6, on: less does not move the state by more than that.
+inline constexpr double weight_range = 14.0;
+
 /// The regularised system, and how to read its results.
 struct Regularisation {
-  model::System system;                         ///< its last outputs are the selections, one per column of `columns`
-  std::vector<Layer> layers;                    ///< of the listed functions, and of others that have a column
+  model::System system;       ///< its last outputs are the selections, one per column of `columns`, and
+                              ///< the weights of all regions
+  std::vector<Layer> layers;  ///< of the listed functions, and of others that have a column
   std::vector<model::SwitchingColumn> columns;  ///< of the original system, with indices into `layers`
+  std::vector<SoftRegions> regions;
   double epsilon = 0.0;
 };
 
@@ -34,8 +47,13 @@ struct Regularisation {
 /// ([guglielmi2022], section 2.2). Kinks, time events, discrete states, jumps and [[events]] stay what they are. With
 /// Inclusion::filippov the right-hand side is the multi-affine interpolation between the sides of all surfaces that
 /// occur inside others; with aizerman_pyatnitskii the selections enter it as written.
+/// The weights of modes by `indicator` become soft minima
+///   theta_i = exp(-g_i / epsilon) / sum_j exp(-g_j / epsilon),
+/// of which the event engine's are the limit, also where the indicators depend on each other. They have no corners;
+/// where regions are left tangentially the error is epsilon log(1 / epsilon).
 /// @param epsilon  > 0, in the units of the switching functions
-/// @return the system; not_available if more than six surfaces have functions nested around them (2^6 sides)
+/// @return the system; not_available if more than six surfaces have functions nested around them (2^6 sides), or if
+///         an indicator jumps
 [[nodiscard]] Expected<Regularisation> regularise(const model::System& system, double epsilon);
 
 }  // namespace saltus::smoothed

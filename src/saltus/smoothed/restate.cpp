@@ -63,6 +63,39 @@ std::vector<double> selections_from(std::vector<double>& outputs, const Regulari
   return alpha;
 }
 
+/// The active modes of every group by `indicator`.
+result::Regions regions_of(const Regularisation& regularisation, const Mode& edges) {
+  result::Regions active;
+  for (const auto& group : regularisation.regions) {
+    active.emplace_back();
+    for (std::size_t i = 0; i < group.names.size(); ++i) {
+      if (edges[group.columns[i]] > 0) active.back().push_back(group.names[i]);
+    }
+  }
+  return active;
+}
+
+/// Takes the weights of all regions from the end of a row's outputs; those of inactive ones are 0.
+std::vector<double> weights_from(std::vector<double>& outputs, const Regularisation& regularisation,
+                                 const Mode& edges) {
+  std::size_t count = 0;
+  for (const auto& group : regularisation.regions) count += group.names.size();
+  const auto first = outputs.end() - static_cast<std::ptrdiff_t>(count);
+  std::vector<double> theta(first, outputs.end());
+  outputs.erase(first, outputs.end());
+  std::size_t next = 0;
+  for (const auto& group : regularisation.regions) {
+    double sum = 0.0;
+    const auto begin = next;
+    for (const std::size_t column : group.columns) {
+      if (edges[column] < 0) theta[next] = 0.0;
+      sum += theta[next++];
+    }
+    for (std::size_t i = begin; i < next; ++i) theta[i] /= sum;
+  }
+  return theta;
+}
+
 /// Modes and selections of an event are those of the first and the last row at its time.
 void take_from_rows(Event& event, const result::Trajectory& rows) {
   const auto [first, last] = std::equal_range(rows.t.begin(), rows.t.end(), event.t);
@@ -76,12 +109,34 @@ bool is_edge(EventKind kind) {
          kind == EventKind::change_sliding;
 }
 
+/// Notes the regions that have changed: alone 1, with others 0, inactive -1.
+void describe_regions(Event& event, const Regularisation& regularisation, Mode& before, Mode& after) {
+  if (!event.regions_before || !event.regions_after) return;
+  for (std::size_t g = 0; g < regularisation.regions.size(); ++g) {
+    for (const auto& name : regularisation.regions[g].names) {
+      const auto mode = [&](const std::vector<std::string>& active) {
+        const bool is_active = std::find(active.begin(), active.end(), name) != active.end();
+        return !is_active ? -1 : active.size() > 1 ? 0 : 1;
+      };
+      const int from = mode((*event.regions_before)[g]), to = mode((*event.regions_after)[g]);
+      if (from == to) continue;
+      before.push_back(from);
+      after.push_back(to);
+      if ((from < 0) == (to < 0)) continue;
+      event.surfaces.push_back(name);
+      event.reason += fmt::format("{}{} {} the others", event.reason.empty() ? "" : "; ", name,
+                                  to < 0 ? "has no weight left beside" : "begins to have a weight beside");
+    }
+  }
+}
+
 /// Surfaces, kind and reason of a passed edge; false if no column has changed.
 bool describe(Event& event, const Regularisation& regularisation) {
   if (!event.mode_before || !event.mode_after) return false;
   Mode before, after;
   event.surfaces.clear();
   event.reason.clear();
+  describe_regions(event, regularisation, before, after);
   for (std::size_t j = 0; j < event.mode_before->size(); ++j) {
     const int from = (*event.mode_before)[j], to = (*event.mode_after)[j];
     if (from == to) continue;
@@ -102,12 +157,20 @@ bool describe(Event& event, const Regularisation& regularisation) {
 void restate(const Regularisation& regularisation, std::vector<Event>& events, result::Trajectory& trajectory,
              result::Status& status) {
   for (std::size_t row = 0; row < trajectory.t.size(); ++row) {
+    if (!regularisation.regions.empty()) {
+      trajectory.regions.push_back(regions_of(regularisation, trajectory.mode[row]));
+      trajectory.theta.push_back(weights_from(trajectory.outputs[row], regularisation, trajectory.mode[row]));
+    }
     trajectory.mode[row] = modes_of(regularisation, trajectory.mode[row]);
     trajectory.alpha[row] = selections_from(trajectory.outputs[row], regularisation, trajectory.mode[row]);
   }
   std::vector<Event> restated;
   for (Event& event : events) {
     if (event.kind == EventKind::start) continue;  // on an edge, where nothing is decided
+    if (!regularisation.regions.empty()) {
+      if (event.mode_before) event.regions_before = regions_of(regularisation, *event.mode_before);
+      if (event.mode_after) event.regions_after = regions_of(regularisation, *event.mode_after);
+    }
     for (auto* mode : {&event.mode_before, &event.mode_after}) {
       if (*mode) *mode = modes_of(regularisation, **mode);
     }

@@ -11,6 +11,7 @@ namespace saltus::smoothed {
 /// Rewrites what a simulation of regularisation.system computed:
 ///   mode_j = -1, 0, 1 for psi_j < -epsilon, inside the layer |psi_j| <= epsilon, psi_j > epsilon;
 ///   alpha_j = (1 + pi(psi_j / epsilon)) / 2.
+/// Regions by `indicator` are active from a weight of about 1e-6 on (weight_range).
 /// Passing an edge of a layer is an event (enter_sliding, leave_sliding) with the surface's name; a crossing is hence
 /// two of them. Edges that change no mode (of a nested function on a side the solution is not on) leave no event.
 /// A status that speaks of switching says that a layer of the width of roundings may be the reason.
