@@ -135,6 +135,7 @@ class ModeField {
   void find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows);
   void find_stability();
   [[nodiscard]] bool several_regions(std::size_t row) const;
+  [[nodiscard]] bool on_other_surface(std::size_t row) const;
   void find_regions(const ModeState& state);
   void find_ties();
   void find_independent_rows();

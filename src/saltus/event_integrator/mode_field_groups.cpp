@@ -160,8 +160,19 @@ void ModeField::weigh_references() {
 
 bool ModeField::has_loss(std::size_t row) const {
   if (const auto* regions = tie_of(row)) return regions->rows.front() == row;
-  if (several_regions(row)) return false;
+  if (several_regions(row)) return on_other_surface(row);
   return solve_ == SlidingSolve::nonaffine || (solve_ == SlidingSolve::coupled && group_size_[row] > 1);
+}
+
+/// Of the first row of a group with several regions: whether a surface is in it. The equations are not linear then.
+bool ModeField::on_other_surface(std::size_t row) const {
+  return group_size_[row] > 1 && std::any_of(groups_.begin(), groups_.end(), [&](const auto& group) {
+           return group.front() == row && std::any_of(group.begin(), group.end(), [&](std::size_t other) {
+                    return std::none_of(regions_.begin(), regions_.end(), [&](const auto& regions) {
+                      return std::binary_search(regions.rows.begin(), regions.rows.end(), other);
+                    });
+                  });
+         });
 }
 
 bool ModeField::has_stability(std::size_t row) const {

@@ -90,9 +90,15 @@ void complete_ties(const ModelKernel& kernel, const ModeState& before, Occasion&
     kernel.functions(occasion.t, occasion.x, before.alpha.data(), values.data());
     for (int j = group.first; j < group.first + group.count; ++j) {
       if (before.mode[at(j)] == 0 || std::find(located.begin(), located.end(), j) != located.end()) continue;
-      // What two times next to each other differ by, as where events are located.
-      const double rate = fields.velocities(before.alpha, {j}).front();
-      const double resolution = std::max(fields.noise(j), 8.0 * rounding_unit * std::abs(occasion.t * rate));
+      // What two times next to each other differ by, as where events are located, at the speed of any field here.
+      double rate = 0.0;
+      for (int own = group.first; own < group.first + group.count; ++own) {
+        std::vector<double> alpha = before.alpha;
+        for (int other = group.first; other < group.first + group.count; ++other) alpha[at(other)] = 0.0;
+        alpha[at(own)] = 1.0;
+        rate = std::max(rate, std::abs(fields.velocities(alpha, {j}).front()));
+      }
+      const double resolution = std::max(fields.noise(j), 8.0 * rounding_unit * std::abs(occasion.t) * rate);
       if (std::abs(values[at(j)]) <= resolution) occasion.at_zero.push_back(j);
     }
   }

@@ -56,6 +56,7 @@ struct RegionChoice {
   evaluation::RegionRange group;
   std::vector<std::vector<ActiveRegion>> sets;  ///< the chosen one first
   std::string reason;
+  std::vector<GivenMode> surfaces = {};  ///< where they meet on one: its mode with each set
 };
 
 /// Regions of a group that meet, the reference first.
@@ -94,6 +95,7 @@ class Decider {
   bool passes(int surface) const;
   void cross_beside(int surface);
   bool decide_regions(const std::vector<int>& group);
+  bool decide_regions_on(int surface, const evaluation::RegionRange& range, std::vector<int> candidates);
   void apply_regions();
   void follow_other_regions();
   bool goes_on(const MeetingRegions& meeting, switching::RegionSet& set);

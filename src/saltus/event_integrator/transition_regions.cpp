@@ -1,4 +1,5 @@
 // Where three or more regions of a group by `indicator` meet: Stewart's complementarity system decides.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -116,10 +117,9 @@ bool Decider::decide_regions(const std::vector<int>& group) {
   });
   std::vector<int> regions, others;
   for (const int j : group) (range->holds(j) ? regions : others).push_back(j);
-  if (std::all_of(others.begin(), others.end(), [&](int j) { return passes(j); })) {
-    for (const int j : others) cross_beside(j);
-    others.clear();
-  }
+  const auto passed = std::stable_partition(others.begin(), others.end(), [&](int j) { return !passes(j); });
+  for (auto j = passed; j != others.end(); ++j) cross_beside(*j);
+  others.erase(passed, others.end());
   constexpr std::size_t most = 12;
   if (!others.empty() || regions.size() >= most || !s_.affine_in_alpha) {
     const auto is_felt = [&](int j) {
@@ -130,11 +130,19 @@ bool Decider::decide_regions(const std::vector<int>& group) {
       parts.insert(parts.begin(), regions);
       return decide_parts(parts);
     }
-    return fail(result::Termination::outside_class,
-                fmt::format("at t = {} three or more regions by `indicator` meet on other surfaces that influence "
-                            "them ({}), or more than {} regions meet: that decision is not available; perturb a "
-                            "parameter",
-                            occasion_.t, names(s_.system, group), most));
+    const bool on_one = others.size() == 1 && regions.size() < most && s_.affine_in_alpha &&
+                        s_.system.switching[at(others[0])].role == model::SwitchingRole::listed;
+    if (on_one) {
+      std::vector<int> candidates{reference_of(before_, *range)};
+      candidates.insert(candidates.end(), regions.begin(), regions.end());
+      return decide_regions_on(others[0], *range, std::move(candidates));
+    }
+    return fail(
+        result::Termination::outside_class,
+        fmt::format("at t = {} three or more regions by `indicator` meet on several other surfaces that influence "
+                    "them ({}), or more than {} regions meet: that decision is not available; perturb a "
+                    "parameter",
+                    occasion_.t, names(s_.system, group), most));
   }
   std::vector<int> meeting_regions{reference_of(before_, *range)};
   meeting_regions.insert(meeting_regions.end(), regions.begin(), regions.end());
@@ -183,6 +191,10 @@ void Decider::follow_other_regions() {
     for (std::size_t k = 1; k < choice.sets.size(); ++k) {
       ModeState other = transition_.state;
       set_active(other, choice.group, choice.sets[k]);
+      if (!choice.surfaces.empty()) {
+        const auto& [surface, mode, alpha] = choice.surfaces[k];
+        set_surface(other, surface, mode, alpha);
+      }
       Transition checked = check_forced_mode(s_, other, occasion_);
       if (checked.termination != result::Termination::completed) continue;
       checked.reason = choice.reason;
