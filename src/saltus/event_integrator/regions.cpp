@@ -80,6 +80,22 @@ void note_ties(const ModelKernel& kernel, const ModeState& before, Occasion& occ
   }
 }
 
+namespace {
+
+/// Speeds of psi_j along the fields of all regions of its group: the largest one.
+double fastest(const ProjectedFields& fields, const RegionRange& group, const ModeState& before, int j) {
+  double rate = 0.0;
+  for (int own = group.first; own < group.first + group.count; ++own) {
+    std::vector<double> alpha = before.alpha;
+    for (int other = group.first; other < group.first + group.count; ++other) alpha[at(other)] = 0.0;
+    alpha[at(own)] = 1.0;
+    rate = std::max(rate, std::abs(fields.velocities(alpha, {j}).front()));
+  }
+  return rate;
+}
+
+}  // namespace
+
 void complete_ties(const ModelKernel& kernel, const ModeState& before, Occasion& occasion) {
   const auto located = occasion.at_zero;
   for (const auto& group : kernel.region_groups()) {
@@ -88,18 +104,23 @@ void complete_ties(const ModelKernel& kernel, const ModeState& before, Occasion&
     const ProjectedFields fields(kernel, occasion);
     std::vector<double> values(at(kernel.event_functions()));
     kernel.functions(occasion.t, occasion.x, before.alpha.data(), values.data());
-    for (int j = group.first; j < group.first + group.count; ++j) {
-      if (before.mode[at(j)] == 0 || std::find(located.begin(), located.end(), j) != located.end()) continue;
-      // What two times next to each other differ by, as where events are located, at the speed of any field here.
-      double rate = 0.0;
-      for (int own = group.first; own < group.first + group.count; ++own) {
-        std::vector<double> alpha = before.alpha;
-        for (int other = group.first; other < group.first + group.count; ++other) alpha[at(other)] = 0.0;
-        alpha[at(own)] = 1.0;
-        rate = std::max(rate, std::abs(fields.velocities(alpha, {j}).front()));
+    // What two times next to each other differ by, as where events are located. Laps of a spiral get shorter by a
+    // factor of up to ten: with one of its regions within rounding, the next ones are the same point.
+    double reach = 8.0;
+    constexpr double lap = 8.0;
+    constexpr double farthest = 512.0;
+    for (bool more = true; more && reach <= farthest; reach *= lap) {
+      more = false;
+      for (int j = group.first; j < group.first + group.count; ++j) {
+        if (before.mode[at(j)] == 0 ||
+            std::find(occasion.at_zero.begin(), occasion.at_zero.end(), j) != occasion.at_zero.end()) {
+          continue;
+        }
+        const double unit = rounding_unit * std::abs(occasion.t) * fastest(fields, group, before, j);
+        if (!(std::abs(values[at(j)]) <= std::max(fields.noise(j), reach * unit))) continue;
+        occasion.at_zero.push_back(j);
+        more = true;
       }
-      const double resolution = std::max(fields.noise(j), 8.0 * rounding_unit * std::abs(occasion.t) * rate);
-      if (std::abs(values[at(j)]) <= resolution) occasion.at_zero.push_back(j);
     }
   }
   std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
