@@ -115,7 +115,8 @@ class ModeField {
     /// Where the gradients of `rows` depend on each other.
     std::optional<switching::RegionWeights> tie = {};
     RegionBasis basis = {};
-    bool constant = false;  ///< gradients of all rows
+    Eigen::MatrixXd gradients = {};  ///< that the tie was made of
+    bool constant = false;           ///< gradients of all rows
   };
 
   [[nodiscard]] ode::RightHandSideStages native_stages() const;

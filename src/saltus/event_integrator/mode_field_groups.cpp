@@ -100,6 +100,8 @@ void ModeField::find_ties() {
   for (auto& regions : regions_) {
     if (regions.rows.size() < 2 || (ties_known_ && (!regions.tie || regions.constant))) continue;
     tie_rows_ = rows_(regions.rows, Eigen::all);
+    if (ties_known_ && tie_rows_ == regions.gradients) continue;  // LIMIT: where they turn, each evaluation allocates
+    regions.gradients = tie_rows_;
     if (ties_known_) {
       regions.tie->polytope().move(coordinates_in(regions.basis, tie_rows_));
       continue;

@@ -46,8 +46,9 @@ void RegionWeights::choose_chart(const double* theta) {
     }
   }
   std::iota(order_.begin(), order_.begin() + at(facets.size()), std::size_t{0});
-  std::stable_sort(order_.begin(), order_.begin() + at(facets.size()),
-                   [&](std::size_t a, std::size_t b) { return excess_[a] < excess_[b]; });
+  // NOTE: std::stable_sort allocates.
+  std::sort(order_.begin(), order_.begin() + at(facets.size()),
+            [&](std::size_t a, std::size_t b) { return excess_[a] != excess_[b] ? excess_[a] < excess_[b] : a < b; });
   chart_.clear();
   RegionBits common = (RegionBits{1} << n) - 1;
   Small basis(at(m), at(m));  // orthonormal, of the normals so far
@@ -73,8 +74,8 @@ void RegionWeights::place_start(const double* theta) {
   const auto m = at(chart_.size());
   const auto n = static_cast<std::size_t>(polytope_.regions());
   std::iota(order_.begin(), order_.begin() + at(n), std::size_t{0});
-  std::stable_sort(order_.begin(), order_.begin() + at(n),
-                   [&](std::size_t a, std::size_t b) { return theta[a] > theta[b]; });
+  std::sort(order_.begin(), order_.begin() + at(n),
+            [&](std::size_t a, std::size_t b) { return theta[a] != theta[b] ? theta[a] > theta[b] : a < b; });
   constexpr double least = 1e-300;
   const auto logarithm = [&](std::size_t i) { return std::log(std::max(theta[i], least)); };
   Small basis(m, m);

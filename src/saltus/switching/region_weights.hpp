@@ -19,7 +19,7 @@ namespace saltus::switching {
 /// In p_k = exp(nu_k . v), nu_k the inward normals of m facets through a vertex a of the polytope, theta_i / theta_a =
 /// prod_k p_k^(height of y_i over facet k): exponents 0 or at least 1, so that the equations are smooth where weights
 /// vanish, p_k = 0, and have a continuation behind that.
-/// Owns its work space; solve() allocates nothing.
+/// Owns its work space.
 class RegionWeights {
  public:
   explicit RegionWeights(RegionPolytope polytope);
