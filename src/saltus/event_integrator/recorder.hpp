@@ -84,6 +84,7 @@ class Recorder {
   /// Of the last event; there must be one.
   [[nodiscard]] std::optional<bool> last_unique() const { return recording_.event_list.back().unique; }
   [[nodiscard]] long events() const { return static_cast<long>(recording_.event_list.size()); }
+  [[nodiscard]] double event_time(long event) const { return recording_.event_list[static_cast<std::size_t>(event)].t; }
   [[nodiscard]] std::size_t rows() const { return recording_.row_times.size(); }
 
  private:

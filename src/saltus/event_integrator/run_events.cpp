@@ -26,11 +26,11 @@ bool Run::fire_user_events(const std::vector<double>& x_before, const ModeState&
 
 bool Run::too_many_events() {
   if (recorder_.events() >= options_.max_events) {
+    const std::string laps = shrinking_laps();
+    const std::string advice = "see in the table of events what switches ever faster";
     fail(Termination::iteration_limit,
-         fmt::format(
-             "max_events = {} reached at {}; raise simulate.max_events if they are meant, or see in the table of "
-             "events what switches ever faster",
-             options_.max_events, where()));
+         fmt::format("max_events = {} reached at {}; raise simulate.max_events if they are meant, or {}",
+                     options_.max_events, where(), laps.empty() ? advice : "change the model: " + laps));
     return true;
   }
   // Jumps have their own limits.

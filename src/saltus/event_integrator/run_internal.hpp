@@ -1,6 +1,6 @@
 // A run in progress: the state of the engine between its sources. integrate.cpp begins and ends it, run_steps.cpp takes
 // the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it, run_jumps.cpp and
-// run_limits.cpp jumps and their accumulation, run_spirals.cpp that of switches.
+// run_limits.cpp jumps and their accumulation, run_spirals.cpp and run_shrinking.cpp that of switches.
 #pragma once
 
 #include <algorithm>
@@ -160,6 +160,10 @@ class Run {
   bool jumps_have_problem();
   void start_step();
   bool too_many_events();
+  [[nodiscard]] double mean_interval(long first, long count) const;
+  [[nodiscard]] std::optional<double> shrinking_exponent() const;
+  [[nodiscard]] bool is_met_with_one_rate(int surface, double psi, double interval);
+  [[nodiscard]] std::string shrinking_laps();
   void accumulates();
   bool stopped_by_two_fold();
   bool stopped_by_singularity();

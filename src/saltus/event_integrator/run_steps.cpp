@@ -123,8 +123,10 @@ Run::Step Run::undefined_step() {
     if (!surface && function.kind != FunctionKind::loss) continue;
     // The zero lies within the time that can no longer be resolved, or the selection has become double.
     const double rate = surface ? kernel_.lie_derivative(function.index, 1, t_, x_.data(), state_.alpha.data()) : 0.0;
-    const bool reached = surface ? values[i] * rate < 0.0 && std::abs(values[i] / rate) <= 1e3 * smallest_step()
-                                 : std::abs(values[i]) < 1e-3;
+    // NOTE: the last step may have ended at 0 itself, or a rounding beyond it.
+    const bool ahead = function.sign * rate < 0.0 || (function.sign == 0 && values[i] * rate < 0.0);
+    const bool reached =
+        surface ? ahead && std::abs(values[i] / rate) <= 1e3 * smallest_step() : std::abs(values[i]) < 1e-3;
     if (reached) {
       Located located{t_, x_, {i}, {function.sign}};
       if (surface) move_onto(kernel_, state_, function.index, t_, located.x);

@@ -362,6 +362,72 @@ TEST(Behaviour, SuperTwistingIsHeldAtItsLimit) {
   }
 }
 
+/// x' = -2 sqrt|x| sign x - c from x = 1: with s = sqrt|x| the surface is crossed at t* = 1 - c/2 log(1 + 2/c), where
+/// the slope of the field is infinite and x' = -c, and t - t* = -s - c/2 log(1 - 2 s/c) behind it. The last step before
+/// may end at 0 itself.
+TEST(Behaviour, ARootIsCrossedWhereItsSlopeIsInfinite) {
+  for (int k = 1; k <= 60; ++k) {
+    const double c = 0.02 * k;
+    const double crossing = 1.0 - 0.5 * c * std::log1p(2.0 / c);
+    for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+      Builder b("tank");
+      const SX x = b.state("x", {1});
+      b.dynamics("x", -2 * sqrt(b.abs(x)) * b.sign(x) - c);
+      // Half of the way to the rest at s = c/2.
+      const double until = crossing - 0.25 * c - 0.5 * c * std::log(0.5);
+      IntegrationOptions options;
+      options.method = method;
+      options.tolerances = {1e-10, 1e-12};
+      options.until = until;
+      const auto result = testing::run_model(b, options);
+      ASSERT_EQ(result.status.termination, Termination::completed) << c << ": " << result.status.message;
+      EXPECT_NEAR(std::sqrt(-result.final.x[0]), 0.25 * c, 1e-8) << c;
+    }
+  }
+}
+
+/// x'' = -sign x - d x': a lap from the speed v takes 4 v and leaves v (1 - 4/3 d v), so that laps shrink like 1/k and
+/// the speed like exp(-d t / 3). Cubic damping: k^-1/3.
+TEST(Behaviour, LapsThatShrinkLikeAPowerOfTheirNumberAreSaidToDoSo) {
+  const auto message = [](const auto& damping) {
+    Builder b("relay");
+    const SX x = b.state("x", {1});
+    const SX v = b.state("v", {0});
+    b.switching("s", x);
+    b.dynamics("x", v);
+    b.dynamics("v", -b.sign(x) - damping(b, v));
+    IntegrationOptions options;
+    options.until = 1e4;
+    options.max_events = 1000;
+    options.tolerances = {1e-9, 1e-11};
+    const auto result = testing::run_model(b, options);
+    EXPECT_EQ(result.status.termination, Termination::iteration_limit) << result.status.message;
+    EXPECT_EQ(result.events.size(), 1000U);
+    return result.status.message;
+  };
+  const std::string damped = message([](Builder&, const SX& v) { return 0.7 * v; });
+  EXPECT_NE(damped.find("laps of 's' shrink like the power -1 of"), std::string::npos) << damped;
+  EXPECT_NE(damped.find("no limit"), std::string::npos) << damped;
+  // A lap leaves v - c v^4.
+  const std::string slowly = message([](Builder&, const SX& v) { return v * v * v; });
+  EXPECT_NE(slowly.find("shrink like the power -0.33 of"), std::string::npos) << slowly;
+}
+
+TEST(Behaviour, SwitchesThatDoNotShrinkAreNotSaidToDoSo) {
+  Builder b("relay");
+  const SX x = b.state("x", {0.01});
+  const SX v = b.state("v", {0});
+  b.switching("s", x);
+  b.dynamics("x", v);
+  b.dynamics("v", -b.sign(x));
+  IntegrationOptions options;
+  options.until = 1000.0;
+  options.max_events = 1000;
+  const auto result = testing::run_model(b, options);
+  EXPECT_EQ(result.status.termination, Termination::iteration_limit);
+  EXPECT_EQ(result.status.message.find("shrink"), std::string::npos) << result.status.message;
+}
+
 TEST(Behaviour, APowerAsSwitchingFunctionIsSaidToBeOne) {
   for (const int power : {2, 3}) {
     Builder b("power");

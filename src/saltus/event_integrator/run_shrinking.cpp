@@ -1,0 +1,87 @@
+// Laps of switches that shrink, but not by a ratio: what they are, for the message of a run that ends in them.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/run_internal.hpp"
+
+namespace saltus::event_integrator {
+
+/// Mean distance of the events number first to first + count.
+double Run::mean_interval(long first, long count) const {
+  return (recorder_.event_time(first + count) - recorder_.event_time(first)) / static_cast<double>(count);
+}
+
+/// The exponent p if the events of the run so far follow each other like k^-p, k their number; nullopt if they do not,
+/// or are too few to tell.
+std::optional<double> Run::shrinking_exponent() const {
+  const long n = recorder_.events();
+  constexpr long fewest = 64;
+  if (n < fewest) return std::nullopt;
+  // Means over eighths, each twice as far from the start as the one before: whole laps and others alike. Their middles
+  // are (first + half an eighth), so that p follows from two of them.
+  const long eighth = (n - 1) / 8;
+  const auto middle = [&](long first) { return static_cast<double>(first) + 0.5 * static_cast<double>(eighth); };
+  const long firsts[] = {eighth, 3 * eighth, 7 * eighth};
+  const auto exponent = [&](long early, long late) {
+    return std::log(mean_interval(early, eighth) / mean_interval(late, eighth)) /
+           std::log(middle(late) / middle(early));
+  };
+  const double before = exponent(firsts[0], firsts[1]);
+  const double now = exponent(firsts[1], firsts[2]);
+  // k^-1 is what a weak damping leaves of a relay of relative degree 2; slower than k^-1/4 may be a cycle that is
+  // approached, and exponents that still change are no power.
+  constexpr double weakest = 0.25;
+  constexpr double same = 0.25;
+  if (!(now >= weakest && std::abs(now - before) <= same * now)) return std::nullopt;
+  return now;
+}
+
+/// Whether a surface is met here, to a tenth of an interval, and no selection of it moves psi at once: d psi/dt is
+/// the same on both sides (relative degree 2 or more).
+bool Run::is_met_with_one_rate(int surface, double psi, double interval) {
+  std::vector<double> alpha = state_.alpha;
+  Rate sides[2];
+  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+    alpha[at(surface)] = static_cast<double>(side);
+    kernel_.field(t_, x_.data(), alpha.data(), row_slope_.data());
+    sides[side] = rate_along_field(surface, t_, x_.data(), row_slope_.data());
+  }
+  if (!(std::abs(psi) <= 0.1 * interval * std::abs(sides[0].value))) return false;
+  constexpr double rounding = 1e-12;
+  return std::abs(sides[1].value - sides[0].value) <= rounding * std::max(sides[0].terms, sides[1].terms);
+}
+
+/// What max_events has ended, where that is a sequence that shrinks like a power of its number; empty elsewhere.
+std::string Run::shrinking_laps() {
+  const auto exponent = shrinking_exponent();
+  if (!exponent) return {};
+  const long events = recorder_.events();
+  const double interval = mean_interval(events - 1 - (events - 1) / 8, (events - 1) / 8);
+  std::vector<double> values(at(kernel_.event_functions()));
+  kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
+  std::string names;
+  for (int j = 0; j < kernel_.switching_functions(); ++j) {
+    const auto& function = surroundings_.system.switching[at(j)];
+    if (function.role != model::SwitchingRole::listed || state_.mode[at(j)] == 0) continue;
+    if (!is_met_with_one_rate(j, values[at(j)], interval)) continue;
+    names += (names.empty() ? "'" : "', '") + function.name;
+  }
+  if (names.empty()) return {};
+  names += "'";
+  // The sum of what follows like k^-p.
+  const std::string limit = *exponent > 1.1
+                                ? fmt::format("they have a limit at about t = {:.3g}",
+                                              t_ + interval * static_cast<double>(events) / (*exponent - 1.0))
+                                : std::string("they have no limit, and their number grows without bound");
+  return fmt::format(
+      "laps of {} shrink like the power -{:.2g} of their number (relative degree 2: the derivative of the function is "
+      "the "
+      "same on both sides, so that nothing slides): {}; give the switch a hysteresis, use method = \"smoothed\", or "
+      "start "
+      "at rest where function and derivative are 0, which is held",
+      names, *exponent, limit);
+}
+
+}  // namespace saltus::event_integrator
