@@ -83,6 +83,7 @@ class Run {
 
   bool begin();
   Step attempt();
+  [[nodiscard]] std::optional<Located> surface_within_rounding();
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
   [[nodiscard]] std::string undefined_function_beyond();

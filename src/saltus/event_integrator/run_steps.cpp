@@ -111,6 +111,26 @@ std::string Run::undefined_function_beyond() {
   return {};
 }
 
+/// A surface that the state cannot come nearer to, as its next digit is on it or behind it, although time could go on:
+/// steps that change nothing succeed there, and all others are undefined.
+std::optional<Located> Run::surface_within_rounding() {
+  std::vector<double> values;
+  std::vector<std::size_t> all(search_.functions().size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  search_.evaluate(t_, x_.data(), all, values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& function = search_.functions()[i];
+    if (function.kind != FunctionKind::surface || !(std::abs(values[i]) <= search_.noise(i))) continue;
+    const Rate rate = rate_along_field(function.index, t_, x_.data(), slope_.data());
+    constexpr double rounding = 1e-12;  // a surface that was left tangentially is none
+    if (!(function.sign * rate.value < -rounding * rate.terms)) continue;
+    Located located{t_, x_, {i}, {function.sign}};
+    move_onto(kernel_, state_, function.index, t_, located.x);
+    return located;
+  }
+  return std::nullopt;
+}
+
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
   std::vector<double> values;
@@ -238,6 +258,10 @@ Run::Step Run::attempt() {
   const double h = t_new - t_;
   dense_is_last_ = false;
   if (field_.attempt(stepper_, t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
+    // Not on the way of a long step, which has others to look at.
+    if (h <= 1e3 * smallest_step()) {
+      if (const auto located = surface_within_rounding()) return handle(*located);
+    }
     return shorten(0.25) ? Step::shortened : undefined_step();
   }
   if (const double error = confirmed_error(); !(error <= 1.0)) {
