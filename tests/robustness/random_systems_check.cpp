@@ -254,9 +254,13 @@ bool is_near_limit(const Result& result, double t) {
 
 /// The first lap of a solution that spirals out of an intersection is passed in one step, from its closed form.
 bool begins_to_spiral(const Result& result, double t) {
-  return std::any_of(result.events.begin(), result.events.end(), [&](const Event& event) {
-    return event.t == t && event.reason.find("spirals out") != std::string::npos;
-  });
+  const auto& events = result.events;
+  const auto first =
+      std::lower_bound(events.begin(), events.end(), t, [](const Event& e, double at) { return e.t < at; });
+  for (auto event = first; event != events.end() && event->t == t; ++event) {
+    if (event->reason.find("spirals out") != std::string::npos) return true;
+  }
+  return false;
 }
 
 /// Whether the switches of a surface at t are part of an accumulation that the run passes, or in which it ends. One
@@ -349,14 +353,17 @@ double step_at(const Result& result, double t) {
 std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& listed, const Result& result,
                           double rtol) {
   const auto& rows = result.trajectory;
+  // Once for all rows: there may be a hundred thousand events.
+  const bool any_limit = std::any_of(result.events.begin(), result.events.end(),
+                                     [](const Event& event) { return event.kind == result::EventKind::accumulation; });
   for (std::size_t i = 0; i < rows.t.size(); ++i) {
     const bool last = i + 1 == rows.t.size();
     // Behind a stop the last row may stand where no mode goes on.
     if (last && result.status.termination != result::Termination::completed) break;
     const ModeCheck check(system, listed, rows.mode[i], rtol);
     // The last laps before a limit are smaller than what the tolerances leave of psi.
-    const bool behind_limit = has_limit(result, rows.t[i]) && (last || rows.t[i + 1] > rows.t[i]);
-    const bool in_last_laps = is_near_limit(result, rows.t[i]) && !behind_limit;
+    const bool behind_limit = any_limit && has_limit(result, rows.t[i]) && (last || rows.t[i + 1] > rows.t[i]);
+    const bool in_last_laps = any_limit && is_near_limit(result, rows.t[i]) && !behind_limit;
     std::string problem = in_last_laps ? "" : check.row(rows.t[i], rows.x[i], rows.alpha[i]);
     if (problem.empty() && !last) {
       const bool later = rows.t[i + 1] > rows.t[i];
@@ -371,7 +378,8 @@ std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& l
         if (problem.empty()) {
           problem = check.stretch(rows.t[i], rows.t[i + 1], rows.x[i], rows.x[i + 1], rows.alpha[i]);
         }
-      } else if (rows.t[i + 1] < rows.t[i] || !same_state(rows.x[i], rows.x[i + 1], step_at(result, rows.t[i]))) {
+      } else if (rows.t[i + 1] < rows.t[i] ||
+                 !same_state(rows.x[i], rows.x[i + 1], any_limit ? step_at(result, rows.t[i]) : 1e-13)) {
         problem = "the next row is not later, or jumps";
       }
     }
