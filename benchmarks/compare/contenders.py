@@ -111,10 +111,11 @@ def line_up(programs):
     scipy = (str(scipy_python), str(HERE / "scipy_runner.py"))
     siconos = (DEBIAN_PYTHON, str(HERE / "siconos_runner.py"))
     contenders = []
-    for method in ("dopri5", "dop853"):
+    for method in ("dopri5", "dop853", "taylor"):
         contenders.append(Contender("Saltus", method, "native", (str(saltus),)))
     for variant in ("interpreted", "trajectory"):
-        contenders.append(Contender("Saltus", "dop853", variant, (str(saltus),)))
+        for method in ("dop853", "taylor"):
+            contenders.append(Contender("Saltus", method, variant, (str(saltus),)))
     for method in ("dopri5", "dop853"):
         contenders.append(Contender("by hand", method, "relevant", (str(hand),)))
         contenders.append(Contender("by hand", method, "all", (str(hand),), ("irma", "gene-ring")))

@@ -26,6 +26,8 @@ event_integrator::IntegrationOptions options_of(const Request& request, double u
     options.method = saltus::ode::Method::dopri5;
   } else if (request.method == "dop853") {
     options.method = saltus::ode::Method::dop853;
+  } else if (request.method == "taylor") {
+    options.method = saltus::ode::Method::taylor;
   } else {
     unknown(request);
   }

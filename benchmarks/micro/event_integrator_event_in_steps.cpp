@@ -97,12 +97,14 @@ void codimension_one(benchmark::State& state, ode::Method method) {
 }
 BENCHMARK_CAPTURE(codimension_one, dopri5, ode::Method::dopri5)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(codimension_one, dop853, ode::Method::dop853)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(codimension_one, taylor, ode::Method::taylor)->Unit(benchmark::kMicrosecond);
 
 void codimension_two(benchmark::State& state, ode::Method method) {
   compare(state, intersections(0.0), intersections(5.0), method);
 }
 BENCHMARK_CAPTURE(codimension_two, dopri5, ode::Method::dopri5)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(codimension_two, dop853, ode::Method::dop853)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(codimension_two, taylor, ode::Method::taylor)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace saltus::event_integrator

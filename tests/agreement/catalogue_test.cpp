@@ -45,7 +45,7 @@ bool is_stiff(const ReferenceProblem& problem) { return stiff_models.contains(pr
 
 /// The settings every model is run with.
 std::vector<Accuracy> accuracies(const ReferenceProblem& problem) {
-  return is_stiff(problem) ? std::vector{implicit} : std::vector{standard, fine, implicit};
+  return is_stiff(problem) ? std::vector{implicit} : std::vector{standard, fine, implicit, series};
 }
 
 class Catalogue : public testing::TestWithParam<ReferenceProblem> {};
@@ -68,6 +68,13 @@ TEST_P(Catalogue, AgreesToSixDigitsWithDefaults) {
 TEST_P(Catalogue, AgreesToSixDigitsWithRadau5) {
   const Simulator model = Simulator::from_reference(GetParam());
   expect_reference(model.run(with(model.options(), implicit)), GetParam(), 1e-6);
+}
+
+TEST_P(Catalogue, AgreesWithTaylor) {
+  if (is_stiff(GetParam())) return;  // no model for an explicit method
+  const Simulator model = Simulator::from_reference(GetParam());
+  expect_reference(model.run(with(model.options(), series)), GetParam(), 1e-6);
+  expect_reference(model.run(with(model.options(), {series.integrator, fine.rtol, fine.atol})), GetParam(), 1e-9);
 }
 
 TEST_P(Catalogue, AgreesToEightDigitsWithRadau5) {

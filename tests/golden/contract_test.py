@@ -152,6 +152,7 @@ until = 3
     def test_a_switching_function_that_ends_is_named(self):
         for function, name in (("log(x) + 100 + x", "log(x)+100+x"), ("sqrt(x) + 1", "sqrt(x)+1")):
             for arguments in (["--integrator", "dopri5"], ["--integrator", "dop853"], ["--integrator", "radau5"],
+                              ["--integrator", "taylor"],
                               ["--method", "fesd"], ["--method", "timestepping"]):
                 with self.subTest(function=function, arguments=arguments):
                     message = self.stop(function, *arguments)

@@ -51,6 +51,7 @@ struct Accuracy {
 inline constexpr Accuracy fine{pipeline::Integrator::dop853, 1e-12, 1e-14};
 inline constexpr Accuracy standard{};
 inline constexpr Accuracy implicit{pipeline::Integrator::radau5, 1e-8, 1e-10};
+inline constexpr Accuracy series{pipeline::Integrator::taylor, 1e-8, 1e-10};
 
 [[nodiscard]] pipeline::SimulateOptions with(pipeline::SimulateOptions options, const Accuracy& accuracy);
 

@@ -49,8 +49,8 @@ TEST_P(AdversarialModels, EndWithAStatusAndItsReason) {
                            "\"\n[simulate]\nuntil = 2.0\n";
   Simulator model = Simulator::from_text(text);
   model.set_initial_state({evil.start});
-  for (const auto integrator :
-       {pipeline::Integrator::dopri5, pipeline::Integrator::dop853, pipeline::Integrator::radau5}) {
+  for (const auto integrator : {pipeline::Integrator::dopri5, pipeline::Integrator::dop853,
+                                pipeline::Integrator::radau5, pipeline::Integrator::taylor}) {
     pipeline::SimulateOptions options = with(model.options(), {integrator, 1e-8, 1e-10});
     options.max_steps = most_steps;
     options.max_events = most_events;

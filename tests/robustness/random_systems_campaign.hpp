@@ -1,4 +1,4 @@
-// Many random systems, each simulated with both integrators and checked.
+// Many random systems, each simulated with every explicit integrator and checked.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace saltus::robustness {
 /// What came out of the systems of one family.
 struct Tally {
   long systems = 0;
-  long completed = 0;      ///< by both integrators
+  long completed = 0;      ///< by all integrators
   long outside_class = 0;  ///< by at least one of them
   long not_unique = 0;     ///< completed, but with an event that Filippov's theory leaves open: not compared
   long sensitive = 0;      ///< completed, but neighbours part: not compared

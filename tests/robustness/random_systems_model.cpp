@@ -70,9 +70,21 @@ Model::Model(const RandomSystem& random) {
 
 Model::~Model() = default;
 
+ode::Method method_of(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::dopri5:
+      return ode::Method::dopri5;
+    case Integrator::dop853:
+      return ode::Method::dop853;
+    case Integrator::taylor:
+      return ode::Method::taylor;
+  }
+  __builtin_unreachable();
+}
+
 result::Result Model::run(const Accuracy& accuracy, const std::vector<double>& start) const {
   event_integrator::IntegrationOptions options;
-  options.method = accuracy.integrator == Integrator::dopri5 ? ode::Method::dopri5 : ode::Method::dop853;
+  options.method = method_of(accuracy.integrator);
   options.tolerances = {accuracy.rtol, accuracy.rtol / 100.0};
   options.until = end_time;
   // Contracting fields need a few hundred steps, and a few thousand events at most: more is a run that got stuck.

@@ -9,7 +9,7 @@
 
 namespace saltus::robustness {
 
-enum class Integrator { dopri5, dop853 };
+enum class Integrator { dopri5, dop853, taylor };
 struct Accuracy {
   Integrator integrator = Integrator::dopri5;
   double rtol = 1e-8;  ///< atol = rtol / 100

@@ -14,7 +14,7 @@ namespace {
 using pipeline::Integrator;
 using result::EventKind;
 
-constexpr Integrator integrators[] = {Integrator::dopri5, Integrator::dop853, Integrator::radau5};
+constexpr Integrator integrators[] = {Integrator::dopri5, Integrator::dop853, Integrator::radau5, Integrator::taylor};
 
 /// 10^-3 … 10^-12 in steps of a factor 10^(9/(count - 1)).
 std::vector<double> tolerances(int count) {
@@ -24,7 +24,7 @@ std::vector<double> tolerances(int count) {
 }
 
 std::string setting(Integrator integrator, double rtol) {
-  constexpr const char* names[] = {"dopri5", "dop853", "radau5"};
+  constexpr const char* names[] = {"dopri5", "dop853", "radau5", "taylor"};
   return names[static_cast<std::size_t>(integrator)] + (", rtol = " + std::to_string(std::log10(rtol)));
 }
 

@@ -132,4 +132,46 @@ void AffineRowFunction::fill(FixedState fixed, const double* p, const double* al
   if (fixed.component >= 0) row.coefficient[at(fixed.component)] = 0.0;
 }
 
+LinearFieldFunction::LinearFieldFunction(const SX& f, const ModelSymbols& symbols) : start_{0} {
+  const auto affine = affine_entries(f, symbols);
+  if (std::find(affine.begin(), affine.end(), false) != affine.end()) return;
+  const SX jacobian = SX::jacobian(f, symbols.x).T();  // its columns are the rows of A
+  const auto& sparsity = jacobian.sparsity();
+  for (casadi_int row = 0; row < sparsity.size2(); ++row) {
+    for (casadi_int k = sparsity.colind()[row]; k < sparsity.colind()[row + 1]; ++k) {
+      column_.push_back(at(sparsity.row()[k]));
+    }
+    start_.push_back(column_.size());
+  }
+  const auto nonzeros = jacobian.nonzeros();
+  const SX entries = nonzeros.empty() ? SX(0, 1) : SX(nonzeros);
+  const SX rates = SX::densify(SX::jacobian(f, symbols.t));
+  entries_.resize(column_.size());
+  constant_ = !SX::depends_on(SX::vertcat({entries, rates}), symbols.alpha);
+  values_ = ModelFunction("linear_field", {symbols.p, symbols.alpha}, {entries, rates});
+}
+
+void LinearFieldFunction::fill(const double* p, const double* alpha, ode::LinearField& field) {
+  const std::size_t n = start_.size() - 1;
+  field.diagonal.assign(n, 0.0);
+  field.rate.resize(n);
+  values_(std::array<const double*, 2>{p, alpha}, std::array<double*, 2>{entries_.data(), field.rate.data()});
+  field.start.assign(1, 0);
+  field.column.clear();
+  field.entry.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = start_[i]; k < start_[i + 1]; ++k) {
+      if (column_[k] == i) {
+        field.diagonal[i] = entries_[k];
+      } else if (entries_[k] != 0.0) {
+        field.column.push_back(column_[k]);
+        field.entry.push_back(entries_[k]);
+      }
+    }
+    field.start.push_back(field.column.size());
+  }
+  const auto is_zero = [](double value) { return value == 0.0; };
+  if (std::all_of(field.rate.begin(), field.rate.end(), is_zero)) field.rate.clear();
+}
+
 }  // namespace saltus::evaluation

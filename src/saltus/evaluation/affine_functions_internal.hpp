@@ -1,4 +1,4 @@
-// Which model functions are affine in (t, x), and their rows as functions of (p, alpha).
+// Which model functions are affine in (t, x), and their rows, or linear parts, as functions of (p, alpha).
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/model/model_function.hpp"
+#include "saltus/ode/linear_field.hpp"
 
 namespace saltus::evaluation {
 
@@ -47,6 +48,22 @@ class AffineRowFunction {
  private:
   ModelFunction values_;  ///< null where it is not affine
   std::vector<double> origin_;
+};
+
+/// The linear part of a right-hand side, if it is affine.
+class LinearFieldFunction {
+ public:
+  LinearFieldFunction(const casadi::SX& f, const ModelSymbols& symbols);
+  [[nodiscard]] bool is_affine() const { return !values_.is_null(); }
+  /// Whether it is the same for all selections.
+  [[nodiscard]] bool is_constant() const { return constant_; }
+  void fill(const double* p, const double* alpha, ode::LinearField& field);
+
+ private:
+  ModelFunction values_;  ///< entries of A row by row, c; null where it is not affine
+  bool constant_ = false;
+  std::vector<std::size_t> start_, column_;  ///< of the entries
+  std::vector<double> entries_;
 };
 
 }  // namespace saltus::evaluation

@@ -1,4 +1,4 @@
-// Derivatives of single event functions, made when first asked for, and the rows of affine ones.
+// Derivatives of single event functions, made when first asked for, the rows of affine ones, the linear part of f.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -77,6 +77,22 @@ bool ModelKernel::lie_row(int function, FixedState fixed, const double* alpha, A
   if (!entry->second.is_affine()) return false;
   entry->second.fill(fixed, self.parameters.data(), alpha, row);
   return true;
+}
+
+const ode::LinearField* ModelKernel::linear_field(const double* alpha, ode::LinearField& own) const {
+  auto& self = *implementation_;
+  auto& motion = *self.motion;
+  if (motion.linear_always) return &*motion.linear_always;
+  if (!motion.linear) motion.linear.emplace(motion.f, self.symbols());
+  if (!motion.linear->is_affine()) return nullptr;
+  const double* p = self.parameters.data();
+  // Cells and references change constants among the parameters.
+  if (motion.linear->is_constant() && self.cells.size() == 0 && self.regions.groups().empty()) {
+    motion.linear->fill(p, alpha, motion.linear_always.emplace());
+    return &*motion.linear_always;
+  }
+  motion.linear->fill(p, alpha, own);
+  return &own;
 }
 
 bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[index(function)]; }

@@ -40,6 +40,8 @@ struct Motion {
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
   std::map<std::pair<int, int>, casadi::SX> lie_expressions;
   std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
+  std::optional<LinearFieldFunction> linear;                  ///< once it was asked for
+  std::optional<ode::LinearField> linear_always;              ///< if it is the same in all modes
 };
 
 struct ModelKernel::Implementation {

@@ -8,6 +8,7 @@
 #include "saltus/base/error.hpp"
 #include "saltus/evaluation/native_steps.hpp"
 #include "saltus/model/cells.hpp"
+#include "saltus/ode/linear_field.hpp"
 
 namespace saltus::model {
 struct System;
@@ -118,6 +119,10 @@ class ModelKernel {
     ++constants.use->evaluations;
     constants.direct(t, x, constants.values.data(), xdot);
   }
+  /// The linear part of f for these selections, null where f is not affine in t and x (by its operations, whatever the
+  /// selections are). Where the selections or cells change it, it is put into `own`; otherwise it stays as it is as
+  /// long as the kernel and the motion. Cost: the first call makes an expression.
+  [[nodiscard]] const ode::LinearField* linear_field(const double* alpha, ode::LinearField& own) const;
   /// Values of all event functions.
   void functions(double t, const double* x, const double* alpha, double* values) const;
   /// Magnitudes from which rounding and tolerances of event functions follow, each over all event functions:

@@ -149,6 +149,47 @@ ode::BernsteinCoefficients AffineForms::along(std::size_t i, const ode::DenseSte
   return b;
 }
 
+void AffineForms::AlongSeries::subtract(double offset) {
+  terms[0] -= offset;
+  for (double& b : coefficients) b -= offset;
+}
+
+double AffineForms::AlongSeries::derivative(double theta) const {
+  double sum = 0.0;
+  for (std::size_t k = terms.size(); --k > 0;) sum = static_cast<double>(k) * terms[k] + theta * sum;
+  return sum;
+}
+
+AffineForms::AlongSeries AffineForms::along_series(std::size_t i, const ode::DenseStep& step) const {
+  const Form& form = forms_[i];
+  ode::SeriesCoefficients sum{};
+  double size = 0.0;
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    const auto [column, coefficient] = terms_[k];
+    const auto terms = step.terms(column);
+    double sizes = 0.0;
+    for (std::size_t power = 0; power < sum.size(); ++power) {
+      sum[power] += coefficient * terms[power];
+      sizes += std::abs(terms[power]);
+    }
+    size += std::abs(coefficient) * sizes;
+  }
+  const double begin = form.rate == 0.0 ? 0.0 : form.rate * step.t;
+  const double advance = form.rate == 0.0 ? 0.0 : form.rate * step.h;
+  sum[0] += begin + form.offset;
+  sum[1] += advance;
+  size += std::abs(begin) + std::abs(form.offset) + std::abs(advance);
+  AlongSeries result{sum, ode::to_bernstein(sum), ode::series_rounding * size};
+  // The ends are the states there, on which the steps before and behind agree.
+  result.coefficients.front() = sum[0];
+  double end = form.rate == 0.0 ? 0.0 : form.rate * (step.t + step.h);
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    end += terms_[k].coefficient * step.end(terms_[k].column);
+  }
+  result.coefficients.back() = end + form.offset;
+  return result;
+}
+
 double AffineForms::terms(const Form& form, const StepBounds& bounds) const {
   double sum = std::abs(form.offset) + std::abs(form.rate) * std::max(std::abs(bounds.begin), std::abs(bounds.end));
   for (std::size_t k = form.first; k < form.first + form.count; ++k) {

@@ -57,6 +57,15 @@ class AffineForms {
   [[nodiscard]] std::optional<double> rate_along(std::size_t i, const double* f) const;
   /// Bernstein coefficients of the form along a step.
   [[nodiscard]] ode::BernsteinCoefficients along(std::size_t i, const ode::DenseStep& step) const;
+  /// The same where the step is a series, with its terms, and what roundings may have changed the polynomial by.
+  struct AlongSeries {
+    ode::SeriesCoefficients terms;  ///< of theta^k
+    ode::SeriesCoefficients coefficients;
+    double rounding = 0.0;
+    void subtract(double offset);
+    [[nodiscard]] double derivative(double theta) const;
+  };
+  [[nodiscard]] AlongSeries along_series(std::size_t i, const ode::DenseStep& step) const;
   /// Sum of the sizes of the terms that a value is the sum of, at most this over the step: what its rounding follows
   /// from.
   [[nodiscard]] double terms(std::size_t i, const StepBounds& bounds) const;

@@ -61,15 +61,6 @@ bool stays_far(const std::array<double, 5>& v, int sign) {
 
 }  // namespace
 
-/// The sign to which a function that is zero at the start moves; 0 if it stays. By its values or, where these were not
-/// sampled, coefficients: of a multiple zero the first ones are roundings of the largest.
-int EventSearch::sign_behind_zero(const std::array<double, ode::event_nodes>& values, double noise) {
-  for (const double value : values) {
-    if (std::abs(value) > noise) return sign_of(value);
-  }
-  return 0;
-}
-
 /// The argument of a cell may be undefined where a branch that is not taken holds it; a step that looks beyond the end
 /// of its region may find it defined there.
 EventSearch::Finding EventSearch::not_finite(const EventFunction& function, double at_start) {
@@ -261,10 +252,12 @@ bool EventSearch::specials_leave(const ode::Stepper& stepper) {
 }
 
 bool EventSearch::may_vanish(const ode::Stepper& stepper) {
+  bounds_known_ = false;
   if (functions_.empty()) return false;
   if (!curved_.empty() || !specials_leave(stepper)) return true;
   if (!stepper.bounds(low_.data(), high_.data())) return true;
   bounds_ = {stepper.start_time(), stepper.start_time() + stepper.length(), low_.data(), high_.data()};
+  bounds_known_ = stepper.method() == ode::Method::taylor;
   return forms_.may_vanish(bounds_);
 }
 
@@ -272,7 +265,7 @@ bool EventSearch::may_vanish(const ode::Stepper& stepper) {
 void EventSearch::find_suspects(const ode::DenseStep& step) {
   suspects_.clear();
   bounds_ = {step.t, step.t + step.h, low_.data(), high_.data()};
-  step.bounds(low_.data(), high_.data());
+  if (!bounds_known_) step.bounds(low_.data(), high_.data());
   forms_.append_suspects(bounds_, suspects_);
   for (const std::size_t i : special_) {
     if (forms_.has(i)) suspects_.push_back(i);
@@ -365,6 +358,7 @@ EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::si
 
 /// The first sign change of one function between two nodes' ends, from the samples or, along the whole step, its form.
 EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, double to, std::size_t i) {
+  if (step.is_series() && forms_.has(i)) return find_in_series(step, from, to, i);
   if (forms_.has(i) && from == 0.0 && to == 1.0) return find_along(step, i);
   const auto& function = functions_[i];
   std::array<double, ode::event_nodes> values;

@@ -169,7 +169,7 @@ class EventSearch {
   [[nodiscard]] Finding find_along(const ode::DenseStep& step, std::size_t i) const;
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
   static Finding not_finite(const EventFunction& function, double at_start);
-  static int sign_behind_zero(const std::array<double, ode::event_nodes>& values, double noise);
+  [[nodiscard]] Finding find_in_series(const ode::DenseStep& step, double from, double to, std::size_t i) const;
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
               const ode::BernsteinCoefficients& coefficients, double accuracy);
   [[nodiscard]] bool is_far(std::size_t i) const;
@@ -201,6 +201,7 @@ class EventSearch {
   std::vector<double> low_, high_;            ///< of the states over the step
   std::vector<double> wide_low_, wide_high_;  ///< around it
   StepBounds bounds_;
+  bool bounds_known_ = false;  ///< may_vanish() has found those of the dense output
   AffineForms forms_;
   std::vector<bool> nesting_;                   ///< functions of the kernel that hold selections
   std::array<evaluation::AffineRows, 3> rows_;  ///< at the selections of the mode, of the lower and the upper region

@@ -38,6 +38,7 @@ ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha
 }
 
 void ModeField::enter(const ModeState& state) {
+  linear_motion_.forget();
   // Alone, a surface is one group whatever happens around it.
   const bool same_single = is_single() && state.sliding == sliding_ && !state.higher && kernel_.region_groups().empty();
   sliding_ = state.sliding;
@@ -93,12 +94,14 @@ void ModeField::resize_rows() {
 }
 
 void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& other) {
+  linear_motion_.forget();
   start_alpha_[surface] = alpha_[surface] = other.alpha[surface];
   constants_[0] = other;
 }
 
 void ModeField::slide_from_region(std::size_t surface, double selection, Region side,
                                   const evaluation::FieldConstants& other) {
+  linear_motion_.forget();
   start_alpha_[surface] = alpha_[surface] = selection;
   if (side == Region::below) std::swap(constants_[0], constants_[1]);
   constants_[side == Region::below ? 0 : 1] = other;
@@ -117,6 +120,7 @@ void ModeField::slide_from_region(std::size_t surface, double selection, Region 
 }
 
 void ModeField::leave_to(Region side) {
+  linear_motion_.forget();
   const auto j = at(sliding_.front());
   start_alpha_[j] = alpha_[j] = side == Region::below ? 0.0 : 1.0;
   if (side == Region::above) std::swap(constants_[0], constants_[1]);
@@ -126,6 +130,7 @@ void ModeField::leave_to(Region side) {
 
 void ModeField::pass(std::size_t surface, const std::vector<double>& alpha,
                      FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of) {
+  linear_motion_.forget();
   const auto slid = at(sliding_.front());
   start_alpha_[surface] = alpha_[surface] = alpha[surface];
   start_alpha_[slid] = alpha_[slid] = alpha[slid];
@@ -163,7 +168,11 @@ void ModeField::gradients(double t, const double* x) {
 ode::Attempt ModeField::attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
                                 const ode::Tolerances& tolerances) {
   const auto f = [this](double t_stage, const double* x_stage, double* xdot) { (*this)(t_stage, x_stage, xdot); };
-  const auto stages = native_stages();
+  auto stages = native_stages();
+  if (stepper.wants_linear_field()) {
+    stages.linear = linear_field();
+    if (stages.linear != nullptr) return stepper.attempt(f, t, x, slope, h, tolerances, stages);
+  }
   if (stepper.stages_function(stages.functions) == nullptr) return stepper.attempt(f, t, x, slope, h, tolerances);
   const long before = stepper.evaluations();
   const auto outcome = stepper.attempt(f, t, x, slope, h, tolerances, stages);
@@ -178,6 +187,12 @@ ode::RightHandSideStages ModeField::native_stages() const {
   }
   if (!is_single() || !constant_row_[0] || !constants_[0].has_steps()) return {};
   return {constants_[0].steps->sliding, &sliding_constants_};
+}
+
+const ode::LinearField* ModeField::linear_field() {
+  if (solve_ == SlidingSolve::none) return linear_motion_.of_region(kernel_, constants_[0]);
+  if (!is_single() || !constant_row_[0]) return nullptr;
+  return linear_motion_.on_surface(kernel_, constants_[0], constants_[1], {rows_.data(), coordinate_[0]});
 }
 
 double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f) const {

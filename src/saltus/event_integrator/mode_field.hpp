@@ -12,6 +12,7 @@
 #include "saltus/base/function_ref.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/higher_order.hpp"
+#include "saltus/event_integrator/linear_motion.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/event_integrator/region_ties.hpp"
 #include "saltus/ode/stepper.hpp"
@@ -86,7 +87,8 @@ class ModeField {
     if (solve_ != SlidingSolve::none) return slide(t, x, xdot);
     kernel_.prepared_field(t, x, constants_[0], xdot);
   }
-  /// Stepper::attempt along this field, by native stages where there are some. Behind an evaluation in the mode.
+  /// Stepper::attempt along this field, by native stages where there are some, or by its linear part. Behind an
+  /// evaluation in the mode.
   ode::Attempt attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
                        const ode::Tolerances& tolerances);
   /// Selections of the last evaluation (those of attempts do not count), n_psi.
@@ -120,6 +122,7 @@ class ModeField {
   };
 
   [[nodiscard]] ode::RightHandSideStages native_stages() const;
+  [[nodiscard]] const ode::LinearField* linear_field();
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
   void resize_rows();
   void refer_to_constants();
@@ -193,10 +196,11 @@ class ModeField {
   std::vector<bool> constant_row_;                  ///< gradient known once and for all in this mode
   std::vector<int> coordinate_;                     ///< the only nonzero column of a row, or -1
   evaluation::SlidingConstants sliding_constants_;  ///< of one surface with a constant gradient
-  Eigen::MatrixXd rows_;                            ///< J, m x n_x
-  double row_square_ = 0.0;                         ///< |J|^2 of one sliding surface
-  Eigen::VectorXd rates_, residual_;                ///< d psi_I/dt, m
-  Eigen::MatrixXd normal_matrix_;                   ///< J J^T
+  LinearMotion linear_motion_;
+  Eigen::MatrixXd rows_;              ///< J, m x n_x
+  double row_square_ = 0.0;           ///< |J|^2 of one sliding surface
+  Eigen::VectorXd rates_, residual_;  ///< d psi_I/dt, m
+  Eigen::MatrixXd normal_matrix_;     ///< J J^T
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 

@@ -145,8 +145,9 @@ Run::Step Run::undefined_step() {
     const double rate = surface ? kernel_.lie_derivative(function.index, 1, t_, x_.data(), state_.alpha.data()) : 0.0;
     // NOTE: the last step may have ended at 0 itself, or a rounding beyond it.
     const bool ahead = function.sign * rate < 0.0 || (function.sign == 0 && values[i] * rate < 0.0);
-    const bool reached =
-        surface ? ahead && std::abs(values[i] / rate) <= 1e3 * smallest_step() : std::abs(values[i]) < 1e-3;
+    // Of sqrt(x) + 1 the rate is infinite at x = 0, and nothing is reached.
+    const bool is_near = std::isfinite(rate) && std::abs(values[i] / rate) <= 1e3 * smallest_step();
+    const bool reached = surface ? ahead && is_near : std::abs(values[i]) < 1e-3;
     if (reached) {
       Located located{t_, x_, {i}, {function.sign}};
       if (surface) move_onto(kernel_, state_, function.index, t_, located.x);
@@ -244,7 +245,8 @@ double Run::defect() {
 /// of the run ten times.
 double Run::confirmed_error() {
   const double error = error_norm();
-  const bool has_estimate = options_.method != ode::Method::radau5;  // its dense output is the method
+  // The dense output of the other ones is the method; all terms of a series that are neglected follow from the last.
+  const bool has_estimate = stepper_.method() != ode::Method::radau5 && stepper_.method() != ode::Method::taylor;
   if (!(error <= 1.0) || !has_estimate || !step_memory_.is_guess()) return error;
   constexpr double believed = 100.0;
   return std::max(error, defect() / believed);
@@ -264,6 +266,7 @@ Run::Step Run::attempt() {
     }
     return shorten(0.25) ? Step::shortened : undefined_step();
   }
+  control_.follow(stepper_.method());
   if (const double error = confirmed_error(); !(error <= 1.0)) {
     if (shorten(control_.rejected(error))) return Step::shortened;
     if (stopped_by_singularity()) return Step::failed;

@@ -14,6 +14,10 @@ inline constexpr int event_degree = 8;
 inline constexpr int event_nodes = event_degree + 1;
 using BernsteinCoefficients = std::array<double, event_nodes>;
 
+/// Degree of Taylor series, and of affine functions along them.
+inline constexpr int series_degree = 16;
+using SeriesCoefficients = std::array<double, series_degree + 1>;
+
 /// Interpolation nodes in [0, 1], ascending, both ends among them (Chebyshev-Lobatto), and the nodes between them at
 /// which an interpolant is checked.
 [[nodiscard]] const std::array<double, event_nodes>& interpolation_nodes();
@@ -28,7 +32,19 @@ using BernsteinCoefficients = std::array<double, event_nodes>;
 
 /// Value (de Casteljau), and derivative with respect to theta, at theta in [0, 1].
 [[nodiscard]] double evaluate(const BernsteinCoefficients& coefficients, double theta);
+[[nodiscard]] double evaluate(const SeriesCoefficients& coefficients, double theta);
 [[nodiscard]] double derivative(const BernsteinCoefficients& coefficients, double theta);
+[[nodiscard]] double derivative(const SeriesCoefficients& coefficients, double theta);
+
+/// Bernstein coefficients on [0, 1] of sum_k terms_k theta^k.
+///
+/// Accuracy: every coefficient is a sum of parts of the terms; its error is below series_rounding times the sum of
+/// their sizes. Scaling the terms by a power of two scales the coefficients exactly.
+[[nodiscard]] SeriesCoefficients to_bernstein(const SeriesCoefficients& terms);
+/// A sum of series_degree + 1 products: as many half units, and one for the table.
+inline constexpr double series_rounding = (series_degree + 2) * 0x1p-53;
+/// The same polynomial on [from, to], 0 <= from < to <= 1, as coefficients on [0, 1].
+[[nodiscard]] SeriesCoefficients part_of(const SeriesCoefficients& coefficients, double from, double to);
 
 /// A bracket [lower, upper] of one sign change: the value's sign is that at 0+ just below `lower`, the other above
 /// `upper`.
@@ -39,8 +55,9 @@ struct SignChange {
 
 /// True only if first_sign_change finds nothing with the same arguments: no coefficient is beyond the noise on the
 /// other side. The cheap way out for almost every event function in almost every step; false for NaN.
-[[nodiscard]] inline bool certainly_no_sign_change(const BernsteinCoefficients& coefficients, int sign, int zero_order,
-                                                   double noise) {
+template <std::size_t nodes = event_nodes>
+[[nodiscard]] inline bool certainly_no_sign_change(const std::array<double, nodes>& coefficients, int sign,
+                                                   int zero_order, double noise) {
   const double side = sign > 0 ? 1.0 : -1.0;
   int beyond = 0;  // not a bool with early exit: nine comparisons without a branch
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
@@ -70,5 +87,11 @@ struct SignChange {
 /// Method: variation diminishing property; bisection where the coefficients change sign more than once.
 [[nodiscard]] std::optional<SignChange> first_sign_change(const BernsteinCoefficients& coefficients, int sign,
                                                           int zero_order, double noise);
+[[nodiscard]] std::optional<SignChange> first_sign_change(const SeriesCoefficients& coefficients, int sign,
+                                                          int zero_order, double noise);
+/// The same for the polynomial with these terms, sum_k terms_k theta^k, in less time.
+[[nodiscard]] std::optional<SignChange> first_sign_change(const SeriesCoefficients& coefficients,
+                                                          const SeriesCoefficients& terms, int sign, int zero_order,
+                                                          double noise);
 
 }  // namespace saltus::ode

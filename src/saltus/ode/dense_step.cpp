@@ -6,7 +6,10 @@
 #include <cstddef>
 #include <utility>
 
+#include "saltus/base/contracts.hpp"
+#include "saltus/ode/bernstein_internal.hpp"
 #include "saltus/ode/lanes_internal.hpp"
+#include "saltus/ode/series_internal.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::ode {
@@ -91,12 +94,6 @@ void polynomial_bounds(const double* coefficients, const double* end, std::size_
   }
 }
 
-constexpr double binomial(std::size_t n, std::size_t k) {
-  double value = 1.0;
-  for (std::size_t j = 1; j <= k; ++j) value = value * static_cast<double>(n - k + j) / static_cast<double>(j);
-  return value;
-}
-
 /// Bernstein coefficients, two at a time, with a last one that is nobody's.
 using BernsteinPairs = std::array<Pair, (event_nodes + 1) / 2>;
 
@@ -142,6 +139,13 @@ BernsteinCoefficients bernstein_form(const double* coefficients, std::size_t n, 
 
 }  // namespace
 
+SeriesCoefficients DenseStep::terms(std::size_t i) const {
+  const double* place = coefficients_.data() + series_place(i);
+  SeriesCoefficients terms;
+  for (std::size_t k = 0; k < terms.size(); ++k) terms[k] = place[2 * k];
+  return terms;
+}
+
 BernsteinCoefficients DenseStep::bernstein(std::size_t i) const {
   const auto n = static_cast<std::size_t>(n_);
   switch (method_) {
@@ -149,9 +153,12 @@ BernsteinCoefficients DenseStep::bernstein(std::size_t i) const {
       return bernstein_form<4>(coefficients_.data(), n, i, end_[i]);
     case Method::dop853:
       return bernstein_form<7>(coefficients_.data(), n, i, end_[i]);
+    case Method::taylor:
+      break;
     case Method::radau5:
       return bernstein_form<3>(coefficients_.data(), n, i, end_[i]);
   }
+  SALTUS_ASSERT(!is_series());
   __builtin_unreachable();
 }
 
@@ -162,6 +169,8 @@ void DenseStep::bounds(double* low, double* high) const {
       return polynomial_bounds<4>(coefficients_.data(), end_.data(), n, low, high);
     case Method::dop853:
       return polynomial_bounds<7>(coefficients_.data(), end_.data(), n, low, high);
+    case Method::taylor:
+      return series_bounds(coefficients_.data(), n, low, high);
     case Method::radau5:
       return polynomial_bounds<3>(coefficients_.data(), end_.data(), n, low, high);
   }
@@ -170,6 +179,7 @@ void DenseStep::bounds(double* low, double* high) const {
 void DenseStep::evaluate(double theta, double* x) const {
   const std::size_t n = end_.size();
   if (theta == 0.0 || theta == 1.0) {  // bit for bit, the sign of a zero included
+    if (theta == 0.0 && is_series()) return series_start(coefficients_.data(), n, x);
     std::copy_n(theta == 0.0 ? coefficients_.data() : end_.data(), n, x);
     return;
   }
@@ -178,6 +188,8 @@ void DenseStep::evaluate(double theta, double* x) const {
       return evaluate_nearer<4>(coefficients_.data(), end_.data(), n, theta, x);
     case Method::dop853:
       return evaluate_nearer<7>(coefficients_.data(), end_.data(), n, theta, x);
+    case Method::taylor:
+      return series_values(coefficients_.data(), n, theta, x);
     case Method::radau5:
       return evaluate_nearer<3>(coefficients_.data(), end_.data(), n, theta, x);
   }
@@ -190,6 +202,8 @@ void DenseStep::derivative(double theta, double* xdot) const {
       return evaluate_slope<4>(coefficients_.data(), n, theta, h, xdot);
     case Method::dop853:
       return evaluate_slope<7>(coefficients_.data(), n, theta, h, xdot);
+    case Method::taylor:
+      return series_slopes(coefficients_.data(), n, theta, h, xdot);
     case Method::radau5:
       return evaluate_slope<3>(coefficients_.data(), n, theta, h, xdot);
   }

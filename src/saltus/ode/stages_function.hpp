@@ -1,6 +1,8 @@
 // The stages of an explicit step by one function, made for one right-hand side: nothing is called between them.
 #pragma once
 
+#include "saltus/ode/linear_field.hpp"
+
 namespace saltus::ode {
 
 /// As Stepper::attempt evaluates them, bit for bit: from x, h and k_1, which is there, the stages k_2, k_3, … up to the
@@ -14,10 +16,12 @@ struct StagesFunctions {
   StagesFunction dop853 = nullptr;
 };
 
-/// Those of a right-hand side, with their data.
+/// What is known of a right-hand side beside its values: its stages, with their data, and its linear part if it is
+/// affine.
 struct RightHandSideStages {
   StagesFunctions functions;
   const void* data = nullptr;
+  const LinearField* linear = nullptr;
 };
 
 }  // namespace saltus::ode

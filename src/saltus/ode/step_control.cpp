@@ -26,6 +26,9 @@ Gains gains(Method method) {
       return {.exponent = 0.125, .beta = 0.0, .smallest = 0.333, .largest = 6.0};
     case Method::radau5:
       return {.exponent = 0.25, .beta = 0.0, .smallest = 0.2, .largest = 8.0};
+    // Another length from the same start costs a sum, and entire functions have no poles: steps may change by more.
+    case Method::taylor:
+      return {.exponent = 1.0 / series_degree, .beta = 0.0, .smallest = 0.05, .largest = 10.0};
   }
   __builtin_unreachable();
 }
@@ -103,6 +106,9 @@ double StepControl::factor(double error_norm) {
       return 1.0 / std::sqrt(std::sqrt(std::sqrt(error_norm)));
     case Method::radau5:
       return 1.0 / std::sqrt(std::sqrt(error_norm));
+    case Method::taylor:
+      static_assert(series_degree == 16);
+      return 1.0 / std::sqrt(std::sqrt(std::sqrt(std::sqrt(error_norm))));
   }
   __builtin_unreachable();
 }

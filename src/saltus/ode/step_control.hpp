@@ -11,6 +11,8 @@ namespace saltus::ode {
 class StepControl {
  public:
   explicit StepControl(Method method);
+  /// What the steps are made by from here on: of Method::taylor either of its two ways.
+  void follow(Method method) { method_ = method; }
   /// Factor h_new / h after an accepted step with this error norm (<= 1). At most 1 right after a rejection.
   [[nodiscard]] double accepted(double error_norm);
   /// Factor (< 1) after a rejected step (error norm > 1, infinity included).

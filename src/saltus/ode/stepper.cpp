@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/explicit_method_internal.hpp"
 #include "saltus/ode/radau5_internal.hpp"
+#include "saltus/ode/series_internal.hpp"
 #include "saltus/ode/step_checks_internal.hpp"
 
 namespace saltus::ode {
@@ -18,6 +20,7 @@ const ExplicitMethod* explicit_method(Method method, std::size_t n) {
     case Method::dopri5:
       return &(few ? dopri5_for_few(n) : dopri5_for_any());
     case Method::dop853:
+    case Method::taylor:
       return &(few ? dop853_for_few(n) : dop853_for_any());
     case Method::radau5:
       return nullptr;
@@ -35,6 +38,8 @@ int order(Method method) {
       return 8;
     case Method::radau5:
       return 5;
+    case Method::taylor:
+      return series_degree;
   }
   __builtin_unreachable();
 }
@@ -47,18 +52,24 @@ int dense_degree(Method method) {
       return 7;
     case Method::radau5:
       return 3;
+    case Method::taylor:
+      return series_degree;
   }
   __builtin_unreachable();
 }
 
 Stepper::Stepper(Method method, int n)
-    : method_(method), n_(n), explicit_(explicit_method(method, static_cast<std::size_t>(n))) {
+    : method_(method),
+      pair_(method == Method::taylor ? Method::dop853 : method),
+      n_(n),
+      explicit_(explicit_method(method, static_cast<std::size_t>(n))) {
   SALTUS_ASSERT(n >= 0);
   const auto size = static_cast<std::size_t>(n);
   for (auto* vector : {&start_, &x_new_, &argument_}) vector->resize(size);
   stages_.resize(size * (explicit_ != nullptr ? explicit_->stages : 2));
   slope_new_ = size * (explicit_ != nullptr ? explicit_->last_stage : 1);
   if (method == Method::radau5 && n > 0) radau_ = std::make_unique<Radau5>(n);
+  if (method == Method::taylor) series_ = std::make_unique<Series>(size);
 }
 
 Stepper::Stepper(Stepper&&) noexcept = default;
@@ -66,6 +77,7 @@ Stepper& Stepper::operator=(Stepper&&) noexcept = default;
 Stepper::~Stepper() = default;
 
 void Stepper::restart() {
+  series_known_ = false;
   if (radau_) radau_->restart();
 }
 
@@ -74,11 +86,12 @@ ExplicitStep Stepper::explicit_step() const {
 }
 
 StagesFunction Stepper::stages_function(const StagesFunctions& functions) const {
-  switch (method_) {
+  switch (pair_) {
     case Method::dopri5:
       return functions.dopri5;
     case Method::dop853:
       return functions.dop853;
+    case Method::taylor:
     case Method::radau5:
       return nullptr;
   }
@@ -88,11 +101,18 @@ StagesFunction Stepper::stages_function(const StagesFunctions& functions) const 
 Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
                          const Tolerances& tolerances, const RightHandSideStages& stages) {
   const auto n = static_cast<std::size_t>(n_);
+  if (series_) {
+    took_series_ = stages.linear != nullptr;
+    const std::size_t size = n * sizeof(double);
+    series_known_ = series_known_ && took_series_ && t == t_ && std::memcmp(start_.data(), x, size) == 0 &&
+                    std::memcmp(stages_.data(), slope, size) == 0;
+  }
   for (std::size_t i = 0; i < n; ++i) start_[i] = x[i];
   for (std::size_t i = 0; i < n; ++i) stages_[i] = slope[i];
   t_ = t;
   h_ = h;
   if (!all_finite(stages_.data(), n)) return Attempt::undefined;
+  if (took_series_) return attempt_series(f, *stages.linear, tolerances);
   if (const StagesFunction take = stages_function(stages.functions); take != nullptr) {
     const int evaluated = take(t, h, start_.data(), stages.data, stages_.data(), x_new_.data());
     evaluations_ += evaluated < 0 ? -1 - evaluated : evaluated;
@@ -113,18 +133,42 @@ Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const doubl
   return Attempt::finite;
 }
 
+Attempt Stepper::attempt_series(RightHandSide f, const LinearField& linear, const Tolerances& tolerances) {
+  const auto n = static_cast<std::size_t>(n_);
+  if (!series_known_) series_->begin(linear, start_.data(), stages_.data(), h_);
+  series_known_ = true;
+  series_->take(h_, x_new_.data());
+  if (!all_finite(x_new_.data(), n)) return Attempt::undefined;
+  double* slope_new = stages_.data() + slope_new_;
+  f(t_ + h_, x_new_.data(), slope_new);
+  ++evaluations_;
+  if (!all_finite(slope_new, n)) return Attempt::undefined;
+  error_norm_ = series_->error_norm(x_new_.data(), tolerances);
+  if (std::isnan(error_norm_)) error_norm_ = std::numeric_limits<double>::infinity();
+  return Attempt::finite;
+}
+
 double Stepper::stability_ratio() const {
+  if (took_series_) return series_->stability_ratio();
   return explicit_ != nullptr ? explicit_->stability_ratio(explicit_step()) : 0.0;
 }
 
 bool Stepper::bounds(double* low, double* high) const {
   if (explicit_ == nullptr) return false;
+  if (took_series_) {
+    series_->bounds(low, high);
+    return true;
+  }
   explicit_->bounds(explicit_step(), low, high);
   return true;
 }
 
 bool Stepper::mean_slopes(double* low, double* high) const {
   if (explicit_ == nullptr) return false;
+  if (took_series_) {
+    series_->mean_slopes(h_, low, high);
+    return true;
+  }
   explicit_->mean_slopes(explicit_step(), low, high);
   return true;
 }
@@ -133,11 +177,15 @@ Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
   const auto n = static_cast<std::size_t>(n_);
   output.t = t_;
   output.h = h_;
-  output.method_ = method_;
+  output.method_ = method();
   output.n_ = n_;
   output.end_.resize(n);
-  output.coefficients_.resize(n * static_cast<std::size_t>(dense_degree(method_) + 1));
   std::copy_n(x_new_.begin(), n, output.end_.begin());
+  if (took_series_) {
+    output.coefficients_ = series_->terms();
+    return Attempt::finite;
+  }
+  output.coefficients_.resize(n * static_cast<std::size_t>(dense_degree(method()) + 1));
   if (explicit_ != nullptr) {
     const StageWork work{f, evaluations_, x_new_.data(), stages_.data(), argument_.data()};
     return explicit_->dense(explicit_step(), work, output.coefficients_.data()) ? Attempt::finite : Attempt::undefined;

@@ -1,4 +1,5 @@
-// One Runge-Kutta step with error estimate and dense output. Knows no modes and no events.
+// One step, of a Runge-Kutta method or of a Taylor series, with error estimate and dense output. Knows no modes and no
+// events.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +12,11 @@
 
 namespace saltus::ode {
 
-/// Explicit methods of Dormand and Prince, and for stiff problems the implicit three-stage Radau IIA method.
-enum class Method { dopri5, dop853, radau5 };
+/// Explicit methods of Dormand and Prince; for stiff problems the implicit three-stage Radau IIA method; the Taylor
+/// series of the solution where the right-hand side is affine and its linear part is known, and dop853 elsewhere.
+enum class Method { dopri5, dop853, radau5, taylor };
 
-/// Order of the propagated solution (5, 8, 5) and degree in theta of the dense output (4, 7, 3).
+/// Order of the propagated solution (5, 8, 5, 16) and degree in theta of the dense output (4, 7, 3, 16).
 [[nodiscard]] int order(Method method);
 [[nodiscard]] int dense_degree(Method method);
 
@@ -39,8 +41,13 @@ class DenseStep {
   void evaluate(double theta, double* x) const;  ///< n doubles
   /// Bernstein coefficients of component i on [0, 1]; those at the ends are x_i(t) and x_i(t + h), bit for bit. The
   /// others have a few roundings of the largest one. Cost: some fifty operations.
+  /// Not of a series.
   [[nodiscard]] BernsteinCoefficients bernstein(std::size_t i) const;
-  void derivative(double theta, double* xdot) const;  ///< dx/dt of the polynomial, n doubles
+  /// Whether this is a Taylor series, and the terms of one component: x_i(t + theta h) = sum_k terms_k theta^k.
+  [[nodiscard]] bool is_series() const { return method_ == Method::taylor; }
+  [[nodiscard]] SeriesCoefficients terms(std::size_t i) const;
+  [[nodiscard]] double end(std::size_t i) const { return end_[i]; }  ///< x_i(t + h)
+  void derivative(double theta, double* xdot) const;                 ///< dx/dt of the polynomial, n doubles
   /// Bounds low_i <= x_i(t + theta h) <= high_i for all theta in [0, 1], n doubles each, up to rounding: the chord
   /// widened by the largest values of the other terms of the polynomial. Cost: a few operations per component.
   void bounds(double* low, double* high) const;
@@ -50,7 +57,8 @@ class DenseStep {
   friend class Stepper;
   Method method_ = Method::dopri5;
   int n_ = 0;
-  std::vector<double> coefficients_;  ///< of the nested form of Hairer, Norsett & Wanner, II.6, one after the other
+  std::vector<double> coefficients_;  ///< of the nested form of Hairer, Norsett & Wanner, II.6, one after the other; or
+                                      ///< the terms of a series
   std::vector<double> end_;           ///< x(t + h)
 };
 
@@ -60,6 +68,7 @@ enum class Attempt {
 };
 
 class Radau5;
+class Series;
 struct ExplicitMethod;
 struct ExplicitStep;
 
@@ -77,13 +86,21 @@ class Stepper {
   /// x and slope are copied first: they may be x_new() and slope_new() of the attempt before.
   /// With radau5 the same start may be tried with other lengths; a start at the end of the last attempt continues it
   /// (its polynomial gives starting values, its Jacobian is kept while that pays).
-  /// @param stages  f's stages in one function, if there is one: used in place of f, with the same result bit for bit
+  /// So it may with taylor, which then takes no further products with the linear part.
+  /// @param stages  f's stages in one function, if there is one: used in place of f, with the same result bit for bit;
+  ///                its linear part, if it has one: used by taylor only, up to the next restart() the same for one
+  ///                start
   /// @return `undefined` at the first stage that is not finite, without evaluating the others.
   Attempt attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
                   const Tolerances& tolerances, const RightHandSideStages& stages = {});
 
   /// Which of the functions attempt() uses, null if none.
   [[nodiscard]] StagesFunction stages_function(const StagesFunctions& functions) const;
+
+  /// Whether attempt() has a use for the linear part of an affine right-hand side.
+  [[nodiscard]] bool wants_linear_field() const { return series_ != nullptr; }
+  /// What the last attempt was made by: taylor, or dop853 in its place, or the method itself.
+  [[nodiscard]] Method method() const { return took_series_ ? Method::taylor : pair_; }
 
   /// Largest component of the local error estimate over atol + rtol max(|x|, |x_new|); <= 1 is acceptable, infinite if
   /// it overflows, never NaN. Valid after a finite attempt.
@@ -106,7 +123,8 @@ class Stepper {
   /// finite, and `output` is then no more than the cubic through both ends with their slopes).
   Attempt dense(RightHandSide f, DenseStep& output);
 
-  /// The right-hand side has changed: radau5 keeps nothing of the steps before. No effect on the explicit methods.
+  /// The right-hand side has changed: radau5 and taylor keep nothing of the steps before. No effect on the explicit
+  /// pairs.
   void restart();
 
   /// Length of the last attempt, which was finite, over the one at which an explicit method becomes unstable, from its
@@ -118,8 +136,10 @@ class Stepper {
 
  private:
   [[nodiscard]] ExplicitStep explicit_step() const;
+  [[nodiscard]] Attempt attempt_series(RightHandSide f, const LinearField& linear, const Tolerances& tolerances);
 
   Method method_;
+  Method pair_;  ///< method_, of taylor the one in its place
   int n_;
   const ExplicitMethod* explicit_;  ///< null: radau5
   std::size_t slope_new_ = 0;       ///< its place in stages_
@@ -132,6 +152,9 @@ class Stepper {
   std::vector<double> argument_;  ///< of the stage being evaluated
   std::vector<double> stages_;    ///< k_1, k_2, ..., n doubles each; radau5: the slopes at both ends
   std::unique_ptr<Radau5> radau_;
+  std::unique_ptr<Series> series_;
+  bool took_series_ = false;
+  bool series_known_ = false;  ///< of start_
 };
 
 }  // namespace saltus::ode

@@ -60,6 +60,7 @@ std::vector<PlannedRun> plan(SimulateOptions options) {
   runs.push_back(event_run(options, Integrator::dopri5, "dopri5"));
   runs.push_back(event_run(options, Integrator::dop853, "dop853"));
   runs.push_back(event_run(options, Integrator::radau5, "radau5"));
+  runs.push_back(event_run(options, Integrator::taylor, "taylor"));
   const auto add = [&](Method method, std::string name, std::string variant) {
     options.method = method;
     runs.push_back({std::move(name), std::move(variant), options, ""});

@@ -139,6 +139,9 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
     case Integrator::radau5:
       integration.method = ode::Method::radau5;
       break;
+    case Integrator::taylor:
+      integration.method = ode::Method::taylor;
+      break;
   }
   // The layers make every model stiff.
   if (options.method == Method::smoothed) integration.method = ode::Method::radau5;

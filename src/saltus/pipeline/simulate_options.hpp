@@ -10,7 +10,7 @@
 namespace saltus::pipeline {
 
 enum class Method { event, fesd, timestepping, smoothed };
-enum class Integrator { dopri5, dop853, radau5 };
+enum class Integrator { dopri5, dop853, radau5, taylor };
 enum class Native { automatic, on, off };
 enum class Selection { active_dominant, passive_dominant, scaled, report };
 

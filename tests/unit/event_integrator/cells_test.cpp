@@ -46,7 +46,7 @@ double sawtooth_integral(double t, double period) {
 }
 
 TEST(CellRuns, SawtoothBeforeAndBehindZero) {
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
     Builder model("saw");
     const SX t = model.time();
     static_cast<void>(model.state("x", {0}));
@@ -67,6 +67,17 @@ TEST(CellRuns, EveryPeriodIsFoundExactlyOnce) {
   // 0.1 (0 + 1 + … + (n-1)): a period too many or too few would change it by 1e-5 of its value.
   EXPECT_NEAR(result.final.x[0] / (0.1 * samples * (samples - 1) / 2), 1.0, 1e-10);
   EXPECT_LE(result.statistics.steps, 3 * static_cast<long>(samples));
+}
+
+TEST(CellRuns, LinearPartsOfSeriesChangeWithTheCell) {
+  // x' = -(1 + floor(t)) x: in every cell another matrix, which is found by operations to be one.
+  for (const auto method : {ode::Method::dop853, ode::Method::taylor}) {
+    Builder model("stairs");
+    const SX t = model.time(), x = model.state("x", {1.0});
+    model.dynamics("x", -(1.0 + model.floor(t)) * x);
+    const auto result = run(model, {.until = 3.5, .method = method});
+    EXPECT_NEAR(result.final.x[0], std::exp(-(1.0 + 2.0 + 3.0 + 0.5 * 4.0)), 1e-12) << static_cast<int>(method);
+  }
 }
 
 TEST(CellRuns, PulseWidthModulation) {

@@ -13,7 +13,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-constexpr auto all_methods = {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5};
+constexpr auto all_methods = {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor};
 
 CompactIntegration run(const model::System& system, const IntegrationOptions& options, Run::Way way) {
   auto kernel = evaluation::ModelKernel::compile(system);
@@ -129,6 +129,20 @@ TEST(ShortWay, CrossesSurfacesThatDependOnTimeAsTheGeneralOne) {
                      {system.x(1) + 0.3 * system.alpha(0), -system.x(0) + 0.2 * system.alpha(1) - 0.1 * system.x(1)},
                      {1.0, 0.1});
   expect_agreement(system, 20.0);
+}
+
+/// The matrix of the field that is slid on changes at the other surface, which only its linear part knows.
+TEST(ShortWay, CrossesWhileSlidingWhereTheMatrixChangesAsTheGeneralOne) {
+  auto system = testing::blank(3, 2);
+  testing::add_surface(system, "held", system.x(0));
+  testing::add_surface(system, "turns", system.x(1));
+  testing::set_field(system,
+                     {0.3 * system.x(1) + 1 - 2 * system.alpha(0) + 0.2 * system.alpha(1), system.x(2),
+                      -(1 + 3 * system.alpha(1)) * system.x(1)},
+                     {0.2, 1.0, 0.0});
+  for (const auto method : all_methods) {
+    static_cast<void>(compare(system, options_of(method, 20.0, OutputTimes::Rows::at_steps)));
+  }
 }
 
 /// Switches that tighten towards an equilibrium: laps, tolerances that follow them, and the limit.

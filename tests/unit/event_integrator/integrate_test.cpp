@@ -67,7 +67,7 @@ TEST(Integrate, SpontaneousSwitchIsReportedAsNotUnique) {
 }
 
 TEST(Integrate, RowsAtASwitchHaveTheModesBeforeAndBehindIt) {
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     const auto result = run(testing::stick_slip(), 40, 1e-9, method);
     ASSERT_GE(result.events.size(), 4U);
     const auto& rows = result.trajectory;
@@ -85,7 +85,7 @@ TEST(Integrate, RowsAtASwitchHaveTheModesBeforeAndBehindIt) {
 }
 
 TEST(Integrate, StickSlipMatchesTheReference) {
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     const auto result = run(testing::stick_slip(), 40, 1e-12, method);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     ASSERT_GE(result.events.size(), 4U);
@@ -110,7 +110,7 @@ TEST(Integrate, ScalingPsiByPowersOfTwoChangesNoBit) {
 }
 
 TEST(Integrate, RelayHas34EventsAtEveryTolerance) {
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     for (int k = 0; k <= 40; ++k) {
       const double rtol = std::pow(10.0, -3.0 - 9.0 * k / 40.0);
       const auto result = run(testing::relay(), 10, rtol, method);

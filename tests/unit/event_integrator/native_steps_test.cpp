@@ -54,7 +54,7 @@ std::size_t expect_same_bits(Builder& builder, double until, const ode::Toleranc
   const auto system = builder.build();
   EXPECT_TRUE(system.has_value()) << (system ? "" : system.error().message);
   std::size_t events = 0;
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     IntegrationOptions options;
     options.method = method;
     options.tolerances = tolerances;

@@ -182,7 +182,7 @@ long evaluations_of_oscillator(ode::Method method, double threshold, std::size_t
 }
 
 TEST(CostOfAnEvent, IsLessThanThreeSteps) {
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     long steps = 0;
     long steps_without = 0;
     const double pi = std::acos(-1.0);

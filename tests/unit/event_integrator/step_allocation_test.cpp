@@ -47,7 +47,7 @@ Count count(const model::System& system, ode::Method method, double until) {
 }
 
 TEST(StepAllocation, NoneInClassicalMotionAndSliding) {
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
     // Sticks (slides on v = 0.2) and slips, with an affine exit.
     const auto slips = count(testing::stick_slip(), method, 20.0);
     EXPECT_GT(slips.steps, 20) << static_cast<int>(method);
@@ -56,7 +56,7 @@ TEST(StepAllocation, NoneInClassicalMotionAndSliding) {
 }
 
 TEST(StepAllocation, NoneWhereEventFunctionsAreCurved) {
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     auto system = testing::blank(2, 1);
     const auto x = system.x(0);
     const auto y = system.x(1);
@@ -69,7 +69,7 @@ TEST(StepAllocation, NoneWhereEventFunctionsAreCurved) {
 }
 
 TEST(StepAllocation, NoneWhereThreeRegionsHoldTheSolution) {
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
     model::Builder b("moving point");
     const auto x = b.state("x", {0.5});
     const auto y = b.state("y", {0.0});

@@ -47,7 +47,7 @@ TEST(StepMemory, ComingBackToAModeRejectsHardlyAnyStep) {
   testing::set_field(s, {s.x(1), -(1 + 9999 * s.alpha(0)) * s.x(0)}, {0.0, 1.0});
   auto kernel = evaluation::ModelKernel::compile(s);
   ASSERT_TRUE(kernel.has_value());
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     IntegrationOptions options;
     options.method = method;
     options.tolerances = {1e-8, 1e-10};

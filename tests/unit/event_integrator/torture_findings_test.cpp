@@ -116,7 +116,7 @@ TEST(TortureFindings, SelectionsBesideSlidingAreExact) {
 
 TEST(TortureFindings, SlidingIntoATwoFoldPointIsSaid) {
   // The normal components are y below and -x above. x + y falls to 0 at t = 1.25, and y - x like its power k.
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     for (const double k : {1.2, 1.5, 2.0, 2.5}) {
       auto s = testing::blank(3, 1);
       testing::add_surface(s, "z", s.x(2));
@@ -159,7 +159,7 @@ TEST(TortureFindings, AStepFromAUserEventToASwitchLeavesNoZeroBehind) {
   testing::add_surface(s, "late", s.t - 2.0);
   s.switching[0].role = model::SwitchingRole::time_event;
   const SX rate = 1.0 - 2.0 * s.alpha(0);
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
     const auto result = run(passing_one(s, rate), 3.5, 1e-8, method);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     ASSERT_EQ(result.events.size(), 2U);
@@ -174,7 +174,7 @@ TEST(TortureFindings, StepsFromUserEventToUserEventFindThemAll) {
   auto second = s.events[0];
   second.value = s.x(0) - 2.0;
   s.events.push_back(second);
-  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
     const auto result = run(s, 4.0, 1e-8, method);
     ASSERT_EQ(result.events.size(), 4U);
     const double exact[] = {(3.0 - std::sqrt(5.0)) / 2.0, 1.0, 2.0, (3.0 + std::sqrt(5.0)) / 2.0};
