@@ -108,10 +108,14 @@ def threshold_table(results):
         if not shown or len(pairs) < 3:
             continue
         extra = [(p["seconds"] - q["seconds"]) / 480 for q, p in pairs]
-        line = statistics.linear_regression([p["steps"] for _, p in pairs], extra)
+        steps = [p["steps"] for _, p in pairs]
+        if max(steps) > min(steps):
+            line = statistics.linear_regression(steps, extra)
+            per_step, rest = f"{1e9 * line.slope:.2f} ns", line.intercept
+        else:  # every step ends at an event, whatever the tolerance: nothing tells steps and events apart
+            per_step, rest = "–", statistics.median(extra)
         lines.append([contender.name, contender.method, contender.variant, duration(shown[0][0]["seconds"]),
-                      duration(shown[0][1]["seconds"]), f"{1e9 * line.slope:.2f} ns",
-                      f"{1e9 * line.intercept / shown[0][1]['expected']:.1f} ns"])
+                      duration(shown[0][1]["seconds"]), per_step, f"{1e9 * rest / shown[0][1]['expected']:.1f} ns"])
     return lines
 
 
