@@ -18,6 +18,10 @@ class LinearMotion {
     int only = -1;
   };
 
+  LinearMotion() = default;
+  LinearMotion(const LinearMotion&) = delete;  // known_ points into it
+  LinearMotion& operator=(const LinearMotion&) = delete;
+
   /// Another mode begins.
   void forget() { known_.reset(); }
   /// Null where the field is not affine. Valid until forget().

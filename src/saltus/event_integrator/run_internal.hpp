@@ -86,6 +86,7 @@ class Run {
   [[nodiscard]] std::optional<Located> surface_within_rounding();
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
+  [[nodiscard]] std::vector<double> all_functions(double t, const double* x);
   [[nodiscard]] std::string undefined_function_beyond();
   Step accept(double t_new);
   Step handle(const Located& located);

@@ -91,15 +91,21 @@ std::string Run::undefined_beyond() {
   return {};
 }
 
-/// The switching function, event or jump that is undefined a little further along the right-hand side, in words; empty
-/// if none is found.
-std::string Run::undefined_function_beyond() {
+/// Values of all functions that are searched.
+std::vector<double> Run::all_functions(double t, const double* x) {
   std::vector<double> values;
   std::vector<std::size_t> all(search_.functions().size());
   std::iota(all.begin(), all.end(), std::size_t{0});
+  search_.evaluate(t, x, all, values);
+  return values;
+}
+
+/// The switching function, event or jump that is undefined a little further along the right-hand side, in words; empty
+/// if none is found.
+std::string Run::undefined_function_beyond() {
   for (double h = smallest_step(); h <= 1e6 * smallest_step(); h *= 4.0) {
     for (std::size_t i = 0; i < x_.size(); ++i) row_x_[i] = x_[i] + h * slope_[i];
-    search_.evaluate(t_ + h, row_x_.data(), all, values);
+    const std::vector<double> values = all_functions(t_ + h, row_x_.data());
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto& function = search_.functions()[i];
       if (std::isfinite(values[i]) || is_cell_end(function.kind)) continue;
@@ -114,10 +120,7 @@ std::string Run::undefined_function_beyond() {
 /// A surface that the state cannot come nearer to, as its next digit is on it or behind it, although time could go on:
 /// steps that change nothing succeed there, and all others are undefined.
 std::optional<Located> Run::surface_within_rounding() {
-  std::vector<double> values;
-  std::vector<std::size_t> all(search_.functions().size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  search_.evaluate(t_, x_.data(), all, values);
+  const std::vector<double> values = all_functions(t_, x_.data());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& function = search_.functions()[i];
     if (function.kind != FunctionKind::surface || !(std::abs(values[i]) <= search_.noise(i))) continue;
@@ -133,10 +136,7 @@ std::optional<Located> Run::surface_within_rounding() {
 
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
-  std::vector<double> values;
-  std::vector<std::size_t> all(search_.functions().size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  search_.evaluate(t_, x_.data(), all, values);
+  const std::vector<double> values = all_functions(t_, x_.data());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& function = search_.functions()[i];
     const bool surface = function.kind == FunctionKind::surface;
