@@ -55,8 +55,10 @@ void RegionWeights::choose_chart(const double* theta) {
   for (std::size_t k = 0; k < facets.size() && chart_.size() < m; ++k) {
     const std::size_t f = order_[k];
     if ((common & facets[f]) == 0) continue;
-    SmallVector normal = polytope_.normals().row(at(f)).transpose();
-    const double length = normal.norm();
+    // NOTE: g++ 12 with -O3 takes one initialised by the row for uninitialised where its norm is taken.
+    SmallVector normal = SmallVector::Zero(at(m));
+    normal = polytope_.normals().row(at(f)).transpose();
+    const double length = polytope_.normals().row(at(f)).norm();
     for (std::size_t l = 0; l < chart_.size(); ++l) normal -= basis.col(at(l)).dot(normal) * basis.col(at(l));
     if (!(normal.norm() > independent * length)) continue;
     basis.col(at(chart_.size())) = normal.normalized();
