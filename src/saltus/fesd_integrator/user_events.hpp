@@ -43,13 +43,14 @@ class UserEvents {
                                                 std::optional<std::size_t> crossed);
 
  private:
+  [[nodiscard]] double resolution(double t) const;
+  [[nodiscard]] std::vector<std::size_t> changes(double t, const double* x, const double* selections,
+                                                 const double* held);
+
   const discretization::PointFunctions& functions_;
   model::EventStates states_;
   double t_ = -std::numeric_limits<double>::infinity();
   std::vector<double> values_, values_before_;  ///< at t_, and at the last time before it
-  [[nodiscard]] double resolution(double t) const;
-  [[nodiscard]] std::vector<std::size_t> changes(double t, const double* x, const double* selections,
-                                                 const double* held);
   double span_;
   std::vector<int> signs_;
   std::vector<double> crossed_at_;  ///< time of the last zero of each function
