@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -92,7 +94,9 @@ class ModeCheck {
     State end;
     std::string problem;  ///< an inequality that fails on the way
     bool is_determined = true;
-    bool is_defined = true;  ///< the selection is not 0/0: what derivatives of psi hold cannot be followed here
+    /// The selection is not 0/0, nor that of a kink that is touched: what derivatives of psi hold cannot be followed
+    /// here.
+    bool is_defined = true;
   };
 
   /// Classical Runge-Kutta steps of one length; inequalities are looked at where they begin.
@@ -106,7 +110,7 @@ class ModeCheck {
       const double now = t + step * h;
       const FieldValue k1 = field_(now, y, alpha);
       path.is_determined = path.is_determined && determined(k1);
-      path.is_defined = std::isfinite(k1.xdot.front());
+      path.is_defined = std::isfinite(k1.xdot.front()) && !slides_at_kink(k1);
       if (!path.is_defined) return path;
       alpha = k1.alpha;
       const FieldValue k2 = field_(now + 0.5 * h, moved(y, 0.5 * h, k1.xdot), alpha);
@@ -125,7 +129,10 @@ class ModeCheck {
 
   /// At a kink of psi the sliding selection jumps: which side counts there is a matter of rounding.
   [[nodiscard]] bool slides_at_kink(double t, const State& x, const State& alpha) const {
-    return !field_.sliding().empty() && field_(t, x, alpha).kink_distance < 1e-5;
+    return !field_.sliding().empty() && slides_at_kink(field_(t, x, alpha));
+  }
+  [[nodiscard]] bool slides_at_kink(const FieldValue& value) const {
+    return !field_.sliding().empty() && value.kink_distance < 1e-5;
   }
 
   /// The sliding field is a quotient: near 0/0 it cannot be computed twice with the same result.
@@ -286,18 +293,18 @@ bool shrinks_from_lap_to_lap(const std::vector<Event>& events, std::size_t i, st
     const std::size_t second = first + (k - i);
     if (!same_change(events[first], events[i]) || !same_change(events[second], events[k])) continue;
     const double duration = events[second].t - events[first].t;
-    // What t does not resolve cannot shrink any more.
-    if (!(duration > shorter) && !(shorter <= 1e-15 * events[k].t)) return false;
+    // Four times are rounded: what t does not resolve cannot shrink any more.
+    if (!(duration > shorter - 2.0 * std::numeric_limits<double>::epsilon() * events[k].t)) return false;
     shorter = duration;
     ++laps;
   }
   return laps == 2;
 }
 
-/// The same change of the same surfaces twice at one time.
+/// The same change of the same surfaces twice at one time. A limit is not one of the switches that it is the limit of.
 std::string repetition(const std::vector<Event>& events, std::size_t i) {
   for (std::size_t k = i; k-- > 0 && events[k].t == events[i].t;) {
-    if (same_change(events[k], events[i])) {
+    if (same_change(events[k], events[i]) && events[k].kind != result::EventKind::accumulation) {
       return fmt::format("the event at t = {} is found twice", events[i].t);
     }
   }
@@ -390,9 +397,9 @@ std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& l
   return "";
 }
 
-/// Whether a run has ended with max_events in laps of one surface that shrink like a power of their number, and says
-/// so: that many events are its solution. With intervals like k^-p a quarter of the events takes less time than the one
-/// before, by (3/4)^p or so for the last two; p is 1/4 or more, or nobody speaks of laps that shrink.
+/// Whether a run has ended with max_events in laps that shrink like a power of their number, each of the same changes,
+/// and says so: that many events are its solution. With intervals like k^-p a quarter of the events takes less time
+/// than the one before, by (3/4)^p or so for the last two; p is 1/4 or more, or nobody speaks of laps that shrink.
 bool ends_in_shrinking_laps(const Result& result) {
   if (result.status.termination != result::Termination::iteration_limit) return false;
   if (result.status.message.find("shrink like the power") == std::string::npos) return false;
@@ -400,9 +407,14 @@ bool ends_in_shrinking_laps(const Result& result) {
   const std::size_t quarter = events.size() / 4;
   const auto taken = [&](std::size_t last) { return events[last].t - events[last - quarter].t; };
   const std::size_t end = events.size() - 1;
-  const bool of_one_surface = std::all_of(events.end() - static_cast<std::ptrdiff_t>(quarter), events.end(),
-                                          [&](const Event& event) { return event.surfaces == events.back().surfaces; });
-  return of_one_surface && taken(end) < 0.95 * taken(end - quarter) &&
+  const auto repeats = [&](std::size_t lap) {
+    for (std::size_t k = events.size() - quarter; k <= end; ++k) {
+      if (!same_change(events[k], events[k - lap])) return false;
+    }
+    return true;
+  };
+  constexpr std::size_t laps[] = {1, 2, 3, 4, 5, 6, 7, 8};
+  return std::any_of(std::begin(laps), std::end(laps), repeats) && taken(end) < 0.95 * taken(end - quarter) &&
          taken(end - quarter) < 0.95 * taken(end - 2 * quarter);
 }
 

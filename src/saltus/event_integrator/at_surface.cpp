@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "saltus/event_integrator/small_internal.hpp"
 
@@ -37,15 +38,49 @@ double size_of(const evaluation::ModelKernel& kernel, int function, double t, co
   return std::isfinite(change) ? std::max(magnitude[at(function)], change) : magnitude[at(function)];
 }
 
-bool continuous_across(const evaluation::ModelKernel& kernel, const ModeState& state, int nested, double t,
-                       const std::vector<double>& x, double time_scale) {
-  const auto size = at(kernel.event_functions());
-  std::vector<double> below(size), above(size);
-  kernel.functions(t, x.data(), state.corner_alpha[0].data(), below.data());
-  kernel.functions(t, x.data(), state.corner_alpha[1].data(), above.data());
+std::vector<int> sliding_inside(const evaluation::ModelKernel& kernel, const ModeState& state, int function) {
+  std::vector<int> result;
+  for (const int i : kernel.inner(function)) {
+    if (state.mode[at(i)] != 0 || !std::binary_search(state.sliding.begin(), state.sliding.end(), i)) continue;
+    const auto& groups = kernel.region_groups();
+    const bool is_region = std::any_of(groups.begin(), groups.end(), [i](const auto& group) { return group.holds(i); });
+    if (is_region && state.sliding.size() > 1) return {};
+    result.push_back(i);
+  }
+  return result;
+}
+
+std::vector<std::vector<double>> corners_at(const ModeState& state, const std::vector<int>& surfaces) {
+  constexpr std::size_t most = 10;
+  const std::size_t count = std::min(surfaces.size(), most);
+  std::vector<std::vector<double>> corners(std::size_t{1} << count, state.alpha);
+  for (std::size_t corner = 0; corner < corners.size(); ++corner) {
+    for (std::size_t i = 0; i < count; ++i) {
+      corners[corner][at(surfaces[i])] = (corner >> i & 1U) != 0 ? 1.0 : 0.0;
+    }
+  }
+  return corners;
+}
+
+std::vector<std::vector<double>> corners_inside(const evaluation::ModelKernel& kernel, const ModeState& state,
+                                                int function) {
+  if (state.sliding.size() == 1) return {state.corner_alpha[0], state.corner_alpha[1]};
+  return corners_at(state, sliding_inside(kernel, state, function));
+}
+
+bool continuous_across(const evaluation::ModelKernel& kernel, const std::vector<std::vector<double>>& corners,
+                       int nested, double t, const std::vector<double>& x, double time_scale) {
+  std::vector<double> values(at(kernel.event_functions()));
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const auto& alpha : corners) {
+    kernel.functions(t, x.data(), alpha.data(), values.data());
+    lowest = std::min(lowest, values[at(nested)]);
+    highest = std::max(highest, values[at(nested)]);
+  }
   // Four digits above rounding: the point is on the surface to rounding, a jump is not of that size.
-  return std::abs(below[at(nested)] - above[at(nested)]) <=
-         1e5 * rounding_unit * size_of(kernel, nested, t, x.data(), state.corner_alpha[1].data(), time_scale);
+  return highest - lowest <=
+         1e5 * rounding_unit * size_of(kernel, nested, t, x.data(), corners.back().data(), time_scale);
 }
 
 }  // namespace saltus::event_integrator

@@ -18,10 +18,24 @@ void move_onto(const evaluation::ModelKernel& kernel, const ModeState& state, in
 [[nodiscard]] double size_of(const evaluation::ModelKernel& kernel, int function, double t, const double* x,
                              const double* alpha, double time_scale);
 
-/// Whether a function nested around the one sliding surface has the same value on both sides of it at (t, x), to
-/// rounding.
+/// The sliding surfaces inside a function, ascending. With several of them a group by `indicator` among them has no
+/// regions of its own to look into: none then.
+[[nodiscard]] std::vector<int> sliding_inside(const evaluation::ModelKernel& kernel, const ModeState& state,
+                                              int function);
+
+/// Selections of the regions that meet at `surfaces`: those of the mode, with each of these at 0 and at 1. Cost:
+/// 2^surfaces, of at most ten of them.
+[[nodiscard]] std::vector<std::vector<double>> corners_at(const ModeState& state, const std::vector<int>& surfaces);
+
+/// The regions that meet at the sliding surfaces inside a function: of the mode where it slides on one only.
+[[nodiscard]] std::vector<std::vector<double>> corners_inside(const evaluation::ModelKernel& kernel,
+                                                              const ModeState& state, int function);
+
+/// Whether a nested function has the same value in all of these regions at (t, x), to rounding.
+/// @param corners     selections of each
 /// @param time_scale  a step of the integrator
-[[nodiscard]] bool continuous_across(const evaluation::ModelKernel& kernel, const ModeState& state, int nested,
-                                     double t, const std::vector<double>& x, double time_scale);
+[[nodiscard]] bool continuous_across(const evaluation::ModelKernel& kernel,
+                                     const std::vector<std::vector<double>>& corners, int nested, double t,
+                                     const std::vector<double>& x, double time_scale);
 
 }  // namespace saltus::event_integrator

@@ -77,7 +77,7 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
   for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
   any_nesting_ = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
   const auto n_phi = at(kernel.event_functions());
-  for (auto* vector : {&phi_, &phi_below_, &phi_above_, &magnitude_, &slope_}) vector->resize(n_phi);
+  for (auto* vector : {&phi_, &magnitude_, &slope_}) vector->resize(n_phi);
   for (auto* vector : {&x_, &low_, &high_, &wide_low_, &wide_high_}) vector->resize(at(kernel.states()));
   of_surface_.resize(at(kernel.switching_functions()));
   entered_.assign(at(kernel.cells()), -1);
@@ -107,8 +107,7 @@ EventSearch::Parts EventSearch::parts_of(const std::vector<std::size_t>& which) 
       case FunctionKind::cell_lower:
         parts.phi = true;
         break;
-      case FunctionKind::nested_below:
-      case FunctionKind::nested_above:
+      case FunctionKind::nested:
         parts.nested = true;
         break;
       case FunctionKind::exit_below:
@@ -168,8 +167,7 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
 void EventSearch::evaluate_parts(double t, const double* x, const Parts& parts) {
   if (parts.phi) kernel_.functions(t, x, state_.alpha.data(), phi_.data());
   if (parts.nested) {
-    kernel_.functions(t, x, state_.corner_alpha[0].data(), phi_below_.data());
-    kernel_.functions(t, x, state_.corner_alpha[1].data(), phi_above_.data());
+    for (auto& corner : corners_) kernel_.functions(t, x, corner.alpha.data(), corner.phi.data());
   }
   if (parts.exits) field_.exits(t, x, exits_.data());
   if (parts.pressure) find_pressure(t, x);
@@ -185,10 +183,8 @@ double EventSearch::value(std::size_t i, double t, const double* x) const {
     case FunctionKind::cell_upper:
     case FunctionKind::cell_lower:
       return phi_[at(function.index)] - function.offset;
-    case FunctionKind::nested_below:
-      return phi_below_[at(function.index)] - function.offset;
-    case FunctionKind::nested_above:
-      return phi_above_[at(function.index)] - function.offset;
+    case FunctionKind::nested:
+      return corners_[at(function.row)].phi[at(function.index)] - function.offset;
     case FunctionKind::exit_below:
       return exits_[at(function.row)].below - function.offset;
     case FunctionKind::exit_above:

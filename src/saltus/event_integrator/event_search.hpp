@@ -17,24 +17,24 @@
 namespace saltus::event_integrator {
 
 enum class FunctionKind {
-  surface,       ///< psi_j of a surface that is not in the mode
-  nested_below,  ///< psi_j nested around the one sliding surface, in the region below it
-  nested_above,  ///< … above it
-  exit_below,    ///< the lower field of a sliding surface stops arriving: alpha = 0
-  exit_above,    ///< … the upper one: alpha = 1
-  loss,          ///< the sliding selection ceases to exist: its root and another one coalesce
-  instability,   ///< the sliding selections of coupled surfaces lose their stability, (4.12) of [guglielmi2022]
-  user,          ///< expression or guard of [[events]], guard of [[jumps]]
-  release,       ///< what presses a held guard of [[jumps]]
-  cell_upper,    ///< argument of floor, a table or a sampled input less the upper end of its cell
-  cell_lower,    ///< … less the lower end
+  surface,      ///< psi_j of a surface that is not in the mode
+  nested,       ///< psi_j nested around sliding surfaces, in one of the regions that meet there
+  exit_below,   ///< the lower field of a sliding surface stops arriving: alpha = 0
+  exit_above,   ///< … the upper one: alpha = 1
+  loss,         ///< the sliding selection ceases to exist: its root and another one coalesce
+  instability,  ///< the sliding selections of coupled surfaces lose their stability, (4.12) of [guglielmi2022]
+  user,         ///< expression or guard of [[events]], guard of [[jumps]]
+  release,      ///< what presses a held guard of [[jumps]]
+  cell_upper,   ///< argument of floor, a table or a sampled input less the upper end of its cell
+  cell_lower,   ///< … less the lower end
 };
 
 struct EventFunction {
   FunctionKind kind = FunctionKind::surface;
   int index = 0;  ///< event function of the kernel; the surface for exits
-  int row = 0;    ///< exits: position in the sliding set; releases: in the list of held guards; ends of cells: the cell
-  int sign = 1;   ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
+  int row = 0;   ///< exits: position in the sliding set; releases: in the list of held guards; ends of cells: the cell;
+                 ///< nested functions: their region
+  int sign = 1;  ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
   int zero_order = 0;   ///< of the zero at the start of the next step (left behind by an event), 0 = none
   double offset = 0.0;  ///< value left at that zero by rounding; subtracted until the function has moved away
 };
@@ -145,6 +145,7 @@ class EventSearch {
   void keep();
   void start_at(double t);
   [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
+  void enter_nested(const ModeState& state, const std::vector<int>& zero_order);
   void set_forms(const double* x);
   void sort_functions();
   void rescale(double t, const double* x, const std::vector<std::size_t>& which) {
@@ -191,7 +192,14 @@ class EventSearch {
   std::vector<bool> user_vanishes_;  ///< at the start of the next step
   std::optional<double> zeros_at_;   ///< time of that start; nullopt: that of the next enter()
   std::vector<int> entered_;         ///< by cell: event function of the end at which it was entered, or -1
-  std::vector<double> phi_, phi_below_, phi_above_, magnitude_, slope_;
+  std::vector<double> phi_, magnitude_, slope_;
+  /// One of the regions that meet at the sliding surfaces inside nested functions.
+  struct Corner {
+    std::vector<double> alpha;  ///< its selections
+    std::vector<double> phi;
+    evaluation::AffineRows rows;
+  };
+  std::vector<Corner> corners_;  ///< of the mode
   std::vector<ExitValues> exits_;
   std::vector<HeldGuard> held_, followers_;
   std::vector<double> pressure_;
@@ -203,8 +211,8 @@ class EventSearch {
   StepBounds bounds_;
   bool bounds_known_ = false;  ///< may_vanish() has found those of the dense output
   AffineForms forms_;
-  std::vector<bool> nesting_;                   ///< functions of the kernel that hold selections
-  std::array<evaluation::AffineRows, 3> rows_;  ///< at the selections of the mode, of the lower and the upper region
+  std::vector<bool> nesting_;    ///< functions of the kernel that hold selections
+  evaluation::AffineRows rows_;  ///< at the selections of the mode
   evaluation::AffineRow row_;
   std::vector<std::size_t> special_;  ///< functions with an unknown sign, or a zero at the start of the next step
   std::vector<std::size_t> curved_;   ///< functions without an affine form
@@ -218,7 +226,6 @@ class EventSearch {
   std::size_t users_end_ = 0;
   std::vector<std::size_t> of_surface_;  ///< n_psi: function of a surface outside the mode
   bool any_nesting_ = false;             ///< some functions of the kernel hold selections
-  bool nested_ = false;                  ///< there are functions nested around the sliding surface
   bool flips_ = false;                   ///< surfaces and plain exits only: crossings change little
   std::vector<Kept> kept_;               ///< the last ones, with different sliding sets
   std::size_t next_kept_ = 0;

@@ -23,7 +23,7 @@ int sign_behind_zero(const Values& values, double noise) {
 inline bool uses_phi(const EventFunction& function) {
   return function.kind == FunctionKind::surface || function.kind == FunctionKind::user ||
          function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower ||
-         function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
+         function.kind == FunctionKind::nested;
 }
 
 }  // namespace saltus::event_integrator

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/event_search_internal.hpp"
 #include "saltus/event_integrator/mode_differences_internal.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
@@ -146,24 +147,13 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   if (flip(state, zero_order, t, x)) return;
   state_ = state;
   functions_.clear();
-  nested_ = false;
   const int n_psi = kernel_.switching_functions();
   for (int j = 0; j < n_psi; ++j) {
-    if (state.mode[at(j)] == 0) continue;
-    const bool around_sliding =
-        nesting_[at(j)] && state.sliding.size() == 1 &&
-        std::any_of(kernel_.inner(j).begin(), kernel_.inner(j).end(), [&](int i) { return state.mode[at(i)] == 0; });
-    if (around_sliding) {
-      const int below = state.corner_alpha[0][at(j)] > 0.5 ? 1 : -1;
-      const int above = state.corner_alpha[1][at(j)] > 0.5 ? 1 : -1;
-      nested_ = true;
-      functions_.push_back({FunctionKind::nested_below, j, 0, below, zero_order[at(j)]});
-      functions_.push_back({FunctionKind::nested_above, j, 0, above, zero_order[at(j)]});
-    } else {
-      of_surface_[at(j)] = functions_.size();
-      functions_.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
-    }
+    if (state.mode[at(j)] == 0 || (nesting_[at(j)] && !sliding_inside(kernel_, state, j).empty())) continue;
+    of_surface_[at(j)] = functions_.size();
+    functions_.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
   }
+  enter_nested(state, zero_order);
   first_exit_ = functions_.size();
   exits_.resize(state.sliding.size());
   if (!state.sliding.empty()) field_.exits(t, x, exits_.data());
@@ -207,8 +197,7 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   inspected_.clear();
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const auto kind = functions_[i].kind;
-    const bool plain = kind == FunctionKind::surface || kind == FunctionKind::nested_below ||
-                       kind == FunctionKind::nested_above || kind == FunctionKind::loss;
+    const bool plain = kind == FunctionKind::surface || kind == FunctionKind::nested || kind == FunctionKind::loss;
     if (!plain || functions_[i].zero_order > 0) inspected_.push_back(i);
   }
   read_start(t, x);
@@ -240,14 +229,11 @@ void EventSearch::enter_cells() {
 /// The affine functions of the mode as forms. Selections of a mode are constants, so a function that holds some is
 /// affine if it is for each value of theirs.
 void EventSearch::set_forms(const double* x) {
-  if (rows_[0].start.empty() || any_nesting_ || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
-    kernel_.affine_rows(state_.alpha.data(), rows_[0]);
-    forms_.load(rows_[0]);
+  if (rows_.start.empty() || any_nesting_ || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
+    kernel_.affine_rows(state_.alpha.data(), rows_);
+    forms_.load(rows_);
   }
-  if (nested_) {
-    kernel_.affine_rows(state_.corner_alpha[0].data(), rows_[1]);
-    kernel_.affine_rows(state_.corner_alpha[1].data(), rows_[2]);
-  }
+  for (auto& corner : corners_) kernel_.affine_rows(corner.alpha.data(), corner.rows);
   forms_.reset(functions_.size());
   curved_.clear();
   prefilter_.assign(functions_.size(), false);
@@ -260,11 +246,8 @@ void EventSearch::set_forms(const double* x) {
       case FunctionKind::cell_lower:
         forms_.use_row(i, at(function.index));
         break;
-      case FunctionKind::nested_below:
-        forms_.set(i, rows_[1], at(function.index));
-        break;
-      case FunctionKind::nested_above:
-        forms_.set(i, rows_[2], at(function.index));
+      case FunctionKind::nested:
+        forms_.set(i, corners_[at(function.row)].rows, at(function.index));
         break;
       case FunctionKind::exit_below:
       case FunctionKind::exit_above: {

@@ -261,6 +261,18 @@ void Recorder::accumulated(double t, const std::vector<int>& jumps, const Passag
   add_reason(entry, reason);
 }
 
+bool Recorder::switched_lately(int function, long events) const {
+  const auto& list = recording_.event_list;
+  const auto& columns = listed_columns_[at(function)];
+  for (auto event = list.rbegin(); event != list.rend() && events > 0; ++event, --events) {
+    if (event->of_jumps) continue;
+    for (std::size_t k = event->surfaces.begin; k < event->surfaces.end; ++k) {
+      if (std::find(columns.begin(), columns.end(), recording_.surfaces[k]) != columns.end()) return true;
+    }
+  }
+  return false;
+}
+
 void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passage& passage,
                          const Transition& transition) {
   auto& entry = begin(t, result::EventKind::accumulation);

@@ -85,6 +85,8 @@ class Recorder {
   [[nodiscard]] std::optional<bool> last_unique() const { return recording_.event_list.back().unique; }
   [[nodiscard]] long events() const { return static_cast<long>(recording_.event_list.size()); }
   [[nodiscard]] double event_time(long event) const { return recording_.event_list[static_cast<std::size_t>(event)].t; }
+  /// Whether one of the last events is about a listed switching function.
+  [[nodiscard]] bool switched_lately(int function, long events) const;
   [[nodiscard]] std::size_t rows() const { return recording_.row_times.size(); }
 
  private:

@@ -71,14 +71,15 @@ bool Run::change_mode(const Located& located) {
     if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
     if (function.kind == FunctionKind::loss) occasion.coalesced.push_back(function.index);
     if (function.kind == FunctionKind::instability) occasion.destabilised.push_back(function.index);
-    const bool nested = function.kind == FunctionKind::nested_below || function.kind == FunctionKind::nested_above;
-    if (nested && !continuous_across(kernel_, state_, function.index, t_, x_, h_scale_)) {
+    const bool nested = function.kind == FunctionKind::nested;
+    if (nested && !continuous_across(kernel_, corners_inside(kernel_, state_, function.index), function.index, t_, x_,
+                                     h_scale_)) {
       fail(Termination::outside_class,
            fmt::format(
                "'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
                "it at t = {:.17g}: rewrite the nested term with named switching functions",
                surroundings_.system.switching[at(function.index)].name,
-               surroundings_.system.switching[at(state_.sliding.front())].name, t_));
+               surroundings_.system.switching[at(sliding_inside(kernel_, state_, function.index).front())].name, t_));
       return false;
     }
     occasion.at_zero.push_back(function.index);

@@ -164,7 +164,7 @@ class Run {
   bool too_many_events();
   [[nodiscard]] double mean_interval(long first, long count) const;
   [[nodiscard]] std::optional<double> shrinking_exponent() const;
-  [[nodiscard]] bool is_met_with_one_rate(int surface, double psi, double interval);
+  [[nodiscard]] bool has_one_rate(int surface);
   [[nodiscard]] std::string shrinking_laps();
   void accumulates();
   bool stopped_by_two_fold();

@@ -38,9 +38,8 @@ std::optional<double> Run::shrinking_exponent() const {
   return now;
 }
 
-/// Whether a surface is met here, to a tenth of an interval, and no selection of it moves psi at once: d psi/dt is
-/// the same on both sides (relative degree 2 or more).
-bool Run::is_met_with_one_rate(int surface, double psi, double interval) {
+/// Whether no selection of a surface moves psi at once: d psi/dt is the same on both sides (relative degree 2 or more).
+bool Run::has_one_rate(int surface) {
   std::vector<double> alpha = state_.alpha;
   Rate sides[2];
   for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
@@ -48,7 +47,6 @@ bool Run::is_met_with_one_rate(int surface, double psi, double interval) {
     kernel_.field(t_, x_.data(), alpha.data(), row_slope_.data());
     sides[side] = rate_along_field(surface, t_, x_.data(), row_slope_.data());
   }
-  if (!(std::abs(psi) <= 0.1 * interval * std::abs(sides[0].value))) return false;
   constexpr double rounding = 1e-12;
   return std::abs(sides[1].value - sides[0].value) <= rounding * std::max(sides[0].terms, sides[1].terms);
 }
@@ -59,13 +57,12 @@ std::string Run::shrinking_laps() {
   if (!exponent) return {};
   const long events = recorder_.events();
   const double interval = mean_interval(events - 1 - (events - 1) / 8, (events - 1) / 8);
-  std::vector<double> values(at(kernel_.event_functions()));
-  kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
+  constexpr long longest_lap = 8;
   std::string names;
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     const auto& function = surroundings_.system.switching[at(j)];
     if (function.role != model::SwitchingRole::listed || state_.mode[at(j)] == 0) continue;
-    if (!is_met_with_one_rate(j, values[at(j)], interval)) continue;
+    if (!recorder_.switched_lately(j, longest_lap) || !has_one_rate(j)) continue;
     names += (names.empty() ? "'" : "', '") + function.name;
   }
   if (names.empty()) return {};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/continuations.hpp"
 #include "saltus/event_integrator/mode_differences_internal.hpp"
 #include "saltus/event_integrator/regions.hpp"
@@ -15,8 +16,13 @@ namespace {
 int label_of(int surface, int mode) { return 3 * surface + mode + 1; }
 int surface_of(int label) { return label / 3; }
 
-/// All surfaces of the laps at zero, and all of their regions active.
-void put_on(const evaluation::ModelKernel& kernel, const std::vector<int>& labels, ModeState& state) {
+/// All surfaces of the laps at zero, and all of their regions active; but for functions that jump over zero on surfaces
+/// inside them.
+/// @param limit  of the laps
+/// @param time_scale  a step of the integrator
+void put_on(const evaluation::ModelKernel& kernel, const SeriesLimit& limit, double time_scale, ModeState& state) {
+  const auto& labels = limit.events;
+  const auto is_nested = [&](int j) { return !kernel.inner(j).empty(); };
   std::vector<std::vector<ActiveRegion>> active(kernel.region_groups().size());
   for (const int label : labels) {
     const int surface = surface_of(label);
@@ -27,7 +33,14 @@ void put_on(const evaluation::ModelKernel& kernel, const std::vector<int>& label
       const auto known = [&](const ActiveRegion& region) { return region.region == surface; };
       if (std::none_of(active[g].begin(), active[g].end(), known)) active[g].push_back({surface, 0.0});
     }
-    if (!is_region) set_surface(state, surface, 0, 0.5);
+    if (!is_region && !is_nested(surface)) set_surface(state, surface, 0, 0.5);
+  }
+  for (const int label : labels) {  // inner functions have smaller numbers
+    const int surface = surface_of(label);
+    if (!is_nested(surface) || state.mode[at(surface)] == 0) continue;
+    const auto corners = corners_at(state, sliding_inside(kernel, state, surface));
+    const bool jumps = !continuous_across(kernel, corners, surface, limit.t, limit.x, time_scale);
+    if (!jumps) set_surface(state, surface, 0, 0.5);
   }
   for (std::size_t g = 0; g < active.size(); ++g) {
     for (auto& region : active[g]) region.weight = 1.0 / static_cast<double>(active[g].size());
@@ -137,7 +150,7 @@ bool Run::limits_repeat(double t) {
 bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   ModeState on = state_;
   on.higher.reset();
-  put_on(kernel_, limit.events, on);
+  put_on(kernel_, limit, h_scale_, on);
   std::vector<double> x = limit.x;
   Occasion occasion;
   {

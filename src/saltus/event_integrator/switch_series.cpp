@@ -1,6 +1,9 @@
 #include "saltus/event_integrator/switch_series.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
 
@@ -47,6 +50,9 @@ void SwitchSeries::note(double t, std::size_t surface, int before) {
 }
 
 bool SwitchSeries::shrinks(double t) const {
+  // Two laps within a few digits of t are what a sequence leaves that has drowned in its rounding.
+  constexpr double unresolved = 128.0 * rounding_unit;
+  if (switches_ > 4 && t - times_[4] <= unresolved * std::abs(t)) return true;
   // The last terms of a geometric series drown in the rounding of t: a fast one is over after a few, and with more in a
   // lap a slow one shrinks by half from lap to lap.
   for (const std::size_t lap : {std::size_t{2}, std::size_t{4}}) {

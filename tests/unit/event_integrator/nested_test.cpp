@@ -1,0 +1,70 @@
+// Switching functions that hold signs of others: where several of those are slid on, and where laps lead about them.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "run_model.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+using model::Builder;
+using result::Termination;
+
+TEST(Nested, BesideSeveralSlidingSurfacesAFunctionIsWatchedInEachOfTheirRegions) {
+  // Slides on x = 0 and y = 0 from the start; z + sign(x)/2 is negative in all regions up to z = -1/2, at t = 1.5, and
+  // has both signs behind that: a mode that holds one of them is none. At the selection, z + 0, it vanishes at t = 2.
+  Builder b("two signs");
+  const SX x = b.state("x", {0});
+  const SX y = b.state("y", {0});
+  const SX z = b.state("z", {-2});
+  const SX side = b.sign(x);
+  b.dynamics("x", -side + 0.25 * b.sign(y));
+  b.dynamics("y", -b.sign(y) - 0.25 * side + 0.25 * b.sign(z + 0.5 * side));
+  b.dynamics("z", 1);
+  const auto result = testing::run_tightly(b, 4);
+  EXPECT_EQ(result.status.termination, Termination::outside_class) << result.status.message;
+  EXPECT_NEAR(result.status.time_reached, 1.5, 1e-12);
+  EXPECT_EQ(result.events.size(), 1U);  // the start
+}
+
+TEST(Nested, BesideSeveralSlidingSurfacesAFunctionWithoutAJumpIsCrossed) {
+  // max(x, 0) is 0 on both sides of x = 0: z + max(x, 0) is reached in all regions together, at t = 2.
+  Builder b("no jump");
+  const SX x = b.state("x", {0});
+  const SX y = b.state("y", {0});
+  const SX z = b.state("z", {-2});
+  b.dynamics("x", -b.sign(x) + 0.25 * b.sign(y));
+  b.dynamics("y", -b.sign(y) + 0.25 * b.sign(z + b.max(x, 0)));
+  b.dynamics("z", 1);
+  const auto result = testing::run_tightly(b, 4);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_NEAR(result.events[1].t, 2.0, 1e-12);
+}
+
+TEST(Nested, AFunctionThatJumpsInEveryLapIsNotHeldAtItsLimit) {
+  // (x, y) spirals into the origin, to a quarter from lap to lap: x' = -sign(y)(1 + s/3), y' = sign(x)(1 - s/3), with
+  // s = sign(x) sign(y). w = z + sign(y) has the sign of y, and jumps with it; z, which is 0.2 - 0.1 t, does not feel
+  // it.
+  Builder b("laps");
+  const SX x = b.state("x", {0});
+  const SX y = b.state("y", {1});
+  const SX z = b.state("z", {0.2});
+  const SX u = b.state("u", {0});
+  const SX sign_x = b.sign(x), sign_y = b.sign(y);
+  b.dynamics("x", -sign_y - sign_x / 3);
+  b.dynamics("y", sign_x - sign_y / 3);
+  b.dynamics("z", -0.1);
+  b.dynamics("u", b.sign(z + sign_y));
+  const auto result = testing::run_tightly(b, 10);
+  ASSERT_FALSE(result.trajectory.t.empty());
+  for (std::size_t row = 0; row < result.trajectory.t.size(); ++row) {
+    EXPECT_NEAR(result.trajectory.x[row][2], 0.2 - 0.1 * result.trajectory.t[row], 1e-9) << row;
+  }
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
