@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "saltus/base/contracts.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
 
@@ -11,6 +13,13 @@ JumpFunctions::JumpFunctions(const model::System& system, const std::vector<SX>&
     return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, input);
   };
   int next = first_function;
+  // Named by the jump: they become native code together.
+  const auto numbered = [&](const char* name) { return fmt::format("saltus_jump{}_{}", entries_.size(), name); };
+  const auto quantity = [&](const char* name, const SX& expression) {
+    const SX value = SX::densify(with_inputs(expression));
+    return value.is_constant() ? Quantity{static_cast<double>(value), {}}
+                               : Quantity{std::nullopt, ModelFunction(numbered(name), arguments, {value})};
+  };
   for (const auto& jump : system.jumps) {
     Entry entry;
     entry.first_guard = next;
@@ -19,13 +28,30 @@ JumpFunctions::JumpFunctions(const model::System& system, const std::vector<SX>&
     if (jump.trigger == model::JumpTrigger::condition) {
       std::vector<SX> with_guards = arguments;
       with_guards.push_back(jump.guard_alpha);
-      entry.condition = ModelFunction("jump_condition", with_guards, {with_inputs(jump.value)});
+      entry.condition = ModelFunction(numbered("condition"), with_guards, {with_inputs(jump.value)});
     }
-    entry.values = ModelFunction("jump_values", arguments, {with_inputs(jump.values)});
-    entry.priority = ModelFunction("jump_priority", arguments, {with_inputs(jump.priority)});
-    entry.delay = ModelFunction("jump_delay", arguments, {with_inputs(jump.delay)});
+    entry.values = ModelFunction(numbered("values"), arguments, {with_inputs(jump.values)});
+    entry.priority = quantity("priority", jump.priority);
+    entry.delay = quantity("delay", jump.delay);
     entries_.push_back(std::move(entry));
   }
+}
+
+std::vector<ModelFunction*> JumpFunctions::functions() {
+  std::vector<ModelFunction*> all;
+  for (auto& entry : entries_) {
+    for (auto* function : {&entry.condition, &entry.values, &entry.priority.function, &entry.delay.function}) {
+      if (!function->is_null()) all.push_back(function);
+    }
+  }
+  return all;
+}
+
+double JumpFunctions::value(Quantity& quantity, const Arguments& at) {
+  if (quantity.constant) return *quantity.constant;
+  double value = 0.0;
+  quantity.function(at, std::array<double*, 1>{&value});
+  return value;
 }
 
 JumpFunctions::Entry& JumpFunctions::entry(int jump) {
@@ -52,16 +78,7 @@ void JumpFunctions::values(int jump, const Arguments& at, double* values) {
   entry(jump).values(at, std::array<double*, 1>{values});
 }
 
-double JumpFunctions::priority(int jump, const Arguments& at) {
-  double value = 0.0;
-  entry(jump).priority(at, std::array<double*, 1>{&value});
-  return value;
-}
-
-double JumpFunctions::delay(int jump, const Arguments& at) {
-  double value = 0.0;
-  entry(jump).delay(at, std::array<double*, 1>{&value});
-  return value;
-}
+double JumpFunctions::priority(int jump, const Arguments& at) { return value(entry(jump).priority, at); }
+double JumpFunctions::delay(int jump, const Arguments& at) { return value(entry(jump).delay, at); }
 
 }  // namespace saltus::evaluation

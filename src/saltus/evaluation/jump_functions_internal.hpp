@@ -1,7 +1,8 @@
 // What the kernel knows of [[jumps]]: conditions, values, priorities and delays as compiled functions.
 #pragma once
 
-#include <span>
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "saltus/model/model_function.hpp"
@@ -28,12 +29,21 @@ class JumpFunctions {
   void values(int jump, const Arguments& at, double* values);
   [[nodiscard]] double priority(int jump, const Arguments& at);
   [[nodiscard]] double delay(int jump, const Arguments& at);
+  /// All of them, with names of their own. Valid as long as this does not move.
+  [[nodiscard]] std::vector<ModelFunction*> functions();
 
  private:
+  /// Mostly a number; a function otherwise.
+  struct Quantity {
+    std::optional<double> constant;
+    ModelFunction function;
+  };
+  static double value(Quantity& quantity, const Arguments& at);
   struct Entry {
     int first_guard = 0, guards = 0;
     ModelFunction condition;  ///< null unless the trigger is a condition
-    ModelFunction values, priority, delay;
+    ModelFunction values;
+    Quantity priority, delay;
   };
   Entry& entry(int jump);
   std::vector<Entry> entries_;

@@ -54,9 +54,10 @@ Expected<void> ModelKernel::Implementation::start_native(NativeCode wanted) {
   const auto n = static_cast<int>(x.numel());
   if (has_small_field()) appended += field_stages_source(name_of_direct(field), n);
   if (within(of_sliding_steps, n, free.field.operations())) appended += sliding_stages_source(name_of_direct(field), n);
-  auto started =
-      native.start(wanted, {&free.field, &free.constants, &functions, &scales, &output_function, &input_function},
-                   std::move(appended));
+  std::vector<model::ModelFunction*> all{&free.field, &free.constants,  &functions,
+                                         &scales,     &output_function, &input_function};
+  for (auto* function : jumps.functions()) all.push_back(function);
+  auto started = native.start(wanted, std::move(all), std::move(appended));
   if (started) take_native_field();
   return started;
 }

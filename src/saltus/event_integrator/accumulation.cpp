@@ -103,12 +103,26 @@ std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
   return result;
 }
 
-std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::vector<double>& shortest) const {
+/// Whether so much time remains that limit_of would say nothing, whatever the ratio that it would find. That one is a
+/// mean of successive ratios over some laps, which shrink: at least the last of them over all of them together.
+bool EventSeries::is_far_from_limit(std::size_t period, double drowning) const {
+  const double t = back(0).t;
+  const double resolution = rounding_unit * std::abs(t);
+  const double last = t - back(period).t;
+  if (!(last > std::max(16.0 * resolution, drowning))) return false;
+  const double before = back(period).t - back(2 * period).t;
+  if (!(last < before)) return true;
+  const auto laps = static_cast<std::size_t>(std::min(std::ceil(before / (before - last)), double{most_laps})) + 2;
+  const double others = back(period).t - back(std::min(laps * period, entries_.size() - 1)).t;
+  // With twice what they are compared with the roundings of the ratio do not matter.
+  return last * last > 2.0 * others * std::max(1e-8 * (t - start_[period]), 100.0 * resolution);
+}
+
+/// @param drowning  how long the laps are that drown in roundings
+std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double drowning) const {
   const auto now = durations(period, 0, fewest_laps);
   const double t = back(0).t;
   const double resolution = rounding_unit * std::abs(t);
-  double drowning = 0.0;
-  for (std::size_t k = 0; k < period; ++k) drowning = std::max(drowning, longest(shortest, back(k).jumps));
   if (now.count >= 2 && now.of[0] <= std::max(16.0 * resolution, hundredth * drowning)) {
     // Laps that shrink fast leave little, but not nothing. Long ones are here because psi leaves its surface
     // tangentially, with no rate: their limit is where they are.
@@ -137,12 +151,20 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, const std::
 std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double>& shortest) const {
   if (recent_.size() < many || entries_.empty()) return std::nullopt;
   const double t = recent_.back(0).t;
+  const double taken = t - recent_.front().t;
+  constexpr std::size_t few = 8;
+  if (shortest.size() <= few) {  // the usual answer, without a look at each of them
+    const double most = shortest.empty() ? 0.0 : *std::max_element(shortest.begin(), shortest.end());
+    if (taken > static_cast<double>(many) * std::max(16.0 * rounding_unit * std::abs(t), hundredth * most)) {
+      return std::nullopt;
+    }
+  }
   double drowning = 0.0;
   for (std::size_t k = 0; k < recent_.size(); ++k) {
     drowning = std::max(drowning, longest(shortest, recent_.back(k).jumps));
   }
   const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * drowning);
-  if (t - recent_.front().t > static_cast<double>(many) * resolved) return std::nullopt;
+  if (taken > static_cast<double>(many) * resolved) return std::nullopt;
   std::vector<int> jumps;
   for (std::size_t k = 0; k < recent_.size(); ++k) {
     const auto& executed = recent_.back(k).jumps;
@@ -154,10 +176,12 @@ std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double
 }
 
 std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortest) const {
-  for (std::size_t period = 1; period <= longest_period; ++period) {
+  double drowning = 0.0;
+  for (std::size_t period = 1; period <= longest_period && entries_.size() > 2 * period; ++period) {
+    drowning = std::max(drowning, longest(shortest, back(period - 1).jumps));
     // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
-    if (laps_[period] < 2 * period || entries_.size() <= 2 * period) continue;
-    if (auto found = limit_of(period, shortest)) return found;
+    if (laps_[period] < 2 * period || is_far_from_limit(period, drowning)) continue;
+    if (auto found = limit_of(period, drowning)) return found;
   }
   return end_of_rattling(shortest);
 }

@@ -101,7 +101,8 @@ class EventSeries {
     const Entry& b = back(earlier);
     return a.only == b.only && (a.only != several || a.jumps == b.jumps);
   }
-  [[nodiscard]] std::optional<SeriesLimit> limit_of(std::size_t period, const std::vector<double>& shortest) const;
+  [[nodiscard]] bool is_far_from_limit(std::size_t period, double drowning) const;
+  [[nodiscard]] std::optional<SeriesLimit> limit_of(std::size_t period, double drowning) const;
   [[nodiscard]] std::optional<SeriesLimit> end_of_rattling(const std::vector<double>& shortest) const;
   [[nodiscard]] std::vector<double> extrapolated(std::size_t period, double ratio) const;
   [[nodiscard]] std::vector<int> last_jumps(std::size_t entries) const;

@@ -101,7 +101,7 @@ class EventSearch {
   bool settle(double t, const double* x);
   /// Behind a jump: the signs of all user functions, 0 = not known, and whether they vanish here. Takes effect with the
   /// next enter().
-  void set_user_signs(std::vector<int> signs, std::vector<bool> vanish);
+  void set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish);
   /// Time has passed since the user functions were at zero, or they have jumped.
   void forget_user_zeros() { user_vanishes_.assign(user_vanishes_.size(), false); }
   /// Held guards of jumps are not searched, their releases are. Takes effect with the next enter().
@@ -161,6 +161,8 @@ class EventSearch {
   bool turn_exits(double t, const double* x);
   void forget_specials();
   void turn(std::size_t surface, const ModeState& state, int zero_order);
+  [[nodiscard]] bool has_same_functions(const ModeState& state) const;
+  void renew(const std::vector<int>& zero_order, double t, const double* x);
   bool flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
   void read_start(double t, const double* x);
   void read_values(double t, const double* x, const std::vector<std::size_t>& which);
@@ -227,6 +229,7 @@ class EventSearch {
   std::vector<std::size_t> of_surface_;  ///< n_psi: function of a surface outside the mode
   bool any_nesting_ = false;             ///< some functions of the kernel hold selections
   bool flips_ = false;                   ///< surfaces and plain exits only: crossings change little
+  bool only_signs_change_ = false;       ///< where the mode that was entered last begins anew
   std::vector<Kept> kept_;               ///< the last ones, with different sliding sets
   std::size_t next_kept_ = 0;
   std::vector<bool> prefilter_;  ///< five samples may show that the function stays away from zero

@@ -145,6 +145,7 @@ void EventSearch::read_values(double t, const double* x, const std::vector<std::
 void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
   start_at(t);
   if (flip(state, zero_order, t, x)) return;
+  if (has_same_functions(state)) return renew(zero_order, t, x);
   state_ = state;
   functions_.clear();
   const int n_psi = kernel_.switching_functions();
@@ -205,6 +206,28 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   const bool selections_are_plain =
       state.sliding.empty() || (field_.solve() == SlidingSolve::decoupled && kernel_.region_groups().empty());
   flips_ = !any_nesting_ && selections_are_plain && users_ == functions_.size() && followers_.empty();
+  only_signs_change_ = state.sliding.empty() && !state.higher && held_.empty() && followers_.empty() &&
+                       kernel_.cells() == 0 && kernel_.region_groups().empty();
+}
+
+/// Whether a mode is the one that was entered last, with functions that do not depend on the point it begins at.
+bool EventSearch::has_same_functions(const ModeState& state) const {
+  return only_signs_change_ && held_.empty() && followers_.empty() && !state.higher && state.sliding.empty() &&
+         state.mode == state_.mode && state.alpha == state_.alpha;
+}
+
+/// The mode that was entered last begins anew: with other values, and signs of user functions.
+void EventSearch::renew(const std::vector<int>& zero_order, double t, const double* x) {
+  inspected_.clear();
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    auto& function = functions_[i];
+    const bool is_surface = function.kind == FunctionKind::surface;
+    function.zero_order = is_surface ? zero_order[at(function.index)] : 0;
+    function.offset = 0.0;
+    if (!is_surface || function.zero_order > 0) inspected_.push_back(i);
+  }
+  read_start(t, x);
+  sort_functions();
 }
 
 void EventSearch::entered_cell(const EventFunction& reached) {
@@ -330,9 +353,9 @@ bool EventSearch::settle(double t, const double* x) {
   return true;
 }
 
-void EventSearch::set_user_signs(std::vector<int> signs, std::vector<bool> vanish) {
-  user_sign_ = std::move(signs);
-  user_vanishes_ = std::move(vanish);
+void EventSearch::set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish) {
+  user_sign_ = signs;
+  user_vanishes_ = vanish;
   zeros_at_.reset();
 }
 

@@ -149,7 +149,7 @@ bool Run::begin() {
     return false;
   }
   if (!cells_.empty()) cells_.locate(t_, x_.data(), std::vector<double>(at(kernel_.switching_functions()), 0.5));
-  Landing landing = landing_here();
+  Landing& landing = landing_here();
   if (!begin_jumps(landing)) {
     recorder_.row(t_, x_, state_.mode, state_.alpha);
     return false;
@@ -186,7 +186,7 @@ bool Run::begin() {
   auto transition = start.transition;
   transition.state = state_;
   if (!landing.executed.empty()) {
-    recorder_.jumped(t_, landing.executed, std::nullopt, landing.transition);
+    recorder_.jumped(t_, landing.executed.items(), nullptr, landing.transition);
     if (!landing.resting.empty()) {
       recorder_.accumulated(t_, landing.resting, {x_, x_, state_, state_}, resting_reason);
     }

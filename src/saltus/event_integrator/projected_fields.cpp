@@ -18,6 +18,10 @@ bool contains(const std::vector<int>& sorted_or_short, int value) {
   return std::find(sorted_or_short.begin(), sorted_or_short.end(), value) != sorted_or_short.end();
 }
 
+Motion along_velocity(double velocity) {
+  return {{velocity, velocity > 0.0 ? switching::Drift::up : switching::Drift::down}, 1};
+}
+
 }  // namespace
 
 ProjectedFields::ProjectedFields(const evaluation::ModelKernel& kernel, const Occasion& occasion)
@@ -94,9 +98,13 @@ std::vector<double> ProjectedFields::velocities(const std::vector<double>& alpha
   return result;
 }
 
+std::optional<Motion> ProjectedFields::motion_by_velocity(double velocity, double scale) {
+  if (std::abs(velocity) > sign_tolerance * scale) return along_velocity(velocity);
+  return std::nullopt;
+}
+
 Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const {
-  const Motion by_velocity{{velocity, velocity > 0.0 ? switching::Drift::up : switching::Drift::down}, 1};
-  if (std::abs(velocity) > sign_tolerance * scale) return by_velocity;
+  if (const auto motion = motion_by_velocity(velocity, scale)) return *motion;
   const double tau = occasion_.time_scale;
   const double threshold = std::max(noise_[at(surface)], std::abs(velocity) * tau);
   double weight = tau;  // tau^k / k!
@@ -108,7 +116,7 @@ Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, do
     }
   }
   // Small, but not rounding, and no later derivative overrules it.
-  if (std::abs(velocity) > velocity_rounding * scale) return by_velocity;
+  if (std::abs(velocity) > velocity_rounding * scale) return along_velocity(velocity);
   return {};
 }
 

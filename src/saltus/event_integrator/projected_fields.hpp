@@ -1,6 +1,7 @@
 // The fields that meet at a point, projected on the normals of the surfaces there.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -35,6 +36,8 @@ class ProjectedFields {
   /// Where psi_surface goes along f(alpha). A velocity up to 1e-10 `scale` gives way to the first higher derivative
   /// that moves psi further than it does, and further than rounding, over the occasion's time scale.
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
+  /// The same where the velocity alone says it; nullopt where it gives way. Cost: one comparison.
+  [[nodiscard]] static std::optional<Motion> motion_by_velocity(double velocity, double scale);
 
   /// Whether the fields on both sides of a surface are nearly tangent to it: their normal components are below 1e-6 of
   /// |grad psi| |f|. Their quotient, the sliding selection, has lost its meaning there. Mixes the units of the states:

@@ -239,7 +239,7 @@ void Recorder::user(double t, const Passage& passage, int event) {
   add_reason(entry, reason);
 }
 
-void Recorder::jumped(double t, const std::vector<ExecutedJump>& jumps, const std::optional<ModeState>& before,
+void Recorder::jumped(double t, std::span<const ExecutedJump> jumps, const ModeState* before,
                       const Transition& transition) {
   for (std::size_t k = 0; k < jumps.size(); ++k) {
     auto& entry = begin(t, result::EventKind::jump);
@@ -248,7 +248,7 @@ void Recorder::jumped(double t, const std::vector<ExecutedJump>& jumps, const st
     add_surface(entry, entry.entry);
     set_states(entry, jumps[k].x, jumps[k].x_after);
     add_reason(entry, why_executed(system_.jumps[entry.entry]));
-    if (k == 0 && before) entry.mode = number(*before);
+    if (k == 0 && before != nullptr) entry.mode = number(*before);
     if (k + 1 == jumps.size()) add_transition(entry, transition);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -69,9 +70,8 @@ class Recorder {
   bool started(double t, const std::vector<double>& x, const Transition& transition, const std::vector<int>& surfaces);
   /// An event of [[events]].
   void user(double t, const Passage& passage, int event);
-  /// Jumps executed at t one after the other; `transition` is the mode behind the last one, `before` absent at a start.
-  void jumped(double t, const std::vector<ExecutedJump>& jumps, const std::optional<ModeState>& before,
-              const Transition& transition);
+  /// Jumps executed at t one after the other; `transition` is the mode behind the last one, `before` null at a start.
+  void jumped(double t, std::span<const ExecutedJump> jumps, const ModeState* before, const Transition& transition);
   /// The limit of a sequence of jumps, from the last computed state.
   void accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string_view reason);
   /// The limit of a sequence of switches of these surfaces, from the last computed state; `transition` leads on.

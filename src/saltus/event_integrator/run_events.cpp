@@ -182,10 +182,10 @@ Run::Step Run::handle(const Located& located) {
   flip_user_functions(located);
   jumps_.update(jump_point());
   if (jumps_have_problem()) return depart(arrival);
-  Landing landing = landing_at(located);
+  Landing& landing = landing_at(located);
   if (jumps_.due(t_)) {
     cell_change_ = leave_cells(located);
-    static_cast<void>(jump(before_, x_before_, std::move(landing)));
+    static_cast<void>(jump(before_, x_before_, landing));
     return depart(arrival);
   }
   const bool released = release(located);
@@ -199,8 +199,10 @@ Run::Step Run::handle(const Located& located) {
   if (running_ && !jumps_.none()) {
     // Conditions may depend on selections, too.
     jumps_.update(jump_point());
-    if (!jumps_have_problem() && jumps_.due(t_))
-      static_cast<void>(jump(ModeState(state_), std::vector<double>(x_), std::move(landing)));
+    if (!jumps_have_problem() && jumps_.due(t_)) {
+      const ModeState before = state_;
+      static_cast<void>(jump(before, std::vector<double>(x_), landing));
+    }
   }
   return depart(arrival);
 }

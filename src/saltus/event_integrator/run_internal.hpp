@@ -72,7 +72,7 @@ class Run {
   };
   /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
   struct Landing {
-    std::vector<ExecutedJump> executed;
+    ReusedList<ExecutedJump> executed;
     std::vector<int> zeros;           ///< event functions that are at zero here whatever is left of their value
     std::vector<double> zero_values;  ///< what is left
     std::vector<Rate> rates;          ///< by event function: largest |dg/dt| of guards of jumps at this time
@@ -139,15 +139,16 @@ class Run {
   bool begin_jumps(Landing& landing);
   bool settle_at_start(Landing& landing);
   Step jump_in_time();
-  bool jump(const ModeState& before, const std::vector<double>& x_before, Landing landing);
+  bool jump(const ModeState& before, const std::vector<double>& x_before, Landing& landing);
   bool settle_jumps(Landing& landing);
   bool execute_jump(Landing& landing);
   bool decide_behind_jumps(Landing& landing);
   bool hold_resting(Landing& landing);
   bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
   void give_directions(Landing& landing);
-  [[nodiscard]] Landing landing_here() const;
-  [[nodiscard]] Landing landing_at(const Located& located) const;
+  [[nodiscard]] Landing& landing_here();
+  [[nodiscard]] Landing& landing_at(const Located& located);
+  void find_values();
   void note_guards(Landing& landing);
   void note_series(const Landing& landing);
   void drop_zeros(Landing& landing);
@@ -219,6 +220,15 @@ class Run {
   std::vector<double> slope_beyond_;  ///< of the region on the other side of a surface
   UserEvents user_events_;
   Jumps jumps_;
+  Landing landing_;  ///< of the event in hand: its storage is used again
+  /// All functions of the kernel at one point, while jumps are executed.
+  struct FunctionValues {
+    std::vector<double> value, magnitude, slope;
+  };
+  FunctionValues values_;
+  std::vector<int> user_signs_;   ///< under construction, as are
+  std::vector<bool> user_zeros_;  ///< these
+  std::vector<int> executed_;     ///< jumps, in their order
   Holding holding_;
   EventSeries jump_series_;
   EventSeries switch_laps_;                  ///< of switches, by surface and mode behind, while they tighten

@@ -33,21 +33,31 @@ bool Run::jumps_have_problem() {
   return !jumps_.problem().empty();
 }
 
-/// At a point where only the surfaces of the sliding mode are at zero.
-Run::Landing Run::landing_here() const {
-  Landing landing;
+/// All functions of the kernel here.
+void Run::find_values() {
+  kernel_.functions(t_, x_.data(), state_.alpha.data(), values_.value.data());
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), values_.magnitude.data(), values_.slope.data());
+}
+
+/// At a point where only the surfaces of the sliding mode are at zero. Valid until the next one is made.
+Run::Landing& Run::landing_here() {
+  Landing& landing = landing_;
   if (jumps_.none()) return landing;
+  landing.executed.clear();
   landing.zeros = state_.sliding;
-  landing.zero_values.resize(at(kernel_.event_functions()));
+  const auto n = at(kernel_.event_functions());
+  for (auto* values : {&landing.zero_values, &values_.value, &values_.magnitude, &values_.slope}) values->resize(n);
   kernel_.functions(t_, x_.data(), state_.alpha.data(), landing.zero_values.data());
-  landing.rates.assign(landing.zero_values.size(), {});
+  landing.rates.assign(n, {});
   landing.held_before = holding_.resting();
+  landing.resting.clear();
+  if (kernel_.switching_functions() > 0) landing.transition = {};
   return landing;
 }
 
 /// At an event: what was located is at zero, too.
-Run::Landing Run::landing_at(const Located& located) const {
-  Landing landing = landing_here();
+Run::Landing& Run::landing_at(const Located& located) {
+  Landing& landing = landing_here();
   if (jumps_.none()) return landing;
   for (const auto function : located.functions) {
     const auto& entry = search_.functions()[function];
@@ -75,7 +85,7 @@ Run::Rate Run::rate_along_field(int function, double t, const double* x, const d
 
 /// How fast the guards of jumps move here, and which of them are at zero.
 void Run::note_guards(Landing& landing) {
-  std::vector<double> slope(x_.size());
+  auto& slope = row_slope_;
   kernel_.field(t_, x_.data(), state_.alpha.data(), slope.data());
   for (std::size_t k = 0; k < surroundings_.system.jumps.size(); ++k) {
     const int guards = static_cast<int>(surroundings_.system.jumps[k].guards.numel());
@@ -91,43 +101,39 @@ void Run::note_guards(Landing& landing) {
 
 /// Zeros that a jump has moved away are none any more.
 void Run::drop_zeros(Landing& landing) {
-  const auto n = landing.zero_values.size();
-  std::vector<double> values(n), magnitude(n), slope(n);
-  kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
-  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
+  if (landing.zeros.empty()) return;
+  find_values();
   std::erase_if(landing.zeros, [&](int function) {
     const auto f = at(function);
-    return !(std::abs(values[f] - landing.zero_values[f]) <= 8.0 * rounding_unit * magnitude[f]);
+    return !(std::abs(values_.value[f] - landing.zero_values[f]) <= 8.0 * rounding_unit * values_.magnitude[f]);
   });
 }
 
 /// Signs of all user functions at the point as it is. One that was located here and is still at zero keeps the sign
 /// just behind this time; one that a jump has put there has none yet (0).
 void Run::read_user_signs(const Landing& landing) {
-  const auto n = at(kernel_.event_functions());
-  std::vector<double> values(n), magnitude(n), slope(n);
-  kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
-  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
-  std::vector<int> signs = search_.user_signs();
-  std::vector<bool> vanish(signs.size(), false);
+  find_values();
+  auto& signs = user_signs_ = search_.user_signs();
+  auto& vanish = user_zeros_;
+  vanish.assign(signs.size(), false);
   for (std::size_t user = 0; user < signs.size(); ++user) {
     const int function = kernel_.switching_functions() + static_cast<int>(user);
-    const double value = values[at(function)];
+    const double value = values_.value[at(function)];
     const bool located = contains(landing.zeros, function);
     vanish[user] =
-        located || holding_.holds(function) || std::abs(value) <= 8.0 * rounding_unit * magnitude[at(function)];
+        located || holding_.holds(function) || std::abs(value) <= 8.0 * rounding_unit * values_.magnitude[at(function)];
     if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
     if (!vanish[user]) signs[user] = value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
   }
-  search_.set_user_signs(std::move(signs), std::move(vanish));
+  search_.set_user_signs(signs, vanish);
 }
 
 /// One execution: the state behind it, and what that triggers.
 bool Run::execute_jump(Landing& landing) {
   if (landing.executed.size() >= most_rounds) {
     std::vector<int> jumps;
-    for (std::size_t k = landing.executed.size() - 100; k < landing.executed.size(); ++k) {
-      if (!contains(jumps, landing.executed[k].jump)) jumps.push_back(landing.executed[k].jump);
+    for (const auto& executed : landing.executed.items().last(100)) {
+      if (!contains(jumps, executed.jump)) jumps.push_back(executed.jump);
     }
     fail(Termination::iteration_limit,
          fmt::format("{} jumps at t = {:.17g} without an end: {} trigger each other; make their conditions false by "
@@ -136,13 +142,13 @@ bool Run::execute_jump(Landing& landing) {
     return false;
   }
   note_guards(landing);
-  ExecutedJump executed{0, x_, {}};
+  ExecutedJump& executed = landing.executed.append();
+  executed.x = x_;
   executed.jump = jumps_.execute(jump_point(), x_);
   executed.x_after = x_;
-  landing.executed.push_back(std::move(executed));
   if (!cells_.empty()) cell_change_ = std::max(cell_change_, cells_.locate(t_, x_.data(), state_.alpha));
   drop_zeros(landing);
-  state_.alpha = selections_at(surroundings_, t_, x_.data(), state_.alpha);
+  if (!state_.alpha.empty()) state_.alpha = selections_at(surroundings_, t_, x_.data(), state_.alpha);
   read_user_signs(landing);
   jumps_.update(jump_point());
   return !jumps_have_problem();
@@ -150,6 +156,10 @@ bool Run::execute_jump(Landing& landing) {
 
 /// The mode afresh, as at a start (rule 6).
 bool Run::decide_behind_jumps(Landing& landing) {
+  if (kernel_.switching_functions() == 0) {  // nothing to decide
+    landing.transition.beside = x_;
+    return enter(landing.transition);
+  }
   std::vector<int> surfaces;
   for (const int function : landing.zeros) {
     if (function < kernel_.switching_functions()) surfaces.push_back(function);
@@ -165,16 +175,17 @@ bool Run::decide_behind_jumps(Landing& landing) {
 
 /// Where a function at zero goes along the motion of the mode.
 Motion Run::motion_of(int function, const Landing& landing) {
-  Occasion occasion;
-  occasion.t = t_;
-  occasion.x = x_.data();
-  occasion.time_scale = h_scale_;
   // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
   // than sign_tolerance / 1000 of them.
   constexpr double cancelled = 1e-3;
   const Rate rate = rate_along_field(function, t_, x_.data(), slope_.data());
   const Rate& here = landing.rates[at(function)];
   const double scale = std::max({here.value, std::abs(rate.value), cancelled * here.terms, cancelled * rate.terms});
+  if (const auto motion = ProjectedFields::motion_by_velocity(rate.value, scale)) return *motion;
+  Occasion occasion;
+  occasion.t = t_;
+  occasion.x = x_.data();
+  occasion.time_scale = h_scale_;
   const ProjectedFields fields(kernel_, occasion);
   return fields.motion(state_.alpha, function, rate.value, scale);
 }
@@ -184,7 +195,7 @@ Motion Run::motion_of(int function, const Landing& landing) {
 bool Run::hold_resting(Landing& landing) {
   std::vector<HeldGuard> guards, loose;
   std::vector<int> jumps;
-  for (const auto& executed : landing.executed) {
+  for (const auto& executed : landing.executed.items()) {
     if (!contains(jumps, executed.jump)) jumps.push_back(executed.jump);
   }
   for (const auto& guard : landing.held_before) {
@@ -231,10 +242,10 @@ bool Run::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Land
 
 /// Signs of functions that are at zero behind jumps: those they get along the motion.
 void Run::give_directions(Landing& landing) {
-  std::vector<double> values(at(kernel_.event_functions()));
+  auto& values = values_.value;
   kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
-  std::vector<int> signs = search_.user_signs();
-  std::vector<bool> vanish = search_.user_zeros();
+  auto& signs = user_signs_ = search_.user_signs();
+  auto& vanish = user_zeros_ = search_.user_zeros();
   for (std::size_t user = 0; user < signs.size(); ++user) {
     const int function = kernel_.switching_functions() + static_cast<int>(user);
     if (!vanish[user] || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
@@ -243,7 +254,7 @@ void Run::give_directions(Landing& landing) {
     if (!contains(landing.zeros, function)) landing.zeros.push_back(function);
     landing.zero_values[at(function)] = values[at(function)];
   }
-  search_.set_user_signs(std::move(signs), std::move(vanish));
+  search_.set_user_signs(signs, vanish);
   search_.enter(state_, landing.transition.zero_order, t_, x_.data());
 }
 
@@ -265,7 +276,7 @@ bool Run::settle_jumps(Landing& landing) {
 }
 
 /// Rules 4 to 6 at an event: user events of the motion before, the jumps, user events by them.
-bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Landing landing) {
+bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Landing& landing) {
   jumped_ = true;
   fire_user_events(x_, before);
   const Termination stopped = result_.status.termination;
@@ -279,7 +290,7 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Lan
   const bool settled = settle_jumps(landing);
   if (!landing.executed.empty()) {
     landing.transition.state = state_;
-    recorder_.jumped(t_, landing.executed, before, landing.transition);
+    recorder_.jumped(t_, landing.executed.items(), &before, landing.transition);
   }
   if (!settled) return false;
   if (!landing.resting.empty()) {
@@ -296,11 +307,11 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Lan
 /// A time at which jumps are due, reached by a step that ended exactly there.
 Run::Step Run::jump_in_time() {
   const Arrival arrival = arrive(recorder_.ends_at(t_) ? RowBefore::written : RowBefore::missing);
-  Landing landing = landing_here();
+  Landing& landing = landing_here();
   jumps_.update(jump_point());
   if (jumps_have_problem()) return depart(arrival);
   if (!jumps_.due(t_)) return Step::taken;
-  static_cast<void>(jump(before_, x_before_, std::move(landing)));
+  static_cast<void>(jump(before_, x_before_, landing));
   return depart(arrival);
 }
 
@@ -337,20 +348,27 @@ bool Run::settle_at_start(Landing& landing) {
 /// A step as at a start: from the field of the continuous states alone, not beyond the last lap of a shrinking sequence
 /// of jumps.
 void Run::start_step() {
-  const auto select = [&](const std::vector<double>& all) {
-    std::vector<double> selected;
-    for (const auto i : continuous_) selected.push_back(all[i]);
-    return selected;
+  const auto step_from = [&](ode::RightHandSide f, const double* x, const double* slope) {
+    return ode::initial_step(options_.method, f, t_, x, slope, static_cast<int>(continuous_.size()), span(),
+                             tolerances_);
   };
-  std::vector<double> point = x_;
-  std::vector<double> rate(x_.size());
-  const auto right_hand_side_of_continuous = [&](double t, const double* x, double* xdot) {
-    for (std::size_t k = 0; k < continuous_.size(); ++k) point[continuous_[k]] = x[k];
-    field_(t, point.data(), rate.data());
-    for (std::size_t k = 0; k < continuous_.size(); ++k) xdot[k] = rate[continuous_[k]];
-  };
-  h_ = ode::initial_step(options_.method, right_hand_side_of_continuous, t_, select(x_).data(), select(slope_).data(),
-                         static_cast<int>(continuous_.size()), span(), tolerances_);
+  if (continuous_.size() == x_.size()) {
+    h_ = step_from(right_hand_side(), x_.data(), slope_.data());
+  } else {
+    const auto select = [&](const std::vector<double>& all) {
+      std::vector<double> selected;
+      for (const auto i : continuous_) selected.push_back(all[i]);
+      return selected;
+    };
+    std::vector<double> point = x_;
+    std::vector<double> rate(x_.size());
+    const auto right_hand_side_of_continuous = [&](double t, const double* x, double* xdot) {
+      for (std::size_t k = 0; k < continuous_.size(); ++k) point[continuous_[k]] = x[k];
+      field_(t, point.data(), rate.data());
+      for (std::size_t k = 0; k < continuous_.size(); ++k) xdot[k] = rate[continuous_[k]];
+    };
+    h_ = step_from(right_hand_side_of_continuous, select(x_).data(), select(slope_).data());
+  }
   if (const auto lap = jump_series_.last_lap()) h_ = std::min(h_, *lap);
   field_(t_, x_.data(), row_slope_.data());  // selections back to those of this point
   control_.reset();

@@ -14,11 +14,11 @@ using result::Termination;
 /// Notes the jumps of an event: when, where to, and which guards were at zero.
 void Run::note_series(const Landing& landing) {
   if (landing.executed.empty()) return;
-  std::vector<double> magnitude(landing.rates.size()), slope(landing.rates.size());
-  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
-  std::vector<int> jumps;
-  for (const auto& executed : landing.executed) jumps.push_back(executed.jump);
-  for (const int jump : jumps) {
+  auto& magnitude = values_.magnitude;
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), values_.slope.data());
+  executed_.clear();
+  for (const auto& executed : landing.executed.items()) executed_.push_back(executed.jump);
+  for (const int jump : executed_) {
     for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const bool at_zero = std::find(landing.zeros.begin(), landing.zeros.end(), function) != landing.zeros.end();
@@ -32,7 +32,7 @@ void Run::note_series(const Landing& landing) {
       shortest_lap_[at(jump)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(function)] / rate : 0.0;
     }
   }
-  jump_series_.add(t_, std::move(jumps), x_);
+  jump_series_.add(t_, executed_, x_);
   if (!landing.resting.empty()) jump_series_.clear_laps();
 }
 
@@ -59,7 +59,7 @@ bool Run::release(const Located& located) {
     vanish[user] = true;
   }
   search_.set_held(holding_.guards(), holding_.followers());
-  search_.set_user_signs(std::move(signs), std::move(vanish));
+  search_.set_user_signs(signs, vanish);
   return true;
 }
 
@@ -90,7 +90,7 @@ void Run::follow_limit(const SeriesLimit& limit) {
     jump_series_.clear_laps();
   }
   pass_to(limit.t, limit.x);
-  Landing landing = landing_here();
+  Landing& landing = landing_here();
   const auto accumulated = [&] {
     recorder_.accumulated(t_, limit.events, {x_last, x_, before, state_},
                           limit.rattling

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace saltus::event_integrator {
@@ -17,5 +18,25 @@ inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 inline bool is_finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
+
+/// A list whose items keep their own storage when it is cleared: append() returns one that holds what an earlier one
+/// has left there.
+template <class Item>
+class ReusedList {
+ public:
+  Item& append() {
+    if (size_ == items_.size()) items_.emplace_back();
+    return items_[size_++];
+  }
+  void clear() { size_ = 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] Item& back() { return items_[size_ - 1]; }
+  [[nodiscard]] std::span<const Item> items() const { return {items_.data(), size_}; }
+
+ private:
+  std::vector<Item> items_;
+  std::size_t size_ = 0;
+};
 
 }  // namespace saltus::event_integrator
