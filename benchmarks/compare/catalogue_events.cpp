@@ -33,21 +33,50 @@ double nanoseconds_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::nano>(Clock::now() - begin).count();
 }
 
-/// Shortest of many: what reading the clock twice takes.
-double clock_nanoseconds() {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 10000; ++k) {
-    const auto begin = Clock::now();
-    shortest = std::min(shortest, nanoseconds_since(begin));
+/// Readings of a clock differ by whole ticks, here of ten nanoseconds: what lies between two of them shows in the mean
+/// of many readings.
+struct ClockCost {
+  double reading = 0.0;  ///< what reading it takes, ns
+  double tick = 0.0;     ///< ns
+};
+
+/// From the differences of successive readings, but for the tenths at both ends: of a row of them, the shortest of
+/// many.
+ClockCost cost_of_clock() {
+  constexpr std::size_t readings = 200;
+  ClockCost cost{std::numeric_limits<double>::infinity(), 0.0};
+  std::vector<double> differences;
+  for (int k = 0; k < 100; ++k) {
+    std::vector<Clock::time_point> row(readings);
+    for (auto& time : row) time = Clock::now();
+    const double all = std::chrono::duration<double, std::nano>(row.back() - row.front()).count();
+    cost.reading = std::min(cost.reading, all / static_cast<double>(readings - 1));
+    for (std::size_t i = 1; i < readings; ++i) {
+      differences.push_back(std::chrono::duration<double, std::nano>(row[i] - row[i - 1]).count());
+    }
   }
-  return shortest;
+  std::sort(differences.begin(), differences.end());
+  cost.tick = differences[9 * differences.size() / 10] - differences[differences.size() / 10];
+  return cost;
 }
 
-/// From the end of one step of the run to that of the next one. Every run is the same, so the shortest time of all runs
-/// is that in which nothing else was done on the machine.
+/// From the end of one step of the run to that of the next one. Every run is the same, so the shortest times of all
+/// runs are those in which nothing else was done on the machine.
 struct Interval {
-  double nanoseconds = std::numeric_limits<double>::infinity();
+  std::vector<double> readings;  ///< one of every run, ns
   long events = 0;
+
+  /// The mean of those that the tick of the clock alone keeps apart from the shortest.
+  [[nodiscard]] double nanoseconds(const ClockCost& clock) const {
+    const double shortest = *std::min_element(readings.begin(), readings.end());
+    double sum = 0.0, count = 0.0;
+    for (const double reading : readings) {
+      if (reading > shortest + 1.5 * clock.tick) continue;
+      sum += reading;
+      count += 1.0;
+    }
+    return sum / count - clock.reading;
+  }
 };
 
 struct Cost {
@@ -63,11 +92,11 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-Cost cost_of(const std::vector<Interval>& intervals, double clock) {
+Cost cost_of(const std::vector<Interval>& intervals, const ClockCost& clock) {
   std::vector<double> steps, events;
   Cost cost;
   for (const auto& interval : intervals) {
-    if (interval.events == 0) steps.push_back(interval.nanoseconds - clock);
+    if (interval.events == 0) steps.push_back(interval.nanoseconds(clock));
   }
   cost.steps = steps.size();
   if (steps.empty()) return cost;
@@ -75,7 +104,7 @@ Cost cost_of(const std::vector<Interval>& intervals, double clock) {
   for (const auto& interval : intervals) {
     if (interval.events == 0) continue;
     cost.events += interval.events;
-    const double longer = interval.nanoseconds - clock - cost.step;
+    const double longer = interval.nanoseconds(clock) - cost.step;
     for (long k = 0; k < interval.events; ++k) events.push_back(longer / static_cast<double>(interval.events));
   }
   if (!events.empty()) cost.event = median(events);
@@ -84,7 +113,7 @@ Cost cost_of(const std::vector<Interval>& intervals, double clock) {
 
 /// No events if the run does not complete.
 Cost measure(const evaluation::ModelKernel& kernel, const model::System& system,
-             const event_integrator::IntegrationOptions& options, double clock) {
+             const event_integrator::IntegrationOptions& options, const ClockCost& clock) {
   std::vector<Interval> intervals;
   const auto begin = Clock::now();
   for (int run = 0; run < fewest_runs || (run < most_runs && nanoseconds_since(begin) < 1e9 * wanted_seconds); ++run) {
@@ -96,7 +125,7 @@ Cost measure(const evaluation::ModelKernel& kernel, const model::System& system,
       if (events_before >= 0) {  // the first step has the start of the run before it
         if (number == intervals.size()) intervals.emplace_back();
         auto& interval = intervals[number++];
-        interval.nanoseconds = std::min(interval.nanoseconds, passed);
+        interval.readings.push_back(passed);
         interval.events = progress.events - events_before;
       }
       events_before = progress.events;
@@ -127,7 +156,7 @@ int table(const std::filesystem::path& folder) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
-  const double clock = clock_nanoseconds();
+  const ClockCost clock = cost_of_clock();
   const struct {
     ode::Method method;
     const char* name;
