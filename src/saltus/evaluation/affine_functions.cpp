@@ -100,8 +100,8 @@ AffineRowFunctions::AffineRowFunctions(const SX& functions, const ModelSymbols& 
     offset.push_back(affine[j] ? SX(values(row)) : SX(std::numeric_limits<double>::quiet_NaN()));
   }
   const auto column_of = [](const std::vector<SX>& rows) { return rows.empty() ? SX(0, 1) : SX::vertcat(rows); };
-  values_ =
-      ModelFunction("affine_rows", inputs(symbols), {column_of(coefficients), column_of(rate), column_of(offset)});
+  values_ = ModelFunction("saltus_affine_rows", inputs(symbols),
+                          {column_of(coefficients), column_of(rate), column_of(offset)});
 }
 
 void AffineRowFunctions::fill(const double* p, const double* alpha, AffineRows& rows) {

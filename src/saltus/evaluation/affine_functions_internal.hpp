@@ -30,9 +30,11 @@ class AffineRowFunctions {
   AffineRowFunctions() = default;
   AffineRowFunctions(const casadi::SX& functions, const ModelSymbols& symbols, const std::vector<bool>& affine);
   void fill(const double* p, const double* alpha, AffineRows& rows);
+  /// Coefficients, rates, offsets. Valid as long as this does not move.
+  [[nodiscard]] ModelFunction& function() { return values_; }
 
  private:
-  ModelFunction values_;  ///< coefficients, rates, offsets
+  ModelFunction values_;
   std::vector<double> origin_;
   std::vector<std::size_t> start_, column_;
 };

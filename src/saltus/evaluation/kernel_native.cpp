@@ -1,4 +1,5 @@
 // Which functions of a kernel run as native code, and the shortcut to one of them.
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -57,6 +58,9 @@ Expected<void> ModelKernel::Implementation::start_native(NativeCode wanted) {
   std::vector<model::ModelFunction*> all{&free.field, &free.constants,  &functions,
                                          &scales,     &output_function, &input_function};
   for (auto* function : jumps.functions()) all.push_back(function);
+  const bool has_nesting = std::any_of(inner.begin(), inner.end(), [](const auto& list) { return !list.empty(); });
+  // Otherwise the rows are made once.
+  if (cells.size() > 0 || !regions.groups().empty() || has_nesting) all.push_back(&affine_rows.function());
   auto started = native.start(wanted, std::move(all), std::move(appended));
   if (started) take_native_field();
   return started;

@@ -286,12 +286,13 @@ void EventSearch::find_candidates() {
   }
   const double length = bounds_.end - bounds_.begin;
   const StepBounds wide{bounds_.begin - length, bounds_.end + length, wide_low_.data(), wide_high_.data()};
-  candidates_ = curved_;
+  candidates_.clear();
+  if (!curved_.empty()) candidates_ = curved_;
   forms_.append_suspects(wide, candidates_);
   for (const std::size_t i : special_) {
     if (forms_.has(i)) candidates_.push_back(i);
   }
-  std::sort(candidates_.begin(), candidates_.end());
+  if (candidates_.size() > 1) std::sort(candidates_.begin(), candidates_.end());
 }
 
 SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
@@ -334,14 +335,16 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
 EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::size_t i) const {
   const auto& function = functions_[i];
   auto coefficients = forms_.along(i, step);
+  if (function.offset != 0.0) {
+    for (double& b : coefficients) b -= function.offset;
+  }
   double size = 0.0;
-  bool finite = true;
-  for (double& b : coefficients) {
-    b -= function.offset;
-    finite = finite && std::isfinite(b);
+  double none = 0.0;  // NaN if a coefficient is not finite: without a way out of the loop
+  for (const double b : coefficients) {
+    none += 0.0 * b;
     size = std::max(size, std::abs(b));
   }
-  if (!finite) return not_finite(function, coefficients.front());
+  if (std::isnan(none)) return not_finite(function, coefficients.front());
   // The form has other roundings than the function, whose own terms may be smaller.
   const double noise = std::max({noise_[i], 8.0 * epsilon * forms_.terms(i, bounds_), 8.0 * epsilon * size});
   const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise) : function.sign;

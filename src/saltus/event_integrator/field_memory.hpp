@@ -24,11 +24,8 @@ class FieldMemory {
   static constexpr std::size_t capacity = 64;
 
   const evaluation::ModelKernel& kernel_;
-  struct Entry {
-    std::size_t mark = 0;
-    evaluation::FieldConstants constants;
-  };
-  std::array<Entry, capacity> entries_;
+  std::array<std::size_t, capacity> marks_{};  ///< beside each other: they are gone through at every switch
+  std::array<evaluation::FieldConstants, capacity> constants_;
   std::size_t used_ = 0;
   std::size_t next_ = 0;  ///< to be overwritten
 };

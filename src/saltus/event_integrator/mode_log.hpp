@@ -17,6 +17,11 @@ class ModeLog {
   /// Appends the last mode with one function changed, unless that is no change, bit for bit. Cost: O(1).
   /// @return its number
   std::size_t append_change(std::size_t function, int mode, double alpha);
+  /// Room for so many modes that each differ in one function from the one before.
+  void reserve(std::size_t modes) {
+    changes_.reserve(modes);
+    ends_.reserve(modes);
+  }
   /// Of one function in the last mode.
   [[nodiscard]] int last_mode(std::size_t function) const { return last_mode_[function]; }
   [[nodiscard]] std::size_t size() const { return ends_.size(); }

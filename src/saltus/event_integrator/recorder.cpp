@@ -39,14 +39,15 @@ Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& s
   recording_.n_u = at(kernel.controls());
   recording_.n_y = at(kernel.outputs());
   // Lists that start empty are moved at every second of the first events.
-  constexpr std::size_t first_events = 32;
+  constexpr std::size_t first_events = 64;
   recording_.event_list.reserve(first_events);
   recording_.surfaces.reserve(first_events);
   recording_.states.reserve(first_events * recording_.n_x);
-  recording_.text.reserve(64 * first_events);
+  recording_.text.reserve(1024);
   recording_.row_times.reserve(2 * first_events);
   recording_.row_modes.reserve(2 * first_events);
   recording_.row_states.reserve(2 * first_events * recording_.n_x);
+  recording_.modes.reserve(2 * first_events);
   for (std::size_t c = 0; c < system.columns.size(); ++c) {
     const auto j = at(system.columns[c].function);
     if (system.switching[j].role == model::SwitchingRole::listed) listed_columns_[j].push_back(c);
@@ -203,10 +204,21 @@ void Recorder::switched(double t, const std::vector<double>& x, const SurfaceSwi
   set_states(event, x, x);
   event.mode = recording_.modes.append_change(j, change.before, change.alpha_before);
   event.mode_after = recording_.modes.append_change(j, change.after, change.alpha_after);
-  recording_.text += system_.switching[j].name;
-  recording_.text += ": ";
-  recording_.text += change.reason;
-  event.reason.end = recording_.text.size();
+  event.reason = reason_of(change);
+}
+
+/// Solutions come back to their switches: their words are written once.
+Recording::Range Recorder::reason_of(const SurfaceSwitch& change) {
+  auto& known = known_reasons_[(3 * at(change.surface) + at(change.after + 1)) % known_reasons_.size()];
+  const bool same_reason = known.reason.data() == change.reason.data() && known.reason.size() == change.reason.size();
+  if (known.surface == change.surface && same_reason) return known.place;
+  auto& text = recording_.text;
+  known = {change.surface, change.reason, {text.size(), text.size()}};
+  text += system_.switching[at(change.surface)].name;
+  text += ": ";
+  text += change.reason;
+  known.place.end = text.size();
+  return known.place;
 }
 
 bool Recorder::started(double t, const std::vector<double>& x, const Transition& transition,

@@ -1,6 +1,7 @@
 // Rows and events of a run, as they come.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -29,7 +30,7 @@ struct SurfaceSwitch {
   int surface = 0;
   int before = 0, after = 0;  ///< modes
   double alpha_before = 0.0, alpha_after = 0.0;
-  std::string_view reason;
+  std::string_view reason;  ///< a literal
 };
 
 /// One execution of a jump.
@@ -106,6 +107,7 @@ class Recorder {
   [[nodiscard]] std::size_t surface_of_region(int function) const {
     return system_.columns.size() + static_cast<std::size_t>(function);
   }
+  Recording::Range reason_of(const SurfaceSwitch& change);
   void note_changed_regions(const ModeState& before, const ModeState& after);
   void add_reason(Recording::Event& event, std::string_view reason);
   void add_transition(Recording::Event& event, const Transition& transition);
@@ -117,9 +119,17 @@ class Recorder {
     std::size_t mode = 0;
   };
 
+  /// Of the last switches of some surfaces, one after another: where its words stand in the recording.
+  struct KnownReason {
+    int surface = -1;
+    std::string_view reason;
+    Recording::Range place;
+  };
+
   const evaluation::ModelKernel& kernel_;
   const model::System& system_;
   Recording recording_;
+  std::array<KnownReason, 16> known_reasons_;
   std::vector<std::vector<std::size_t>> listed_columns_;  ///< by switching function: of the result, if it is listed
   std::vector<std::size_t> changed_, columns_;            ///< of one event
   std::vector<int> listed_before_, listed_after_;

@@ -188,6 +188,15 @@ Point read_point(const Surroundings& s, double t, const double* x, double time_s
   return point;
 }
 
+/// Whether nothing is at zero that would have to be decided, nor read anew behind a decision.
+bool signs_say_it_all(const Surroundings& s, const Occasion& occasion) {
+  if (!occasion.at_zero.empty() || !s.kernel.region_groups().empty()) return false;
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    if (!s.kernel.inner(j).empty()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Start decide_start(const Surroundings& s, double t, const double* x, double time_scale,
@@ -253,6 +262,12 @@ Transition decide_behind_jump(const Surroundings& s, const ModeState& before, do
   // Selections of the sliding motion before are where a search for the new ones starts.
   for (const int j : held) state.alpha[at(j)] = before.alpha[at(j)];
   if (!finite_at_start(s, t, x, state, transition)) return transition;
+  if (signs_say_it_all(s, occasion)) {
+    transition.zero_order.assign(state.mode.size(), 0);
+    transition.beside.assign(x, x + s.kernel.states());
+    transition.state = std::move(state);
+    return transition;
+  }
   transition = decide_mode(s, state, occasion);
   other_continuations(s, state, occasion, transition);
   return transition;

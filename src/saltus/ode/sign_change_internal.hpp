@@ -74,13 +74,13 @@ Verdict judge(const Coefficients<nodes>& b, double noise) {
 }
 
 /// Whether a polynomial is high at first, then near, then low: it has one sign change, and everything before is high or
-/// near.
+/// near. The same behind a zero at 0 of the order `begin`, whose coefficients are 0.
 template <std::size_t nodes>
-bool falls_once(const Coefficients<nodes>& b, double noise) {
+bool falls_once(const Coefficients<nodes>& b, double noise, std::size_t begin = 0) {
   if (!(b.back() < -noise)) return false;
-  std::size_t k = 0;
+  std::size_t k = begin;
   while (k < b.size() && b[k] > noise) ++k;
-  if (k == 0) return false;
+  if (k == begin) return false;
   while (k < b.size() && std::abs(b[k]) <= noise) ++k;
   if (k == b.size()) return false;
   while (k < b.size() && b[k] < -noise) ++k;
@@ -255,6 +255,20 @@ struct FromCoefficients {
       return std::nullopt;
     }
   }
+  /// The same behind a zero at 0: that of p(theta) / theta, raised to the same degree.
+  template <std::size_t nodes>
+  [[nodiscard]] std::optional<SignChange> only_zero_behind_start(const Coefficients<nodes>& p) const {
+    if constexpr (nodes == event_nodes) {
+      Coefficients<nodes> quotient = p;
+      for (std::size_t i = 0; i + 1 < nodes; ++i) {
+        const double share = static_cast<double>(nodes - 1 - i) / static_cast<double>(i + 1);
+        quotient[i] = p[i] + share * p[i + 1];
+      }
+      return ode::only_zero(quotient);
+    } else {
+      return std::nullopt;
+    }
+  }
   template <std::size_t nodes>
   [[nodiscard]] Scaled<nodes> whole(const Coefficients<nodes>& p) const {
     return Scaled<nodes>(p);
@@ -279,6 +293,11 @@ std::optional<SignChange> search_sign_change(const Coefficients<nodes>& coeffici
   if (certainly_no_sign_change(coefficients, sign, zero_order, noise)) return std::nullopt;
   std::fill_n(p.begin(), zero_order, 0.0);
   if (!(p.front() >= -noise)) return SignChange{0.0, 0.0};
+  if constexpr (requires { values.only_zero_behind_start(p); }) {
+    if (zero_order == 1 && falls_once(p, noise, 1)) {
+      if (const auto change = values.only_zero_behind_start(p)) return *change;
+    }
+  }
 
   const auto descent = first_descent(p, noise);
   if (!descent) return std::nullopt;
