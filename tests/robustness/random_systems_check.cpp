@@ -94,8 +94,8 @@ class ModeCheck {
     State end;
     std::string problem;  ///< an inequality that fails on the way
     bool is_determined = true;
-    /// The selection is not 0/0, nor that of a kink that is touched: what derivatives of psi hold cannot be followed
-    /// here.
+    /// The selection is not 0/0, nor that of a kink that is touched, nor a double root: what derivatives of psi hold
+    /// cannot be followed here.
     bool is_defined = true;
   };
 
@@ -110,7 +110,7 @@ class ModeCheck {
       const double now = t + step * h;
       const FieldValue k1 = field_(now, y, alpha);
       path.is_determined = path.is_determined && determined(k1);
-      path.is_defined = std::isfinite(k1.xdot.front()) && !slides_at_kink(k1);
+      path.is_defined = std::isfinite(k1.xdot.front()) && !slides_at_kink(k1) && !at_double_root(k1);
       if (!path.is_defined) return path;
       alpha = k1.alpha;
       const FieldValue k2 = field_(now + 0.5 * h, moved(y, 0.5 * h, k1.xdot), alpha);
@@ -133,6 +133,11 @@ class ModeCheck {
   }
   [[nodiscard]] bool slides_at_kink(const FieldValue& value) const {
     return !field_.sliding().empty() && value.kink_distance < 1e-5;
+  }
+
+  /// Where two roots meet they are known to the square root of rounding, 1e-8, and Newton's method may lead anywhere.
+  [[nodiscard]] bool at_double_root(const FieldValue& value) const {
+    return field_.sliding().size() > 1 && value.pivot < 1e-7;
   }
 
   /// The sliding field is a quotient: near 0/0 it cannot be computed twice with the same result.
@@ -158,6 +163,7 @@ class ModeCheck {
       // nothing.
       if (!(value.determinant >= -1e-6) && value.pivot > bound)
         return fmt::format("slides where det(-G) is {}", value.determinant);
+      if (at_double_root(value)) return "";
       for (const auto j : field_.sliding()) {
         const double slack = std::max(bound, 1e-9) / std::max(1e-12, value.pivot);
         if (!(value.alpha[j] >= -slack && value.alpha[j] <= 1.0 + slack)) {

@@ -67,7 +67,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       families_(surroundings_),
       evaluations_before_(kernel.field_evaluations()),
       series_(options.until - options.from) {
-  mode_atol_ = tolerances_.atol;
+  mode_tolerances_ = tolerances_;
   ordinary_ = way == Way::short_where_ordinary && has_ordinary_switches();
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (i >= system.discrete_states.size() || !system.discrete_states[i]) continuous_.push_back(i);
@@ -96,10 +96,10 @@ bool Run::enter(const Transition& transition) {
   set_references(kernel_, state_);
   if (!options_.layers.empty()) {
     const auto wanted = local_tolerances(options_.tolerances);
-    tolerances_ = within_layers(kernel_, options_.layers, wanted, state_, t_, x_.data());
-    mode_atol_ = tolerances_.atol;
-    tolerances_.atol *= lap_share_;
+    mode_tolerances_ = within_layers(kernel_, options_.layers, wanted, state_, t_, x_.data());
   }
+  root_share_ = 1.0;
+  set_tolerances();
   field_.enter(state_);
   stepper_.restart();
   stiffness_.reset();

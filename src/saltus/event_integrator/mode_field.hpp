@@ -100,6 +100,9 @@ class ModeField {
   [[nodiscard]] bool exit_row(std::size_t row, Region region, const double* x, evaluation::AffineRow& form);
   /// Behind exits(): size of the terms whose sum an exit function of a sliding surface is, which bounds its rounding.
   [[nodiscard]] double normal_terms(std::size_t row) const;
+  /// Smallest |det G| of the groups of coupled surfaces, relative to the size of g: how far their roots are from
+  /// meeting others. 1 where there are no such groups.
+  [[nodiscard]] double root_distance(double t, const double* x);
   /// Whether `loss` and `stability` of a sliding surface mean something.
   [[nodiscard]] bool has_loss(std::size_t row) const;
   [[nodiscard]] bool has_stability(std::size_t row) const;

@@ -320,6 +320,19 @@ void ModeField::find_stability() {
   }
 }
 
+double ModeField::root_distance(double t, const double* x) {
+  if (solve_ != SlidingSolve::coupled) return 1.0;
+  select(t, x);
+  find_stability();
+  double smallest = 1.0;
+  for (const auto& rows : groups_) {
+    if (rows.size() < 2 || !has_loss(rows[0]) || tie_of(rows[0]) != nullptr) continue;
+    const double loss = exits_[rows[0]].loss;
+    smallest = std::min(smallest, rows.size() == 2 ? std::sqrt(std::max(0.0, loss)) : std::abs(loss));
+  }
+  return smallest;
+}
+
 void ModeField::follow(double t, const double* x) {
   const auto is_large = [&](const auto& rows) { return rows.size() > 2 || tie_of(rows.front()) != nullptr; };
   if (solve_ != SlidingSolve::coupled || std::none_of(groups_.begin(), groups_.end(), is_large)) return;

@@ -128,6 +128,8 @@ class Run {
   void note_tightening_switch(const SurfaceSwitch& change);
   void note_switch_rates();
   void follow_shrinking();
+  void follow_roots();
+  void set_tolerances();
   void accumulate_switches();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
   bool limits_repeat(double t);
@@ -201,10 +203,11 @@ class Run {
   ode::Stepper stepper_;
   ode::StepControl control_;
   ode::StiffnessWatch stiffness_;
-  ode::Tolerances tolerances_;  ///< of a step
-  double mode_atol_ = 0.0;      ///< of the mode; a part of it while switches tighten
-  double lap_share_ = 1.0;      ///< that part
-  double first_lap_ = 0.0;      ///< duration of the first one that was closed
+  ode::Tolerances tolerances_;       ///< of a step
+  ode::Tolerances mode_tolerances_;  ///< of the mode
+  double lap_share_ = 1.0;           ///< part of atol while switches tighten
+  double root_share_ = 1.0;          ///< part of both where roots of coupled surfaces are near
+  double first_lap_ = 0.0;           ///< duration of the first one that was closed
   LimitsInARow limits_in_a_row_;
   ode::DenseStep dense_;
   bool dense_is_last_ = false;  ///< dense_ is that of the last attempt

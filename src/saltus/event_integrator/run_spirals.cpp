@@ -97,8 +97,10 @@ void Run::note_switch_rates() {
 void Run::follow_shrinking() {
   if (switch_laps_.empty()) {
     first_lap_ = 0.0;
-    if (lap_share_ != 1.0) tolerances_.atol = mode_atol_;
-    lap_share_ = 1.0;
+    if (lap_share_ != 1.0) {
+      lap_share_ = 1.0;
+      set_tolerances();
+    }
     return;
   }
   const auto lap = switch_laps_.closed_lap();
@@ -106,7 +108,7 @@ void Run::follow_shrinking() {
   if (first_lap_ == 0.0) first_lap_ = *lap;
   const double share = std::clamp(*lap / first_lap_, 1e-6, 1.0);
   lap_share_ = share * share;
-  tolerances_.atol = mode_atol_ * lap_share_;
+  set_tolerances();
 }
 
 /// The same for one surface, listed, with no jump; `before` is its mode and selection before.

@@ -194,6 +194,7 @@ Run::Step Run::accept(double t_new) {
     std::copy(stepper_.slope_new(), stepper_.slope_new() + slope_.size(), slope_.begin());
   }
   field_.follow(t_, x_.data());
+  follow_roots();
   h_ = h * control_.accepted(error_norm());
   // A step that was cut short at a time of a jump says nothing against the one that was proposed.
   if (t_ < options_.until && t_ == jumps_.next_time()) h_ = std::max(h_, h_try_);

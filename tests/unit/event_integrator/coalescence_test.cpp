@@ -1,0 +1,70 @@
+// Sliding on two surfaces that ends where its root meets the other one.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "run_model.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+using model::Builder;
+
+/// Slides on u = v = 0 with both selections lambda = z: v' = lambda_v - lambda_u, u' = 1 - y - lambda_u lambda_v, so
+/// that z^2 = 1 - y, and det G = 2 z.
+Integration slide_to_the_fold(ode::Method method, double rtol, double y, const auto& rate) {
+  Builder b("fold");
+  const SX u = b.state("u", {0});
+  const SX v = b.state("v", {0});
+  const SX height = b.state("y", {y});
+  const SX lambda_u = b.sign(b.switching("su", u)), lambda_v = b.sign(b.switching("sv", v));
+  b.dynamics("u", 1 - height - lambda_u * lambda_v);
+  b.dynamics("v", lambda_u - lambda_v);
+  b.dynamics("y", rate(b, lambda_u));
+  IntegrationOptions options;
+  options.method = method;
+  options.tolerances = {rtol, 1e-2 * rtol};
+  options.until = 1.5;
+  options.initial_mode = {{0, 0}, {1, 0}};
+  return testing::run_model(b, options);
+}
+
+/// When the sliding on both ends.
+double end_of_sliding(const Integration& run) {
+  for (const auto& event : run.events) {
+    if (event.mode_before && *event.mode_before == result::Mode{0, 0}) return event.t;
+  }
+  return run.status.time_reached;
+}
+
+TEST(Coalescence, WhereDetGVanishesLikeTheTimeLeftItsTimeIsNotTheRootOfTheTolerance) {
+  // y' = 2 a(t) z: z' = -a, z reaches 0 with this speed at t = 1 for a = 1/2 + sin(3 t) / 4. An error e of y made there
+  // ends the sliding sqrt(e) / a(1) early: 6e-5 for the tenth of rtol = 1e-8 that a step may leave; 6e-7 for 1e-13.
+  const double a_1 = 0.5 + 0.25 * std::sin(3.0);
+  const double z = 0.5 + (1.0 - std::cos(3.0)) / 12.0;
+  const auto rate = [](Builder& b, const SX& lambda) { return 2 * (0.5 + 0.25 * sin(3 * b.time())) * lambda; };
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+    for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+      const auto run = slide_to_the_fold(method, rtol, 1.0 - z * z, rate);
+      // What was wrong by rtol before that adds its part.
+      EXPECT_NEAR(end_of_sliding(run), 1.0, 10.0 * (std::sqrt(1e-13) / a_1 + rtol)) << rtol;
+      EXPECT_LT(run.statistics.steps, 400) << rtol;
+    }
+  }
+}
+
+TEST(Coalescence, WhereDetGVanishesLikeTheRootOfTheTimeLeftItCostsFewSteps) {
+  // y' = 1/2 - z / 4: the time is the integral of 2 z / (1/2 - z / 4) from 0 to z(0).
+  const double z = 0.6;
+  const double wanted = -8.0 * z - 16.0 * std::log(1.0 - z / 2.0);
+  const auto rate = [](Builder&, const SX& lambda) { return 0.5 - lambda / 4; };
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+    const auto run = slide_to_the_fold(method, 1e-8, 1.0 - z * z, rate);
+    EXPECT_NEAR(end_of_sliding(run), wanted, 1e-7);
+    EXPECT_LT(run.statistics.steps, 120);
+  }
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
