@@ -300,14 +300,22 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
   find_suspects(step);
   if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
-  rescale(step.t, x_.data(), suspects_);
-  sampled_.clear();
-  for (const std::size_t i : suspects_) {
-    if (!forms_.has(i)) sampled_.push_back(i);
+  if (suspects_.size() == 1 && is_threshold(suspects_.front())) {  // the usual event
+    set_noise(suspects_.front(), x_.data());
+  } else {
+    rescale(step.t, x_.data(), suspects_);
+    sampled_.clear();
+    for (const std::size_t i : suspects_) {
+      if (!forms_.has(i)) sampled_.push_back(i);
+    }
+    if (!sampled_.empty()) sample(step, 0.0, 1.0, sampled_);
   }
-  if (!sampled_.empty()) sample(step, 0.0, 1.0, sampled_);
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
   if (outcome == SearchOutcome::hit) {
+    if (suspects_.size() == functions_.size()) {  // all of them, whatever the bounds
+      candidates_ = suspects_;
+      return outcome;
+    }
     find_candidates();
     if (candidates_ == suspects_) return outcome;  // their roundings are known
     step.evaluate(0.0, x_.data());

@@ -1,5 +1,8 @@
 // From sliding on one surface into the intersection: Figs. 5 and 6 of [guglielmi2022].
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <utility>
 
 #include "saltus/switching/intersection.hpp"
 #include "saltus/switching/intersection_internal.hpp"
@@ -67,9 +70,47 @@ Entry enter(const Plane& p, const IntersectionRoots& roots, SignTests& signs) {
   return {Leaf::E12, {0, 0}, PlaneMode{0, 1}, passes};
 }
 
+/// The usual passage: on both sides of the surface reached the other one attracts, and all four fields lead across.
+/// Then g_2 has one sign in the square and no root: of the two reflections of the surface slid on that with H_1 > 0
+/// ends in E3, and no other mode is admissible. nullopt where that is not the case, or not clear of any rounding.
+std::optional<PlaneDecision> pass_across(const PlaneTable& table, PlaneMode incoming) {
+  const std::size_t slid = incoming[0] == 0 ? 0 : 1;
+  const std::size_t reached = 1 - slid;
+  if (incoming[slid] != 0 || incoming[reached] == 0) return std::nullopt;
+  const std::size_t across = std::size_t{1} << slid;
+  const std::size_t behind = std::size_t{1} << reached;
+  const auto& f1 = table.sides[slid];
+  const auto& f2 = table.sides[reached];
+  double s1 = 0.0, s2 = 0.0;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    s1 = std::max(s1, std::abs(f1[corner].velocity));
+    s2 = std::max(s2, std::abs(f2[corner].velocity));
+  }
+  // Products neither over- nor underflow, and what is tested below is far from every tolerance of the tree.
+  constexpr double largest = 1e100;
+  constexpr double clear = 1e-4;
+  if (!(std::max(s1, s2) < largest && std::min(s1, s2) > 1.0 / largest)) return std::nullopt;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const double inward = (corner & across) != 0 ? -f1[corner].velocity : f1[corner].velocity;
+    if (!(inward > clear * s1 && -incoming[reached] * f2[corner].velocity > clear * s2)) return std::nullopt;
+  }
+  const double h = f1[behind].velocity * f1[across].velocity - f1[across | behind].velocity * f1[0].velocity;
+  if (!(std::abs(h) > clear * s1 * s1)) return std::nullopt;
+  PlaneDecision decision;
+  decision.leaf = Leaf::E3;
+  decision.reason = reason(Leaf::E3);
+  const std::size_t far = incoming[reached] < 0 ? behind : 0;
+  decision.chosen.mode[reached] = -incoming[reached];
+  decision.chosen.alpha[slid] = sliding_alpha(f1[far].velocity, f1[far | across].velocity);
+  decision.chosen.alpha[reached] = incoming[reached] < 0 ? 1.0 : 0.0;
+  decision.chosen.attracts = true;
+  return decision;
+}
+
 }  // namespace
 
 PlaneDecision decide_entering(const PlaneTable& table, PlaneMode incoming, SelectionPolicy policy) {
+  if (auto passage = pass_across(table, incoming)) return *std::move(passage);
   const Plane plane(table);
   const auto symmetry = find_symmetry([&](const PlaneSymmetry& s) {
     if (s.apply(incoming) != PlaneMode{0, -1}) return false;

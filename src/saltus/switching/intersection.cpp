@@ -74,6 +74,7 @@ const LeafText& text_of(Leaf leaf) { return leaf_texts[static_cast<std::size_t>(
 }  // namespace
 
 std::string_view name(Leaf leaf) { return text_of(leaf).name; }
+std::string_view reason(Leaf leaf) { return text_of(leaf).reason; }
 
 PlaneContinuation continuation(const PlaneTable& table, PlaneMode mode) {
   PlaneContinuation result{mode, {mode[0] > 0 ? 1.0 : 0.0, mode[1] > 0 ? 1.0 : 0.0}, true};

@@ -31,6 +31,9 @@ std::optional<PlaneSymmetry> find_symmetry(Canonical&& canonical) {
 /// Selections of a mode, whether or not it is admissible: the sliding ones by their formulas.
 [[nodiscard]] PlaneContinuation continuation(const PlaneTable& table, PlaneMode mode);
 
+/// What a leaf decides, in words.
+[[nodiscard]] std::string_view reason(Leaf leaf);
+
 /// The decision for `mode`, with all other admissible modes.
 [[nodiscard]] PlaneDecision conclude(const PlaneTable& table, Leaf leaf, PlaneMode mode, const SignTests& signs,
                                      const PlaneModes& admissible);

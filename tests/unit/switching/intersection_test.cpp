@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -75,6 +76,38 @@ TEST(Intersection, VerifiedCasesHaveTheLeafOfTheirName) {
     if (!is_decision(c)) continue;
     EXPECT_EQ(family(std::string(name(decide(c, c.f, Relabelling(0)).leaf))), family(c.leaf)) << c.id;
   }
+}
+
+/// The usual passage is decided before the tree is asked: all symmetric tables of one situation have one answer, with
+/// its mode the only admissible one, whether or not the table is clear enough for that.
+TEST(Intersection, PassagesHaveTheOnlyAdmissibleModeOnBothWays) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> size(0.1, 1.0);
+  int passages = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    // Of one field hardly anything leads across: in every other trial less than the short way wants (1e-4).
+    const double slow = trial % 2 == 0 ? 1.0 : 1e-5;
+    const Velocities f{{{size(random), -size(random), size(random), -size(random)},
+                        {slow * size(random), size(random), size(random), size(random)}}};
+    for (unsigned i = 0; i < 8; ++i) {
+      const Relabelling relabelling(i);
+      const PlaneTable table = plane_table(relabelling.fields(f));
+      const PlaneDecision decision = decide_entering(table, relabelling.signs(PlaneMode{0, -1}));
+      const PlaneModes admissible = admissible_modes(table);
+      ASSERT_EQ(decision.undecided, "");
+      EXPECT_EQ(decision.leaf, Leaf::E3);
+      EXPECT_EQ(decision.reason, "no sliding on the intersection: sliding goes on across the surface reached");
+      EXPECT_TRUE(decision.unique() && !decision.ambiguous && !decision.by_scaling);
+      ASSERT_EQ(admissible.size(), 1U);
+      const PlaneContinuation& only = *admissible.begin();
+      EXPECT_EQ(decision.chosen.mode, only.mode);
+      EXPECT_EQ(decision.chosen.mode, relabelling.signs(PlaneMode{0, 1}));
+      EXPECT_EQ(decision.chosen.alpha, only.alpha);
+      EXPECT_EQ(decision.chosen.attracts, only.attracts);
+      ++passages;
+    }
+  }
+  EXPECT_EQ(passages, 16000);
 }
 
 }  // namespace
