@@ -190,5 +190,32 @@ TEST(HigherOrder, TheSelectionOfSuperTwistingFollowsTheDisturbance) {
   EXPECT_NEAR(result.final.alpha[0], 0.5 + 0.8 / 2.2, 1e-9);
 }
 
+// Behind t = 1 the gain 1.1 no longer holds the disturbance. With s = t - 1 and c = (2/15)^2 it is such that
+// x1 = c s^4, x2 = 4 c s^3 + 1.5 sqrt(c) s^2: a solution that leaves a surface where its field has no derivative.
+TEST(HigherOrder, SuperTwistingLosesAgainstADisturbanceThatGrows) {
+  const double c = 4.0 / 225.0;
+  for (const int side : {1, -1}) {
+    const std::string disturbance = fmt::format("{}*(1.1 + 0.4*(t - 1) + 12*4/225*(t - 1)^2)", side);
+    std::string text = super_twisting("x1", disturbance, "3");
+    text.replace(text.find("x2 = 1"), 6, "x2 = 0");
+    for (const auto& accuracy :
+         {fine, fine_explicit, fine_implicit, standard, implicit, Accuracy{pipeline::Integrator::dop853, 1e-6, 1e-8},
+          Accuracy{pipeline::Integrator::dopri5, 1e-3, 1e-5}}) {
+      const Result result = simulated(text, accuracy);
+      ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+      ASSERT_EQ(result.events.size(), 2U);
+      EXPECT_EQ(result.events[1].kind, EventKind::leave_sliding);
+      EXPECT_EQ(*result.events[1].mode_after, (std::vector<int>{side}));
+      EXPECT_NEAR(result.events[1].t, 1.0, 1e-10);
+      // Errors of x1 decay as the solution is stiff; those of x2 and z are of the size of the tolerance.
+      const double tolerance = std::max(1e-10, 3.0 * accuracy.rtol);
+      EXPECT_NEAR(result.final.x[0], side * 16.0 * c, tolerance);
+      EXPECT_NEAR(result.final.x[1], side * (32.0 * c + 0.8), tolerance);
+      // z' = x2 + 1.
+      EXPECT_NEAR(result.final.x[2], 3.0 + side * (16.0 * c + 1.6 / 3.0), tolerance);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace saltus::problems

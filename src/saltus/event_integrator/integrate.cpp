@@ -120,6 +120,7 @@ bool Run::enter(const Transition& transition) {
   }
   search_.enter(state_, transition.zero_order, t_, x_.data());
   spiral_start_ = transition.beyond_spiral;
+  rooted_ = transition.rooted;
   return true;
 }
 
@@ -210,6 +211,8 @@ CompactIntegration Run::to_end() {
         break;
       }
       if (spiral_start_) begin_spiral();
+      if (rooted_ >= 0) leave_root();
+      if (!running_ || t_ >= options_.until) break;
       h_try_ = std::max(h_, 2.0 * smallest_step());
       if (options_.max_step) h_try_ = std::min(h_try_, *options_.max_step);
       while (running_ && attempt() == Step::shortened) {

@@ -221,6 +221,7 @@ const Located* Locator::locate(const StepStart& start, const ode::DenseStep& den
   if (trial_.h > 0.0 && !(stepper_.error_norm() <= 2.0)) return nullptr;
   located_.t = start_.t + trial_.h;
   located_.x = trial_.x;
+  located_.short_of = trial_.values[place_] * hit.sign > search_.noise(hit.function);
   find_vanishing_with(hit.function);
   located_.signs.clear();
   for (const auto function : located_.functions) located_.signs.push_back(sign(function));

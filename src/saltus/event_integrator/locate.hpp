@@ -24,6 +24,7 @@ struct Located {
   std::vector<double> x;
   std::vector<std::size_t> functions;  ///< the one located first, then those that vanish together with it
   std::vector<int> signs;              ///< of `functions` before the event
+  bool short_of = false;               ///< more than its rounding is left of the first one: no step gets it to zero
 };
 
 /// Corrects hits found on the dense output of a step. Owns its work space; allocates only for more functions than

@@ -84,6 +84,7 @@ class Run {
   bool begin();
   Step attempt();
   [[nodiscard]] std::optional<Located> surface_within_rounding();
+  [[nodiscard]] bool is_repelled(const Located& located);
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
   [[nodiscard]] std::vector<double> all_functions(double t, const double* x);
@@ -124,6 +125,8 @@ class Run {
   bool go_on();
   bool enter(const Transition& transition);
   void begin_spiral();
+  void leave_root();
+  [[nodiscard]] bool keep_their_signs(const std::vector<double>& before, int surface, double t, const double* x);
   void note_tightening_switch();
   void note_tightening_switch(const SurfaceSwitch& change);
   void note_switch_rates();
@@ -255,6 +258,7 @@ class Run {
   Occasion occasion_;
   Transition transition_;
   std::optional<SpiralStart> spiral_start_;  ///< of the mode just entered: time and state jump over the first lap
+  int rooted_ = -1;                          ///< of the mode just entered: the surface that it leaves along a root
   std::optional<double> stiff_at_;           ///< where the explicit method first looked out of place
   double h_ = 0.0;                           ///< proposed step
   double h_try_ = 0.0;                       ///< step under trial

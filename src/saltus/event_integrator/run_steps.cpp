@@ -134,6 +134,19 @@ std::optional<Located> Run::surface_within_rounding() {
   return std::nullopt;
 }
 
+/// Whether a surface that no step gets to is one that its own field leads away from: beside a root of psi a dense
+/// output dips below zero where the solution only comes near.
+bool Run::is_repelled(const Located& located) {
+  const auto& function = search_.functions()[located.functions.front()];
+  if (!located.short_of || function.kind != FunctionKind::surface) return false;
+  row_x_ = located.x;
+  move_onto(kernel_, state_, function.index, located.t, row_x_);
+  field_(located.t, row_x_.data(), row_slope_.data());
+  const Rate rate = rate_along_field(function.index, located.t, row_x_.data(), row_slope_.data());
+  constexpr double rounding = 1e-12;
+  return located.signs.front() * rate.value > rounding * rate.terms;
+}
+
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
   const std::vector<double> values = all_functions(t_, x_.data());
@@ -295,7 +308,7 @@ Run::Step Run::attempt() {
         const StepStart start{t_, x_.data(), slope_.data()};
         h_scale_ = h;
         const Located* located = locator_.locate(start, dense_, hit);
-        if (!located) return shorten(0.5) ? Step::shortened : undefined_step();
+        if (!located || is_repelled(*located)) return shorten(0.5) ? Step::shortened : undefined_step();
         ++result_.statistics.steps;
         // A requested time that is a break but for its rounding belongs to the cell behind it.
         rows_until(reaches_cell_end(*located) ? located->t - 4.0 * rounding_unit * std::abs(located->t) : located->t);

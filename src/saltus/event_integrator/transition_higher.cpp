@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/higher_order.hpp"
+#include "saltus/event_integrator/rooted_exit.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -58,8 +59,16 @@ Transition transition_to(ModeState state) {
 std::optional<Transition> leave_to(const Surroundings& s, ModeState state, const Occasion& occasion,
                                    const std::vector<double>& x, const std::vector<int>& surfaces, std::size_t corner) {
   set_to_corner(state, surfaces, corner);
-  if (!leads_into_its_region(s, state, occasion, x, surfaces)) return std::nullopt;
+  int rooted = -1;
+  if (!leads_into_its_region(s, state, occasion, x, surfaces)) {
+    // Explicit steps from a root overshoot.
+    if (surfaces.size() != 1) return std::nullopt;
+    RootedExit exit(s.kernel, s.affine_in_alpha, state, surfaces.front());
+    if (!exit.leads_away(occasion.t, x, 1e-2 * occasion.time_scale)) return std::nullopt;
+    rooted = surfaces.front();
+  }
   Transition transition = transition_to(std::move(state));
+  transition.rooted = rooted;
   for (const int j : surfaces) transition.zero_order[at(j)] = 2;
   return transition;
 }
