@@ -20,6 +20,21 @@ constexpr std::size_t most_patterns = 20000;
 
 }  // namespace
 
+/// Whether psi does not leave zero on a side, and sliding moves as that side does.
+bool Transition::is_sliding_of_another(const Option& option, const std::vector<Option>& others) {
+  if (option.trial != Trial::stays) return false;
+  return std::any_of(others.begin(), others.end(), [&](const Option& other) {
+    if (other.selections.size() != option.selections.size() || other.pattern == option.pattern) return false;
+    for (std::size_t k = 0; k < option.pattern.size(); ++k) {
+      if (other.pattern[k] != option.pattern[k] && other.pattern[k] != 0) return false;
+    }
+    for (std::size_t j = 0; j < option.selections.size(); ++j) {
+      if (!(std::abs(other.selections[j] - option.selections[j]) <= undecided)) return false;
+    }
+    return true;
+  });
+}
+
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
     : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver) {
   part_of_.resize(kernel.selections());
@@ -208,10 +223,9 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
   return least;
 }
 
-ElementSolver::Outcome Transition::solve_trial(const Decision& decision, const Continuation& candidate) {
+ElementSolver::Outcome Transition::solve_trial(const Decision& decision, const Continuation& candidate, double length) {
   const Point left{decision.t, {decision.x.begin(), decision.x.end()}, candidate.selections, decision.size};
-  return solver_.solve(left, decision.trial_length, {&candidate.set, 1}, decision.held, ElementSolver::Guess::left_end,
-                       trial_);
+  return solver_.solve(left, length, {&candidate.set, 1}, decision.held, ElementSolver::Guess::left_end, trial_);
 }
 
 /// Selections that follow from a higher derivative of their surface are those of a short element.
@@ -220,22 +234,53 @@ bool Transition::take_from_trial(const Decision& decision, Continuation& candida
   bool any = false;
   for (std::size_t k = 0; k < sliding.size(); ++k) any = any || projected_.in_no_equation(k);
   if (projected_.regular() || !any) return true;
-  if (solve_trial(decision, candidate) != ElementSolver::Outcome::solved) return false;
+  if (solve_trial(decision, candidate, decision.trial_length) != ElementSolver::Outcome::solved) return false;
   const std::size_t n = kernel_.selections();
   const double* last = trial_.stage_selections.data() + trial_.stage_selections.size() - n;
   projected_.take_undetermined(candidate.set, last, candidate.selections.data());
   return true;
 }
 
-bool Transition::passes_trial(const Decision& decision, const Group& group, const Continuation& candidate) {
-  if (solve_trial(decision, candidate) != ElementSolver::Outcome::solved) return false;
+/// By the end of an element: where psi leaves zero like t^3 its polynomial has other signs on the way.
+Transition::Trial Transition::try_element(const Decision& decision, const Group& group, const Continuation& candidate,
+                                          double length) {
+  if (solve_trial(decision, candidate, length) != ElementSolver::Outcome::solved) return Trial::unsolved;
   auto selections = candidate.selections;
-  Violation violation;
-  // A switch late in the trial is the next one.
-  constexpr double just_behind = 0.25;
-  const auto answer = watch_.look(trial_, candidate.set, decision.held, selections, violation,
-                                  {group.members.data(), group.members.size()});
-  return answer == Watch::Answer::holds || (answer == Watch::Answer::violated && violation.theta > just_behind);
+  Violation ignored;
+  const std::span<const int> members(group.members.data(), group.members.size());
+  const auto answer = watch_.look(trial_, candidate.set, decision.held, selections, ignored, members);
+  if (answer == Watch::Answer::not_finite) return Trial::unsolved;
+  constexpr double clear = 16.0;  // of roundings
+  bool stays = false;
+  for (const Condition& condition : candidate.set.conditions()) {
+    if (std::find(members.begin(), members.end(), condition.selection) == members.end()) continue;
+    const double value = watch_.end_value(candidate.set, condition), rounding = clear * watch_.noise(condition);
+    if (value < -rounding) return Trial::fails;
+    stays = stays || !(value > rounding);
+  }
+  return stays ? Trial::stays : Trial::holds;
+}
+
+/// By the shortest element behind which signs are clear of their roundings: psi may leave zero like t^3 or t^4.
+Transition::Trial Transition::try_elements(const Decision& decision, const Group& group,
+                                           const Continuation& candidate) {
+  const auto attempt = [&](double factor) {
+    return try_element(decision, group, candidate, factor * decision.trial_length);
+  };
+  Trial trial = attempt(1.0);
+  if (trial == Trial::fails) {
+    // What ends inside of the trial is the next switch.
+    const Trial nearer = attempt(0.125);
+    return nearer == Trial::holds ? nearer : trial;
+  }
+  // The trial length is the 128th part of an element.
+  for (const double factor : {8.0, 64.0}) {
+    if (trial != Trial::stays) break;
+    const Trial longer = attempt(factor);
+    if (longer == Trial::unsolved) break;
+    trial = longer;
+  }
+  return trial;
 }
 
 std::vector<Continuation> Transition::continuations(const Decision& decision) {
@@ -243,10 +288,6 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
   finite_ = find_groups(decision, modes);
   if (!finite_) return {};
   // A first guess at every group, so that each is asked with the others in place: what has the largest margin.
-  struct Option {
-    std::vector<int> pattern;
-    double margin = 0.0;
-  };
   std::vector<std::vector<Option>> options(groups_.size());
   const auto put = [](const Group& group, const std::vector<int>& pattern, std::vector<int>& into) {
     for (std::size_t k = 0; k < pattern.size(); ++k) into[at(group.members[k])] = pattern[k];
@@ -269,15 +310,21 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
   }
   std::vector<std::vector<std::vector<int>>> admissible(groups_.size());
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    for (const Option& option : options[g]) {
+    std::vector<Option> passed;
+    for (Option& option : options[g]) {
+      auto trial = guess;
+      put(groups_[g], option.pattern, trial);
+      Continuation candidate{ActiveSet(parts_, trial), {}, true};
       if (option.margin <= undecided) {
-        auto trial = guess;
-        put(groups_[g], option.pattern, trial);
-        Continuation candidate{ActiveSet(parts_, trial), {}, true};
         if (margin(decision, groups_[g], candidate) < -undecided) continue;
-        if (!passes_trial(decision, groups_[g], candidate)) continue;
+        option.trial = try_elements(decision, groups_[g], candidate);
+        if (option.trial == Trial::fails || option.trial == Trial::unsolved) continue;
       }
-      admissible[g].push_back(option.pattern);
+      option.selections = std::move(candidate.selections);
+      passed.push_back(std::move(option));
+    }
+    for (const Option& option : passed) {
+      if (!is_sliding_of_another(option, passed)) admissible[g].push_back(option.pattern);
     }
     if (admissible[g].empty()) return {};
     put(groups_[g], admissible[g].front(), guess);
@@ -289,7 +336,9 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     Continuation candidate{ActiveSet(parts_, chosen), {}, true};
     if (margin(decision, all, candidate) < -undecided) return;
     if (!projected_.regular()) {
-      candidate.determined = solve_trial(decision, candidate) == ElementSolver::Outcome::solved && solver_.determined();
+      candidate.determined =
+          solve_trial(decision, candidate, decision.trial_length) == ElementSolver::Outcome::solved &&
+          solver_.determined();
     }
     found.push_back(std::move(candidate));
   };

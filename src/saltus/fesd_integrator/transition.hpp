@@ -35,7 +35,9 @@ struct Decision {
 /// All sets that continue a solution from a point. Of the functions that are zero there, every pattern of signs and
 /// sliding (every set of active regions) is asked: with the selections of its projected field, do its signs hold just
 /// behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a short
-/// element does. Functions that do not influence each other are enumerated one by one.
+/// element does, or a longer one where psi is within its rounding behind that. A side that the solution does not get
+/// to, as psi stays at zero, is no other continuation than sliding with the selections of that side. Functions that do
+/// not influence each other are enumerated one by one.
 ///
 /// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
 /// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
@@ -61,9 +63,22 @@ class Transition {
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
                                    Continuation& candidate);
-  [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate);
+  /// What a short element says of a set: its signs hold behind it, or not, or are within their roundings.
+  enum class Trial { holds, fails, stays, unsolved };
+  /// A pattern that may continue the solution.
+  struct Option {
+    std::vector<int> pattern;
+    double margin = 0.0;
+    Trial trial = Trial::holds;
+    std::vector<double> selections = {};
+  };
+  [[nodiscard]] static bool is_sliding_of_another(const Option& option, const std::vector<Option>& others);
+  [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate,
+                                                   double length);
   [[nodiscard]] bool take_from_trial(const Decision& decision, Continuation& candidate);
-  [[nodiscard]] bool passes_trial(const Decision& decision, const Group& group, const Continuation& candidate);
+  [[nodiscard]] Trial try_element(const Decision& decision, const Group& group, const Continuation& candidate,
+                                  double length);
+  [[nodiscard]] Trial try_elements(const Decision& decision, const Group& group, const Continuation& candidate);
 
   const discretization::StageKernel& kernel_;
   std::span<const Part> parts_;

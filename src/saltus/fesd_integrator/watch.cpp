@@ -91,6 +91,7 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   // Gradients at the left end give the rounding level; between the ends of an element it is the same.
   kernel_.evaluate(element.t, element.x.data(), selections.data(), held, left_);
   indicator_noise(left_, element.t + element.h, element.size, noise_);
+  find_left_rates();
   find_errors(element, set, held, selections);
   may_miss_ = false;
   const double rounding = ProjectedField::rounding_of_rates(element.size, element.h);
@@ -193,14 +194,13 @@ double Watch::error_of(const ActiveSet& set, const Condition& condition) const {
          (reference >= 0 ? indicator_errors_[static_cast<std::size_t>(reference)] : 0.0);
 }
 
-/// d value / dt of a condition on the side of its set at the left end.
-double Watch::left_rate(const ActiveSet& set, const Condition& condition) {
+/// d psi / dt at the left end. NOTE: left_ is that of the middle later on, where a root is zero at the left end.
+void Watch::find_left_rates() {
   const std::size_t n = kernel_.selections();
-  rates_ = left_.indicator_t;
+  left_rates_ = left_.indicator_t;
   for (std::size_t i = 0; i < left_.f.size(); ++i) {
-    for (std::size_t j = 0; j < n; ++j) rates_[j] += left_.indicator_x[i * n + j] * left_.f[i];
+    for (std::size_t j = 0; j < n; ++j) left_rates_[j] += left_.indicator_x[i * n + j] * left_.f[i];
   }
-  return set.side(condition.selection, rates_.data());
 }
 
 void Watch::first_change(const ActiveSet& set, const Element& element, const Condition& condition, Violation& earliest,
@@ -226,7 +226,7 @@ void Watch::first_change(const ActiveSet& set, const Element& element, const Con
     constexpr double tangent = 1e-3;
     const double largest = std::max(std::abs(*low), std::abs(*high));
     const bool side = condition.kind == Condition::Kind::side;
-    const bool flat = side && std::abs(left_rate(set, condition)) * h <= tangent * largest;
+    const bool flat = side && std::abs(set.side(condition.selection, left_rates_.data())) * h <= tangent * largest;
     zero_order = flat ? 2 : 1;
   }
   if (!may_miss_ && error > level && std::isfinite(error)) {

@@ -50,7 +50,7 @@ class Watch {
   [[nodiscard]] double noise(const Condition& condition) const;
 
  private:
-  [[nodiscard]] double left_rate(const ActiveSet& set, const Condition& condition);
+  void find_left_rates();
   void first_change(const ActiveSet& set, const Element& element, const Condition& condition, Violation& earliest,
                     bool& found);
   /// What an error of the state makes of a condition.
@@ -79,7 +79,7 @@ class Watch {
   std::size_t interpolation_ = 0;   ///< of the element in hand
   std::vector<double> indicators_;  ///< one row per watch point
   std::vector<double> selections_;
-  std::vector<double> values_, x_, noise_, rates_;
+  std::vector<double> values_, x_, noise_, left_rates_;
   discretization::StageValues left_;
   bool may_miss_ = false;
   std::vector<double> errors_, indicator_errors_, slope_, at_place_;

@@ -1,0 +1,99 @@
+// Starts where a field is tangent to the surface: the first derivative of psi along it that does not vanish says where
+// it goes, and where none does psi stays at zero. Both engines name it alike.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "problems/simulator.hpp"
+
+namespace saltus::problems {
+namespace {
+
+struct Tangency {
+  const char* what;
+  const char* below_x;
+  const char* above_x;
+  const char* above_y;
+  int mode;
+  std::vector<int> alternatives;
+  double final_x;  ///< at t = 1/2
+};
+
+/// From x = y = 0, where the field above is tangent to x = 0.
+const std::vector<Tangency> tangencies{
+    {"stays, and is pressed on: the surface is slid on with its field", "1", "0", "1", 0, {}, 0.0},
+    {"stays, and is not pressed on", "-1", "0", "1", -1, {0}, -0.5},
+    {"bends away from it", "1", "y", "1", 1, {}, 0.125},
+    {"bends back to it", "1", "y", "-1", 0, {}, 0.0},
+    {"bends back to it, and is left below", "-1", "y", "-1", -1, {}, -0.5},
+    {"leaves like t^3", "1", "3*y^2", "1", 1, {}, 0.125},
+    {"returns like t^3", "1", "-3*y^2", "1", 0, {}, 0.0},
+    {"returns like t^3, and is left below", "-1", "-3*y^2", "1", -1, {}, -0.5},
+    {"leaves like t^3, or stays, or is left below", "-1", "3*y^2", "1", 1, {-1, 0}, 0.125},
+};
+
+void expect_named(const result::Result& result, const Tangency& tangency) {
+  ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+  ASSERT_FALSE(result.events.empty());
+  const auto& start = result.events.front();
+  EXPECT_EQ(start.kind, result::EventKind::start);
+  EXPECT_EQ(*start.mode_after, (std::vector<int>{tangency.mode}));
+  EXPECT_EQ(start.unique, std::optional(tangency.alternatives.empty()));
+  std::vector<int> others;
+  for (const auto& alternative : start.alternatives) others.push_back(alternative.mode.front());
+  std::sort(others.begin(), others.end());
+  EXPECT_EQ(others, tangency.alternatives);
+  EXPECT_EQ(result.events.size(), 1U);
+  EXPECT_NEAR(result.final.x[0], tangency.final_x, 1e-7);
+}
+
+TEST(TangentStart, BothEnginesNameItAlike) {
+  for (const Tangency& tangency : tangencies) {
+    for (const double scale : {1.0, 1e8, 1e-8}) {
+      for (const bool mirrored : {false, true}) {
+        SCOPED_TRACE(fmt::format("{}, psi times {}{}", tangency.what, scale, mirrored ? ", mirrored" : ""));
+        const Simulator simulator = Simulator::from_text(fmt::format(
+            R"toml(
+[model]
+name = "tangent"
+[states]
+x = 0
+y = 0
+[switching]
+s = "{}*x"
+[dynamics]
+x = "{}*if({} > 0, {}, {})"
+y = "if({} > 0, {}, 1)"
+[simulate]
+until = 0.5
+)toml",
+            scale, mirrored ? -1 : 1, mirrored ? "-s" : "s", tangency.above_x, tangency.below_x, mirrored ? "-s" : "s",
+            tangency.above_y));
+        Tangency expected = tangency;
+        if (mirrored) {
+          expected.mode = -expected.mode;
+          for (int& other : expected.alternatives) other = -other;
+          std::sort(expected.alternatives.begin(), expected.alternatives.end());
+          // Of two sides that are left to, that of psi > 0 is taken.
+          if (expected.alternatives.size() == 2) {
+            expected.mode = 1;
+            expected.alternatives = {-1, 0};
+            expected.final_x = 0.5;
+          } else {
+            expected.final_x = -expected.final_x;
+          }
+        }
+        expect_named(simulator.run(simulator.options()), expected);
+        auto options = simulator.options();
+        options.method = pipeline::Method::fesd;
+        expect_named(simulator.run(options), expected);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace saltus::problems
