@@ -1,5 +1,6 @@
 // Starts where a field is tangent to the surface: the first derivative of psi along it that does not vanish says where
 // it goes, and where none does psi stays at zero. Both engines name it alike.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -90,6 +91,52 @@ until = 0.5
         auto options = simulator.options();
         options.method = pipeline::Method::fesd;
         expect_named(simulator.run(options), expected);
+      }
+    }
+  }
+}
+
+// x' = -sqrt(2 |x|) sign(x) + 2 t from 0, or the same about 1 and downwards: x = +-t^2/2, also where the solution
+// slides up to t = 1 and leaves then.
+TEST(TangentStart, ARootIsLeft) {
+  struct Case {
+    const char* what;
+    const char* field;
+    double rest;
+  };
+  for (const Case& c : {Case{"start", "-sqrt(2*abs(s))*sign(s) + {}*2*t", 0.0},
+                        Case{"exit", "if({0}*s > 0, -{0}*sqrt(2*abs(s)) + {0}*2*(t - 1), {0})", 1.0}}) {
+    for (const int side : {1, -1}) {
+      for (const double level : {0.0, 1.0}) {
+        SCOPED_TRACE(fmt::format("{}, side {}, level {}", c.what, side, level));
+        const Simulator simulator =
+            Simulator::from_text(fmt::format(R"toml(
+[model]
+name = "root"
+[states]
+x = {}
+[switching]
+s = "x - {}"
+[dynamics]
+x = "{}"
+[simulate]
+until = {}
+)toml",
+                                             level, level, fmt::format(fmt::runtime(c.field), side), c.rest + 2.0));
+        for (const auto& accuracy : {fine, standard, implicit}) {
+          const auto result = simulator.run(with(simulator.options(), accuracy));
+          ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+          // Roundings of x near 1 are 1e-8 in its root, where the solution leaves; it forgets them like 1/t.
+          const double rounding = level == 0.0 ? 0.0 : 1e-9;
+          EXPECT_NEAR(result.final.x[0], level + side * 2.0, rounding + 3.0 * accuracy.rtol);
+        }
+        auto options = simulator.options();
+        options.method = pipeline::Method::fesd;
+        const auto result = simulator.run(options);
+        ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+        // Collocation in the root of time has this solution but for roundings.
+        EXPECT_NEAR(result.final.x[0], level + side * 2.0, 1e-8);
+        EXPECT_LT(result.statistics.steps, 1000);
       }
     }
   }

@@ -197,6 +197,11 @@ bool Run::begin() {
   static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
   start_step();
   h_scale_ = h_;
+  const auto& orders = start.transition.zero_order;
+  if (rooted_ < 0 && std::any_of(orders.begin(), orders.end(), [](int order) { return order > 1; })) {
+    rooted_ = root_here();
+    if (rooted_ >= 0 && !take_side_of_root()) return false;
+  }
   h_ = step_memory_.change(state_.mode, t_, h_);
   while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) ++next_output_;
   if (recorder_.events() > 0) watch_for_families();

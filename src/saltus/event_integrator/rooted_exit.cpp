@@ -38,9 +38,12 @@ double RootedExit::psi(double t, const std::vector<double>& x) {
 void RootedExit::find_replaced(double t, const std::vector<double>& x) {
   double rate = 0.0;
   kernel_.gradient(surface_, t, x.data(), state_.alpha.data(), row_.data(), &rate);
-  const auto largest = std::max_element(row_.begin(), row_.end(),
-                                        [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const auto largest =
+      std::max_element(row_.begin(), row_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   replaced_ = static_cast<std::size_t>(largest - row_.begin());
+  noise_ = std::abs(rate * t);
+  for (std::size_t i = 0; i < row_.size(); ++i) noise_ += std::abs(row_[i] * x[i]);
+  noise_ *= 8.0 * rounding_unit;
 }
 
 /// The state that belongs to the unknowns.
@@ -74,14 +77,16 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
   Eigen::MatrixXd jacobian(size, size);
   Eigen::VectorXd change(size);
   constexpr int most_iterations = 40;
-  // Differences of this part of v or 1 + |x| are good to eight digits, and so is every iteration.
+  // Differences of this part of v or 1 + |x| are good to eight digits, and so is every iteration; fewer of v where psi
+  // is not much more than its rounding.
   constexpr double part = 0x1p-26;
   constexpr double converged = 1e-12;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     if (!residual(t, h, unknowns, here)) return false;
     for (std::size_t k = 0; k < n; ++k) {
       const double kept = unknowns[k];
-      const double width = part * (k == replaced_ ? kept : 1.0 + std::abs(kept));
+      const double width =
+          k == replaced_ ? kept * std::max(part, std::sqrt(noise_) / kept) : part * (1.0 + std::abs(kept));
       unknowns[k] = kept + width;
       const double taken = unknowns[k] - kept;
       if (!residual(t, h, unknowns, there)) return false;
@@ -97,7 +102,8 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
     for (std::size_t i = 0; i < n; ++i) {
       double step = change[static_cast<Eigen::Index>(i)];
       const double scale = i == replaced_ ? unknowns[i] : 1.0 + std::abs(unknowns[i]);
-      largest = std::max(largest, std::abs(step) / scale);
+      const double rounding = i == replaced_ ? noise_ / unknowns[i] : 0.0;
+      largest = std::max(largest, (std::abs(step) - rounding) / scale);
       // v stays positive: where it goes to zero there is no solution inside.
       if (i == replaced_) step = std::max(step, -0.75 * unknowns[i]);
       unknowns[i] += step;
@@ -113,14 +119,17 @@ bool RootedExit::substeps(double t, const std::vector<double>& x, double h, int 
   const double part = h / count;
   for (int k = 0; k < count; ++k) {
     const double end = t + h * (static_cast<double>(k + 1) / count);
-    // First guess: where the field of a point moved along the field leads to; not into the surface.
-    field_(end, from_.data(), f_.data());
-    for (std::size_t i = 0; i < f_.size(); ++i) x_[i] = from_[i] + part * f_[i];
-    field_(end, x_.data(), f_.data());
-    for (std::size_t i = 0; i < f_.size(); ++i) x_[i] = from_[i] + part * f_[i];
-    if (!is_finite(x_)) return false;
+    // First guess: where the field leads to, and that of a point moved along it; not into the surface.
+    double farthest = std::abs(psi(end, from_));
+    x_ = from_;
+    for (int pass = 0; pass < 2; ++pass) {
+      field_(end, x_.data(), f_.data());
+      for (std::size_t i = 0; i < f_.size(); ++i) x_[i] = from_[i] + part * f_[i];
+      if (!is_finite(x_)) return false;
+      farthest = std::max(farthest, std::abs(psi(end, x_)));
+    }
     unknowns = x_;
-    unknowns[replaced_] = std::sqrt(std::max(std::abs(psi(end, x_)), std::abs(psi(end, from_))));
+    unknowns[replaced_] = std::sqrt(farthest);
     if (!(unknowns[replaced_] > 0.0) || !implicit_euler(end, part, unknowns)) return false;
     if (!place(end, unknowns, x_)) return false;
     from_ = x_;
@@ -168,20 +177,41 @@ std::optional<std::vector<double>> RootedExit::step(double t, const std::vector<
   return side_ * psi(t + h, result) > 0.0 ? std::optional(std::move(result)) : std::nullopt;
 }
 
+/// row_ . f: what the field contributes to d psi/dt.
+double RootedExit::velocity(double t, const std::vector<double>& x) {
+  field_(t, x.data(), f_.data());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < f_.size(); ++i) sum += row_[i] == 0.0 ? 0.0 : row_[i] * f_[i];
+  return sum;
+}
+
+bool RootedExit::has_root(double t, const std::vector<double>& x) {
+  find_replaced(t, x);
+  double square = 0.0, farthest = 0.0;
+  for (const double d : row_) square += d * d;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    farthest = std::max(farthest, std::abs(row_[i]) / square / (1.0 + std::abs(x[i])));
+  }
+  const double here = velocity(t, x);
+  const auto change = [&](double width) {
+    std::vector<double> beside = x;
+    for (std::size_t i = 0; i < x.size(); ++i) beside[i] += side_ * width / farthest * row_[i] / square;
+    return side_ * (velocity(t, beside) - here);
+  };
+  // Sixteen times nearer a smooth function changes a sixteenth as much, a square root a fourth, |psi|^(3/4) an eighth.
+  constexpr double width = 0x1p-20, nearer = 0x1p-4, smooth = 0x1p-3;
+  const double wide = change(width), narrow = change(nearer * width);
+  return narrow < 0.0 && narrow < smooth * wide;
+}
+
 double RootedExit::stiffness(double t, const std::vector<double>& x) {
   find_replaced(t, x);
   const double value = psi(t, x);
   double square = 0.0;
   for (const double d : row_) square += d * d;
-  const auto velocity = [&](const std::vector<double>& point) {
-    field_(t, point.data(), f_.data());
-    double sum = 0.0;
-    for (std::size_t i = 0; i < f_.size(); ++i) sum += row_[i] == 0.0 ? 0.0 : row_[i] * f_[i];
-    return sum;
-  };
   std::vector<double> nearer = x;
   for (std::size_t i = 0; i < nearer.size(); ++i) nearer[i] -= 0.5 * value * row_[i] / square;
-  const double rate = (velocity(nearer) - velocity(x)) / (0.5 * value);
+  const double rate = (velocity(t, nearer) - velocity(t, x)) / (0.5 * value);
   return rate > 0.0 ? rate : 0.0;
 }
 

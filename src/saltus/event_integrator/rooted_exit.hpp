@@ -1,5 +1,5 @@
-// Leaving a surface on which the field has an infinite derivative (a root of |psi|): explicit steps from there overshoot
-// however short they are.
+// Leaving a surface on which the field has an infinite derivative (a root of |psi|): explicit steps from there
+// overshoot however short they are.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@
 
 namespace saltus::event_integrator {
 
-/// Steps of implicit Euler, extrapolated, that begin on a surface and go into the region of a mode. The unknowns are the
-/// states, one of them replaced by v > 0 with psi = +-v^2, in which a root of psi is smooth: the equations
+/// Steps of implicit Euler, extrapolated, that begin on a surface and go into the region of a mode. The unknowns are
+/// the states, one of them replaced by v > 0 with psi = +-v^2, in which a root of psi is smooth: the equations
 ///   x = x_k + h f(t + h, x)
 /// have a regular solution where the solution leaves, and none where it does not.
 /// Owns its work space. Cost: n_x + 1 evaluations of f per iteration, some four of these per substep.
@@ -27,11 +27,14 @@ class RootedExit {
   /// The state at t + h, if its error, estimated from the last two extrapolations, is within the tolerances.
   [[nodiscard]] std::optional<std::vector<double>> step(double t, const std::vector<double>& x, double h,
                                                         const ode::Tolerances& tolerances);
+  /// Whether dpsi/dt falls with a root of psi from the surface on, so that its derivative there is infinite.
+  [[nodiscard]] bool has_root(double t, const std::vector<double>& x);
   /// -d(dpsi/dt)/d psi beside the surface: what limits the steps of explicit methods; 0 where it is not positive.
   [[nodiscard]] double stiffness(double t, const std::vector<double>& x);
 
  private:
   [[nodiscard]] double psi(double t, const std::vector<double>& x);
+  [[nodiscard]] double velocity(double t, const std::vector<double>& x);
   bool place(double t, const std::vector<double>& unknowns, std::vector<double>& x);
   bool residual(double t, double h, const std::vector<double>& unknowns, std::vector<double>& result);
   bool implicit_euler(double t, double h, std::vector<double>& unknowns);
@@ -44,6 +47,7 @@ class RootedExit {
   int surface_;
   double side_;
   std::size_t replaced_ = 0;  ///< the state with the largest part in grad psi, which v stands for
+  double noise_ = 0.0;        ///< rounding of psi
   std::vector<double> row_, values_, from_, x_, f_;
 };
 

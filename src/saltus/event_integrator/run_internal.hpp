@@ -126,6 +126,10 @@ class Run {
   bool enter(const Transition& transition);
   void begin_spiral();
   void leave_root();
+  [[nodiscard]] int root_here();
+  /// Where x and f are both 0 the step that was proposed says nothing.
+  [[nodiscard]] double root_step() const { return std::max(1e-2 * h_scale_, 1e-8 * span()); }
+  bool take_side_of_root();
   [[nodiscard]] bool keep_their_signs(const std::vector<double>& before, int surface, double t, const double* x);
   void note_tightening_switch();
   void note_tightening_switch(const SurfaceSwitch& change);
@@ -259,10 +263,11 @@ class Run {
   Transition transition_;
   std::optional<SpiralStart> spiral_start_;  ///< of the mode just entered: time and state jump over the first lap
   int rooted_ = -1;                          ///< of the mode just entered: the surface that it leaves along a root
-  std::optional<double> stiff_at_;           ///< where the explicit method first looked out of place
-  double h_ = 0.0;                           ///< proposed step
-  double h_try_ = 0.0;                       ///< step under trial
-  double h_scale_ = 0.0;                     ///< of the last full step: time scale of the second-order sign tests
+  double root_tried_at_ = -std::numeric_limits<double>::infinity();
+  std::optional<double> stiff_at_;  ///< where the explicit method first looked out of place
+  double h_ = 0.0;                  ///< proposed step
+  double h_try_ = 0.0;              ///< step under trial
+  double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
   std::size_t next_output_ = 0;
   bool jumped_ = false;  ///< at the event in hand
   Families families_;

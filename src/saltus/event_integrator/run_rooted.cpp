@@ -19,12 +19,43 @@ bool Run::keep_their_signs(const std::vector<double>& before, int surface, doubl
   return true;
 }
 
+/// A surface that is at zero here, beside which the field has an infinite derivative; -1 if there is none.
+int Run::root_here() {
+  const auto values = all_functions(t_, x_.data());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& function = search_.functions()[i];
+    const bool beside = function.kind == FunctionKind::surface && state_.mode[at(function.index)] != 0;
+    if (!beside || !(std::abs(values[i]) <= search_.noise(i))) continue;
+    RootedExit exit(kernel_, surroundings_.affine_in_alpha, state_, function.index);
+    if (exit.has_root(t_, x_)) return function.index;
+  }
+  return -1;
+}
+
+/// A state at rest on a kink is on either side of it; the root says into which one it goes. False where the run ends.
+bool Run::take_side_of_root() {
+  const auto j = at(rooted_);
+  if (surroundings_.system.switching[j].role != model::SwitchingRole::kink) return true;
+  const auto leads_away = [&](const ModeState& state) {
+    return RootedExit(kernel_, surroundings_.affine_in_alpha, state, rooted_).leads_away(t_, x_, root_step());
+  };
+  Transition other;
+  other.state = state_;
+  set_surface(other.state, rooted_, -state_.mode[j], state_.mode[j] > 0 ? 0.0 : 1.0);
+  set_corner_alpha(other.state);
+  other.zero_order.assign(state_.mode.size(), 0);
+  other.zero_order[j] = 2;
+  other.rooted = rooted_;
+  if (leads_away(state_) || !leads_away(other.state)) return true;
+  return enter(other);
+}
+
 void Run::leave_root() {
   const int surface = std::exchange(rooted_, -1);
   RootedExit exit(kernel_, surroundings_.affine_in_alpha, state_, surface);
   const double begin = t_;
   const double limit = std::min({options_.until, jumps_.next_time(), next_departure()});
-  double h = 1e-2 * h_scale_;
+  double h = root_step();
   // Of -1.5 sqrt(x) + t^2 the derivative falls like 1/t^2 only: explicit steps, three over the stiffness each, are
   // worth while when a hundred of them double the time since the exit.
   constexpr double steps_left = 300.0;

@@ -149,6 +149,13 @@ bool Run::is_repelled(const Located& located) {
 
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
+  if (t_ != root_tried_at_) {
+    root_tried_at_ = t_;
+    rooted_ = root_here();
+    const double before = t_;
+    if (rooted_ >= 0) leave_root();
+    if (t_ > before) return running_ ? Step::taken : Step::failed;
+  }
   const std::vector<double> values = all_functions(t_, x_.data());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& function = search_.functions()[i];

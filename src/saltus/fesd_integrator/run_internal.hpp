@@ -55,6 +55,7 @@ class Run {
   /// which it is inside `beyond`; 1 where no root is zero.
   [[nodiscard]] int warp_behind(double h);
   [[nodiscard]] int warp_before(const Element& beyond);
+  struct Root;
   template <class Take>
   void for_each_root(double t, const double* x, Take&& take);
   struct Located {
