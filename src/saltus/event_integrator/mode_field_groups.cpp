@@ -100,7 +100,7 @@ void ModeField::find_ties() {
   for (auto& regions : regions_) {
     if (regions.rows.size() < 2 || (ties_known_ && (!regions.tie || regions.constant))) continue;
     tie_rows_ = rows_(regions.rows, Eigen::all);
-    if (ties_known_ && tie_rows_ == regions.gradients) continue;  // LIMIT: where they turn, each evaluation allocates
+    if (ties_known_ && tie_rows_ == regions.gradients) continue;
     regions.gradients = tie_rows_;
     if (ties_known_) {
       regions.tie->polytope().move(coordinates_in(regions.basis, tie_rows_));
@@ -178,6 +178,7 @@ bool ModeField::on_other_surface(std::size_t row) const {
 }
 
 bool ModeField::has_stability(std::size_t row) const {
+  if (const auto* regions = tie_of(row)) return regions->rows.front() == row;
   return solve_ == SlidingSolve::coupled && group_size_[row] > 1 && !several_regions(row);
 }
 
@@ -301,7 +302,12 @@ void ModeField::evaluate_many(double t, const double* x, const std::vector<std::
 /// Behind evaluate_groups(): what only the event functions need of groups of more than two.
 void ModeField::find_stability() {
   for (const auto& rows : groups_) {
-    if (rows.size() <= 2 || tie_of(rows[0]) != nullptr) continue;
+    if (const auto* regions = tie_of(rows[0])) {
+      auto& exit = exits_[regions->rows.front()];
+      exit.stability = std::isfinite(exit.below) ? regions->tie->stability() : not_a_number;
+      continue;
+    }
+    if (rows.size() <= 2) continue;
     const auto& newton = *newton_[rows[0]];
     const auto jacobian = newton.jacobian();
     double size = 1.0;

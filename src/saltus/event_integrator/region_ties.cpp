@@ -36,13 +36,18 @@ RegionBasis basis_of(const MatrixXd& rows) {
   return basis;
 }
 
-MatrixXd coordinates_in(const RegionBasis& basis, const MatrixXd& rows) {
+RegionCoordinates coordinates_in(const RegionBasis& basis, const MatrixXd& rows) {
   const auto m = static_cast<Index>(basis.base.size());
-  MatrixXd coordinates = MatrixXd::Zero(rows.rows() + 1, m);
+  RegionCoordinates coordinates = RegionCoordinates::Zero(rows.rows() + 1, m);
   if (m == 0) return coordinates;
-  const MatrixXd spanning = rows_of(basis, rows);
-  const MatrixXd normal = spanning * spanning.transpose();
-  coordinates.bottomRows(rows.rows()) = normal.ldlt().solve(spanning * rows.transpose()).transpose();
+  RegionCoordinates normal(m, m), right(m, rows.rows());
+  for (Index k = 0; k < m; ++k) {
+    const auto row = rows.row(basis.base[static_cast<std::size_t>(k)]);
+    for (Index l = 0; l < m; ++l) normal(k, l) = row.dot(rows.row(basis.base[static_cast<std::size_t>(l)]));
+    for (Index i = 0; i < rows.rows(); ++i) right(k, i) = row.dot(rows.row(i));
+  }
+  const Eigen::LDLT<RegionCoordinates> factors(normal);
+  coordinates.bottomRows(rows.rows()) = factors.solve(right).transpose();
   for (Index k = 0; k < m; ++k) {  // exactly what they are
     coordinates.row(basis.base[static_cast<std::size_t>(k)] + 1).setZero();
     coordinates(basis.base[static_cast<std::size_t>(k)] + 1, k) = 1.0;

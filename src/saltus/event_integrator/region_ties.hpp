@@ -17,8 +17,12 @@ struct RegionBasis {
 /// Rows that depend on others to 1e-6 of their lengths, as for surfaces that touch, are not in the basis.
 [[nodiscard]] RegionBasis basis_of(const Eigen::MatrixXd& rows);
 
+/// Of up to 12 regions, which is what meets.
+using RegionCoordinates = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 12, 12>;
+
 /// Coordinates of the reference (0) and of all rows in the basis: n x m, grad psi_i = sum_k y_ik grad psi_base(k).
-[[nodiscard]] Eigen::MatrixXd coordinates_in(const RegionBasis& basis, const Eigen::MatrixXd& rows);
+/// Allocates nothing.
+[[nodiscard]] RegionCoordinates coordinates_in(const RegionBasis& basis, const Eigen::MatrixXd& rows);
 
 /// The largest part of a row that the basis does not span, relative to the row.
 [[nodiscard]] double remainder(const RegionBasis& basis, const Eigen::MatrixXd& rows);

@@ -98,6 +98,7 @@ class Decider {
   bool decide_regions_on(int surface, const evaluation::RegionRange& range, std::vector<int> candidates);
   void apply_regions();
   void follow_other_regions();
+  bool spiral_out(const MeetingRegions& meeting, const evaluation::RegionRange& range);
   bool goes_on(const MeetingRegions& meeting, switching::RegionSet& set);
   void step_ahead(const MeetingRegions& meeting, const switching::RegionSet& set, std::vector<double>& x);
   bool solve_set(const MeetingRegions& meeting, double t, const double* x, const switching::RegionSet& near,
@@ -106,7 +107,7 @@ class Decider {
   MeetingRegions meeting_of(std::vector<int> candidates);
   Eigen::MatrixXd region_gradients(const std::vector<int>& candidates, double t, const double* x);
   switching::RegionTie tie_at(const MeetingRegions& meeting, double t, const double* x);
-  bool coalesces(const MeetingRegions& meeting, const switching::RegionSet& set);
+  bool is_lost(const MeetingRegions& meeting, const switching::RegionSet& set);
   bool stays_tied(const MeetingRegions& meeting, const switching::RegionSet& set);
   bool moves_in_one_way(const MeetingRegions& meeting, const switching::RegionSet& set);
   switching::RegionRates region_rates(const std::vector<int>& candidates, double t, const double* x);

@@ -89,7 +89,7 @@ std::vector<switching::RegionSet> Decider::sets_that_go_on(const MeetingRegions&
           : switching::admissible_region_sets(region_rates(meeting.candidates, occasion_.t, occasion_.x), marginal);
   std::vector<switching::RegionSet> sets;
   for (auto& set : admissible) {
-    if (meeting.basis && (coalesces(meeting, set) || !stays_tied(meeting, set))) continue;
+    if (meeting.basis && (is_lost(meeting, set) || !stays_tied(meeting, set))) continue;
     if (set.margin > marginal || goes_on(meeting, set)) sets.push_back(std::move(set));
   }
   switching::merge_same_motions(sets);
@@ -149,6 +149,7 @@ bool Decider::decide_regions(const std::vector<int>& group) {
   const auto meeting = meeting_of(std::move(meeting_regions));
   const auto& candidates = meeting.candidates;
   const auto sets = sets_that_go_on(meeting);
+  if (sets.empty() && spiral_out(meeting, *range)) return true;
   if (sets.empty()) {
     return fail(result::Termination::no_admissible_mode,
                 fmt::format("the regions {} meet at t = {}, and no set of them continues the solution",

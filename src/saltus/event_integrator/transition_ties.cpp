@@ -3,9 +3,11 @@
 #include <cmath>
 
 #include <Eigen/Core>
+#include <fmt/format.h>
 
 #include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
+#include "saltus/switching/region_spiral.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -86,9 +88,10 @@ bool Decider::stays_tied(const MeetingRegions& meeting, const switching::RegionS
   return remainder(basis, region_gradients(regions, t, ahead.data())) <= lasting;
 }
 
-/// Whether these are the weights of before, or those of the root that they coalesce with here: both cease to exist.
-bool Decider::coalesces(const MeetingRegions& meeting, const switching::RegionSet& set) {
-  const auto is_lost = [&](int j) { return contains(occasion_.coalesced, j); };
+/// Whether these are the weights of before, which lose their stability here, or cease to exist with those of the root
+/// that they coalesce with.
+bool Decider::is_lost(const MeetingRegions& meeting, const switching::RegionSet& set) {
+  const auto is_lost = [&](int j) { return contains(occasion_.coalesced, j) || contains(occasion_.destabilised, j); };
   if (std::none_of(meeting.candidates.begin(), meeting.candidates.end(), is_lost)) return false;
   std::vector<double> change;
   for (const int j : meeting.candidates) change.push_back(before_.mode[at(j)] == 0 ? before_.alpha[at(j)] : 0.0);
@@ -96,6 +99,36 @@ bool Decider::coalesces(const MeetingRegions& meeting, const switching::RegionSe
   // A double root is located to the root of a rounding; other roots are at a distance of the order of one.
   constexpr double near = 1e-4;
   return std::all_of(change.begin(), change.end(), [](double c) { return std::abs(c) <= near; });
+}
+
+/// No set goes on where the fields of all regions turn around the point: a lap that grows leaves it.
+bool Decider::spiral_out(const MeetingRegions& meeting, const evaluation::RegionRange& range) {
+  if (!meeting.basis || meeting.basis->base.size() != 2) return false;
+  const auto lap = switching::region_spiral(tie_at(meeting, occasion_.t, occasion_.x));
+  if (!lap || !(lap->lap_ratio > 1.0)) return false;
+  const auto& candidates = meeting.candidates;
+  // As around an intersection of two surfaces.
+  double delta = 1e-6 * occasion_.time_scale / lap->duration();
+  for (std::size_t k = 1; k < candidates.size(); ++k) {
+    delta = std::max(delta, 1e5 * fields_.noise(candidates[k]) / (lap->lap_ratio - 1.0));
+  }
+  const int first = candidates[at(lap->regions.front())], last = candidates[at(lap->regions.back())];
+  SpiralStart start{delta * lap->duration(), {occasion_.x, occasion_.x + s_.kernel.states()}, last, lap->lap_ratio};
+  std::vector<double> f(start.x.size());
+  for (std::size_t k = 0; k < lap->regions.size(); ++k) {
+    std::vector<double> alpha = base_.alpha;
+    for (const int region : candidates) alpha[at(region)] = 0.0;
+    alpha[at(candidates[at(lap->regions[k])])] = 1.0;
+    s_.kernel.field(occasion_.t, occasion_.x, alpha.data(), f.data());
+    for (std::size_t i = 0; i < f.size(); ++i) start.x[i] += delta * lap->durations[k] * f[i];
+  }
+  transition_.beyond_spiral = std::move(start);
+  transition_.unique = false;
+  RegionChoice choice{range, {{{first, 1.0}}}, {}};
+  choice.reason = fmt::format("{}: no set of them goes on, the solution spirals out", names(s_.system, candidates));
+  group_reasons_.push_back(choice.reason);
+  region_choices_.push_back(std::move(choice));
+  return true;
 }
 
 /// Whether all weights that keep the indicators of a set equal move the solution alike.

@@ -16,33 +16,40 @@ namespace {
 /// Of coordinates that come from gradients, relative to their size: far above rounding, far below what a model means.
 constexpr double flat = 1e-9;
 
+constexpr int most_regions = 12;
+/// At most that many rows and columns: without allocation.
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_regions, most_regions>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_regions, 1>;
+
 /// The normal of the hyperplane through m of the points, of length one; empty if these span less.
-Eigen::VectorXd normal_through(const Eigen::MatrixXd& points, const std::vector<int>& through) {
+SmallVector normal_through(const Eigen::MatrixXd& points, const std::vector<int>& through) {
   const auto m = points.cols();
-  if (m == 1) return Eigen::VectorXd::Ones(1);
-  Eigen::MatrixXd edges(m - 1, m);
+  if (m == 1) return SmallVector::Ones(1);
+  Small edges(m - 1, m);
   for (Eigen::Index k = 1; k < m; ++k) {
     edges.row(k - 1) = points.row(through[static_cast<std::size_t>(k)]) - points.row(through[0]);
     const double length = edges.row(k - 1).norm();
     if (length == 0.0) return {};
     edges.row(k - 1) /= length;
   }
-  Eigen::FullPivLU<Eigen::MatrixXd> factors(edges);
+  Eigen::FullPivLU<Small> factors(edges);
   factors.setThreshold(flat);
   if (factors.rank() < m - 1) return {};
   return factors.kernel().col(0).normalized();
 }
 
-Eigen::VectorXd distances(const Eigen::MatrixXd& points, const std::vector<int>& through,
-                          const Eigen::VectorXd& normal) {
-  const Eigen::RowVectorXd origin = points.row(through[0]);
-  return (points.rowwise() - origin) * normal;
+SmallVector distances(const Eigen::MatrixXd& points, const std::vector<int>& through, const SmallVector& normal) {
+  SmallVector distance(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    distance[i] = (points.row(i) - points.row(through[0])).dot(normal);
+  }
+  return distance;
 }
 
 }  // namespace
 
 std::optional<RegionPolytope> RegionPolytope::make(Eigen::MatrixXd points) {
-  SALTUS_ASSERT(1 <= points.rows() && points.rows() <= 12);
+  SALTUS_ASSERT(1 <= points.rows() && points.rows() <= most_regions);
   RegionPolytope polytope(std::move(points));
   if (!polytope.find_facets()) return std::nullopt;
   return polytope;
@@ -66,9 +73,9 @@ bool RegionPolytope::find_facets() {
     for (int i = 0; i < n; ++i) {
       if (chosen[static_cast<std::size_t>(i)]) through.push_back(i);
     }
-    const Eigen::VectorXd normal = normal_through(points_, through);
+    const SmallVector normal = normal_through(points_, through);
     if (normal.size() == 0) continue;
-    const Eigen::VectorXd distance = distances(points_, through, normal);
+    const SmallVector distance = distances(points_, through, normal);
     if (distance.minCoeff() < -flat * size && distance.maxCoeff() > flat * size) continue;
     RegionBits on = 0;
     for (int i = 0; i < n; ++i) on |= std::abs(distance[i]) <= flat * size ? RegionBits{1} << i : 0U;
@@ -84,10 +91,10 @@ bool RegionPolytope::find_facets() {
 }
 
 void RegionPolytope::set_facet(std::size_t facet) {
-  Eigen::VectorXd normal = normal_through(points_, spanning_[facet]);
+  SmallVector normal = normal_through(points_, spanning_[facet]);
   if (normal.size() == 0) return;  // as it was: behind a move that turns it too far
   const auto row = static_cast<Eigen::Index>(facet);
-  Eigen::VectorXd height = distances(points_, spanning_[facet], normal);
+  SmallVector height = distances(points_, spanning_[facet], normal);
   if (height.sum() < 0.0) {
     height = -height;
     normal = -normal;
@@ -107,7 +114,7 @@ void RegionPolytope::set_facet(std::size_t facet) {
   normals_.row(row) = normal.transpose() / smallest;
 }
 
-void RegionPolytope::move(const Eigen::MatrixXd& points) {
+void RegionPolytope::move(const Eigen::Ref<const Eigen::MatrixXd>& points) {
   points_ = points;
   for (std::size_t f = 0; f < facets_.size(); ++f) set_facet(f);
 }

@@ -32,8 +32,8 @@ class RegionPolytope {
   [[nodiscard]] const Eigen::MatrixXd& normals() const { return normals_; }
   /// All faces but the empty one, the polytope itself first.
   [[nodiscard]] std::vector<RegionBits> faces() const;
-  /// Other points with the same faces, as where gradients turn a little while the solution slides.
-  void move(const Eigen::MatrixXd& points);
+  /// Other points with the same faces, as where gradients turn a little while the solution slides. Allocates nothing.
+  void move(const Eigen::Ref<const Eigen::MatrixXd>& points);
 
  private:
   explicit RegionPolytope(Eigen::MatrixXd points) : points_(std::move(points)) {}

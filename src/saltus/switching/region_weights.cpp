@@ -1,11 +1,15 @@
 #include "saltus/switching/region_weights.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include <Eigen/LU>
+
+#include "saltus/switching/matrix_stability.hpp"
 
 namespace saltus::switching {
 namespace {
@@ -29,6 +33,14 @@ constexpr double independent = 1e-6;
 
 RegionWeights::RegionWeights(RegionPolytope polytope) : polytope_(std::move(polytope)) {
   const auto m = static_cast<std::size_t>(polytope_.dimension());
+  const auto facets = polytope_.facets().size();
+  const auto half = m > 0 ? RegionBits{1} << (m - 1) : RegionBits{0};
+  is_box_ = m > 0 && facets == 2 * m && static_cast<RegionBits>(polytope_.regions()) == 2 * half &&
+            std::all_of(polytope_.facets().begin(), polytope_.facets().end(), [&](RegionBits facet) {
+              return std::popcount(facet) == static_cast<int>(half) &&
+                     std::any_of(polytope_.facets().begin(), polytope_.facets().end(),
+                                 [&](RegionBits other) { return (facet & other) == 0; });
+            });
   excess_.assign(polytope_.facets().size(), 0.0);
   order_.resize(std::max(excess_.size(), static_cast<std::size_t>(polytope_.regions())));
   chart_.reserve(m);
@@ -177,6 +189,28 @@ bool RegionWeights::solve(const Eigen::MatrixXd& rates, double* theta) {
   if (!p_.allFinite() || !iterate(rates)) return false;
   finish(rates, theta);
   return std::isfinite(determinant_) && monomials_.sum() > 0.0;
+}
+
+double RegionWeights::stability() const {
+  const auto m = exponents_.cols();
+  if (m < 2 || (m > 2 && !is_box_)) return 1.0;
+  Small normals(m, m);
+  for (Eigen::Index k = 0; k < m; ++k)
+    normals.row(k) = polytope_.normals().row(at(chart_[static_cast<std::size_t>(k)]));
+  Small dynamics = normals * jacobian_;
+  if (!is_box_) {
+    // By nu . v. The determinant, which is 0 at exits, too, is that of the equations.
+    dynamics *= p_.asDiagonal();
+    return -dynamics.trace() / dynamics.cwiseAbs().maxCoeff();
+  }
+  // By the selections, p / (1 + p) each.
+  for (Eigen::Index k = 0; k < m; ++k) dynamics.col(k) *= (1.0 + p_[k]) * (1.0 + p_[k]);
+  std::array<double, 144> rows;
+  for (Eigen::Index k = 0; k < m * m; ++k) rows[static_cast<std::size_t>(k)] = dynamics(k / m, k % m);
+  const std::span<const double> matrix(rows.data(), static_cast<std::size_t>(m * m));
+  const auto n = static_cast<int>(m);
+  const double margin = fisher_fuller_margin(matrix, n);
+  return m == 2 ? margin : std::max(margin, hurwitz_margin(matrix, n));
 }
 
 Eigen::MatrixXd weight_dynamics(const Eigen::MatrixXd& points, const Eigen::MatrixXd& rates,

@@ -41,6 +41,11 @@ class RegionWeights {
   /// Behind solve(): determinant of the equations, rows over their lengths, which vanishes where two roots coalesce.
   /// Its sign is (-1)^m where the weights return to the root (m <= 2: only there, if the trace allows).
   [[nodiscard]] double determinant() const { return determinant_; }
+  /// Behind solve(): > 0 while the weights are stable: of a parallelepiped, whose weights are products of selections,
+  /// for some scaling of these, as for that many switching functions (fisher_fuller_margin); of a polygon as they are.
+  /// Passes 0 where that ends, other than by a determinant() of 0. LIMIT: other polytopes of dimension 3 and more
+  /// always have 1. Cost: a product of matrices of order m; allocates for m > 2.
+  [[nodiscard]] double stability() const;
 
  private:
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 12, 12>;
@@ -56,6 +61,7 @@ class RegionWeights {
   std::vector<double> excess_;
   std::vector<std::size_t> order_;
   std::vector<std::size_t> chart_;  ///< m facets through a vertex
+  bool is_box_ = false;             ///< all corners of a parallelepiped
   Small exponents_;                 ///< n x m
   SmallVector p_, value_, step_, monomials_;
   Small slopes_;    ///< n x m: derivatives of the monomials

@@ -134,6 +134,30 @@ TEST(TiedRegions, AreTheSameModelAsTwoSwitchingFunctions) {
   EXPECT_GE(left, 40U);
 }
 
+// Here weights at the corner lose their stability while they are held, and the solution spirals out, in any phase.
+TEST(TiedRegions, WeightsThatLoseTheirStabilityAreLeft) {
+  const auto steps = random_quadrants(1673, false);
+  ASSERT_EQ(steps.families.size(), 1U);
+  for (const auto& order : {std::array{0, 1, 2, 3}, std::array{3, 1, 0, 2}}) {
+    const auto regions = random_quadrants(1673, true, order);
+    ASSERT_EQ(regions.status.termination, Termination::completed) << regions.status.message;
+    ASSERT_EQ(regions.families.size(), 1U);
+    const auto& spiral = regions.families[0];
+    EXPECT_EQ(spiral.kind, result::FamilyKind::spiral);
+    EXPECT_NEAR(spiral.from, steps.families[0].from, same);
+    EXPECT_NEAR(*spiral.lap_ratio, *steps.families[0].lap_ratio, 1e-6);
+    const auto& exit = regions.events[spiral.event];
+    EXPECT_EQ(exit.kind, EventKind::leave_sliding);
+    EXPECT_EQ(exit.unique, false);
+    EXPECT_EQ(exit.regions_before->front().size(), 4U);
+    EXPECT_EQ(exit.regions_after->front().size(), 1U);
+    // A lap is four borders further on; from the exit on times grow as laps do.
+    const double first = regions.events[spiral.event + 4].t - exit.t;
+    const double second = regions.events[spiral.event + 8].t - exit.t;
+    EXPECT_NEAR(second / first, *spiral.lap_ratio, 1e-3 * *spiral.lap_ratio);
+  }
+}
+
 TEST(TiedRegions, NeitherOrderNorScaleOfTheIndicatorsMatters) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const auto reference = random_quadrants(seed, true);
