@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/QR>
+
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -19,9 +21,12 @@ void HigherOrderField::enter(const HigherOrderSet& set, const std::vector<int>& 
   for (const int j : sliding_) alpha_[at(j)] = 0.5;
   functions_.set(set_.functions, alpha_);
   trial_ = alpha_;
-  ranges_.assign(set_.balances.size(), {});
+  ranges_.clear();
+  coupled_.assign(set_.balances.size(), {});
   std::size_t corners = 0;
-  for (const auto& balance : set_.balances) corners = std::max(corners, std::size_t{1} << balance.rows.size());
+  for (const auto& balance : set_.balances) {
+    if (balance.functions.size() == 1) corners = std::max(corners, std::size_t{1} << balance.rows.size());
+  }
   corners_.assign(corners, std::vector<double>(motion_.size()));
   velocities_.assign(corners, 0.0);
 }
@@ -35,9 +40,9 @@ void HigherOrderField::evaluate(const Balance& balance, BalanceRange& range, dou
       trial_[at(sliding_[balance.rows[i]])] = selection(corner, i);
     }
     kernel_.field(t, x, trial_.data(), corners_[corner].data());
-    const double velocity = functions_.velocity(balance.function, corners_[corner]);
+    const double velocity = functions_.velocity(balance.functions.front(), corners_[corner]);
     velocities_[corner] = velocity;
-    range.terms = std::max(range.terms, functions_.velocity_terms(balance.function, corners_[corner]));
+    range.terms = std::max(range.terms, functions_.velocity_terms(balance.functions.front(), corners_[corner]));
     // NOTE: a NaN stays in both, whatever comes behind it.
     if (corner == 0 || !(velocity >= range.min)) {
       range.min = velocity;
@@ -68,6 +73,105 @@ bool HigherOrderField::determines(const Balance& balance, const BalanceRange& ra
   return true;
 }
 
+/// A balance of one function: whether the motion is determined.
+bool HigherOrderField::hold_one(std::size_t b, double t, const double* x) {
+  const auto& balance = set_.balances[b];
+  BalanceRange range;
+  evaluate(balance, range, t, x);
+  range.balance = b;
+  range.row = balance.rows.front();
+  // Gradients by differences leave five digits less.
+  range.exactness = set_.functions[balance.functions.front()].order == 0 ? 1.0 : 0x1p17;
+  const double share = range.min / (range.min - range.max);
+  for (std::size_t i = 0; i < balance.rows.size(); ++i) {
+    const double low = selection(range.lowest, i);
+    alpha_[at(sliding_[balance.rows[i]])] = low + share * (selection(range.highest, i) - low);
+  }
+  ranges_.push_back(range);
+  return determines(balance, range);
+}
+
+/// Whether f is a function of the velocities of the held functions: what selections that leave these add to f vanishes.
+bool HigherOrderField::determines(const Coupled& coupled) const {
+  const Eigen::MatrixXd rest =
+      coupled.jumps -
+      coupled.effects.transpose()
+          .completeOrthogonalDecomposition()
+          .solve(coupled.jumps.transpose())
+          .transpose() * coupled.effects;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    if (!(rest.row(i).cwiseAbs().maxCoeff() <= 1e-8 * coupled.jumps.row(i).cwiseAbs().maxCoeff())) return false;
+  }
+  return true;
+}
+
+/// A balance of several functions, with an exit per pair of facets: whether the motion is determined.
+bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
+  const auto& balance = set_.balances[b];
+  auto& coupled = coupled_[b];
+  const auto q = static_cast<Eigen::Index>(balance.rows.size());
+  const auto r = static_cast<Eigen::Index>(balance.functions.size());
+  coupled.jumps.resize(kernel_.states(), q);
+  coupled.effects.resize(r, q);
+  coupled.constant.resize(r);
+  trial_ = functions_.alpha();
+  for (const std::size_t row : balance.rows) trial_[at(sliding_[row])] = 0.0;
+  std::vector<double> base(motion_.size()), jumped(motion_.size());
+  kernel_.field(t, x, trial_.data(), base.data());
+  for (Eigen::Index k = 0; k < r; ++k) {
+    coupled.constant[k] = functions_.velocity(balance.functions[static_cast<std::size_t>(k)], base);
+  }
+  for (Eigen::Index i = 0; i < q; ++i) {
+    double& own = trial_[at(sliding_[balance.rows[static_cast<std::size_t>(i)]])];
+    own = 1.0;
+    kernel_.field(t, x, trial_.data(), jumped.data());
+    own = 0.0;
+    for (std::size_t s = 0; s < base.size(); ++s) coupled.jumps(static_cast<Eigen::Index>(s), i) = jumped[s] - base[s];
+  }
+  for (Eigen::Index k = 0; k < r; ++k) {
+    const auto row = functions_.rows().row(static_cast<Eigen::Index>(balance.functions[static_cast<std::size_t>(k)]));
+    coupled.effects.row(k) = row * coupled.jumps;
+  }
+  const bool full = coupled.range.set(coupled.effects);
+  coupled.selections = switching::central_selections(coupled.effects, coupled.constant);
+  for (std::size_t i = 0; i < balance.rows.size(); ++i) {
+    alpha_[at(sliding_[balance.rows[i]])] = coupled.selections[static_cast<Eigen::Index>(i)];
+  }
+  const auto& facets = coupled.range.facets();
+  // Each surface stands for some pairs of facets, of which the nearest one says when.
+  for (std::size_t i = 0; i < balance.rows.size(); ++i) {
+    BalanceRange range;
+    range.min = -1.0;
+    range.max = 1.0;
+    range.balance = b;
+    range.row = balance.rows[i];
+    for (std::size_t f = i; f < facets.size(); f += balance.rows.size()) {
+      const auto span = coupled.range.span(f, coupled.constant);
+      range.terms = std::max(range.terms, span.terms);
+      const auto corner = [&](int sign) {
+        std::size_t bits = 0;
+        for (std::size_t k = 0; k < facets[f].sign.size(); ++k) {
+          if (facets[f].sign[k] == sign) bits |= std::size_t{1} << k;
+        }
+        return bits;
+      };
+      const bool nearer_above = span.max < range.max, nearer_below = span.min > range.min;
+      if (nearer_above) {
+        range.max = span.max;
+        range.highest = corner(1);
+        range.free_above = corner(0);
+      }
+      if (nearer_below) {
+        range.min = span.min;
+        range.lowest = corner(-1);
+        range.free_below = corner(0);
+      }
+    }
+    ranges_.push_back(range);
+  }
+  return full && determines(coupled);
+}
+
 void HigherOrderField::evaluate(double t, const double* point) {
   // The field is that of the nearest point of the set: beside it, where an implicit method looks, too, it may be
   // undefined.
@@ -75,21 +179,23 @@ void HigherOrderField::evaluate(double t, const double* point) {
   static_cast<void>(functions_.project(t, x_.data()));
   const double* x = x_.data();
   functions_.differentiate(t, x);
+  ranges_.clear();
   bool determined = true;
   for (std::size_t b = 0; b < set_.balances.size(); ++b) {
-    const auto& balance = set_.balances[b];
-    auto& range = ranges_[b];
-    evaluate(balance, range, t, x);
-    determined = determined && determines(balance, range);
-    const double share = range.min / (range.min - range.max);
-    for (std::size_t i = 0; i < balance.rows.size(); ++i) {
-      const double low = selection(range.lowest, i);
-      alpha_[at(sliding_[balance.rows[i]])] = low + share * (selection(range.highest, i) - low);
-    }
+    const bool one = set_.balances[b].functions.size() == 1;
+    const bool held = one ? hold_one(b, t, x) : hold_several(b, t, x);
+    determined = determined && held;
   }
   kernel_.field(t, x, alpha_.data(), motion_.data());
   functions_.remove_normal_part(motion_);
   if (!determined) std::fill(motion_.begin(), motion_.end(), std::numeric_limits<double>::quiet_NaN());
+  // What is recorded lies in the box.
+  for (std::size_t b = 0; b < set_.balances.size(); ++b) {
+    const auto& rows = set_.balances[b].rows;
+    if (set_.balances[b].functions.size() == 1) continue;
+    const auto bounded = switching::bounded_selections(coupled_[b].effects, coupled_[b].constant);
+    for (std::size_t i = 0; i < rows.size(); ++i) alpha_[at(sliding_[rows[i]])] = bounded[static_cast<Eigen::Index>(i)];
+  }
 }
 
 }  // namespace saltus::event_integrator

@@ -1,5 +1,5 @@
-// Higher-order sliding: surfaces on which no selection moves psi at once, held at zero with derivatives along the
-// field.
+// Sets on which selections are not all determined: higher-order sliding (surfaces on which no selection moves psi at
+// once, held at zero with derivatives along the field), and surfaces whose gradients depend on each other.
 #pragma once
 
 #include <cstddef>
@@ -9,21 +9,22 @@
 
 #include "saltus/event_integrator/held_functions.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/switching/selection_range.hpp"
 
 namespace saltus::event_integrator {
 
 struct Occasion;
 struct Surroundings;
 
-/// grad c . f(t, x, alpha) + d c/dt = 0 for one of the held functions: what determines selections. No selection is in
-/// two of them.
+/// grad c . f(t, x, alpha) + d c/dt = 0 for one of the held functions, or several that share selections: what
+/// determines selections. No selection is in two of them. Into several functions selections enter additively.
 struct Balance {
-  std::size_t function = 0;       ///< in HigherOrderSet::functions
-  std::vector<std::size_t> rows;  ///< of the sliding set: the surfaces whose selections are in it
+  std::vector<std::size_t> functions;  ///< in HigherOrderSet::functions
+  std::vector<std::size_t> rows;       ///< of the sliding set: the surfaces whose selections are in it
 };
 
 /// Where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and the
-/// balances that hold them. The motion is the field at any selections in the cube that fulfil the balances, which is
+/// balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones. The motion is the field at any selections in the cube that fulfil the balances, which is
 /// one and the same for all of them.
 struct HigherOrderSet {
   std::vector<HeldFunction> functions;  ///< gradients independent; by order
@@ -31,16 +32,22 @@ struct HigherOrderSet {
   std::vector<int> undetermined;  ///< surfaces whose selections are not determined: several in one balance, or none
 };
 
-/// The range of a balance over the corners of its selections; held while min <= 0 <= max.
+/// The range of a balance over the corners of its selections, in one direction where it has several functions; held
+/// while min <= 0 <= max.
 struct BalanceRange {
   double min = 0.0, max = 0.0;
   std::size_t lowest = 0, highest = 0;  ///< corners, bit i: selection of rows[i]
   double terms = 0.0;                   ///< of the sum that each is: bounds its rounding
+  std::size_t balance = 0;
+  std::size_t row = 0;    ///< of the sliding set: whose exits stand for it
+  std::size_t free_below = 0, free_above = 0;  ///< bit i: rows[i] is held on where min, max reach 0
+  double exactness = 1.0;                      ///< how much larger its rounding is than that of its terms
 };
 
-/// The field on a higher-order set. Selections lie on the line between the two corners of a balance where its function
-/// falls and rises most; the field does not depend on which of the others are taken.
-/// Owns its work space; allocates in enter() only. Cost: one evaluation of f per corner of every balance.
+/// The field on a higher-order set. Selections of a balance of one function lie on the line between the two corners where
+/// it falls and rises most, those of several functions next to 1/2; the field does not depend on which of the others
+/// are taken.
+/// Owns its work space. Cost: one evaluation of f per corner of every balance of one function, per selection of others.
 class HigherOrderField {
  public:
   explicit HigherOrderField(const evaluation::ModelKernel& kernel);
@@ -56,8 +63,19 @@ class HigherOrderField {
   bool project(double t, double* x) { return functions_.project(t, x); }
 
  private:
+  /// Several functions: what each selection adds to f and to their velocities.
+  struct Coupled {
+    Eigen::MatrixXd jumps;    ///< n_x x q
+    Eigen::MatrixXd effects;  ///< r x q
+    Eigen::VectorXd constant, selections;
+    switching::SelectionRange range;
+  };
+
+  bool hold_one(std::size_t b, double t, const double* x);
+  bool hold_several(std::size_t b, double t, const double* x);
   void evaluate(const Balance& balance, BalanceRange& range, double t, const double* x);
   [[nodiscard]] bool determines(const Balance& balance, const BalanceRange& range) const;
+  [[nodiscard]] bool determines(const Coupled& coupled) const;
   [[nodiscard]] double selection(std::size_t corner, std::size_t bit) const { return corner >> bit & 1U ? 1.0 : 0.0; }
 
   const evaluation::ModelKernel& kernel_;
@@ -68,6 +86,7 @@ class HigherOrderField {
   std::vector<double> alpha_, trial_, motion_, x_;
   std::vector<std::vector<double>> corners_;  ///< f of the balance at hand
   std::vector<double> velocities_;
+  std::vector<Coupled> coupled_;  ///< by balance
 };
 
 /// The set on which all sliding surfaces of a state can be held at (t, x), which is put there; nullopt if there is
@@ -78,5 +97,11 @@ class HigherOrderField {
                                                                   const ModeState& state, double t,
                                                                   std::vector<double>& x, double resolved,
                                                                   std::string& problem);
+
+/// The same for surfaces whose gradients depend on each other all along the set where they vanish, such as x1 - x2,
+/// x2 - x3, x1 - x3: selections enter additively, and all that hold the set give the same motion. nullopt with an empty
+/// `problem` if the gradients are independent.
+[[nodiscard]] std::optional<HigherOrderSet> find_dependent_set(const Surroundings& surroundings, const ModeState& state,
+                                                               double t, std::vector<double>& x, std::string& problem);
 
 }  // namespace saltus::event_integrator

@@ -135,7 +135,7 @@ class SetSearch {
       open_.push_back({function.surface, function.order + 1});
       return true;
     }
-    set_.balances.push_back({place, rows});
+    set_.balances.push_back({{place}, rows});
     return true;
   }
 

@@ -368,19 +368,14 @@ void ModeField::select(double t, const double* x) {
   }
 }
 
-/// A balance is lost where all its corners have one sign; its first surface stands for it.
+/// A balance is lost where all its corners have one sign in some direction; one of its surfaces stands for that.
 void ModeField::evaluate_higher_order(double t, const double* x) {
   higher_order_->evaluate(t, x);
   alpha_ = higher_order_->alpha();
   exits_.assign(sliding_.size(), {1.0, -1.0});
-  const auto& set = higher_order_->set();
-  for (std::size_t b = 0; b < set.balances.size(); ++b) {
-    const auto& balance = set.balances[b];
-    const auto& range = higher_order_->ranges()[b];
-    exits_[balance.rows.front()] = {range.max, range.min};
-    // Gradients by differences leave five digits less.
-    const bool exact = set.functions[balance.function].order == 0;
-    condition_[balance.rows.front()] = exact ? range.terms : 0x1p17 * range.terms;
+  for (const auto& range : higher_order_->ranges()) {
+    exits_[range.row] = {range.max, range.min};
+    condition_[range.row] = range.exactness * range.terms;
   }
 }
 

@@ -362,6 +362,10 @@ std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& be
   return transition;
 }
 
+bool gradients_depend(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+  return ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, occasion.at_zero);
+}
+
 }  // namespace
 
 Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion) {
@@ -372,6 +376,10 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   if (occasion.limit) {
     // Rounding of the limit decides what the fields do there one by one.
     if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
+  }
+  // Two are dependent only where they touch.
+  if (occasion.at_zero.size() > 2 && gradients_depend(surroundings, exact, occasion)) {
+    if (auto decided = decide_dependent(surroundings, exact, occasion)) return std::move(*decided);
   }
   Transition transition = Decider(surroundings, exact, occasion).run();
   if (transition.termination == result::Termination::outside_class) {

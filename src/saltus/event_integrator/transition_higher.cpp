@@ -16,8 +16,160 @@ namespace {
 /// Regions around a higher-order set that are looked at for other continuations.
 constexpr std::size_t most_regions = 16;
 
-/// Whether x moves from a common zero of these surfaces into the region of `state` along its own field: no derivative
-/// of psi decides alone where several vanish together. By Runge-Kutta steps over a hundredth of the time scale.
+/// A state that leaves these surfaces to the sides of a corner (bit i: the i-th of them), if its field agrees.
+std::optional<Transition> leave_to(const Surroundings& s, ModeState state, const Occasion& occasion,
+                                   const std::vector<double>& x, const std::vector<int>& surfaces, std::size_t corner) {
+  set_to_corner(state, surfaces, corner);
+  int rooted = -1;
+  if (!leads_into_its_region(s, state, occasion, x, surfaces)) {
+    // Explicit steps from a root overshoot.
+    if (surfaces.size() != 1) return std::nullopt;
+    RootedExit exit(s.kernel, s.affine_in_alpha, state, surfaces.front());
+    if (!exit.leads_away(occasion.t, x, 1e-2 * occasion.time_scale)) return std::nullopt;
+    rooted = surfaces.front();
+  }
+  Transition transition = transition_to(std::move(state));
+  transition.rooted = rooted;
+  for (const int j : surfaces) transition.zero_order[at(j)] = 2;
+  return transition;
+}
+
+/// The regions that meet at the set and that a solution can leave into.
+void note_regions(const Surroundings& s, const Occasion& occasion, const std::vector<double>& x,
+                  Transition& transition) {
+  const auto surfaces = transition.state.sliding;
+  const std::size_t regions = std::size_t{1} << surfaces.size();
+  if (regions > most_regions) {
+    transition.unique = std::nullopt;
+    return;
+  }
+  ModeState free = transition.state;
+  free.higher.reset();
+  for (std::size_t corner = 0; corner < regions; ++corner) {
+    auto other = leave_to(s, free, occasion, x, surfaces, corner);
+    if (!other) continue;
+    transition.unique = false;
+    transition.alternatives.push_back(std::move(*other));
+  }
+}
+
+/// Whether derivatives of psi are held, too.
+bool leaves_derivative(const ModeState& before) {
+  const auto& functions = before.higher->functions;
+  return std::any_of(functions.begin(), functions.end(), [](const HeldFunction& f) { return f.order > 0; });
+}
+
+Transition failed(const Occasion& occasion, const ModeState& before, const Surroundings& s, const std::string& why) {
+  Transition transition;
+  transition.state = before;
+  transition.termination = result::Termination::outside_class;
+  transition.message = fmt::format("sliding on {} at t = {} ends, and what follows is not determined: {}",
+                                   names(s.system, before.sliding), occasion.t, why);
+  return transition;
+}
+
+/// Surfaces that are left, and to which sides: bit i belongs to the i-th of them.
+struct Leaving {
+  std::vector<int> surfaces;
+  std::size_t corner = 0;
+};
+
+/// What a balance leaves whose range ends at 0 in some direction.
+Leaving leaving_at(const ModeState& before, const BalanceRange& range, bool falls) {
+  const auto& rows = before.higher->balances[range.balance].rows;
+  const std::size_t free = falls ? range.free_above : range.free_below;
+  const std::size_t corner = falls ? range.highest : range.lowest;
+  Leaving leaving;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if ((free >> i & 1U) != 0) continue;
+    leaving.corner |= (corner >> i & 1U) << leaving.surfaces.size();
+    leaving.surfaces.push_back(before.sliding[rows[i]]);
+  }
+  return leaving;
+}
+
+/// Leaves some surfaces; the others are held on. nullopt if the field does not lead there.
+std::optional<Transition> leave(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                                const std::vector<double>& x, const Leaving& leaving, std::string& problem) {
+  ModeState state = before;
+  state.higher.reset();
+  std::optional<Transition> left;
+  if (leaving.surfaces.size() < before.sliding.size()) {
+    set_to_corner(state, leaving.surfaces, leaving.corner);
+    std::vector<double> point = x;
+    left = leaves_derivative(before) ? hold(s, state, occasion, point, problem)
+                                     : hold_dependent(s, state, occasion, point, problem);
+    if (left && !leads_into_its_region(s, left->state, occasion, point, leaving.surfaces)) left.reset();
+    if (left) {
+      for (const int j : leaving.surfaces) left->zero_order[at(j)] = 2;
+    }
+  } else {
+    left = leave_to(s, state, occasion, x, leaving.surfaces, leaving.corner);
+  }
+  if (left) left->reason = fmt::format("{}: no selection holds {} any more", names(s.system, leaving.surfaces),
+                                       leaves_derivative(before) ? "a derivative at 0" : "them");
+  return left;
+}
+
+/// Leaves through the corners of balances that can no longer be held; the others are held on. Where several directions
+/// end at once: through all of them, else through one.
+Transition leave_balances(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                          const std::vector<double>& x) {
+  HigherOrderField field(s.kernel);
+  field.enter(*before.higher, before.sliding, before.alpha);
+  field.evaluate(occasion.t, x.data());
+  std::vector<Leaving> candidates;
+  Leaving all;
+  for (const auto& range : field.ranges()) {
+    const int surface = before.sliding[range.row];
+    const bool falls = contains(occasion.exit_below, surface);
+    if (!falls && !contains(occasion.exit_above, surface)) continue;
+    candidates.push_back(leaving_at(before, range, falls));
+    const Leaving& own = candidates.back();
+    for (std::size_t i = 0; i < own.surfaces.size(); ++i) {
+      if (contains(all.surfaces, own.surfaces[i])) continue;
+      all.corner |= (own.corner >> i & 1U) << all.surfaces.size();
+      all.surfaces.push_back(own.surfaces[i]);
+    }
+  }
+  if (candidates.size() > 1) candidates.insert(candidates.begin(), std::move(all));
+  std::string problem = "its fields do not lead away from it";
+  for (const Leaving& leaving : candidates) {
+    if (auto left = leave(s, before, occasion, x, leaving, problem)) return std::move(*left);
+  }
+  return failed(occasion, before, s, problem);
+}
+
+/// Surfaces are met whose gradients depend on those of the others.
+Transition meet_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
+  if (auto next = decide_dependent(s, before, occasion)) return std::move(*next);
+  return failed(occasion, before, s, "surfaces are met whose fields do not lead on");
+}
+
+/// Another surface is met: crossed, or slid on as well.
+Transition meet(const Surroundings& s, const ModeState& before, const Occasion& occasion, const std::vector<double>& x,
+                int surface) {
+  const int mode = before.mode[at(surface)];
+  ModeState behind = before;
+  behind.higher.reset();
+  std::string problem;
+  set_surface(behind, surface, -mode, mode > 0 ? 0.0 : 1.0);
+  std::vector<double> point = x;
+  if (auto crossed = hold(s, behind, occasion, point, problem)) {
+    if (leads_into_its_region(s, crossed->state, occasion, point, {surface})) {
+      crossed->zero_order[at(surface)] = 1;
+      crossed->reason = fmt::format("{}: crossed in higher-order sliding", s.system.switching[at(surface)].name);
+      return std::move(*crossed);
+    }
+  }
+  set_surface(behind, surface, 0, 0.5);
+  point = x;
+  if (auto joined = hold(s, behind, occasion, point, problem)) return std::move(*joined);
+  return failed(occasion, before, s, problem);
+}
+
+}  // namespace
+
 bool leads_into_its_region(const Surroundings& s, const ModeState& state, const Occasion& occasion,
                            const std::vector<double>& start, const std::vector<int>& surfaces) {
   ModeField field(s.kernel, s.affine_in_alpha);
@@ -55,30 +207,13 @@ Transition transition_to(ModeState state) {
   return transition;
 }
 
-/// A state that leaves these surfaces to the sides of a corner (bit i: the i-th of them), if its field agrees.
-std::optional<Transition> leave_to(const Surroundings& s, ModeState state, const Occasion& occasion,
-                                   const std::vector<double>& x, const std::vector<int>& surfaces, std::size_t corner) {
-  set_to_corner(state, surfaces, corner);
-  int rooted = -1;
-  if (!leads_into_its_region(s, state, occasion, x, surfaces)) {
-    // Explicit steps from a root overshoot.
-    if (surfaces.size() != 1) return std::nullopt;
-    RootedExit exit(s.kernel, s.affine_in_alpha, state, surfaces.front());
-    if (!exit.leads_away(occasion.t, x, 1e-2 * occasion.time_scale)) return std::nullopt;
-    rooted = surfaces.front();
-  }
-  Transition transition = transition_to(std::move(state));
-  transition.rooted = rooted;
-  for (const int j : surfaces) transition.zero_order[at(j)] = 2;
-  return transition;
-}
-
-/// The state with all its sliding surfaces held with higher order; nullopt where they cannot be.
 std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occasion& occasion, std::vector<double>& x,
                                std::string& problem) {
   // Behind a limit, everything that one of the last steps changes is at rest; elsewhere only what is rounding.
   const double resolved = (occasion.limit ? 1.0 : 1e-9) * occasion.time_scale;
-  auto found = find_higher_order_set(s, state, occasion.t, x, resolved, problem);
+  auto found = find_dependent_set(s, state, occasion.t, x, problem);
+  const bool dependent = found.has_value();
+  if (!found && problem.empty()) found = find_higher_order_set(s, state, occasion.t, x, resolved, problem);
   if (!found) return std::nullopt;
   const bool usual =
       found->undetermined.empty() && std::all_of(found->functions.begin(), found->functions.end(),
@@ -93,95 +228,11 @@ std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occ
   for (const int j : state.sliding) state.alpha[at(j)] = std::clamp(field.alpha()[at(j)], 0.0, 1.0);
   Transition transition = transition_to(std::move(state));
   transition.reason = fmt::format(
-      "{}: some selections in [0, 1] hold what is at zero together with its derivatives "
-      "(higher-order sliding)",
-      names(s.system, transition.state.sliding));
+      "{}: {}", names(s.system, transition.state.sliding),
+      dependent ? "some selections in [0, 1] hold all of them, whose gradients depend on each other"
+                : "some selections in [0, 1] hold what is at zero together with its derivatives (higher-order sliding)");
   return transition;
 }
-
-/// The regions that meet at the set and that a solution can leave into.
-void note_regions(const Surroundings& s, const Occasion& occasion, const std::vector<double>& x,
-                  Transition& transition) {
-  const auto surfaces = transition.state.sliding;
-  const std::size_t regions = std::size_t{1} << surfaces.size();
-  if (regions > most_regions) {
-    transition.unique = std::nullopt;
-    return;
-  }
-  ModeState free = transition.state;
-  free.higher.reset();
-  for (std::size_t corner = 0; corner < regions; ++corner) {
-    auto other = leave_to(s, free, occasion, x, surfaces, corner);
-    if (!other) continue;
-    transition.unique = false;
-    transition.alternatives.push_back(std::move(*other));
-  }
-}
-
-Transition failed(const Occasion& occasion, const ModeState& before, const Surroundings& s, const std::string& why) {
-  Transition transition;
-  transition.state = before;
-  transition.termination = result::Termination::outside_class;
-  transition.message = fmt::format("higher-order sliding on {} at t = {} ends, and what follows is not determined: {}",
-                                   names(s.system, before.sliding), occasion.t, why);
-  return transition;
-}
-
-/// Leaves through the corner of a balance whose function can no longer be held; the others are held on.
-Transition leave_balance(const Surroundings& s, const ModeState& before, const Occasion& occasion,
-                         const std::vector<double>& x, std::size_t row) {
-  HigherOrderField field(s.kernel);
-  field.enter(*before.higher, before.sliding, before.alpha);
-  field.evaluate(occasion.t, x.data());
-  const auto& balances = before.higher->balances;
-  std::size_t b = 0;
-  while (balances[b].rows.front() != row) ++b;
-  const bool falls = contains(occasion.exit_below, before.sliding[row]);
-  const std::size_t corner = falls ? field.ranges()[b].highest : field.ranges()[b].lowest;
-  std::vector<int> leaving;
-  for (const std::size_t r : balances[b].rows) leaving.push_back(before.sliding[r]);
-  ModeState state = before;
-  state.higher.reset();
-  std::string problem = "its fields do not lead away from it";
-  if (leaving.size() < before.sliding.size()) {
-    set_to_corner(state, leaving, corner);
-    std::vector<double> point = x;
-    auto held = hold(s, state, occasion, point, problem);
-    if (!held) return failed(occasion, before, s, problem);
-    if (!leads_into_its_region(s, held->state, occasion, point, leaving)) return failed(occasion, before, s, problem);
-    for (const int j : leaving) held->zero_order[at(j)] = 2;
-    held->reason = fmt::format("{}: no selection holds a derivative at 0 any more", names(s.system, leaving));
-    return std::move(*held);
-  }
-  auto left = leave_to(s, state, occasion, x, leaving, corner);
-  if (!left) return failed(occasion, before, s, problem);
-  left->reason = fmt::format("{}: no selection holds a derivative at 0 any more", names(s.system, leaving));
-  return std::move(*left);
-}
-
-/// Another surface is met: crossed, or slid on as well.
-Transition meet(const Surroundings& s, const ModeState& before, const Occasion& occasion, const std::vector<double>& x,
-                int surface) {
-  const int mode = before.mode[at(surface)];
-  ModeState behind = before;
-  behind.higher.reset();
-  std::string problem;
-  set_surface(behind, surface, -mode, mode > 0 ? 0.0 : 1.0);
-  std::vector<double> point = x;
-  if (auto crossed = hold(s, behind, occasion, point, problem)) {
-    if (leads_into_its_region(s, crossed->state, occasion, point, {surface})) {
-      crossed->zero_order[at(surface)] = 1;
-      crossed->reason = fmt::format("{}: crossed in higher-order sliding", s.system.switching[at(surface)].name);
-      return std::move(*crossed);
-    }
-  }
-  set_surface(behind, surface, 0, 0.5);
-  point = x;
-  if (auto joined = hold(s, behind, occasion, point, problem)) return std::move(*joined);
-  return failed(occasion, before, s, problem);
-}
-
-}  // namespace
 
 std::optional<Transition> hold_with_higher_order(const Surroundings& s, const ModeState& before,
                                                  const Occasion& occasion) {
@@ -204,12 +255,12 @@ Transition decide_from_higher_order(const Surroundings& s, const ModeState& befo
   for (const int j : occasion.touched) {
     if (!contains(before.sliding, j)) met.push_back(j);
   }
-  if (met.size() + exits.size() > 1) return failed(occasion, before, s, "several things happen at once");
-  if (met.size() == 1) return meet(s, before, occasion, x, met.front());
-  if (exits.size() == 1) {
-    const auto row = std::find(before.sliding.begin(), before.sliding.end(), exits.front()) - before.sliding.begin();
-    return leave_balance(s, before, occasion, x, static_cast<std::size_t>(row));
+  if (!met.empty() && !leaves_derivative(before)) return meet_dependent(s, before, occasion);
+  if (met.size() > 1 || (!met.empty() && !exits.empty())) {
+    return failed(occasion, before, s, "several things happen at once");
   }
+  if (met.size() == 1) return meet(s, before, occasion, x, met.front());
+  if (!exits.empty()) return leave_balances(s, before, occasion, x);
   ModeState state = before;
   state.higher.reset();
   std::vector<double> point = x;

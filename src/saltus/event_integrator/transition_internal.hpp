@@ -48,6 +48,31 @@ std::optional<Transition> hold_with_higher_order(const Surroundings& s, const Mo
 std::optional<Transition> borderline_mode(const Surroundings& s, const ModeState& before, const Occasion& occasion,
                                           const ModeState& failed);
 
+/// Whether x moves from a common zero of these surfaces into the region of `state` along its own field: no derivative
+/// of psi decides alone where several vanish together. By Runge-Kutta steps over a hundredth of the time scale.
+bool leads_into_its_region(const Surroundings& s, const ModeState& state, const Occasion& occasion,
+                           const std::vector<double>& start, const std::vector<int>& surfaces);
+
+/// A transition to this state, whose selections hold on both sides of its surfaces.
+Transition transition_to(ModeState state);
+
+/// The state with all its sliding surfaces, which depend on each other or are held with higher order; nullopt where they
+/// cannot be.
+std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occasion& occasion, std::vector<double>& x,
+                               std::string& problem);
+
+/// The same, or with selections that are determined: what is left of surfaces that depended on each other.
+std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
+                                         std::vector<double>& x, std::string& problem);
+
+/// Whether surfaces are listed ones, none of them nested around others or inside them.
+bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces);
+
+/// The mode where surfaces are at zero whose gradients depend on each other, and whose selections enter additively: the
+/// solution of a complementarity problem, checked along its own field; nullopt where that fails. `unique` is true where
+/// the problem is monotone up to scaling, else not decided.
+std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion);
+
 /// The mode behind an event of a state that is held so.
 Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion);
 

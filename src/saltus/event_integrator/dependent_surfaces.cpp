@@ -1,0 +1,226 @@
+// Surfaces whose gradients depend on each other all along the set where they vanish: fewer conditions than selections.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include <Eigen/QR>
+
+#include "saltus/event_integrator/higher_order.hpp"
+#include "saltus/event_integrator/transition.hpp"
+#include "saltus/event_integrator/transition_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using Eigen::Index;
+
+/// Gradients and fields are good to twelve digits; what is less than this of its terms is 0.
+constexpr double accuracy = 1e-9;
+/// Selections whose corners are numbered by bits.
+constexpr std::size_t most_surfaces = 60;
+
+Index index(std::size_t i) { return static_cast<Index>(i); }
+
+class DependentSearch {
+ public:
+  DependentSearch(const Surroundings& s, const ModeState& state, double t, std::vector<double>& x)
+      : s_(s), sliding_(state.sliding), t_(t), x_(x), alpha_(state.alpha), functions_(s.kernel) {
+    for (const int j : sliding_) alpha_[at(j)] = 0.5;
+  }
+
+  std::optional<HigherOrderSet> run() {
+    choose_independent();
+    if (set_.functions.size() == sliding_.size()) return std::nullopt;
+    static_cast<void>(functions_.project(t_, x_.data()));
+    if (!stay_dependent()) return std::nullopt;
+    if (!fields()) return std::nullopt;
+    if (!make_balances()) return std::nullopt;
+    return checked();
+  }
+
+  [[nodiscard]] std::string take_problem() { return std::move(problem_); }
+
+ private:
+  bool reject(std::string why) {
+    problem_ = std::move(why);
+    return false;
+  }
+
+  /// Functions whose gradients the ones before do not span.
+  void choose_independent() {
+    auto& chosen = set_.functions;
+    for (const int j : sliding_) {
+      chosen.push_back({j, 0});
+      functions_.set(chosen, alpha_);
+      functions_.differentiate(t_, x_.data());
+      if (functions_.independent_part(chosen.size() - 1) > 1e-6) continue;
+      chosen.pop_back();
+      dependent_.push_back(j);
+    }
+    functions_.set(chosen, alpha_);
+  }
+
+  /// The functions that were not chosen vanish with the others, now, near by on the set, and as time goes.
+  bool stay_dependent() {
+    std::vector<double> values(at(s_.kernel.event_functions())), row(x_.size());
+    for (const unsigned pattern : {0U, 1U, 2U, 3U}) {
+      std::vector<double> x = x_;
+      functions_.differentiate(t_, x.data());
+      if (pattern > 0) x = functions_.displaced(t_, x_.data(), 0x1p-10, pattern);
+      functions_.differentiate(t_, x.data());
+      s_.kernel.functions(t_, x.data(), alpha_.data(), values.data());
+      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> spanned(functions_.rows().transpose());
+      for (const int j : dependent_) {
+        double rate = 0.0, size = 0.0;
+        s_.kernel.gradient(j, t_, x.data(), alpha_.data(), row.data(), &rate);
+        for (std::size_t i = 0; i < x.size(); ++i) size += std::abs(row[i]) * (1.0 + std::abs(x[i]));
+        if (!(std::abs(values[at(j)]) <= accuracy * size)) return reject("they part again");
+        const Eigen::Map<const Eigen::VectorXd> gradient(row.data(), index(row.size()));
+        const Eigen::VectorXd shares = spanned.solve(gradient);
+        const double rest = (functions_.rows().transpose() * shares - gradient).cwiseAbs().maxCoeff();
+        if (!(rest <= 1e-6 * gradient.cwiseAbs().maxCoeff())) return reject("they part again");
+        const double follows = functions_.rates().dot(shares);
+        const double terms = std::abs(rate) + functions_.rates().cwiseAbs().dot(shares.cwiseAbs());
+        if (!(std::abs(follows - rate) <= 1e-6 * terms)) return reject("they part again");
+      }
+    }
+    return true;
+  }
+
+  /// f without any of the selections, and what each of them adds.
+  bool fields() {
+    const std::size_t n = x_.size(), q = sliding_.size();
+    std::vector<double> trial = alpha_, f(n);
+    base_.resize(n);
+    jumps_.resize(index(n), index(q));
+    for (const int j : sliding_) trial[at(j)] = 0.0;
+    s_.kernel.field(t_, x_.data(), trial.data(), base_.data());
+    for (std::size_t i = 0; i < q; ++i) {
+      trial[at(sliding_[i])] = 1.0;
+      s_.kernel.field(t_, x_.data(), trial.data(), f.data());
+      trial[at(sliding_[i])] = 0.0;
+      for (std::size_t k = 0; k < n; ++k) jumps_(index(k), index(i)) = f[k] - base_[k];
+    }
+    if (!is_finite(base_) || !jumps_.allFinite()) return reject("a field is not finite on the surfaces");
+    // Corners with ones at every second, third, fourth place, and everywhere: products of selections show in these.
+    for (std::size_t stride = 1; stride <= 4; ++stride) {
+      for (std::size_t first = 0; first < stride; ++first) {
+        for (const int j : sliding_) trial[at(j)] = 0.0;
+        for (std::size_t i = first; i < q; i += stride) trial[at(sliding_[i])] = 1.0;
+        s_.kernel.field(t_, x_.data(), trial.data(), f.data());
+        for (std::size_t k = 0; k < n; ++k) {
+          double sum = base_[k], size = std::abs(base_[k]);
+          for (std::size_t i = first; i < q; i += stride) {
+            sum += jumps_(index(k), index(i));
+            size += std::abs(jumps_(index(k), index(i)));
+          }
+          if (!(std::abs(f[k] - sum) <= accuracy * size)) return reject("their selections multiply each other");
+        }
+      }
+    }
+    return true;
+  }
+
+  /// Functions that share selections are balanced together.
+  bool make_balances() {
+    functions_.differentiate(t_, x_.data());
+    const Eigen::MatrixXd effects = functions_.rows() * jumps_;
+    const Eigen::MatrixXd terms = functions_.rows().cwiseAbs() * jumps_.cwiseAbs();
+    const std::size_t r = set_.functions.size(), q = sliding_.size();
+    std::vector<std::size_t> group(r);
+    std::iota(group.begin(), group.end(), std::size_t{0});
+    const auto acts = [&](std::size_t k, std::size_t i) {
+      return std::abs(effects(index(k), index(i))) > accuracy * terms(index(k), index(i));
+    };
+    for (std::size_t i = 0; i < q; ++i) {
+      std::size_t first = r;
+      for (std::size_t k = 0; k < r; ++k) {
+        if (!acts(k, i)) continue;
+        if (first == r) {
+          first = group[k];
+        } else if (group[k] != first) {
+          const std::size_t other = group[k];
+          std::replace(group.begin(), group.end(), other, first);
+        }
+      }
+      if (first < r) continue;
+      if (jumps_.col(index(i)).cwiseAbs().maxCoeff() > 0.0) {
+        return reject("the motion depends on a selection that nothing determines");
+      }
+      set_.undetermined.push_back(sliding_[i]);
+    }
+    for (std::size_t g = 0; g < r; ++g) {
+      Balance balance;
+      for (std::size_t k = 0; k < r; ++k) {
+        if (group[k] == g) balance.functions.push_back(k);
+      }
+      if (balance.functions.empty()) continue;
+      for (std::size_t i = 0; i < q; ++i) {
+        const auto& own = balance.functions;
+        if (std::any_of(own.begin(), own.end(), [&](std::size_t k) { return acts(k, i); })) balance.rows.push_back(i);
+      }
+      if (balance.rows.size() < balance.functions.size()) return reject("no selection moves some of the surfaces");
+      if (balance.rows.size() > balance.functions.size()) {
+        for (const std::size_t i : balance.rows) set_.undetermined.push_back(sliding_[i]);
+      }
+      set_.balances.push_back(std::move(balance));
+    }
+    std::sort(set_.undetermined.begin(), set_.undetermined.end());
+    return true;
+  }
+
+  std::optional<HigherOrderSet> checked() {
+    HigherOrderField field(s_.kernel);
+    field.enter(set_, sliding_, alpha_);
+    field.evaluate(t_, x_.data());
+    for (const auto& range : field.ranges()) {
+      const double rounding = accuracy * range.terms;
+      if (range.min <= rounding && range.max >= -rounding) continue;
+      static_cast<void>(reject("no selection holds the surfaces at zero"));
+      return std::nullopt;
+    }
+    if (!is_finite(field.motion())) {
+      static_cast<void>(reject("the motion depends on selections that are not determined"));
+      return std::nullopt;
+    }
+    return std::move(set_);
+  }
+
+  const Surroundings& s_;
+  const std::vector<int>& sliding_;
+  double t_;
+  std::vector<double>& x_;
+  std::vector<double> alpha_, base_;
+  std::vector<int> dependent_;
+  Eigen::MatrixXd jumps_;  ///< n_x x q
+  HeldFunctions functions_;
+  HigherOrderSet set_;
+  std::string problem_;
+};
+
+}  // namespace
+
+bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces) {
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    const auto& inner = s.kernel.inner(j);
+    const bool own = contains(surfaces, j);
+    if (own && (s.system.switching[at(j)].role != model::SwitchingRole::listed || !inner.empty())) return false;
+    if (std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(surfaces, i); })) return false;
+  }
+  return true;
+}
+
+std::optional<HigherOrderSet> find_dependent_set(const Surroundings& surroundings, const ModeState& state, double t,
+                                                 std::vector<double>& x, std::string& problem) {
+  problem.clear();
+  if (state.sliding.size() < 2 || state.sliding.size() > most_surfaces) return std::nullopt;
+  if (!are_plain_surfaces(surroundings, state.sliding)) return std::nullopt;
+  DependentSearch search(surroundings, state, t, x);
+  auto found = search.run();
+  if (!found) problem = search.take_problem();
+  return found;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,117 @@
+// Surfaces at zero whose gradients depend on each other: which of them are slid on, and which are left, as the solution
+// of a complementarity problem.
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/higher_order.hpp"
+#include "saltus/event_integrator/transition_internal.hpp"
+#include "saltus/switching/selection_complementarity.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// y = w + W lambda for the surfaces at zero.
+struct AdditiveVelocities {
+  Eigen::MatrixXd effects;   ///< W
+  Eigen::VectorXd constant;  ///< w
+};
+
+/// nullopt where selections multiply each other, or velocities are not finite.
+std::optional<AdditiveVelocities> additive_velocities(const Surroundings& s, const ModeState& state,
+                                                      const Occasion& occasion) {
+  const auto& meeting = occasion.at_zero;
+  const ProjectedFields fields(s.kernel, occasion);
+  const auto m = static_cast<Eigen::Index>(meeting.size());
+  const auto velocities_at = [&](const std::vector<double>& alpha) {
+    const auto values = fields.velocities(alpha, meeting);
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), m));
+  };
+  std::vector<double> alpha = state.alpha;
+  for (const int j : meeting) alpha[at(j)] = 0.0;
+  AdditiveVelocities found{Eigen::MatrixXd(m, m), velocities_at(alpha)};
+  for (Eigen::Index i = 0; i < m; ++i) {
+    double& own = alpha[at(meeting[static_cast<std::size_t>(i)])];
+    own = 1.0;
+    found.effects.col(i) = velocities_at(alpha) - found.constant;
+    own = 0.0;
+  }
+  if (!found.effects.allFinite() || !found.constant.allFinite()) return std::nullopt;
+  // Corners with ones everywhere, at every second, third, fourth place: products of selections show in these.
+  for (Eigen::Index stride = 1; stride <= 4; ++stride) {
+    Eigen::VectorXd sum = found.constant, size = found.constant.cwiseAbs();
+    for (const int j : meeting) alpha[at(j)] = 0.0;
+    for (Eigen::Index i = 0; i < m; i += stride) {
+      alpha[at(meeting[static_cast<std::size_t>(i)])] = 1.0;
+      sum += found.effects.col(i);
+      size += found.effects.col(i).cwiseAbs();
+    }
+    const Eigen::VectorXd difference = (velocities_at(alpha) - sum).cwiseAbs();
+    if ((difference.array() > 1e-9 * size.array()).any()) return std::nullopt;
+  }
+  return found;
+}
+
+/// Whether selections in [0, 1] are determined on all sliding surfaces, as usual.
+bool slides_as_usual(const Surroundings& s, const ModeState& state, const Occasion& occasion,
+                     const std::vector<double>& x, std::vector<double>& alpha) {
+  ModeField field(s.kernel, s.affine_in_alpha);
+  field.enter(state);
+  std::vector<double> xdot(x.size());
+  field(occasion.t, x.data(), xdot.data());
+  alpha = field.alpha();
+  // As in the check of other modes.
+  constexpr double room = 1e-9;
+  return is_finite(xdot) && std::all_of(state.sliding.begin(), state.sliding.end(), [&](int j) {
+           return alpha[at(j)] >= -room && alpha[at(j)] <= 1.0 + room;
+         });
+}
+
+}  // namespace
+
+std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
+                                         std::vector<double>& x, std::string& problem) {
+  if (auto held = hold(s, state, occasion, x, problem)) return held;
+  set_corner_alpha(state);
+  std::vector<double> alpha;
+  if (!slides_as_usual(s, state, occasion, x, alpha)) return std::nullopt;
+  for (const int j : state.sliding) state.alpha[at(j)] = std::clamp(alpha[at(j)], 0.0, 1.0);
+  return transition_to(std::move(state));
+}
+
+std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
+  const auto& meeting = occasion.at_zero;
+  if (!are_plain_surfaces(s, meeting)) return std::nullopt;
+  ModeState state = before;
+  state.higher.reset();
+  const auto velocities = additive_velocities(s, state, occasion);
+  if (!velocities) return std::nullopt;
+  const auto solution = switching::solve_complementarity(velocities->effects, velocities->constant, 1e-9);
+  std::vector<int> leaving;
+  for (std::size_t i = 0; i < meeting.size(); ++i) {
+    const int mode = solution.mode[i];
+    set_surface(state, meeting[i], mode, mode == 0 ? 0.5 : mode > 0 ? 1.0 : 0.0);
+    if (mode != 0) leaving.push_back(meeting[i]);
+  }
+  std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
+  std::string problem;
+  std::optional<Transition> next;
+  if (state.sliding.empty()) {
+    next = transition_to(std::move(state));
+  } else {
+    next = hold_dependent(s, std::move(state), occasion, x, problem);
+  }
+  if (!next || !leads_into_its_region(s, next->state, occasion, x, leaving)) return std::nullopt;
+  if (next->reason.empty()) {
+    next->reason = fmt::format("{}: their gradients depend on each other; slides on {}", names(s.system, meeting),
+                               next->state.sliding.empty() ? "none" : names(s.system, next->state.sliding));
+  }
+  for (const int j : leaving) next->zero_order[at(j)] = contains(before.sliding, j) ? 2 : 1;
+  // Else there may be others: not decided.
+  next->unique = solution.unique_velocity ? std::optional<bool>(true) : std::nullopt;
+  return next;
+}
+
+}  // namespace saltus::event_integrator

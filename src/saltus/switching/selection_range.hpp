@@ -1,0 +1,50 @@
+// Selections that enter additively: the velocities they can give, where 0 leaves these, and which selections give 0.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace saltus::switching {
+
+/// The set { a + B lambda : lambda in [0, 1]^q } in R^r, a zonotope, for B of rank r <= q. It holds 0 as long as every
+/// pair of parallel facets has 0 between them; facets follow from B alone and are found again only where that changes.
+/// Cost: binomial(q, r - 1) solutions of r - 1 equations per new B.
+class SelectionRange {
+ public:
+  /// Both facets with a normal d: lambda_i is at opposite bounds on them, and free where d . B_i = 0.
+  struct Facets {
+    Eigen::VectorXd normal;         ///< sum of |d . B_i| is 1
+    std::vector<std::int8_t> sign;  ///< q: of d . B_i
+  };
+  /// d . (a + B lambda) over the cube.
+  struct Span {
+    double min = 0.0, max = 0.0;
+    double terms = 0.0;  ///< sizes of what they are the sum of: bounds their rounding
+  };
+
+  /// @param effects  B, r x q
+  /// @return false if its rank is below r, or there are more facets to look at than `most_candidates`
+  bool set(const Eigen::MatrixXd& effects);
+  [[nodiscard]] const Eigen::MatrixXd& effects() const { return effects_; }
+  [[nodiscard]] const std::vector<Facets>& facets() const { return facets_; }
+  /// @param constant  a, r
+  [[nodiscard]] Span span(std::size_t facets, const Eigen::VectorXd& constant) const;
+
+  /// Candidates for normals that are looked at.
+  static constexpr double most_candidates = 20000;
+
+ private:
+  Eigen::MatrixXd effects_;
+  std::vector<Facets> facets_;
+};
+
+/// The solution of a + B lambda = 0 nearest to lambda = 1/2, bounds or not: 1/2 - B^T (B B^T)^-1 (a + B 1/2).
+[[nodiscard]] Eigen::VectorXd central_selections(const Eigen::MatrixXd& effects, const Eigen::VectorXd& constant);
+
+/// The solution in [0, 1]^q nearest to 1/2, by Newton's method for the r multipliers of a + B clip(1/2 + B^T mu) = 0;
+/// the nearest miss where there is none. Cost: some ten solutions of r equations.
+[[nodiscard]] Eigen::VectorXd bounded_selections(const Eigen::MatrixXd& effects, const Eigen::VectorXd& constant);
+
+}  // namespace saltus::switching
