@@ -182,7 +182,8 @@ class DependentSearch {
       return std::nullopt;
     }
     if (!is_finite(field.motion())) {
-      static_cast<void>(reject("the motion depends on selections that are not determined"));
+      static_cast<void>(reject(field.too_many() ? "there are too many of them"
+                                                : "the motion depends on selections that are not determined"));
       return std::nullopt;
     }
     return std::move(set_);

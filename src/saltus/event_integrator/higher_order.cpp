@@ -132,7 +132,8 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
     const auto row = functions_.rows().row(static_cast<Eigen::Index>(balance.functions[static_cast<std::size_t>(k)]));
     coupled.effects.row(k) = row * coupled.jumps;
   }
-  const bool full = coupled.range.set(coupled.effects);
+  const bool known = coupled.range.set(coupled.effects);
+  too_many_ = too_many_ || !known;
   coupled.selections = switching::central_selections(coupled.effects, coupled.constant);
   for (std::size_t i = 0; i < balance.rows.size(); ++i) {
     alpha_[at(sliding_[balance.rows[i]])] = coupled.selections[static_cast<Eigen::Index>(i)];
@@ -169,7 +170,7 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
     }
     ranges_.push_back(range);
   }
-  return full && determines(coupled);
+  return known && determines(coupled);
 }
 
 void HigherOrderField::evaluate(double t, const double* point) {
@@ -180,6 +181,7 @@ void HigherOrderField::evaluate(double t, const double* point) {
   const double* x = x_.data();
   functions_.differentiate(t, x);
   ranges_.clear();
+  too_many_ = false;
   bool determined = true;
   for (std::size_t b = 0; b < set_.balances.size(); ++b) {
     const bool one = set_.balances[b].functions.size() == 1;

@@ -60,6 +60,8 @@ class HigherOrderField {
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   [[nodiscard]] const std::vector<BalanceRange>& ranges() const { return ranges_; }
   [[nodiscard]] const HigherOrderSet& set() const { return set_; }
+  /// Whether a balance has more exits than are looked for: its motion is not finite then.
+  [[nodiscard]] bool too_many() const { return too_many_; }
   bool project(double t, double* x) { return functions_.project(t, x); }
 
  private:
@@ -87,6 +89,7 @@ class HigherOrderField {
   std::vector<std::vector<double>> corners_;  ///< f of the balance at hand
   std::vector<double> velocities_;
   std::vector<Coupled> coupled_;  ///< by balance
+  bool too_many_ = false;
 };
 
 /// The set on which all sliding surfaces of a state can be held at (t, x), which is put there; nullopt if there is

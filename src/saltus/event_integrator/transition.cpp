@@ -362,6 +362,16 @@ std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& be
   return transition;
 }
 
+Transition undecided(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                     const std::string& problem) {
+  Transition transition;
+  transition.state = before;
+  transition.termination = result::Termination::outside_class;
+  transition.message = fmt::format("at t = {} the surfaces {} meet, whose gradients depend on each other: {}",
+                                   occasion.t, names(s.system, occasion.at_zero), problem);
+  return transition;
+}
+
 bool gradients_depend(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
   return ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, occasion.at_zero);
 }
@@ -379,7 +389,11 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   }
   // Two are dependent only where they touch.
   if (occasion.at_zero.size() > 2 && gradients_depend(surroundings, exact, occasion)) {
-    if (auto decided = decide_dependent(surroundings, exact, occasion)) return std::move(*decided);
+    std::string problem;
+    if (auto decided = decide_dependent(surroundings, exact, occasion, problem)) return std::move(*decided);
+    // The corners of more are not enumerated.
+    constexpr std::size_t most_enumerated = 10;
+    if (occasion.at_zero.size() > most_enumerated) return undecided(surroundings, exact, occasion, problem);
   }
   Transition transition = Decider(surroundings, exact, occasion).run();
   if (transition.termination == result::Termination::outside_class) {

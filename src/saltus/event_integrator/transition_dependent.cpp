@@ -74,6 +74,7 @@ bool slides_as_usual(const Surroundings& s, const ModeState& state, const Occasi
 std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
                                          std::vector<double>& x, std::string& problem) {
   if (auto held = hold(s, state, occasion, x, problem)) return held;
+  if (ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, state.sliding)) return std::nullopt;
   set_corner_alpha(state);
   std::vector<double> alpha;
   if (!slides_as_usual(s, state, occasion, x, alpha)) return std::nullopt;
@@ -81,9 +82,12 @@ std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state,
   return transition_to(std::move(state));
 }
 
-std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
+std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                                           std::string& problem) {
   const auto& meeting = occasion.at_zero;
+  problem = "a kink or a nested function is among them";
   if (!are_plain_surfaces(s, meeting)) return std::nullopt;
+  problem = "their selections multiply each other";
   ModeState state = before;
   state.higher.reset();
   const auto velocities = additive_velocities(s, state, occasion);
@@ -96,7 +100,7 @@ std::optional<Transition> decide_dependent(const Surroundings& s, const ModeStat
     if (mode != 0) leaving.push_back(meeting[i]);
   }
   std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
-  std::string problem;
+  problem = "the fields do not lead on";
   std::optional<Transition> next;
   if (state.sliding.empty()) {
     next = transition_to(std::move(state));

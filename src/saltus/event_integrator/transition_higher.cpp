@@ -142,8 +142,9 @@ Transition leave_balances(const Surroundings& s, const ModeState& before, const 
 
 /// Surfaces are met whose gradients depend on those of the others.
 Transition meet_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
-  if (auto next = decide_dependent(s, before, occasion)) return std::move(*next);
-  return failed(occasion, before, s, "surfaces are met whose fields do not lead on");
+  std::string problem;
+  if (auto next = decide_dependent(s, before, occasion, problem)) return std::move(*next);
+  return failed(occasion, before, s, "others are met, and " + problem);
 }
 
 /// Another surface is met: crossed, or slid on as well.

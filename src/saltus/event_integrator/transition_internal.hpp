@@ -69,9 +69,10 @@ std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state,
 bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces);
 
 /// The mode where surfaces are at zero whose gradients depend on each other, and whose selections enter additively: the
-/// solution of a complementarity problem, checked along its own field; nullopt where that fails. `unique` is true where
-/// the problem is monotone up to scaling, else not decided.
-std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion);
+/// solution of a complementarity problem, checked along its own field; nullopt where that fails, and why. `unique` is true
+/// where the problem is monotone up to scaling, else not decided.
+std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                                           std::string& problem);
 
 /// The mode behind an event of a state that is held so.
 Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion);

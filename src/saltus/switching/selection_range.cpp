@@ -67,10 +67,15 @@ double potential(double s) {
 }  // namespace
 
 bool SelectionRange::set(const MatrixXd& effects) {
-  if (effects.rows() == effects_.rows() && effects.cols() == effects_.cols() && effects == effects_) {
+  const bool same_size = effects.rows() == of_facets_.rows() && effects.cols() == of_facets_.cols();
+  effects_ = effects;
+  // Differences of fields vary by their rounding, relative to what a row is the sum of.
+  if (same_size && ((effects - of_facets_).cwiseAbs().rowwise().maxCoeff().array() <=
+                    1e-13 * of_facets_.cwiseAbs().rowwise().sum().array())
+                       .all()) {
     return !facets_.empty();
   }
-  effects_ = effects;
+  of_facets_ = effects;
   facets_.clear();
   const Index r = effects.rows(), q = effects.cols();
   if (r == 0 || q < r || !effects.allFinite() || binomial(q, r - 1) > most_candidates) return false;

@@ -9,8 +9,8 @@
 namespace saltus::switching {
 
 /// The set { a + B lambda : lambda in [0, 1]^q } in R^r, a zonotope, for B of rank r <= q. It holds 0 as long as every
-/// pair of parallel facets has 0 between them; facets follow from B alone and are found again only where that changes.
-/// Cost: binomial(q, r - 1) solutions of r - 1 equations per new B.
+/// pair of parallel facets has 0 between them; facets follow from B alone and are found again only where that changes by
+/// more than rounding. Cost: binomial(q, r - 1) solutions of r - 1 equations per new B.
 class SelectionRange {
  public:
   /// Both facets with a normal d: lambda_i is at opposite bounds on them, and free where d . B_i = 0.
@@ -27,16 +27,15 @@ class SelectionRange {
   /// @param effects  B, r x q
   /// @return false if its rank is below r, or there are more facets to look at than `most_candidates`
   bool set(const Eigen::MatrixXd& effects);
-  [[nodiscard]] const Eigen::MatrixXd& effects() const { return effects_; }
   [[nodiscard]] const std::vector<Facets>& facets() const { return facets_; }
   /// @param constant  a, r
   [[nodiscard]] Span span(std::size_t facets, const Eigen::VectorXd& constant) const;
 
-  /// Candidates for normals that are looked at.
-  static constexpr double most_candidates = 20000;
+  /// Candidates for normals that are looked at: all of eight agents, each with each; about a second.
+  static constexpr double most_candidates = 400000;
 
  private:
-  Eigen::MatrixXd effects_;
+  Eigen::MatrixXd effects_, of_facets_;  ///< B, and the one that facets belong to
   std::vector<Facets> facets_;
 };
 
