@@ -95,10 +95,8 @@ bool HigherOrderField::hold_one(std::size_t b, double t, const double* x) {
 bool HigherOrderField::determines(const Coupled& coupled) const {
   const Eigen::MatrixXd rest =
       coupled.jumps -
-      coupled.effects.transpose()
-          .completeOrthogonalDecomposition()
-          .solve(coupled.jumps.transpose())
-          .transpose() * coupled.effects;
+      coupled.effects.transpose().completeOrthogonalDecomposition().solve(coupled.jumps.transpose()).transpose() *
+          coupled.effects;
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
     if (!(rest.row(i).cwiseAbs().maxCoeff() <= 1e-8 * coupled.jumps.row(i).cwiseAbs().maxCoeff())) return false;
   }
@@ -156,7 +154,7 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
         }
         return bits;
       };
-      const bool nearer_above = span.max < range.max, nearer_below = span.min > range.min;
+      const bool nearer_above = span.max<range.max, nearer_below = span.min> range.min;
       if (nearer_above) {
         range.max = span.max;
         range.highest = corner(1);

@@ -24,8 +24,9 @@ struct Balance {
 };
 
 /// Where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and the
-/// balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones. The motion is the field at any selections in the cube that fulfil the balances, which is
-/// one and the same for all of them.
+/// balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones. The
+/// motion is the field at any selections in the cube that fulfil the balances, which is one and the same for all of
+/// them.
 struct HigherOrderSet {
   std::vector<HeldFunction> functions;  ///< gradients independent; by order
   std::vector<Balance> balances;
@@ -39,15 +40,15 @@ struct BalanceRange {
   std::size_t lowest = 0, highest = 0;  ///< corners, bit i: selection of rows[i]
   double terms = 0.0;                   ///< of the sum that each is: bounds its rounding
   std::size_t balance = 0;
-  std::size_t row = 0;    ///< of the sliding set: whose exits stand for it
+  std::size_t row = 0;                         ///< of the sliding set: whose exits stand for it
   std::size_t free_below = 0, free_above = 0;  ///< bit i: rows[i] is held on where min, max reach 0
   double exactness = 1.0;                      ///< how much larger its rounding is than that of its terms
 };
 
-/// The field on a higher-order set. Selections of a balance of one function lie on the line between the two corners where
-/// it falls and rises most, those of several functions next to 1/2; the field does not depend on which of the others
-/// are taken.
-/// Owns its work space. Cost: one evaluation of f per corner of every balance of one function, per selection of others.
+/// The field on a higher-order set. Selections of a balance of one function lie on the line between the two corners
+/// where it falls and rises most, those of several functions next to 1/2; the field does not depend on which of the
+/// others are taken. Owns its work space. Cost: one evaluation of f per corner of every balance of one function, per
+/// selection of others.
 class HigherOrderField {
  public:
   explicit HigherOrderField(const evaluation::ModelKernel& kernel);

@@ -388,8 +388,8 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
   }
   // Two are dependent only where they touch.
+  std::string problem;
   if (occasion.at_zero.size() > 2 && gradients_depend(surroundings, exact, occasion)) {
-    std::string problem;
     if (auto decided = decide_dependent(surroundings, exact, occasion, problem)) return std::move(*decided);
     // The corners of more are not enumerated.
     constexpr std::size_t most_enumerated = 10;
@@ -407,6 +407,9 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   }
   if (transition.termination == result::Termination::no_admissible_mode) {
     if (auto other = borderline_mode(surroundings, exact, occasion, transition.state)) return std::move(*other);
+  }
+  if (transition.termination != result::Termination::completed && !problem.empty()) {
+    return undecided(surroundings, exact, occasion, problem);
   }
   return transition;
 }

@@ -64,9 +64,8 @@ bool slides_as_usual(const Surroundings& s, const ModeState& state, const Occasi
   alpha = field.alpha();
   // As in the check of other modes.
   constexpr double room = 1e-9;
-  return is_finite(xdot) && std::all_of(state.sliding.begin(), state.sliding.end(), [&](int j) {
-           return alpha[at(j)] >= -room && alpha[at(j)] <= 1.0 + room;
-         });
+  return is_finite(xdot) && std::all_of(state.sliding.begin(), state.sliding.end(),
+                                        [&](int j) { return alpha[at(j)] >= -room && alpha[at(j)] <= 1.0 + room; });
 }
 
 }  // namespace

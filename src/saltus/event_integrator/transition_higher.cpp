@@ -106,8 +106,9 @@ std::optional<Transition> leave(const Surroundings& s, const ModeState& before, 
   } else {
     left = leave_to(s, state, occasion, x, leaving.surfaces, leaving.corner);
   }
-  if (left) left->reason = fmt::format("{}: no selection holds {} any more", names(s.system, leaving.surfaces),
-                                       leaves_derivative(before) ? "a derivative at 0" : "them");
+  if (left)
+    left->reason = fmt::format("{}: no selection holds {} any more", names(s.system, leaving.surfaces),
+                               leaves_derivative(before) ? "a derivative at 0" : "them");
   return left;
 }
 
@@ -230,8 +231,9 @@ std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occ
   Transition transition = transition_to(std::move(state));
   transition.reason = fmt::format(
       "{}: {}", names(s.system, transition.state.sliding),
-      dependent ? "some selections in [0, 1] hold all of them, whose gradients depend on each other"
-                : "some selections in [0, 1] hold what is at zero together with its derivatives (higher-order sliding)");
+      dependent
+          ? "some selections in [0, 1] hold all of them, whose gradients depend on each other"
+          : "some selections in [0, 1] hold what is at zero together with its derivatives (higher-order sliding)");
   return transition;
 }
 

@@ -56,8 +56,8 @@ bool leads_into_its_region(const Surroundings& s, const ModeState& state, const 
 /// A transition to this state, whose selections hold on both sides of its surfaces.
 Transition transition_to(ModeState state);
 
-/// The state with all its sliding surfaces, which depend on each other or are held with higher order; nullopt where they
-/// cannot be.
+/// The state with all its sliding surfaces, which depend on each other or are held with higher order; nullopt where
+/// they cannot be.
 std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occasion& occasion, std::vector<double>& x,
                                std::string& problem);
 
@@ -69,8 +69,8 @@ std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state,
 bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces);
 
 /// The mode where surfaces are at zero whose gradients depend on each other, and whose selections enter additively: the
-/// solution of a complementarity problem, checked along its own field; nullopt where that fails, and why. `unique` is true
-/// where the problem is monotone up to scaling, else not decided.
+/// solution of a complementarity problem, checked along its own field; nullopt where that fails, and why. `unique` is
+/// true where the problem is monotone up to scaling, else not decided.
 std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
                                            std::string& problem);
 

@@ -7,10 +7,11 @@
 
 namespace saltus::switching {
 
-/// A solution of: lambda in [0, 1]^m, y = w + W lambda, y_i > 0 only where lambda_i = 1, y_i < 0 only where lambda_i = 0.
+/// A solution of: lambda in [0, 1]^m, y = w + W lambda, y_i > 0 only where lambda_i = 1, y_i < 0 only where lambda_i =
+/// 0.
 struct Complementarity {
   Eigen::VectorXd lambda;
-  std::vector<int> mode;        ///< 1, -1 where the surface is left to that side; 0 where it is slid on
+  std::vector<int> mode;         ///< 1, -1 where the surface is left to that side; 0 where it is slid on
   bool unique_velocity = false;  ///< y is the same for all solutions: D W + W^T D <= 0 for a positive diagonal D
 };
 

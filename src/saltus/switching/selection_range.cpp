@@ -104,9 +104,8 @@ bool SelectionRange::set(const MatrixXd& effects) {
       for (auto& s : facets.sign) s = static_cast<std::int8_t>(-s);
     }
     // Other choices of columns in the same facet.
-    const bool known = std::any_of(facets_.begin(), facets_.end(), [&](const Facets& other) {
-      return other.sign == facets.sign;
-    });
+    const bool known =
+        std::any_of(facets_.begin(), facets_.end(), [&](const Facets& other) { return other.sign == facets.sign; });
     if (known) continue;
     facets.normal = turn / sum * sizes.cwiseInverse().cwiseProduct(normal);
     facets_.push_back(std::move(facets));

@@ -9,8 +9,8 @@
 namespace saltus::switching {
 
 /// The set { a + B lambda : lambda in [0, 1]^q } in R^r, a zonotope, for B of rank r <= q. It holds 0 as long as every
-/// pair of parallel facets has 0 between them; facets follow from B alone and are found again only where that changes by
-/// more than rounding. Cost: binomial(q, r - 1) solutions of r - 1 equations per new B.
+/// pair of parallel facets has 0 between them; facets follow from B alone and are found again only where that changes
+/// by more than rounding. Cost: binomial(q, r - 1) solutions of r - 1 equations per new B.
 class SelectionRange {
  public:
   /// Both facets with a normal d: lambda_i is at opposite bounds on them, and free where d . B_i = 0.

@@ -1,0 +1,241 @@
+// Surfaces whose gradients depend on each other: networks of friction and of agents, flows of sums of absolute values.
+// References are closed forms and the regularised engine.
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "problems/simulator.hpp"
+
+namespace saltus::problems {
+namespace {
+
+using result::Event;
+using result::EventKind;
+using result::Result;
+using result::Termination;
+
+constexpr Accuracy fine_explicit{pipeline::Integrator::dopri5, 1e-12, 1e-14};
+constexpr Accuracy fine_implicit{pipeline::Integrator::radau5, 1e-12, 1e-14};
+
+Result simulated(const std::string& text, const Accuracy& accuracy) {
+  const Simulator simulator = Simulator::from_text(text);
+  return simulator.run(with(simulator.options(), accuracy));
+}
+
+/// Three agents, each drawn to each other at speed 1; the third one pushed by t. Functions in units of `scale`.
+std::string three_agents(const std::string& start, const std::string& until, double scale = 1.0) {
+  return fmt::format(R"toml(
+[model]
+name = "three agents"
+[states]
+{0}
+[switching]
+s12 = "{2}*(x1 - x2)"
+s13 = "{2}*(x1 - x3)"
+s23 = "{2}*(x2 - x3)"
+[dynamics]
+x1 = "-sign(s12) - sign(s13)"
+x2 = "sign(s12) - sign(s23)"
+x3 = "sign(s13) + sign(s23) + t"
+[simulate]
+until = {1}
+)toml",
+                     start, until, scale);
+}
+
+/// x' = (2, 0, -2 + t) from (0, 1, 3): the first two meet at t = 1/2 and go on at 1 together; the third one reaches
+/// them where 3 - 2t + t^2/2 = 1/2 + t. All stay until the push on the third one, less its mean, is 2: t = 3.
+TEST(DependentSurfaces, ThreeAgentsMeetStayAndPart) {
+  const double meet = 3.0 - std::sqrt(4.0), part = 3.0;
+  for (const double scale : {1.0, 1e8, 1e-8}) {
+    const std::string text = three_agents("x1 = 0\nx2 = 1\nx3 = 3", "5", scale);
+    for (const auto& accuracy : {fine, fine_explicit, fine_implicit, standard}) {
+      const Result result = simulated(text, accuracy);
+      ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+      const auto events = switches_of(result);
+      ASSERT_EQ(events.size(), 3U);
+      EXPECT_NEAR(events[0].t, 0.5, 1e-12);
+      EXPECT_NEAR(events[1].t, meet, 1e-10);
+      EXPECT_EQ(events[1].kind, EventKind::enter_sliding);
+      EXPECT_EQ(events[1].surfaces, (std::vector<std::string>{"s13", "s23"}));
+      EXPECT_EQ(*events[1].mode_after, (std::vector<int>{0, 0, 0}));
+      EXPECT_EQ(events[1].unique, true);
+      // Two conditions for three selections.
+      for (const double alpha : *events[1].alpha_after) EXPECT_TRUE(std::isnan(alpha));
+      EXPECT_NEAR(events[2].t, part, 1e-9);
+      EXPECT_EQ(events[2].kind, EventKind::leave_sliding);
+      EXPECT_EQ(*events[2].mode_after, (std::vector<int>{0, -1, -1}));
+      EXPECT_NEAR((*events[2].alpha_after)[0], 0.5, 1e-9);
+      // The mean moves by t^2/6; behind the parting the pair moves at 1, the third one at t - 2.
+      const double mean = 4.0 / 3.0 + part * part / 6.0;
+      EXPECT_NEAR(events[2].x[0], mean, 1e-8);
+      EXPECT_NEAR(result.final.x[0], mean + 2.0, 1e-8);
+      EXPECT_EQ(result.final.x[0], result.final.x[1]);
+      EXPECT_NEAR(result.final.x[2], mean + 4.0, 1e-8);
+    }
+  }
+}
+
+TEST(DependentSurfaces, TheModelOfAgreementPartsInTime) {
+  const Simulator simulator = Simulator::from_catalogue("consensus");
+  const Result result = simulator.run(with(simulator.options(), fine));
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  const auto events = switches_of(result);
+  ASSERT_EQ(events.size(), 4U);
+  EXPECT_EQ(*events[2].mode_after, std::vector<int>(6, 0));
+  EXPECT_NEAR(events[3].t, 8.0, 1e-10);
+  for (const double x : events[3].x) EXPECT_NEAR(x, 4.75, 1e-10);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+    EXPECT_NEAR(result.final.x[i], 6.75, 1e-10);
+  }
+  EXPECT_NEAR(result.final.x[3], 7.75, 1e-10);
+}
+
+TEST(DependentSurfaces, AStartWhereAllMeetIsHeld) {
+  const Result result = simulated(three_agents("x1 = 1\nx2 = 1\nx3 = 1", "4"), standard);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_EQ(*result.events.front().mode_after, (std::vector<int>{0, 0, 0}));
+  EXPECT_NEAR(result.events.back().t, 3.0, 1e-9);
+  EXPECT_NEAR(result.final.x[2] - result.final.x[0], 0.5, 1e-8);
+}
+
+/// Two blocks on the ground (friction 1/2 each) and on each other (friction 1); the first one is pushed by t. At t = 1
+/// both start to move together, at t = 2 they part.
+TEST(DependentSurfaces, TwoBlocksStickToTheGroundAndToEachOther) {
+  const std::string text = R"toml(
+[model]
+name = "two blocks"
+[states]
+v1 = 0.1
+v2 = -0.2
+[dynamics]
+v1 = "t - 0.5*sign(v1) - sign(v1 - v2)"
+v2 = "sign(v1 - v2) - 0.5*sign(v2)"
+[simulate]
+until = 3
+)toml";
+  const Result result = simulated(text, fine);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  const auto events = switches_of(result);
+  std::vector<double> times;
+  for (const Event& event : events) times.push_back(event.t);
+  ASSERT_GE(times.size(), 3U);
+  EXPECT_NEAR(times[times.size() - 2], 1.0, 1e-9);
+  EXPECT_NEAR(times.back(), 2.0, 1e-9);
+  EXPECT_EQ(*events[events.size() - 3].mode_after, (std::vector<int>{0, 0, 0}));
+  // Together (t - 1)^2/4, then t - 3/2 and 1/2.
+  EXPECT_NEAR(result.final.x[0], 0.25 + 1.0, 1e-8);
+  EXPECT_NEAR(result.final.x[1], 0.25 + 0.5, 1e-8);
+}
+
+/// min |x1 - 1| + |x2 - 1| + |x1 + x2 - 2|: three surfaces through one point of the plane.
+TEST(DependentSurfaces, AMinimumWhereThreeAbsoluteValuesVanishIsReached) {
+  const std::string text = R"toml(
+[model]
+name = "least absolute deviations"
+[states]
+x1 = 3
+x2 = -1.5
+[dynamics]
+x1 = "-sign(x1 - 1) - sign(x1 + x2 - 2)"
+x2 = "-sign(x2 - 1) - sign(x1 + x2 - 2)"
+[simulate]
+until = 10
+)toml";
+  const Result result = simulated(text, fine);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.final.x[0], 1.0, 1e-12);
+  EXPECT_NEAR(result.final.x[1], 1.0, 1e-12);
+  EXPECT_EQ(result.events.back().unique, true);
+}
+
+/// Selections that nothing determines move the state: x_i' = sign of what the neighbours are ahead.
+TEST(DependentSurfaces, AMotionThatIsNotDeterminedIsRefused) {
+  const std::string text = R"toml(
+[model]
+name = "drift"
+[states]
+x1 = 1
+x2 = 0
+x3 = -0.5
+[dynamics]
+x1 = "sign(x2 - x1)"
+x2 = "sign(x1 + x3 - 2*x2)"
+x3 = "sign(x2 - x3)"
+[simulate]
+until = 3
+)toml";
+  const Result result = simulated(text, fine);
+  EXPECT_EQ(result.status.termination, Termination::outside_class);
+  EXPECT_NE(result.status.message.find("depend on each other"), std::string::npos) << result.status.message;
+}
+
+/// All differences of twelve states: refused at once, with their number as the reason.
+TEST(DependentSurfaces, TooManyAreRefusedAtOnce) {
+  std::string states, dynamics;
+  for (int i = 0; i < 12; ++i) {
+    states += fmt::format("x{} = {}\n", i, 0.1 * i * i);
+    std::string sum;
+    for (int j = 0; j < 12; ++j) {
+      if (j != i) sum += fmt::format(" + sign(x{} - x{})", j, i);
+    }
+    dynamics += fmt::format("x{} = \"0{}\"\n", i, sum);
+  }
+  const Result result = simulated(
+      fmt::format("[model]\nname = \"many\"\n[states]\n{}[dynamics]\n{}[simulate]\nuntil = 20\n", states, dynamics),
+      standard);
+  EXPECT_EQ(result.status.termination, Termination::outside_class);
+  EXPECT_NE(result.status.message.find("too many"), std::string::npos) << result.status.message;
+}
+
+/// Agents on a random graph, each pushed by a sine, against layers of width 1e-7.
+TEST(DependentSurfaces, RandomNetworksAgreeWithLayers) {
+  std::mt19937_64 random(2026);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int held = 0, compared = 0;
+  for (int instance = 0; instance < 40; ++instance) {
+    const int n = 3 + instance % 3;
+    std::vector<std::string> rates;
+    std::string states;
+    for (int i = 0; i < n; ++i) {
+      states += fmt::format("x{} = {}\n", i, instance % 4 == 0 ? 0.5 : 2.0 * unit(random) - 1.0);
+      rates.push_back(
+          fmt::format("{}*sin({}*t + {})", 4.0 * unit(random) - 2.0, 0.5 + 1.5 * unit(random), 6.0 * unit(random)));
+    }
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < i; ++j) {
+        if (unit(random) < 0.2) continue;
+        const double force = 0.2 + 0.8 * unit(random);
+        rates[static_cast<std::size_t>(i)] += fmt::format(" - {}*sign(x{} - x{})", force, i, j);
+        rates[static_cast<std::size_t>(j)] += fmt::format(" + {}*sign(x{} - x{})", force, i, j);
+      }
+    }
+    std::string dynamics;
+    for (int i = 0; i < n; ++i) dynamics += fmt::format("x{} = \"{}\"\n", i, rates[static_cast<std::size_t>(i)]);
+    const Simulator simulator = Simulator::from_text(fmt::format(
+        "[model]\nname = \"network\"\n[states]\n{}[dynamics]\n{}[simulate]\nuntil = 6\n", states, dynamics));
+    const Result exact = simulator.run(with(simulator.options(), standard));
+    ASSERT_EQ(exact.status.termination, Termination::completed) << instance << ": " << exact.status.message;
+    for (const Event& event : exact.events) {
+      for (const double alpha : *event.alpha_after) held += std::isnan(alpha) ? 1 : 0;
+    }
+    auto options = simulator.options();
+    options.method = pipeline::Method::smoothed;
+    options.smoothed.epsilon = 1e-7;
+    const Result smooth = simulator.run(options);
+    if (smooth.status.termination != Termination::completed) continue;
+    ++compared;
+    for (std::size_t i = 0; i < exact.final.x.size(); ++i) {
+      EXPECT_NEAR(exact.final.x[i], smooth.final.x[i], 1e-5) << instance;
+    }
+  }
+  EXPECT_GT(held, 20);
+  EXPECT_GT(compared, 30);
+}
+
+}  // namespace
+}  // namespace saltus::problems
