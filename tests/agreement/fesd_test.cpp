@@ -21,6 +21,7 @@ const std::map<std::string, std::string> beyond_the_method{
     {"filippov-spiral", "switches accumulate"},
     {"super-twisting", "switches accumulate, and a root has no derivative on the surface: below"},
     {"smoothed-pss", "stiff"},
+    {"consensus", "of surfaces that depend on each other it names those whose selections are not at a bound: below"},
 };
 
 /// Where Stewart's form has other solutions, or none of a size that could be solved.
@@ -61,6 +62,23 @@ TEST_P(Fesd, AgreesToEightDigits) {
   options.fesd.steps = 800;
   options.fesd.reformulation = GetParam().form;
   expect_reference(model.run(options), GetParam().problem, 1e-8);
+}
+
+/// Six surfaces of which three are independent: the motion and the parting, whatever the selections.
+TEST(FesdOnDependentSurfaces, PartsInTime) {
+  const Simulator model = Simulator::from_catalogue("consensus");
+  pipeline::SimulateOptions options = model.options();
+  options.method = pipeline::Method::fesd;
+  for (const auto form : {Reformulation::step, Reformulation::stewart}) {
+    options.fesd.reformulation = form;
+    const result::Result result = model.run(options);
+    ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+    EXPECT_NEAR(result.events.back().t, 8.0, 1e-9);
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+      EXPECT_NEAR(result.final.x[i], 6.75, 1e-8);
+    }
+    EXPECT_NEAR(result.final.x[3], 7.75, 1e-8);
+  }
 }
 
 /// 100 steps of two stages: where these are too few, they are divided.

@@ -17,7 +17,11 @@ namespace saltus::problems {
 // Relative above 1: the states of the catalogue are of order one, the times reach 1000 (irma), where an error of the
 // state of order atol moves an event by atol divided by a speed of 1e-3 and less.
 inline void expect_near(double found, double reference, double tolerance, const std::string& what) {
-  EXPECT_NEAR(found, reference, tolerance * std::max(1.0, std::abs(reference))) << what;
+  if (std::isnan(reference)) {
+    EXPECT_TRUE(std::isnan(found)) << what;
+  } else {
+    EXPECT_NEAR(found, reference, tolerance * std::max(1.0, std::abs(reference))) << what;
+  }
 }
 
 inline void expect_near(const std::vector<double>& found, const std::vector<double>& reference, double tolerance,

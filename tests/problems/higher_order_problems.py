@@ -173,6 +173,37 @@ def slide_or_leave():
                    lambda: ([mpf(0), 1 - mpf(6) / 5 * mpmath.log(mpf(6) / 5)], [mpf(9) / 10, mpf(1)]))
 
 
+def consensus():
+    """Velocities are constant but for the pull t/2; the pairs meet, then all, and the fourth one leaves at t = 8."""
+
+    def solution():
+        half, one = mpf(1) / 2, [1, 1, 1, 1, 1, 1]
+        pair = [0, 1, 1, 1, 1, 1]
+        second = 4 - sqrt(mpf(12))  # x3 - x4 = -1 + 2 t - t^2/4
+        both = [0, 1, 1, 1, 1, 0]
+        # Pairs at 2 and -2 + t/4: t^2/8 - 4 t + 2 + second - second^2/8 = 0.
+        rest = 2 + second - second * second / 8
+        all_meet = 16 - sqrt(256 - 8 * rest)
+        mean = lambda t: mpf(3) / 4 + t * t / 16
+        three = lambda t: 2 * t - half
+        fourth = lambda t: mpf(5) / 2 - 3 * t + t * t / 4
+        events = [
+            dict(t=half, kind="enter_sliding", surfaces=["x2-x1"], mode_before=one, mode_after=pair,
+                 x=[half, half, 1 - half + half, fourth(half)]),
+            dict(t=second, kind="enter_sliding", surfaces=["x4-x3"], mode_before=pair, mode_after=both,
+                 x=[three(second)] * 2 + [fourth(second)] * 2),
+            dict(t=all_meet, kind="enter_sliding", surfaces=["x3-x1", "x4-x1", "x3-x2", "x4-x2"], mode_before=both,
+                 mode_after=[0] * 6, x=[three(all_meet)] * 4),
+            dict(t=mpf(8), kind="leave_sliding", surfaces=["x4-x1", "x4-x2", "x4-x3"], mode_before=[0] * 6,
+                 mode_after=[0, 0, 1, 0, 1, 1], x=[mean(8)] * 4)]
+        assert abs(three(all_meet) - mean(all_meet)) < mpf(10) ** -30
+        # Two conditions for three selections: not determined.
+        return dict(events=events, final=dict(t=mpf(10), x=[mean(8) + 2] * 3 + [mean(8) + 3],
+                                              mode=[0, 0, 1, 0, 1, 1], alpha=[None, None, mpf(1), None, mpf(1), mpf(1)]))
+
+    return Explicit(model="consensus", solution=solution)
+
+
 def problems():
     yield twisting()
     yield super_twisting()
@@ -182,3 +213,4 @@ def problems():
                                          ["0.3463", "-0.1174", "-0.904", "0.5849"]], [[0, 0], [0, 1]])
     yield part_ways()
     yield slide_or_leave()
+    yield consensus()

@@ -44,7 +44,7 @@ def numbers_of(solution):
         yield from event["x"]
         yield from event.get("x_after", [])
     yield from solution["final"]["x"]
-    yield from solution["final"]["alpha"]
+    yield from (alpha for alpha in solution["final"]["alpha"] if alpha is not None)
     yield from solution["final"].get("theta", [])
 
 

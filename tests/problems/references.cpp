@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <ostream>
 #include <stdexcept>
 
@@ -34,6 +35,15 @@ ReferenceEvent event_of(const json& entry) {
   return event;
 }
 
+/// Selections that are not determined are null, and not a number here.
+std::vector<double> selections_of(const json& list) {
+  std::vector<double> alpha;
+  for (const json& value : list) {
+    alpha.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
+  }
+  return alpha;
+}
+
 ReferenceProblem problem_of(const json& entry) {
   ReferenceProblem problem;
   problem.model = entry.at("model");
@@ -51,7 +61,7 @@ ReferenceProblem problem_of(const json& entry) {
   for (const json& event : entry.at("events")) problem.events.push_back(event_of(event));
   problem.final_x = entry.at("final").at("x").get<std::vector<double>>();
   problem.final_mode = entry.at("final").at("mode").get<std::vector<int>>();
-  problem.final_alpha = entry.at("final").at("alpha").get<std::vector<double>>();
+  problem.final_alpha = selections_of(entry.at("final").at("alpha"));
   problem.final_theta = entry.at("final").value("theta", std::vector<double>{});
   return problem;
 }

@@ -393,7 +393,9 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     if (auto decided = decide_dependent(surroundings, exact, occasion, problem)) return std::move(*decided);
     // The corners of more are not enumerated.
     constexpr std::size_t most_enumerated = 10;
-    if (occasion.at_zero.size() > most_enumerated) return undecided(surroundings, exact, occasion, problem);
+    if (!problem.empty() && occasion.at_zero.size() > most_enumerated) {
+      return undecided(surroundings, exact, occasion, problem);
+    }
   }
   Transition transition = Decider(surroundings, exact, occasion).run();
   if (transition.termination == result::Termination::outside_class) {

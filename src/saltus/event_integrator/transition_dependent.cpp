@@ -84,7 +84,7 @@ std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state,
 std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
                                            std::string& problem) {
   const auto& meeting = occasion.at_zero;
-  problem = "a kink or a nested function is among them";
+  problem.clear();
   if (!are_plain_surfaces(s, meeting)) return std::nullopt;
   problem = "their selections multiply each other";
   ModeState state = before;
