@@ -7,23 +7,36 @@
 #include "saltus/event_integrator/continuations.hpp"
 #include "saltus/event_integrator/projected_fields.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/switching/admissible_modes.hpp"
 
 namespace saltus::event_integrator {
 
-using switching::PlaneMode;
-using switching::PlaneModes;
+using switching::Drift;
+using switching::GroupMode;
 
 namespace {
 
-bool has(const PlaneModes& modes, const PlaneMode& mode) {
+/// All modes of four surfaces take longer than a step.
+constexpr std::size_t most_watched = 3;
+
+bool has(const std::vector<GroupMode>& modes, const std::vector<int>& mode) {
   return std::any_of(modes.begin(), modes.end(), [&](const auto& other) { return other.mode == mode; });
 }
 
-/// Whether an open family is that of a pair of surfaces, and if so of which mode.
-std::optional<PlaneMode> mode_of(const Families::Open& family, const std::array<int, 2>& surfaces) {
-  const auto& given = family.given;
-  if (given.size() != 2 || given[0].surface != surfaces[0] || given[1].surface != surfaces[1]) return std::nullopt;
-  return PlaneMode{given[0].mode, given[1].mode};
+/// Whether an open family is that of a group of surfaces, and if so of which mode.
+std::optional<std::vector<int>> mode_of(const Families::Open& family, const std::vector<int>& surfaces) {
+  const auto is_it = [](const GivenMode& given, int surface) { return given.surface == surface; };
+  if (!std::equal(family.given.begin(), family.given.end(), surfaces.begin(), surfaces.end(), is_it))
+    return std::nullopt;
+  std::vector<int> mode;
+  for (const auto& given : family.given) mode.push_back(given.mode);
+  return mode;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double square = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(square);
 }
 
 }  // namespace
@@ -46,21 +59,26 @@ bool Families::is_alone(int surface) const {
   });
 }
 
-void Families::find_pairs() {
-  pairs_.clear();
-  const auto& sliding = state_.sliding;
-  const auto influence = [&](int i, int j) { return s_.kernel.depends(i, j) || s_.kernel.depends(j, i); };
-  for (std::size_t a = 0; a < sliding.size(); ++a) {
-    for (std::size_t b = a + 1; b < sliding.size(); ++b) {
-      const std::array surfaces{sliding[a], sliding[b]};
-      if (!influence(surfaces[0], surfaces[1]) || !is_watched(surfaces[0]) || !is_watched(surfaces[1])) continue;
-      const bool with_third = std::any_of(sliding.begin(), sliding.end(), [&](int other) {
-        return other != surfaces[0] && other != surfaces[1] &&
-               (influence(other, surfaces[0]) || influence(other, surfaces[1]));
+/// Connected groups of two and more.
+void Families::find_groups() {
+  groups_.clear();
+  std::vector<int> open = state_.sliding;
+  while (!open.empty()) {
+    std::vector<int> surfaces{open.front()};
+    open.erase(open.begin());
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+      std::erase_if(open, [&](int other) {
+        const bool joins = s_.kernel.depends(surfaces[k], other) || s_.kernel.depends(other, surfaces[k]);
+        if (joins) surfaces.push_back(other);
+        return joins;
       });
-      if (with_third) continue;
-      pairs_.push_back({surfaces, {state_.alpha[at(surfaces[0])], state_.alpha[at(surfaces[1])]}, {}});
     }
+    std::sort(surfaces.begin(), surfaces.end());
+    const bool is_small = surfaces.size() > 1 && surfaces.size() <= most_watched;
+    if (!is_small || !std::all_of(surfaces.begin(), surfaces.end(), [&](int j) { return is_watched(j); })) continue;
+    std::vector<double> alpha;
+    for (const int j : surfaces) alpha.push_back(state_.alpha[at(j)]);
+    groups_.push_back({std::move(surfaces), std::move(alpha), {}});
   }
 }
 
@@ -70,9 +88,9 @@ void Families::close_those_that_ended(double t) {
     bool goes_on = true;
     for (const auto& given : family.given) goes_on = goes_on && state_.mode[at(given.surface)] == 0;
     if (goes_on && family.given.size() == 1) goes_on = is_alone(family.given.front().surface);
-    if (goes_on && family.given.size() == 2) {
-      goes_on = std::any_of(pairs_.begin(), pairs_.end(),
-                            [&](const Pair& pair) { return mode_of(family, pair.surfaces).has_value(); });
+    if (goes_on && family.given.size() > 1) {
+      goes_on = std::any_of(groups_.begin(), groups_.end(),
+                            [&](const Group& group) { return mode_of(family, group.surfaces).has_value(); });
     }
     if (!goes_on) recorded_[family.number].until = t;
     return !goes_on;
@@ -83,7 +101,7 @@ void Families::enter(const Point& point, const ModeState& state, std::size_t eve
   state_ = state;
   event_ = event;
   if (state.higher || !s_.affine_in_alpha) state_.sliding.clear();
-  find_pairs();
+  find_groups();
   close_those_that_ended(point.t);
   if (unique != true) watch_singles(point);
   look(point, point.t, [](double, double*) {});
@@ -140,49 +158,54 @@ void Families::watch_singles(const Point& point) {
   }
 }
 
-/// All modes of two surfaces that influence each other.
-PlaneModes Families::modes_at(double t, const double* x, const std::array<int, 2>& surfaces) {
-  Velocities velocities{};
+/// All modes of surfaces that influence each other.
+Families::Modes Families::modes_at(double t, const double* x, const std::vector<int>& surfaces) {
+  const std::size_t m = surfaces.size(), corners = std::size_t{1} << m;
+  table_.surfaces = static_cast<int>(m);
+  table_.arrival.assign(m, switching::Arrival::along);
+  table_.sides.resize(m * corners);
   alpha_ = state_.alpha;
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    for (std::size_t k = 0; k < 2; ++k) alpha_[at(surfaces[k])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+  for (std::size_t corner = 0; corner < corners; ++corner) {
+    for (std::size_t k = 0; k < m; ++k) alpha_[at(surfaces[k])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
     s_.kernel.field(t, x, alpha_.data(), f_.data());
-    for (std::size_t k = 0; k < 2; ++k) {
-      double& velocity = velocities[k][corner];
+    for (std::size_t k = 0; k < m; ++k) {
+      double velocity = 0.0;
       s_.kernel.gradient(surfaces[k], t, x, state_.alpha.data(), row_.data(), &velocity);
       for (std::size_t i = 0; i < f_.size(); ++i) velocity += row_[i] * f_[i];
       if (!std::isfinite(velocity)) return {};
+      table_.sides[k * corners + corner] = {velocity, velocity > 0.0   ? Drift::up
+                                                      : velocity < 0.0 ? Drift::down
+                                                                       : Drift::stays};
     }
   }
-  return switching::admissible_modes(switching::plane_table(velocities));
+  if (m > 2) return switching::admissible_modes(table_);
+  Modes modes;
+  for (const auto& mode : switching::admissible_modes(switching::plane_table(table_))) {
+    modes.push_back({{mode.mode.begin(), mode.mode.end()}, {mode.alpha.begin(), mode.alpha.end()}});
+  }
+  return modes;
 }
 
 /// Without the root that is slid on.
-PlaneModes Families::others_at(double t, const double* x, Pair& pair) {
-  const PlaneModes all = modes_at(t, x, pair.surfaces);
-  const switching::PlaneContinuation* own = nullptr;
-  double nearest = 0.0;
-  for (const auto& mode : all) {
-    if (mode.mode != PlaneMode{0, 0}) continue;
-    const double distance = std::hypot(mode.alpha[0] - pair.alpha[0], mode.alpha[1] - pair.alpha[1]);
-    if (own == nullptr || distance < nearest) {
-      own = &mode;
-      nearest = distance;
-    }
+Families::Modes Families::others_at(double t, const double* x, Group& group) {
+  Modes modes = modes_at(t, x, group.surfaces);
+  const std::vector<int> sliding(group.surfaces.size(), 0);
+  auto own = modes.end();
+  for (auto mode = modes.begin(); mode != modes.end(); ++mode) {
+    if (mode->mode != sliding) continue;
+    if (own == modes.end() || distance(mode->alpha, group.alpha) < distance(own->alpha, group.alpha)) own = mode;
   }
-  PlaneModes others;
-  for (const auto& mode : all) {
-    if (&mode != own) others.push(mode);
-  }
-  if (own != nullptr) pair.alpha = own->alpha;
-  return others;
+  if (own == modes.end()) return modes;
+  group.alpha = own->alpha;
+  modes.erase(own);
+  return modes;
 }
 
 /// The time between two at which a mode is admissible and not, to the last digits.
-double Families::change(double t_begin, double t_end, const Pair& pair, const PlaneMode& mode,
+double Families::change(double t_begin, double t_end, const Group& group, const std::vector<int>& mode,
                         FunctionRef<void(double t, double* x)> state_at) {
   const auto admissible = [&](double t) {
-    Pair probe = pair;
+    Group probe = group;
     state_at(t, x_.data());
     return has(others_at(t, x_.data(), probe), mode);
   };
@@ -195,35 +218,39 @@ double Families::change(double t_begin, double t_end, const Pair& pair, const Pl
   return t_end;
 }
 
-void Families::watch(const Point& point, Pair& pair, double t_begin, FunctionRef<void(double t, double* x)> state_at) {
+void Families::watch(const Point& point, Group& group, double t_begin,
+                     FunctionRef<void(double t, double* x)> state_at) {
   const bool in_a_step = t_begin < point.t;
-  const Pair before{pair.surfaces, pair.alpha, {}};
-  const PlaneModes others = others_at(point.t, point.x, pair);
+  const Group before{group.surfaces, group.alpha, {}};
+  const Modes others = others_at(point.t, point.x, group);
   std::erase_if(open_, [&](const Open& family) {
-    const auto mode = mode_of(family, pair.surfaces);
+    const auto mode = mode_of(family, group.surfaces);
     if (!mode || has(others, *mode)) return false;
     recorded_[family.number].until = in_a_step ? change(t_begin, point.t, before, *mode, state_at) : point.t;
     return true;
   });
-  std::erase_if(pair.refused, [&](const PlaneMode& mode) { return !has(others, mode); });
+  std::erase_if(group.refused, [&](const std::vector<int>& mode) { return !has(others, mode); });
   for (const auto& other : others) {
     const auto known = std::find_if(open_.begin(), open_.end(),
-                                    [&](const Open& family) { return mode_of(family, pair.surfaces) == other.mode; });
+                                    [&](const Open& family) { return mode_of(family, group.surfaces) == other.mode; });
     if (known != open_.end()) {
       // Roots move.
-      for (std::size_t k = 0; k < 2; ++k) known->given[k].alpha = other.alpha[k];
+      for (std::size_t k = 0; k < group.surfaces.size(); ++k) known->given[k].alpha = other.alpha[k];
       continue;
     }
-    if (std::find(pair.refused.begin(), pair.refused.end(), other.mode) != pair.refused.end()) continue;
+    if (std::find(group.refused.begin(), group.refused.end(), other.mode) != group.refused.end()) continue;
     const std::size_t count = recorded_.size();
-    add(point, {{pair.surfaces[0], other.mode[0], other.alpha[0]}, {pair.surfaces[1], other.mode[1], other.alpha[1]}},
-        in_a_step ? change(t_begin, point.t, before, other.mode, state_at) : point.t);
-    if (recorded_.size() == count) pair.refused.push_back(other.mode);
+    std::vector<GivenMode> given;
+    for (std::size_t k = 0; k < group.surfaces.size(); ++k) {
+      given.push_back({group.surfaces[k], other.mode[k], other.alpha[k]});
+    }
+    add(point, std::move(given), in_a_step ? change(t_begin, point.t, before, other.mode, state_at) : point.t);
+    if (recorded_.size() == count) group.refused.push_back(other.mode);
   }
 }
 
 void Families::look(const Point& point, double t_begin, FunctionRef<void(double t, double* x)> state_at) {
-  for (auto& pair : pairs_) watch(point, pair, t_begin, state_at);
+  for (auto& group : groups_) watch(point, group, t_begin, state_at);
 }
 
 }  // namespace saltus::event_integrator

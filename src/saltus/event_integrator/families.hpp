@@ -1,7 +1,6 @@
 // Families of other solutions: those that leave the mode of a run at a later time, and spirals of other phases.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -9,7 +8,7 @@
 #include "saltus/base/function_ref.hpp"
 #include "saltus/event_integrator/recording.hpp"
 #include "saltus/event_integrator/transition.hpp"
-#include "saltus/switching/admissible_modes.hpp"
+#include "saltus/switching/group_modes.hpp"
 
 namespace saltus::event_integrator {
 
@@ -17,8 +16,8 @@ namespace saltus::event_integrator {
 /// [guglielmi2022], as long as they do:
 ///   - a surface that repels on both sides and is slid on alone, to either side (f_below < 0 < f_above, which holds
 ///     until the mode ends);
-///   - two that influence each other, into every other mode of admissible_modes(), the other root among them.
-/// Other surfaces (three and more that influence each other, borders of regions, selections that enter other than
+///   - two or three that influence each other, into every other mode of admissible_modes(), other roots among them.
+/// Other surfaces (four and more that influence each other, borders of regions, selections that enter other than
 /// affinely) are not watched.
 class Families {
  public:
@@ -39,9 +38,9 @@ class Families {
   /// A mode that begins at the last event; `unique` says that no single surface of it can repel.
   void enter(const Point& point, const ModeState& state, std::size_t event, std::optional<bool> unique);
   /// Whether the mode of the last enter() has to be looked at step by step.
-  [[nodiscard]] bool watches() const { return !pairs_.empty(); }
+  [[nodiscard]] bool watches() const { return !groups_.empty(); }
   /// Whether a change of mode is nothing to it.
-  [[nodiscard]] bool idle() const { return open_.empty() && pairs_.empty(); }
+  [[nodiscard]] bool idle() const { return open_.empty() && groups_.empty(); }
   /// Behind a step from t_begin: what can be left now, and what no more. `state_at` gives the states in between.
   void look(const Point& point, double t_begin, FunctionRef<void(double t, double* x)> state_at);
   /// Spirals from an event that is recorded next.
@@ -56,32 +55,34 @@ class Families {
   [[nodiscard]] std::vector<Recording::Family> take() { return std::move(recorded_); }
 
  private:
-  using Velocities = std::array<std::array<double, 4>, 2>;
-  struct Pair {
-    std::array<int, 2> surfaces{};
-    switching::PlaneAlpha alpha{};  ///< of the root that is slid on, as it was last
-    std::vector<std::array<int, 2>> refused;
+  using Modes = std::vector<switching::GroupMode>;
+  /// Surfaces that influence each other, ascending, and no others.
+  struct Group {
+    std::vector<int> surfaces;
+    std::vector<double> alpha;  ///< of the root that is slid on, as it was last
+    std::vector<std::vector<int>> refused;
   };
 
   [[nodiscard]] bool is_watched(int surface) const;
   [[nodiscard]] bool is_alone(int surface) const;
-  void find_pairs();
+  void find_groups();
   void close_those_that_ended(double t);
   void add(const Point& point, std::vector<GivenMode> given, double from);
   void watch_singles(const Point& point);
-  void watch(const Point& point, Pair& pair, double t_begin, FunctionRef<void(double t, double* x)> state_at);
-  [[nodiscard]] switching::PlaneModes modes_at(double t, const double* x, const std::array<int, 2>& surfaces);
-  [[nodiscard]] switching::PlaneModes others_at(double t, const double* x, Pair& pair);
-  double change(double t_begin, double t_end, const Pair& pair, const std::array<int, 2>& mode,
+  void watch(const Point& point, Group& group, double t_begin, FunctionRef<void(double t, double* x)> state_at);
+  [[nodiscard]] Modes modes_at(double t, const double* x, const std::vector<int>& surfaces);
+  [[nodiscard]] Modes others_at(double t, const double* x, Group& group);
+  double change(double t_begin, double t_end, const Group& group, const std::vector<int>& mode,
                 FunctionRef<void(double t, double* x)> state_at);
 
   const Surroundings& s_;
   ModeState state_;
   std::size_t event_ = 0;
-  std::vector<Pair> pairs_;
+  std::vector<Group> groups_;
   std::vector<Open> open_;
   std::vector<Recording::Family> recorded_;
   std::vector<double> alpha_, f_, row_, x_;
+  switching::CornerTable table_;
 };
 
 }  // namespace saltus::event_integrator

@@ -322,14 +322,19 @@ bool ModeField::solve_normal_equations() {
 
 /// Rows that depend on others follow them.
 bool ModeField::solve_independent_equations() {
-  base_rows_ = rows_(independent_, Eigen::all);
-  base_residual_ = residual_(independent_);
+  take_rows(rows_, independent_, base_rows_);
+  base_residual_.resize(base_rows_.rows());
+  for (Eigen::Index k = 0; k < base_residual_.size(); ++k) {
+    base_residual_[k] = residual_[independent_[static_cast<std::size_t>(k)]];
+  }
   normal_matrix_.noalias() = base_rows_ * base_rows_.transpose();
   cholesky_.compute(normal_matrix_);
   if (cholesky_.info() != Eigen::Success) return false;
   cholesky_.solveInPlace(base_residual_);
   residual_.setZero();
-  residual_(independent_) = base_residual_;
+  for (Eigen::Index k = 0; k < base_residual_.size(); ++k) {
+    residual_[independent_[static_cast<std::size_t>(k)]] = base_residual_[k];
+  }
   return true;
 }
 

@@ -99,7 +99,7 @@ void ModeField::find_ties() {
   if (ties_known_ && independent_.empty()) return;
   for (auto& regions : regions_) {
     if (regions.rows.size() < 2 || (ties_known_ && (!regions.tie || regions.constant))) continue;
-    tie_rows_ = rows_(regions.rows, Eigen::all);
+    take_rows(rows_, regions.rows, tie_rows_);
     if (ties_known_ && tie_rows_ == regions.gradients) continue;
     regions.gradients = tie_rows_;
     if (ties_known_) {

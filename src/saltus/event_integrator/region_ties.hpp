@@ -8,6 +8,14 @@
 
 namespace saltus::event_integrator {
 
+/// Some rows, into a matrix that is used again. NOTE: an indexed view copies its indices, which allocates.
+template <class Indices>
+void take_rows(const Eigen::MatrixXd& from, const Indices& rows, Eigen::MatrixXd& result) {
+  result.resize(static_cast<Eigen::Index>(rows.size()), from.cols());
+  Eigen::Index k = 0;
+  for (const auto row : rows) result.row(k++) = from.row(static_cast<Eigen::Index>(row));
+}
+
 /// Of n - 1 rows grad psi_i, psi_i = g_r - g_i, those that are independent, and the others by these.
 struct RegionBasis {
   std::vector<Eigen::Index> base;  ///< rows, ascending

@@ -12,8 +12,16 @@ namespace saltus::event_integrator {
 
 using result::Termination;
 
-bool Run::fire_user_events(const std::vector<double>& x_before, const ModeState& before) {
-  const auto fired = user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs());
+/// @param before_jumps  what has fired before the jumps of this time: a zero that they leave at once on the side that
+/// it
+///                      was reached from is no second one
+std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_before, const ModeState& before,
+                                               const std::vector<std::size_t>& before_jumps) {
+  auto fired = user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs());
+  std::erase_if(fired, [&](std::size_t event) {
+    const bool again = std::find(before_jumps.begin(), before_jumps.end(), event) != before_jumps.end();
+    return again && !model::rule_of(surroundings_.system.events[event]).condition;
+  });
   for (const std::size_t event : fired) {
     recorder_.user(t_, {x_before, x_, before, state_}, static_cast<int>(event));
     if (user_events_.stops(event) && running_) {
@@ -21,7 +29,7 @@ bool Run::fire_user_events(const std::vector<double>& x_before, const ModeState&
            fmt::format("stopped by the event '{}'", surroundings_.system.events[event].name));
     }
   }
-  return !fired.empty();
+  return fired;
 }
 
 bool Run::too_many_events() {

@@ -142,7 +142,8 @@ class Run {
   bool limits_repeat(double t);
   void pass_to(double t, std::vector<double> x);
   void go_on_from_limit();
-  bool fire_user_events(const std::vector<double>& x_before, const ModeState& before);
+  std::vector<std::size_t> fire_user_events(const std::vector<double>& x_before, const ModeState& before,
+                                            const std::vector<std::size_t>& before_jumps = {});
   void flip_user_functions(const Located& located);
 
   bool begin_jumps(Landing& landing);

@@ -278,7 +278,7 @@ bool Run::settle_jumps(Landing& landing) {
 /// Rules 4 to 6 at an event: user events of the motion before, the jumps, user events by them.
 bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Landing& landing) {
   jumped_ = true;
-  fire_user_events(x_, before);
+  const auto fired = fire_user_events(x_, before);
   const Termination stopped = result_.status.termination;
   const std::string message = result_.status.message;
   running_ = true;  // an event that stops the run lets the jumps of its time happen
@@ -297,7 +297,7 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before, Lan
     recorder_.accumulated(t_, landing.resting, {x_, x_, state_, state_}, resting_reason);
   }
   if (stopped != Termination::completed) fail(stopped, message);
-  fire_user_events(x_before, before);
+  fire_user_events(x_before, before, fired);
   note_series(landing);
   start_step();
   static_cast<void>(step_memory_.change(state_.mode, t_, h_));  // the mode lasts from here; its step is that of a start

@@ -86,5 +86,29 @@ TEST(StepAllocation, NoneWhereThreeRegionsHoldTheSolution) {
   }
 }
 
+// Four quadrants whose indicators depend on each other, with borders that turn.
+TEST(StepAllocation, NoneWhereRegionsThatDependOnEachOtherHoldTheSolution) {
+  for (const double turn : {0.0, 1.0}) {
+    for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
+      model::Builder b("turning quadrants");
+      const auto x = b.state("x", {0.3});
+      const auto y = b.state("y", {0.2});
+      const auto z = b.state("z", {0.0});
+      const auto c = cos(turn * b.time()), s = sin(turn * b.time());
+      for (int i = 0; i < 4; ++i) {
+        const double right = (i & 1) != 0 ? 1.0 : -1.0, up = (i & 2) != 0 ? 1.0 : -1.0;
+        const auto along = -2.0 * right + 0.3 * sin(b.time()), across = casadi::SX(-2.0 * up);
+        b.region(-(right * (c * x + s * y) + up * (c * y - s * x)),
+                 {{"x", c * along - s * across}, {"y", s * along + c * across}, {"z", cos(z + i)}});
+      }
+      const auto system = b.build();
+      ASSERT_TRUE(system.has_value());
+      const auto held = count(*system, method, 20.0);
+      EXPECT_GT(held.steps, 20) << static_cast<int>(method);
+      EXPECT_EQ(held.with_allocation, 0) << static_cast<int>(method) << ", " << turn;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator

@@ -152,18 +152,18 @@ TEST(Families, EndWithTheModeThatTheyLeave) {
   expect_end(*down[0], {1});
 }
 
-/// Leaf C9-4 (the model part-ways); at t = 1 no scaling keeps the solution on both surfaces any more.
-Builder part_ways() {
-  Builder b("part-ways");
+/// Leaf C9-4 (the model part-ways); at t = 1 no scaling keeps the solution on both surfaces any more. Returns sign(x).
+SX part_ways(Builder& b) {
   const SX x = b.state("x", {0}), y = b.state("y", {0});
   const SX s1 = b.sign(x), s2 = b.sign(y);
   b.dynamics("x", (b.time() - 1) / 4 * s1 + s2 + s1 * s2 / 2);
   b.dynamics("y", -s1 / 2 + s2 + s1 * s2 / 5);
-  return b;
+  return s1;
 }
 
 TEST(Families, OfTwoSurfacesBeginAndEndWhereAModeIsAdmissible) {
-  auto b = part_ways();
+  Builder b("part-ways");
+  part_ways(b);
   constexpr double begin = -0.75, end = 3.0;
   const Result root = run(b, {begin, end}, 1);
   const Result& staying = *starting_in(root, {0, 0});
@@ -196,6 +196,53 @@ TEST(Families, OfTwoSurfacesBeginAndEndWhereAModeIsAdmissible) {
   EXPECT_NEAR(other_root->until, -0.25, 1e-9);
   EXPECT_NEAR(other_root->to.alpha[0], 0.5 * (1 - 0.25 / 0.65), 1e-12);
   EXPECT_TRUE(members_of(staying, {0, 0}).empty());
+  EXPECT_EQ(staying.families.size(), 5U);
+}
+
+// The same with a third surface that is slid on whatever the other two do, with sign(z) = sign(x)/4.
+TEST(Families, OfThreeSurfacesBeginAndEndWhereAModeIsAdmissible) {
+  Builder b("part-ways");
+  const SX side = part_ways(b);
+  const SX z = b.state("z", {0});
+  b.dynamics("z", side / 4 - b.sign(z));
+  constexpr double begin = -0.75, end = 3.0;
+  const Result root = run(b, {begin, end}, 1);
+  // Of the two roots the one with x' = 0 and y' = 0 for sign(x) = sign(y) = 0.
+  const Result* found = nullptr;
+  for (const Result& branch : root.branches) {
+    const auto& alpha = branch.events[0].alpha_after;
+    if (branch.events[0].mode_after == Mode{0, 0, 0} && alpha && std::abs((*alpha)[0] - 0.5) < 1e-6) found = &branch;
+  }
+  if (root.trajectory.mode[1] == Mode{0, 0, 0}) found = &root;
+  ASSERT_NE(found, nullptr);
+  const Result& staying = *found;
+  struct Expected {
+    Mode mode;
+    double from;
+  };
+  for (const auto& [mode, from] : {Expected{{1, 1, 0}, begin}, Expected{{-1, -1, 0}, begin}, Expected{{1, 0, 0}, begin},
+                                   Expected{{-1, 0, 0}, -0.25}}) {
+    const Family* family = family_to(staying, mode);
+    ASSERT_NE(family, nullptr) << mode[0] << mode[1];
+    EXPECT_NEAR(family->from, from, 1e-9);
+    EXPECT_NEAR(family->until, 1.0, 1e-12);
+    const auto members = members_of(staying, mode);
+    ASSERT_EQ(members.size(), 1U);
+    const double t = 0.5 * (family->from + family->until);
+    EXPECT_NEAR(members[0]->left_at->member->parameter, t, 1e-15);
+    EXPECT_EQ(members[0]->events[0].mode_after, mode);
+    const double drift = (std::pow(end - 1, 2) - std::pow(t - 1, 2)) / 8, time = end - t;
+    if (mode == Mode{1, 1, 0}) expect_end(*members[0], {drift + 1.5 * time, 0.7 * time, 0});
+    if (mode == Mode{-1, -1, 0}) expect_end(*members[0], {-drift - 0.5 * time, -0.3 * time, 0});
+    if (mode == Mode{1, 0, 0}) expect_end(*members[0], {drift + 0.625 * time, 0, 0});
+    if (mode == Mode{-1, 0, 0}) expect_end(*members[0], {-drift - 0.3125 * time, 0, 0});
+  }
+  const Family* other_root = family_to(staying, {0, 0, 0});
+  ASSERT_NE(other_root, nullptr);
+  EXPECT_EQ(other_root->from, begin);
+  EXPECT_NEAR(other_root->until, -0.25, 1e-9);
+  EXPECT_NEAR(other_root->to.alpha[0], 0.5 * (1 - 0.25 / 0.65), 1e-12);
+  EXPECT_NEAR(other_root->to.alpha[2], 0.5 * (1 - 0.25 / 0.65 / 4), 1e-12);
   EXPECT_EQ(staying.families.size(), 5U);
 }
 
