@@ -103,6 +103,16 @@ TEST(DependentSurfaces, AStartWhereAllMeetIsHeld) {
   EXPECT_NEAR(result.final.x[2] - result.final.x[0], 0.5, 1e-8);
 }
 
+/// Where all meet, a mode that does not hold all of them must lead away.
+TEST(DependentSurfaces, AModeThatIsForcedIsChecked) {
+  const std::string text = three_agents("x1 = 1\nx2 = 1\nx3 = 1", "4") + "[simulate.initial_mode]\n";
+  const Result held = simulated(text + "s12 = 0\ns13 = 0\ns23 = 0\n", standard);
+  ASSERT_EQ(held.status.termination, Termination::completed) << held.status.message;
+  EXPECT_NEAR(held.events.back().t, 3.0, 1e-9);
+  const Result parted = simulated(text + "s12 = 0\ns13 = -1\ns23 = -1\n", standard);
+  EXPECT_EQ(parted.status.termination, Termination::no_admissible_mode) << parted.status.message;
+}
+
 /// Two blocks on the ground (friction 1/2 each) and on each other (friction 1); the first one is pushed by t. At t = 1
 /// both start to move together, at t = 2 they part.
 TEST(DependentSurfaces, TwoBlocksStickToTheGroundAndToEachOther) {

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <utility>
+
+#include "saltus/event_integrator/transition_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -26,6 +29,10 @@ std::optional<Transition> decide_with(const Surroundings& surroundings, const Mo
          {&rest.at_zero, &rest.touched, &rest.exit_below, &rest.exit_above, &rest.coalesced, &rest.destabilised}) {
       std::erase(*surfaces, surface);
     }
+  }
+  std::string problem;
+  if (rest.at_zero.empty() && slides_on_dependent(surroundings, fixed, occasion)) {
+    return check_dependent(surroundings, fixed, occasion, problem);
   }
   // What the given modes change may concern every other surface here.
   rest.touched = rest.at_zero;

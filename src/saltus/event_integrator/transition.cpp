@@ -387,9 +387,10 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     // Rounding of the limit decides what the fields do there one by one.
     if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
   }
-  // Two are dependent only where they touch.
+  // Two are dependent only where they touch, and those that were slid on before are not.
   std::string problem;
-  if (occasion.at_zero.size() > 2 && gradients_depend(surroundings, exact, occasion)) {
+  if (occasion.at_zero.size() > 2 && (occasion.start || occasion.at_zero != before.sliding) &&
+      gradients_depend(surroundings, exact, occasion)) {
     if (auto decided = decide_dependent(surroundings, exact, occasion, problem)) return std::move(*decided);
     // The corners of more are not enumerated.
     constexpr std::size_t most_enumerated = 10;
@@ -418,6 +419,10 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
 
 Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced, const Occasion& occasion) {
   const ReferenceScope references(surroundings.kernel, forced);
+  std::string problem;
+  if (slides_on_dependent(surroundings, forced, occasion)) {
+    if (auto held = check_dependent(surroundings, forced, occasion, problem)) return std::move(*held);
+  }
   return Decider(surroundings, forced, occasion).run_forced();
 }
 

@@ -81,6 +81,29 @@ std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state,
   return transition_to(std::move(state));
 }
 
+bool slides_on_dependent(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+  return state.sliding.size() > 1 && ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, state.sliding);
+}
+
+std::optional<Transition> check_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
+                                          std::string& problem) {
+  std::vector<int> leaving;
+  for (const int j : occasion.at_zero) {
+    if (state.mode[at(j)] != 0) leaving.push_back(j);
+  }
+  std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
+  problem = "the fields do not lead on";
+  std::optional<Transition> next;
+  if (state.sliding.empty()) {
+    next = transition_to(std::move(state));
+  } else {
+    next = hold_dependent(s, std::move(state), occasion, x, problem);
+  }
+  if (!next || !leads_into_its_region(s, next->state, occasion, x, leaving)) return std::nullopt;
+  for (const int j : leaving) next->zero_order[at(j)] = 1;
+  return next;
+}
+
 std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
                                            std::string& problem) {
   const auto& meeting = occasion.at_zero;
@@ -92,26 +115,19 @@ std::optional<Transition> decide_dependent(const Surroundings& s, const ModeStat
   const auto velocities = additive_velocities(s, state, occasion);
   if (!velocities) return std::nullopt;
   const auto solution = switching::solve_complementarity(velocities->effects, velocities->constant, 1e-9);
-  std::vector<int> leaving;
   for (std::size_t i = 0; i < meeting.size(); ++i) {
     const int mode = solution.mode[i];
     set_surface(state, meeting[i], mode, mode == 0 ? 0.5 : mode > 0 ? 1.0 : 0.0);
-    if (mode != 0) leaving.push_back(meeting[i]);
   }
-  std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
-  problem = "the fields do not lead on";
-  std::optional<Transition> next;
-  if (state.sliding.empty()) {
-    next = transition_to(std::move(state));
-  } else {
-    next = hold_dependent(s, std::move(state), occasion, x, problem);
+  auto next = check_dependent(s, std::move(state), occasion, problem);
+  if (!next) return std::nullopt;
+  for (const int j : meeting) {
+    if (next->zero_order[at(j)] != 0 && contains(before.sliding, j)) next->zero_order[at(j)] = 2;
   }
-  if (!next || !leads_into_its_region(s, next->state, occasion, x, leaving)) return std::nullopt;
   if (next->reason.empty()) {
     next->reason = fmt::format("{}: their gradients depend on each other; slides on {}", names(s.system, meeting),
                                next->state.sliding.empty() ? "none" : names(s.system, next->state.sliding));
   }
-  for (const int j : leaving) next->zero_order[at(j)] = contains(before.sliding, j) ? 2 : 1;
   // Else there may be others: not decided.
   next->unique = solution.unique_velocity ? std::optional<bool>(true) : std::nullopt;
   return next;

@@ -68,6 +68,14 @@ std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state,
 /// Whether surfaces are listed ones, none of them nested around others or inside them.
 bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces);
 
+/// Whether the gradients of the surfaces that a state slides on depend on each other.
+bool slides_on_dependent(const Surroundings& s, const ModeState& state, const Occasion& occasion);
+
+/// A mode of surfaces that depend on each other, checked along its own field: those slid on can be held, the others at
+/// zero are left to their sides. nullopt where that is not so, and why.
+std::optional<Transition> check_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
+                                          std::string& problem);
+
 /// The mode where surfaces are at zero whose gradients depend on each other, and whose selections enter additively: the
 /// solution of a complementarity problem, checked along its own field; nullopt where that fails, and why. `unique` is
 /// true where the problem is monotone up to scaling, else not decided.
