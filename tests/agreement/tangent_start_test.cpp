@@ -142,5 +142,34 @@ until = {}
   }
 }
 
+// Sliding on a ends at t = 0.98, where sign(b) = 0.2; behind it x = (t - 0.98)^2/4, while b is slid on.
+TEST(TangentStart, ARootIsLeftWhileAnotherSurfaceIsSlidOn) {
+  const Simulator simulator = Simulator::from_text(R"toml(
+[model]
+name = "root and another surface"
+[states]
+x = 0
+y = 0
+[switching]
+a = "x"
+b = "y"
+[dynamics]
+x = "-sign(a) - sqrt(abs(a))*sign(a) + t + 0.1*sign(b)"
+y = "-sign(b) + 0.3*sign(a) - 0.1"
+[simulate]
+until = 3
+)toml");
+  for (const auto& accuracy : {fine, standard}) {
+    const auto result = simulator.run(with(simulator.options(), accuracy));
+    ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+    ASSERT_EQ(result.events.size(), 2U);
+    EXPECT_NEAR(result.events[1].t, 0.98, 1e-12);
+    EXPECT_EQ(*result.events[1].mode_after, (std::vector<int>{1, 0}));
+    // The error of x decays, as the solution is stiff; it is that of some steps.
+    EXPECT_NEAR(result.final.x[0], 1.0201, 3.0 * accuracy.rtol);
+    EXPECT_EQ(result.final.x[1], 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace saltus::problems

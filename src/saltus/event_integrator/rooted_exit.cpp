@@ -81,6 +81,8 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
   // is not much more than its rounding.
   constexpr double part = 0x1p-26;
   constexpr double converged = 1e-12;
+  constexpr double settled = 1e-6;  // from here on corrections that no longer fall are roundings of f
+  double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     if (!residual(t, h, unknowns, here)) return false;
     for (std::size_t k = 0; k < n; ++k) {
@@ -108,7 +110,8 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
       if (i == replaced_) step = std::max(step, -0.75 * unknowns[i]);
       unknowns[i] += step;
     }
-    if (largest <= converged) return true;
+    if (largest <= converged || (largest <= settled && largest >= 0.25 * before)) return true;
+    before = largest;
   }
   return false;
 }

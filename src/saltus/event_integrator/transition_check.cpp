@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/event_integrator/rooted_exit.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -152,6 +153,10 @@ bool Decider::check() {
       transition_.zero_order[at(j)] = 2;
       continue;
     }
+    if (motion.side.drift == switching::Drift::stays && leaves_by_root(j)) {
+      transition_.zero_order[at(j)] = 2;
+      continue;
+    }
     if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode, motion);
     transition_.zero_order[at(j)] = std::min(motion.order, 2);
   }
@@ -168,6 +173,16 @@ bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
 }
 
 /// The field of the new mode does not move psi_j to where the mode says: why not.
+/// Whether the new field has an infinite derivative on a surface, which it leaves all the same: no derivative says so.
+bool Decider::leaves_by_root(int j) {
+  if (transition_.rooted >= 0 || s_.system.switching[at(j)].role != model::SwitchingRole::listed) return false;
+  const std::vector<double> x(occasion_.x, occasion_.x + s_.kernel.states());
+  RootedExit exit(s_.kernel, s_.affine_in_alpha, transition_.state, j);
+  if (!exit.has_root(occasion_.t, x) || !exit.leads_away(occasion_.t, x, 1e-2 * occasion_.time_scale)) return false;
+  transition_.rooted = j;
+  return true;
+}
+
 bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
   const auto& state = transition_.state;
   const auto& function = s_.system.switching[at(j)];

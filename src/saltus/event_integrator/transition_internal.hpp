@@ -166,6 +166,7 @@ class Decider {
   bool set_corners();
   bool check();
   bool fail_where_surfaces_touch(const std::vector<int>& surfaces);
+  bool leaves_by_root(int j);
   bool fail_at_tangency(int surface, int mode, const Motion& motion);
   bool keeps_selections() const;
   bool fail(result::Termination termination, std::string message);
