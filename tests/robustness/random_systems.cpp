@@ -1,32 +1,11 @@
 #include "random_systems.hpp"
 
 #include <algorithm>
-#include <random>
+
+#include "dice.hpp"
 
 namespace saltus::robustness {
 namespace {
-
-/// Numbers that depend on the seed only (the distributions of the standard library differ between implementations).
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random_(seed) {}
-
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
-  }
-  std::size_t below(std::size_t count) { return random_() % count; }
-  bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
-  /// In [-size, size]; for a system of round numbers a multiple of a half, so that things coincide.
-  double coefficient(double size) {
-    const double value = uniform(-size, size);
-    return round_numbers ? 0.5 * std::round(2.0 * value) : value;
-  }
-
-  bool round_numbers = false;
-
- private:
-  std::mt19937_64 random_;
-};
 
 Form constant_form(std::size_t states, double value) { return {value, std::vector<double>(states), 0.0, {}}; }
 

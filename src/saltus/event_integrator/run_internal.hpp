@@ -163,6 +163,7 @@ class Run {
   void note_series(const Landing& landing);
   void drop_zeros(Landing& landing);
   void read_user_signs(const Landing& landing);
+  [[nodiscard]] double size_at(int function);
   [[nodiscard]] Motion motion_of(int function, const Landing& landing);
   [[nodiscard]] Rate rate_along_field(int function, double t, const double* x, const double* slope);
   bool release(const Located& located);

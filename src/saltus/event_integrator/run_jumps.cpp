@@ -173,6 +173,13 @@ bool Run::decide_behind_jumps(Landing& landing) {
   return enter(landing.transition);
 }
 
+/// Of the terms of an event function here.
+double Run::size_at(int function) {
+  std::vector<double> magnitude(at(kernel_.event_functions())), slope(magnitude.size());
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
+  return magnitude[at(function)];
+}
+
 /// Where a function at zero goes along the motion of the mode.
 Motion Run::motion_of(int function, const Landing& landing) {
   // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
@@ -181,6 +188,12 @@ Motion Run::motion_of(int function, const Landing& landing) {
   const Rate rate = rate_along_field(function, t_, x_.data(), slope_.data());
   const Rate& here = landing.rates[at(function)];
   const double scale = std::max({here.value, std::abs(rate.value), cancelled * here.terms, cancelled * rate.terms});
+  // A rate that the second derivative turns around within the rounding of the function is none: it may as well be that
+  // of a state at rest.
+  const double bend = kernel_.lie_derivative(function, 2, t_, x_.data(), state_.alpha.data());
+  if (rate.value * bend < 0.0 && rate.value * rate.value <= 2.0 * std::abs(bend) * rounding_unit * size_at(function)) {
+    return {{0.0, bend > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
+  }
   if (const auto motion = ProjectedFields::motion_by_velocity(rate.value, scale)) return *motion;
   Occasion occasion;
   occasion.t = t_;

@@ -1,0 +1,89 @@
+// Random systems with jumps, hysteresis, moving surfaces and regions by indicator: every run ends with a status, and
+// what it says is true.
+#include "hybrid_systems.hpp"
+
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "region_systems.hpp"
+
+namespace saltus::robustness {
+namespace {
+
+class HybridSystems : public testing::TestWithParam<HybridFamily> {};
+
+TEST_P(HybridSystems, AreSolvedOrRefusedWithAStatus) {
+  const HybridTally tally = run_campaign(GetParam(), 0, 100);
+  for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
+  EXPECT_GE(10 * (tally.completed - tally.sensitive), 9 * tally.systems);
+  EXPECT_GE(tally.jumps, 5000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, HybridSystems, testing::ValuesIn(hybrid_families),
+                         [](const auto& instance) { return name(instance.param); });
+
+TEST(RegionSystems, AreSolvedOrRefusedWithAStatus) {
+  const RegionTally tally = run_region_campaign(0, 100);
+  for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
+  EXPECT_GE(10 * (tally.completed - tally.not_unique - tally.sensitive), 9 * tally.systems);
+  EXPECT_GE(tally.held_by_three, 100);
+}
+
+/// Systems that were got wrong once: states went through walls that they had come to rest at.
+TEST(HybridSystems, OnesThatFailedOnceAreSolvedOrRefused) {
+  for (const std::uint64_t seed : {1305U, 1495U, 1727U, 2213U}) {
+    const HybridTally tally = run_campaign(HybridFamily::jumps, seed, 1);
+    for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
+  }
+}
+
+TEST(HybridSystemsJudge, FindsPlantedMistakes) {
+  const Hybrid system = draw(HybridFamily::jumps, 0);
+  const result::Result good = HybridModel(system).run(HybridIntegrator::dopri5, 1e-8, system.start);
+  ASSERT_EQ(complaint(system, good, 1e-8), "");
+  std::size_t jump = 0;
+  while (good.events[jump].kind != result::EventKind::jump) ++jump;
+  ASSERT_EQ(system.walls.size(), 1U);
+  const std::size_t v = system.walls[0].velocity;
+  const std::function<void(result::Result&)> mistakes[] = {
+      [](result::Result& r) { r.status.termination = result::Termination::iteration_limit; },
+      [&](result::Result& r) { r.events[jump].x_after[v] *= 1.0 + 1e-9; },
+      [&](result::Result& r) { r.events[jump].x[system.walls[0].position] += 1e-6; },
+      [](result::Result& r) { r.trajectory.x[1][0] += 1e-6; },
+      [](result::Result& r) { r.trajectory.mode[1][0] *= -1; },
+      [](result::Result& r) { std::swap(r.trajectory.t[1], r.trajectory.t[2]); },
+      [](result::Result& r) { r.final.t -= 1.0; },
+  };
+  for (std::size_t i = 0; i < std::size(mistakes); ++i) {
+    result::Result bad = good;
+    mistakes[i](bad);
+    EXPECT_NE(complaint(system, bad, 1e-8), "") << "mistake " << i;
+  }
+}
+
+TEST(RegionSystemsJudge, FindsPlantedMistakes) {
+  const RegionSystem system = draw_regions(1);
+  const result::Result good = RegionModel(system).run(5, 1e-8, system.start);
+  ASSERT_EQ(complaint(system, good, 1e-8), "");
+  ASSERT_GT(good.trajectory.t.size(), 4U);
+  const std::function<void(result::Result&)> mistakes[] = {
+      [](result::Result& r) { r.status.termination = result::Termination::no_admissible_mode; },
+      [](result::Result& r) { r.trajectory.x[1][0] += 1e-6; },
+      [](result::Result& r) { r.trajectory.theta[1].front() += 1e-6; },
+      [](result::Result& r) {
+        const auto other = r.trajectory.regions[1].front().front() == "r0" ? "r1" : "r0";
+        r.trajectory.regions[1].front().front() = other;
+      },
+  };
+  for (std::size_t i = 0; i < std::size(mistakes); ++i) {
+    result::Result bad = good;
+    mistakes[i](bad);
+    EXPECT_NE(complaint(system, bad, 1e-8), "") << "mistake " << i;
+  }
+}
+
+}  // namespace
+}  // namespace saltus::robustness
