@@ -108,7 +108,7 @@ double sensitivity(const HybridModel& model, const Hybrid& hybrid, const Result&
 
 constexpr const char* integrator_names[] = {"dopri5", "dop853", "taylor"};
 
-void compare(const HybridModel& model, const Hybrid& hybrid, const std::vector<Result>& results, HybridTally& tally) {
+void compare(const HybridModel& model, const Hybrid& hybrid, const std::vector<Result>& results, Tally& tally) {
   double size = 1.0;
   for (const double value : results.front().final.x) size = std::max(size, std::abs(value));
   const double bound = 1e-8 * (10.0 + static_cast<double>(results.front().events.size())) * size;
@@ -168,8 +168,8 @@ Result HybridModel::run(HybridIntegrator integrator, double rtol, const std::vec
   return result;
 }
 
-HybridTally run_campaign(HybridFamily family, std::uint64_t first, std::uint64_t count) {
-  HybridTally tally;
+Tally run_campaign(HybridFamily family, std::uint64_t first, std::uint64_t count) {
+  Tally tally;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const Hybrid hybrid = draw(family, seed);
     try {

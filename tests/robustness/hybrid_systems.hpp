@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saltus/result/result.hpp"
+#include "tally.hpp"
 
 namespace saltus::robustness {
 
@@ -89,10 +90,6 @@ class HybridModel {
 [[nodiscard]] std::string complaint(const Hybrid& hybrid, const result::Result& result, double rtol);
 
 /// What has come of systems first to first + count - 1, with each integrator at 1e-8.
-struct HybridTally {
-  long systems = 0, completed = 0, outside_class = 0, sensitive = 0, events = 0, jumps = 0, accumulations = 0;
-  std::vector<std::string> failures;
-};
-[[nodiscard]] HybridTally run_campaign(HybridFamily family, std::uint64_t first, std::uint64_t count);
+[[nodiscard]] Tally run_campaign(HybridFamily family, std::uint64_t first, std::uint64_t count);
 
 }  // namespace saltus::robustness

@@ -16,7 +16,7 @@ namespace {
 class HybridSystems : public testing::TestWithParam<HybridFamily> {};
 
 TEST_P(HybridSystems, AreSolvedOrRefusedWithAStatus) {
-  const HybridTally tally = run_campaign(GetParam(), 0, 100);
+  const Tally tally = run_campaign(GetParam(), 0, 100);
   for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
   EXPECT_GE(10 * (tally.completed - tally.sensitive), 9 * tally.systems);
   EXPECT_GE(tally.jumps, 5000);
@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(Families, HybridSystems, testing::ValuesIn(hybrid_famil
                          [](const auto& instance) { return name(instance.param); });
 
 TEST(RegionSystems, AreSolvedOrRefusedWithAStatus) {
-  const RegionTally tally = run_region_campaign(0, 100);
+  const Tally tally = run_region_campaign(0, 100);
   for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
   EXPECT_GE(10 * (tally.completed - tally.not_unique - tally.sensitive), 9 * tally.systems);
   EXPECT_GE(tally.held_by_three, 100);
@@ -35,7 +35,7 @@ TEST(RegionSystems, AreSolvedOrRefusedWithAStatus) {
 /// Systems that were got wrong once: states went through walls that they had come to rest at.
 TEST(HybridSystems, OnesThatFailedOnceAreSolvedOrRefused) {
   for (const std::uint64_t seed : {1305U, 1495U, 1727U, 2213U}) {
-    const HybridTally tally = run_campaign(HybridFamily::jumps, seed, 1);
+    const Tally tally = run_campaign(HybridFamily::jumps, seed, 1);
     for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
   }
 }

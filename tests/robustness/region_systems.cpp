@@ -127,8 +127,8 @@ Result RegionModel::run(int order, double rtol, const std::vector<double>& start
   return result;
 }
 
-RegionTally run_region_campaign(std::uint64_t first, std::uint64_t count) {
-  RegionTally tally;
+Tally run_region_campaign(std::uint64_t first, std::uint64_t count) {
+  Tally tally;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const RegionSystem system = draw_regions(seed);
     const auto fail = [&](const std::string& what) {

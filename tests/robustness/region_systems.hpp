@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saltus/result/result.hpp"
+#include "tally.hpp"
 
 namespace saltus::robustness {
 
@@ -52,11 +53,6 @@ class RegionModel {
 /// fixed length with weights of their own do not confirm, as far as linear equations determine these.
 [[nodiscard]] std::string complaint(const RegionSystem& system, const result::Result& result, double rtol);
 
-struct RegionTally {
-  long systems = 0, completed = 0, outside_class = 0, not_unique = 0, sensitive = 0, events = 0;
-  long held_by_three = 0;  ///< rows with three and more active regions
-  std::vector<std::string> failures;
-};
-[[nodiscard]] RegionTally run_region_campaign(std::uint64_t first, std::uint64_t count);
+[[nodiscard]] Tally run_region_campaign(std::uint64_t first, std::uint64_t count);
 
 }  // namespace saltus::robustness
