@@ -103,6 +103,32 @@ TEST(DependentSurfaces, AStartWhereAllMeetIsHeld) {
   EXPECT_NEAR(result.final.x[2] - result.final.x[0], 0.5, 1e-8);
 }
 
+/// Kinks of drag and of an output at the same place, which do not hold anything: x = 0 is passed by all three together.
+TEST(DependentSurfaces, KinksArePassedWhileAllAreHeld) {
+  const std::string text = R"toml(
+[model]
+name = "three agents with drag"
+[states]
+x1 = -1
+x2 = -1
+x3 = -1
+[dynamics]
+x1 = "sign(x2 - x1) + sign(x3 - x1) + 1 - 0.5*abs(x1)"
+x2 = "sign(x1 - x2) + sign(x3 - x2) + 1 - 0.5*abs(x2)"
+x3 = "sign(x1 - x3) + sign(x2 - x3) + 1 - 0.5*abs(x3)"
+[outputs]
+spread = "abs(x1 - 2*x2 + x3) + abs(x2)"
+[simulate]
+until = 4
+)toml";
+  const Result result = simulated(text, fine);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_EQ(result.final.mode, (std::vector<int>{0, 0, 0}));
+  // x' = 1 + x/2 until x = 0 at 2 log 2, then x' = 1 - x/2.
+  const double x = 2.0 * (1.0 - std::exp(-0.5 * (4.0 - 2.0 * std::log(2.0))));
+  for (const double found : result.final.x) EXPECT_NEAR(found, x, 1e-10);
+}
+
 /// Where all meet, a mode that does not hold all of them must lead away.
 TEST(DependentSurfaces, AModeThatIsForcedIsChecked) {
   const std::string text = three_agents("x1 = 1\nx2 = 1\nx3 = 1", "4") + "[simulate.initial_mode]\n";

@@ -1,4 +1,5 @@
 // Counts every allocation of the executable. It replaces operator new: one source of a test program may include this.
+// Not inlined: g++ 12 takes free() for a mismatch where only one of both is.
 #pragma once
 
 #include <cstdlib>
@@ -8,15 +9,15 @@ namespace saltus::testing {
 inline long allocations = 0;
 }
 
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++saltus::testing::allocations;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
 /// As std::stable_sort asks for its buffer.
-void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
   ++saltus::testing::allocations;
   return std::malloc(size == 0 ? 1 : size);
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }

@@ -372,8 +372,13 @@ Transition undecided(const Surroundings& s, const ModeState& before, const Occas
   return transition;
 }
 
-bool gradients_depend(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
-  return ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, occasion.at_zero);
+/// Whether surfaces that were not all slid on before are at zero here, and their gradients depend on each other.
+bool meet_dependent(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+  // Two are dependent only where they touch, and those that were slid on before are not.
+  if (occasion.at_zero.size() < 3) return false;
+  const auto surfaces = acting_surfaces(s, state, occasion);
+  return surfaces.size() > 2 && (occasion.start || surfaces != state.sliding) &&
+         ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, surfaces);
 }
 
 }  // namespace
@@ -387,10 +392,8 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     // Rounding of the limit decides what the fields do there one by one.
     if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
   }
-  // Two are dependent only where they touch, and those that were slid on before are not.
   std::string problem;
-  if (occasion.at_zero.size() > 2 && (occasion.start || occasion.at_zero != before.sliding) &&
-      gradients_depend(surroundings, exact, occasion)) {
+  if (meet_dependent(surroundings, exact, occasion)) {
     if (auto decided = decide_dependent(surroundings, exact, occasion, problem)) return std::move(*decided);
     // The corners of more are not enumerated.
     constexpr std::size_t most_enumerated = 10;

@@ -1,6 +1,8 @@
 // Surfaces at zero whose gradients depend on each other: which of them are slid on, and which are left, as the solution
 // of a complementarity problem.
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -68,6 +70,33 @@ bool slides_as_usual(const Surroundings& s, const ModeState& state, const Occasi
                                         [&](int j) { return alpha[at(j)] >= -room && alpha[at(j)] <= 1.0 + room; });
 }
 
+/// Sets the sides of functions at zero that are not in `meeting` to where the motion of `moving` leaves them; each with
+/// the order of its zero.
+std::vector<std::pair<int, int>> set_followers(const Surroundings& s, const Occasion& occasion,
+                                               const std::vector<int>& meeting, const ModeState& moving,
+                                               ModeState& state) {
+  std::vector<std::pair<int, int>> followers;
+  ModeField field(s.kernel, s.affine_in_alpha);
+  field.enter(moving);
+  std::vector<double> xdot(at(s.kernel.states())), row(xdot.size());
+  field(occasion.t, occasion.x, xdot.data());
+  for (const int j : occasion.at_zero) {
+    if (contains(meeting, j)) continue;
+    double velocity = 0.0;
+    s.kernel.gradient(j, occasion.t, occasion.x, moving.alpha.data(), row.data(), &velocity);
+    double terms = std::abs(velocity);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (row[i] == 0.0) continue;
+      velocity += row[i] * xdot[i];
+      terms += std::abs(row[i] * xdot[i]);
+    }
+    const bool moves = std::abs(velocity) > 1e-9 * terms;
+    if (moves) set_surface(state, j, velocity > 0.0 ? 1 : -1, velocity > 0.0 ? 1.0 : 0.0);
+    followers.emplace_back(j, moves ? 1 : 2);
+  }
+  return followers;
+}
+
 }  // namespace
 
 std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
@@ -104,23 +133,51 @@ std::optional<Transition> check_dependent(const Surroundings& s, ModeState state
   return next;
 }
 
+std::vector<int> acting_surfaces(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+  std::vector<int> acting;
+  std::vector<double> alpha = state.alpha, below(at(s.kernel.states())), above(below.size());
+  for (const int j : occasion.at_zero) {
+    if (s.system.switching[at(j)].role == model::SwitchingRole::kink) continue;
+    double& own = alpha[at(j)];
+    const double before = std::exchange(own, 0.0);
+    s.kernel.field(occasion.t, occasion.x, alpha.data(), below.data());
+    own = 1.0;
+    s.kernel.field(occasion.t, occasion.x, alpha.data(), above.data());
+    own = before;
+    if (below != above) acting.push_back(j);
+  }
+  return acting;
+}
+
 std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
                                            std::string& problem) {
-  const auto& meeting = occasion.at_zero;
+  Occasion met = occasion;
+  met.at_zero = acting_surfaces(s, before, occasion);
+  const auto& meeting = met.at_zero;
   problem.clear();
   if (!are_plain_surfaces(s, meeting)) return std::nullopt;
   problem = "their selections multiply each other";
   ModeState state = before;
   state.higher.reset();
-  const auto velocities = additive_velocities(s, state, occasion);
+  // Functions that move nothing have a side, which follows from the motion.
+  for (const int j : occasion.at_zero) {
+    if (state.mode[at(j)] == 0 && !contains(meeting, j)) set_surface(state, j, 1, 1.0);
+  }
+  const auto velocities = additive_velocities(s, state, met);
   if (!velocities) return std::nullopt;
   const auto solution = switching::solve_complementarity(velocities->effects, velocities->constant, 1e-9);
   for (std::size_t i = 0; i < meeting.size(); ++i) {
     const int mode = solution.mode[i];
     set_surface(state, meeting[i], mode, mode == 0 ? 0.5 : mode > 0 ? 1.0 : 0.0);
   }
-  auto next = check_dependent(s, std::move(state), occasion, problem);
+  auto next = check_dependent(s, state, met, problem);
   if (!next) return std::nullopt;
+  const auto followers = set_followers(s, occasion, meeting, next->state, state);
+  if (!followers.empty()) {
+    next = check_dependent(s, std::move(state), met, problem);
+    if (!next) return std::nullopt;
+    for (const auto& [follower, order] : followers) next->zero_order[at(follower)] = order;
+  }
   for (const int j : meeting) {
     if (next->zero_order[at(j)] != 0 && contains(before.sliding, j)) next->zero_order[at(j)] = 2;
   }

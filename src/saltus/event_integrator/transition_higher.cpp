@@ -268,7 +268,8 @@ Transition decide_from_higher_order(const Surroundings& s, const ModeState& befo
   state.higher.reset();
   std::vector<double> point = x;
   std::string problem;
-  auto held = hold(s, state, occasion, point, problem);
+  auto held = leaves_derivative(before) ? hold(s, state, occasion, point, problem)
+                                        : hold_dependent(s, state, occasion, point, problem);
   return held ? std::move(*held) : failed(occasion, before, s, problem);
 }
 

@@ -76,6 +76,9 @@ bool slides_on_dependent(const Surroundings& s, const ModeState& state, const Oc
 std::optional<Transition> check_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
                                           std::string& problem);
 
+/// The surfaces at zero on which f jumps: neither kinks nor functions of outputs.
+std::vector<int> acting_surfaces(const Surroundings& s, const ModeState& state, const Occasion& occasion);
+
 /// The mode where surfaces are at zero whose gradients depend on each other, and whose selections enter additively: the
 /// solution of a complementarity problem, checked along its own field; nullopt where that fails, and why. `unique` is
 /// true where the problem is monotone up to scaling, else not decided.

@@ -72,8 +72,15 @@ bool symmetrise(const MatrixXd& effects, VectorXd& scale) {
   return (scaled - scaled.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * scaled.cwiseAbs().maxCoeff();
 }
 
-/// Two solutions differ by d with d^T D W d >= 0; where D W is symmetric and <= 0 that is W d = 0.
-bool velocity_is_unique(const MatrixXd& effects) {
+/// Two solutions differ by d with d^T D W d >= 0; where D W is symmetric and <= 0 that is W d = 0. Functions whose own
+/// selections move nothing follow from the others.
+bool velocity_is_unique(const MatrixXd& all) {
+  std::vector<Index> acting;
+  for (Index i = 0; i < all.cols(); ++i) {
+    if (all.col(i).cwiseAbs().maxCoeff() > 0.0) acting.push_back(i);
+  }
+  if (acting.empty()) return true;
+  const MatrixXd effects = all(acting, acting);
   VectorXd scale;
   if (!symmetrise(effects, scale)) return false;
   const MatrixXd scaled = scale.asDiagonal() * effects;

@@ -70,6 +70,17 @@ TEST(SelectionComplementarity, WithoutDominanceNothingIsSaidAboutUniqueness) {
   EXPECT_FALSE(solve_complementarity(effects, VectorXd::Constant(2, 0.5), 1e-9).unique_velocity);
 }
 
+/// The last function is moved by the others, and moves nothing.
+TEST(SelectionComplementarity, FunctionsThatMoveNothingLeaveTheVelocityUnique) {
+  MatrixXd effects(3, 3);
+  effects << -2.0, 1.0, 0.0,  //
+      1.0, -2.0, 0.0,         //
+      1.0, -1.0, 0.0;
+  const auto found = solve_complementarity(effects, VectorXd::Constant(3, 0.5), 1e-9);
+  EXPECT_TRUE(found.unique_velocity);
+  EXPECT_EQ(found.mode, (std::vector<int>{0, 0, 1}));
+}
+
 /// A rotation: monotone, with a diagonal of zero.
 TEST(SelectionComplementarity, ExtragradientStepsSolveARotation) {
   MatrixXd effects(2, 2);
