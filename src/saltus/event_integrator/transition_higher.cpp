@@ -258,7 +258,13 @@ Transition decide_from_higher_order(const Surroundings& s, const ModeState& befo
   for (const int j : occasion.touched) {
     if (!contains(before.sliding, j)) met.push_back(j);
   }
-  if (!met.empty() && !leaves_derivative(before)) return meet_dependent(s, before, occasion);
+  if (!leaves_derivative(before)) {
+    // Functions that move nothing are no reason to decide about those that are held.
+    const auto acting = acting_surfaces(s, before, occasion);
+    const bool acts = std::any_of(met.begin(), met.end(), [&](int j) { return contains(acting, j); });
+    if (acts || (!met.empty() && exits.empty())) return meet_dependent(s, before, occasion);
+    if (!exits.empty()) return leave_balances(s, before, occasion, x);
+  }
   if (met.size() > 1 || (!met.empty() && !exits.empty())) {
     return failed(occasion, before, s, "several things happen at once");
   }
