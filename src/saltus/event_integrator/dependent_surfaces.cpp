@@ -93,16 +93,7 @@ class DependentSearch {
   bool fields() {
     const std::size_t n = x_.size(), q = sliding_.size();
     std::vector<double> trial = alpha_, f(n);
-    base_.resize(n);
-    jumps_.resize(index(n), index(q));
-    for (const int j : sliding_) trial[at(j)] = 0.0;
-    s_.kernel.field(t_, x_.data(), trial.data(), base_.data());
-    for (std::size_t i = 0; i < q; ++i) {
-      trial[at(sliding_[i])] = 1.0;
-      s_.kernel.field(t_, x_.data(), trial.data(), f.data());
-      trial[at(sliding_[i])] = 0.0;
-      for (std::size_t k = 0; k < n; ++k) jumps_(index(k), index(i)) = f[k] - base_[k];
-    }
+    field_jumps(s_.kernel, t_, x_.data(), alpha_, sliding_, base_, jumps_);
     if (!is_finite(base_) || !jumps_.allFinite()) return reject("a field is not finite on the surfaces");
     // Corners with ones at every second, third, fourth place, and everywhere: products of selections show in these.
     for (std::size_t stride = 1; stride <= 4; ++stride) {

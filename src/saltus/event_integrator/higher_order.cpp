@@ -10,6 +10,24 @@
 
 namespace saltus::event_integrator {
 
+void field_jumps(const evaluation::ModelKernel& kernel, double t, const double* x, std::vector<double> alpha,
+                 const std::vector<int>& surfaces, std::vector<double>& base, Eigen::MatrixXd& jumps) {
+  const auto n = at(kernel.states());
+  base.resize(n);
+  jumps.resize(kernel.states(), static_cast<Eigen::Index>(surfaces.size()));
+  for (const int j : surfaces) alpha[at(j)] = 0.0;
+  kernel.field(t, x, alpha.data(), base.data());
+  std::vector<double> f(n);
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    alpha[at(surfaces[i])] = 1.0;
+    kernel.field(t, x, alpha.data(), f.data());
+    alpha[at(surfaces[i])] = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+      jumps(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = f[k] - base[k];
+    }
+  }
+}
+
 HigherOrderField::HigherOrderField(const evaluation::ModelKernel& kernel)
     : kernel_(kernel), functions_(kernel), motion_(at(kernel.states())), x_(motion_.size()) {}
 
@@ -109,22 +127,14 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
   auto& coupled = coupled_[b];
   const auto q = static_cast<Eigen::Index>(balance.rows.size());
   const auto r = static_cast<Eigen::Index>(balance.functions.size());
-  coupled.jumps.resize(kernel_.states(), q);
   coupled.effects.resize(r, q);
   coupled.constant.resize(r);
-  trial_ = functions_.alpha();
-  for (const std::size_t row : balance.rows) trial_[at(sliding_[row])] = 0.0;
-  std::vector<double> base(motion_.size()), jumped(motion_.size());
-  kernel_.field(t, x, trial_.data(), base.data());
+  std::vector<int> surfaces;
+  for (const std::size_t row : balance.rows) surfaces.push_back(sliding_[row]);
+  std::vector<double> base;
+  field_jumps(kernel_, t, x, functions_.alpha(), surfaces, base, coupled.jumps);
   for (Eigen::Index k = 0; k < r; ++k) {
     coupled.constant[k] = functions_.velocity(balance.functions[static_cast<std::size_t>(k)], base);
-  }
-  for (Eigen::Index i = 0; i < q; ++i) {
-    double& own = trial_[at(sliding_[balance.rows[static_cast<std::size_t>(i)]])];
-    own = 1.0;
-    kernel_.field(t, x, trial_.data(), jumped.data());
-    own = 0.0;
-    for (std::size_t s = 0; s < base.size(); ++s) coupled.jumps(static_cast<Eigen::Index>(s), i) = jumped[s] - base[s];
   }
   for (Eigen::Index k = 0; k < r; ++k) {
     const auto row = functions_.rows().row(static_cast<Eigen::Index>(balance.functions[static_cast<std::size_t>(k)]));
@@ -132,10 +142,8 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
   }
   const bool known = coupled.range.set(coupled.effects);
   too_many_ = too_many_ || !known;
-  coupled.selections = switching::central_selections(coupled.effects, coupled.constant);
-  for (std::size_t i = 0; i < balance.rows.size(); ++i) {
-    alpha_[at(sliding_[balance.rows[i]])] = coupled.selections[static_cast<Eigen::Index>(i)];
-  }
+  const auto selections = switching::central_selections(coupled.effects, coupled.constant);
+  for (std::size_t i = 0; i < surfaces.size(); ++i) alpha_[at(surfaces[i])] = selections[static_cast<Eigen::Index>(i)];
   const auto& facets = coupled.range.facets();
   // Each surface stands for some pairs of facets, of which the nearest one says when.
   for (std::size_t i = 0; i < balance.rows.size(); ++i) {
@@ -154,13 +162,12 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
         }
         return bits;
       };
-      const bool nearer_above = span.max<range.max, nearer_below = span.min> range.min;
-      if (nearer_above) {
+      if (span.max < range.max) {
         range.max = span.max;
         range.highest = corner(1);
         range.free_above = corner(0);
       }
-      if (nearer_below) {
+      if (span.min > range.min) {
         range.min = span.min;
         range.lowest = corner(-1);
         range.free_below = corner(0);

@@ -45,6 +45,11 @@ struct BalanceRange {
   double exactness = 1.0;                      ///< how much larger its rounding is than that of its terms
 };
 
+/// f with the selections of these surfaces at 0 (base, n_x), and what each of them adds to it at 1 (jumps, n_x x q).
+/// Cost: q + 1 evaluations of f.
+void field_jumps(const evaluation::ModelKernel& kernel, double t, const double* x, std::vector<double> alpha,
+                 const std::vector<int>& surfaces, std::vector<double>& base, Eigen::MatrixXd& jumps);
+
 /// The field on a higher-order set. Selections of a balance of one function lie on the line between the two corners
 /// where it falls and rises most, those of several functions next to 1/2; the field does not depend on which of the
 /// others are taken. Owns its work space. Cost: one evaluation of f per corner of every balance of one function, per
@@ -70,7 +75,7 @@ class HigherOrderField {
   struct Coupled {
     Eigen::MatrixXd jumps;    ///< n_x x q
     Eigen::MatrixXd effects;  ///< r x q
-    Eigen::VectorXd constant, selections;
+    Eigen::VectorXd constant;
     switching::SelectionRange range;
   };
 
