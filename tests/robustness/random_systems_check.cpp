@@ -299,8 +299,10 @@ bool shrinks_from_lap_to_lap(const std::vector<Event>& events, std::size_t i, st
     const std::size_t second = first + (k - i);
     if (!same_change(events[first], events[i]) || !same_change(events[second], events[k])) continue;
     const double duration = events[second].t - events[first].t;
-    // Four times are rounded: what t does not resolve cannot shrink any more.
-    if (!(duration > shorter - 2.0 * std::numeric_limits<double>::epsilon() * events[k].t)) return false;
+    // Four times, each known to the two units of t to which events are located (Locator::time_resolution): what t does
+    // not resolve cannot shrink any more.
+    constexpr double resolution = 2.0 * std::numeric_limits<double>::epsilon();
+    if (!(duration > shorter - 4.0 * resolution * events[k].t)) return false;
     shorter = duration;
     ++laps;
   }

@@ -142,7 +142,7 @@ bool Run::decide_passing(const Located& located, int slid, int reached) {
 
 /// What follows a switch that was recorded and entered.
 void Run::end_switch() {
-  control_.reset();
+  restart_control();
   const auto& times = options_.output.times;
   while (next_output_ < times.size() && times[next_output_] <= t_) ++next_output_;
   last_event_time_ = t_;

@@ -140,7 +140,7 @@ bool Run::go_on() {
   }
   if (!enter(transition) || !find_undefined_cells()) return false;
   recorder_.switched(t_, x_, before_, transition);
-  control_.reset();
+  restart_control();
   h_ = step_memory_.change(state_.mode, t_, h_);
   return true;
 }

@@ -193,6 +193,14 @@ class Run {
   [[nodiscard]] double smallest_step() const {
     return std::max(4.0 * rounding_unit * std::abs(t_), std::numeric_limits<double>::min());
   }
+  /// For the steps of the mode behind an event. While switches tighten no step is like one before.
+  void restart_control() {
+    if (switch_laps_.empty()) {
+      control_.restart();
+    } else {
+      control_.reset();
+    }
+  }
   [[nodiscard]] double span() const { return options_.until - options_.from; }
   /// Of the last attempt: discrete states take no part in it.
   [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }

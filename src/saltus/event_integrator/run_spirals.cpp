@@ -184,7 +184,7 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   recorder_.spiralled(t_, surfaces, {x_last, x_, before, state_}, transition);
   row(t_, x_);
   last_event_time_ = t_;
-  control_.reset();
+  restart_control();
   static_cast<void>(step_memory_.change(state_.mode, t_, h_));
   go_on_from_limit();
   h_scale_ = h_;

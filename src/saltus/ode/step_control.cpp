@@ -92,14 +92,20 @@ StepControl::StepControl(Method method) : method_(method), previous_logarithm_(l
 
 void StepControl::reset() { *this = StepControl(method_); }
 
+void StepControl::restart() {
+  reset();
+  previous_logarithm_.reset();
+}
+
 /// previous_error^beta / error^exponent; infinite for an error of 0.
 double StepControl::factor(double error_norm) {
   switch (method_) {
     case Method::dopri5: {
       const Gains gain = gains(method_);
       const double logarithm = std::log(error_norm);
-      const double factor = std::exp(gain.beta * previous_logarithm_ - gain.exponent * logarithm);
-      previous_logarithm_ = error_norm > least_error ? logarithm : least_logarithm;
+      const double counts = error_norm > least_error ? logarithm : least_logarithm;
+      const double factor = std::exp(gain.beta * previous_logarithm_.value_or(counts) - gain.exponent * logarithm);
+      previous_logarithm_ = counts;
       return factor;
     }
     case Method::dop853:

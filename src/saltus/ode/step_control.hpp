@@ -1,6 +1,8 @@
 // Step size selection.
 #pragma once
 
+#include <optional>
+
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::ode {
@@ -18,15 +20,19 @@ class StepControl {
   /// Factor (< 1) after a rejected step (error norm > 1, infinity included).
   [[nodiscard]] double rejected(double error_norm);
   void reset();
+  /// Behind an event, where the length of the next step is one that was right for such a step before: its error is
+  /// taken for that of the step before it, too, as in a row of like steps. As at a start (reset) dopri5 would shorten
+  /// the step behind it by 0.7, and from then on the first one of every mode that comes back.
+  void restart();
 
  private:
   [[nodiscard]] double factor(double error_norm);
   [[nodiscard]] double growth(double error_norm);
 
   Method method_;
-  double previous_logarithm_;   ///< of the error of the step before
-  double previous_root_ = 0.0;  ///< dop853: eighth root of that error, 0 = none
-  double change_ = 1.0;         ///< of the step since
+  std::optional<double> previous_logarithm_;  ///< of the error of the step before; nullopt: that of the next one
+  double previous_root_ = 0.0;                ///< dop853: eighth root of that error, 0 = none
+  double change_ = 1.0;                       ///< of the step since
   bool any_rejected_ = false;
   bool last_rejected_ = false;
 };

@@ -39,6 +39,19 @@ TEST_P(Control, no_increase_right_after_a_rejection) {
   EXPECT_GT(control.accepted(1e-6), 1.0);
 }
 
+TEST_P(Control, goes_on_behind_an_event_as_in_a_row_of_like_steps) {
+  for (const double error : {1e-6, 1e-4, 1e-2, 0.3, 1.0}) {
+    StepControl row(GetParam());
+    static_cast<void>(row.accepted(error));
+    StepControl behind(GetParam());
+    static_cast<void>(behind.accepted(1e-3));
+    behind.restart();
+    EXPECT_EQ(behind.accepted(error), row.accepted(error)) << error;
+    // From there on both have the same past.
+    EXPECT_EQ(behind.accepted(0.2), row.accepted(0.2)) << error;
+  }
+}
+
 TEST_P(Control, larger_errors_give_smaller_factors) {
   double previous = infinity;
   for (double error = 1e-8; error <= 1.0; error *= 1.7) {
