@@ -212,9 +212,11 @@ std::string jumps_of(const Hybrid& hybrid, const Event& event, State& highest) {
       const Wall& wall = hybrid.walls[k];
       if (!(std::abs(x[wall.position] - wall.place) <= near)) return "hits a wall away from it";
       if (!(wall.side * x[wall.velocity] <= near)) return "hits a wall from behind";
-      // What turns around within the rounding of the place, v^2 / (2 a) < 2e-16 for a up to 20, may stay at rest.
-      const bool rests = std::abs(x[wall.velocity]) <= 1e-7 && std::abs(event.x_after[wall.velocity]) <= 1e-12;
-      x[wall.velocity] *= rests ? 0.0 : -wall.restitution;
+      // What turns around within the rounding of the place, v^2 / (2 a) < 2e-16 for a up to 20 and v behind the impact,
+      // may stay at rest.
+      const double behind = -wall.restitution * x[wall.velocity];
+      const bool rests = std::abs(behind) <= 1e-7 && std::abs(event.x_after[wall.velocity]) <= 1e-12;
+      x[wall.velocity] = rests ? 0.0 : behind;
     } else if (kind == "threshold") {
       const Threshold& threshold = hybrid.thresholds[k];
       if (!(highest[threshold.state] >= threshold.value - near)) return "fires below the threshold";

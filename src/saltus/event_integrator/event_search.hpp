@@ -99,9 +99,10 @@ class EventSearch {
   /// Behind an accepted step that ends at (t, x): zeros at its start are history, unknown signs are read. Returns
   /// whether there were such signs.
   bool settle(double t, const double* x);
-  /// Behind a jump: the signs of all user functions, 0 = not known, and whether they vanish here. Takes effect with the
-  /// next enter().
-  void set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish);
+  /// Behind a jump: the signs of all user functions, 0 = not known, whether they vanish here, and with which orders (in
+  /// t; 1 without). Takes effect with the next enter().
+  void set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish,
+                      const std::vector<int>& orders = {});
   /// Time has passed since the user functions were at zero, or they have jumped.
   void forget_user_zeros() { user_vanishes_.assign(user_vanishes_.size(), false); }
   /// Held guards of jumps are not searched, their releases are. Takes effect with the next enter().
@@ -192,6 +193,7 @@ class EventSearch {
   std::vector<EventFunction> functions_;
   std::vector<int> user_sign_;       ///< kept over changes of mode
   std::vector<bool> user_vanishes_;  ///< at the start of the next step
+  std::vector<int> user_order_;      ///< of those zeros; all 1 if it is empty
   std::optional<double> zeros_at_;   ///< time of that start; nullopt: that of the next enter()
   std::vector<int> entered_;         ///< by cell: event function of the end at which it was entered, or -1
   std::vector<double> phi_, magnitude_, slope_;

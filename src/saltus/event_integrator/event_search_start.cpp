@@ -317,7 +317,8 @@ void EventSearch::read_user_signs() {
     const bool at_zero = user_vanishes_[user] || std::abs(point_[i]) <= noise_[i];
     if (!at_zero) sign = sign_of(point_[i]);
     function.sign = sign;
-    function.zero_order = at_zero ? 1 : 0;
+    const int order = user_vanishes_[user] && !user_order_.empty() ? user_order_[user] : 1;
+    function.zero_order = at_zero ? order : 0;
   }
 }
 
@@ -353,9 +354,11 @@ bool EventSearch::settle(double t, const double* x) {
   return true;
 }
 
-void EventSearch::set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish) {
+void EventSearch::set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish,
+                                 const std::vector<int>& orders) {
   user_sign_ = signs;
   user_vanishes_ = vanish;
+  user_order_ = orders;
   zeros_at_.reset();
 }
 
@@ -371,6 +374,7 @@ void EventSearch::set_user_sign(std::size_t function, int sign, double t, const 
   entry.offset = point_[function];
   user_sign_[user] = sign;
   user_vanishes_[user] = true;
+  if (!user_order_.empty()) user_order_[user] = 1;
   sort_functions();
 }
 

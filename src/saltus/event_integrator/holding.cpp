@@ -107,16 +107,31 @@ bool Holding::is_independent(const HeldGuard& guard, double t, const std::vector
   return true;
 }
 
-/// The kernel holds guards_, and x is there.
-std::optional<std::string> Holding::set(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+std::vector<evaluation::Hold> Holding::holds() const {
   std::vector<evaluation::Hold> holds;
   for (const auto& guard : guards_) holds.push_back(guard.hold);
+  return holds;
+}
+
+std::vector<double> Holding::free_field(double t, const std::vector<double>& alpha,
+                                        const std::vector<double>& x) const {
+  auto& kernel = const_cast<evaluation::ModelKernel&>(kernel_);
+  std::vector<double> f(x.size());
+  static_cast<void>(kernel.hold({}));
+  kernel.field(t, x.data(), alpha.data(), f.data());
+  // Known to the kernel already: this does not fail.
+  static_cast<void>(kernel.hold(holds()));
+  return f;
+}
+
+/// The kernel holds guards_, and x is there.
+std::optional<std::string> Holding::set(double t, const std::vector<double>& alpha, std::vector<double>& x) {
   const auto m = static_cast<Eigen::Index>(guards_.size());
   rows_.resize(m, kernel_.states());
   residual_.resize(m);
   normal_.resize(m, m);
   if (auto problem = moves_what_is_compared(t, alpha, x)) return problem;
-  auto done = const_cast<evaluation::ModelKernel&>(kernel_).hold(holds);
+  auto done = const_cast<evaluation::ModelKernel&>(kernel_).hold(holds());
   if (!done) return done.error().message;
   static_cast<void>(project(t, alpha, x));
   return std::nullopt;

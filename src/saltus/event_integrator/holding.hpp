@@ -48,11 +48,15 @@ class Holding {
   /// The largest |dg/dt| at a point, and there behind the jumps of the guards at rest: an impact at rest changes
   /// nothing.
   [[nodiscard]] double largest_rate(double t, const std::vector<double>& alpha, const std::vector<double>& x) const;
+  /// f as if nothing was held, n_x.
+  [[nodiscard]] std::vector<double> free_field(double t, const std::vector<double>& alpha,
+                                               const std::vector<double>& x) const;
 
  private:
   double find_rate_row(const evaluation::Hold& hold, const std::vector<int>& states, double t,
                        const std::vector<double>& alpha, std::vector<double>& x);
   bool is_independent(const HeldGuard& guard, double t, const std::vector<double>& alpha, std::vector<double>& x);
+  [[nodiscard]] std::vector<evaluation::Hold> holds() const;
   [[nodiscard]] std::optional<std::string> set(double t, const std::vector<double>& alpha, std::vector<double>& x);
   [[nodiscard]] std::optional<std::string> moves_what_is_compared(double t, const std::vector<double>& alpha,
                                                                   std::vector<double>& x);

@@ -152,7 +152,7 @@ bool Run::begin() {
   if (!cells_.empty()) cells_.locate(t_, x_.data(), std::vector<double>(at(kernel_.switching_functions()), 0.5));
   Landing& landing = landing_here();
   if (!begin_jumps(landing)) {
-    recorder_.row(t_, x_, state_.mode, state_.alpha);
+    recorder_.row(t_, x_, state_, state_.alpha);
     return false;
   }
   const auto decided = [&] { return decide_start(surroundings_, t_, x_.data(), h_scale_, options_.initial_mode); };
@@ -168,7 +168,7 @@ bool Run::begin() {
     state_.mode.assign(at(kernel_.switching_functions()), 0);
   if (start.transition.termination != Termination::completed) {
     state_.alpha.resize(state_.mode.size(), 0.0);
-    recorder_.row(t_, x_, state_.mode, state_.alpha);
+    recorder_.row(t_, x_, state_, state_.alpha);
     fail(start.transition.termination, start.transition.message);
     return false;
   }
@@ -176,7 +176,7 @@ bool Run::begin() {
   state_ = start.transition.state;
   landing.transition = start.transition;
   if (!enter(start.transition) || !settle_at_start(landing)) {
-    recorder_.row(t_, x_, state_.mode, state_.alpha);
+    recorder_.row(t_, x_, state_, state_.alpha);
     return false;
   }
   row(t_, x_);

@@ -22,6 +22,10 @@ struct ModeState {
 
   /// Of higher-order sliding, null otherwise: what else is held at zero, and which selections mean nothing.
   std::shared_ptr<const HigherOrderSet> higher = {};
+
+  /// Surfaces that guards of jumps at rest keep at zero (RestingSurfaces), ascending: k_j = 0, but nothing slides on
+  /// them, and their selections mean nothing.
+  std::vector<int> resting = {};
 };
 
 /// Sets mode, alpha and sliding of one surface.

@@ -54,14 +54,13 @@ Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& s
   }
 }
 
-void Recorder::row(double t, const std::vector<double>& x, const std::vector<int>& mode,
-                   const std::vector<double>& alpha, const HigherOrderSet* higher) {
-  append_row(t, x, alpha, number(mode, alpha, higher));
+void Recorder::row(double t, const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha) {
+  append_row(t, x, alpha, number(state, alpha, state.higher.get()));
 }
 
 void Recorder::row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event) {
   const bool known = before_switch_.event == first_event;
-  append_row(t, x, before.alpha, known ? before_switch_.mode : number(before.mode, before.alpha, nullptr));
+  append_row(t, x, before.alpha, known ? before_switch_.mode : number(before, before.alpha, nullptr));
 }
 
 void Recorder::append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode) {
@@ -78,12 +77,16 @@ void Recorder::append_row(double t, const std::vector<double>& x, const std::vec
   recording_.row_modes.push_back(mode);
 }
 
-std::size_t Recorder::number(const std::vector<int>& mode, const std::vector<double>& alpha,
-                             const HigherOrderSet* higher) {
-  if (higher == nullptr || higher->undetermined.empty()) return recording_.modes.append(mode, alpha);
+std::size_t Recorder::number(const ModeState& state, const std::vector<double>& alpha, const HigherOrderSet* higher) {
+  const bool all_determined = higher == nullptr || higher->undetermined.empty();
+  if (all_determined && state.resting.empty()) return recording_.modes.append(state.mode, alpha);
   determined_ = alpha;
-  for (const int j : higher->undetermined) determined_[at(j)] = std::numeric_limits<double>::quiet_NaN();
-  return recording_.modes.append(mode, determined_);
+  const auto leave_open = [&](const std::vector<int>& surfaces) {
+    for (const int j : surfaces) determined_[at(j)] = std::numeric_limits<double>::quiet_NaN();
+  };
+  if (!all_determined) leave_open(higher->undetermined);
+  leave_open(state.resting);
+  return recording_.modes.append(state.mode, determined_);
 }
 
 Recording::Event& Recorder::begin(double t, result::EventKind kind) {

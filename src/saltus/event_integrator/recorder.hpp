@@ -43,10 +43,9 @@ class Recorder {
  public:
   Recorder(const evaluation::ModelKernel& kernel, const model::System& system);
 
-  /// One row; `alpha` over switching functions (the sliding values at this point).
-  /// Selections of `higher` that nothing determines are recorded as NaN; outputs have the ones that they are handed.
-  void row(double t, const std::vector<double>& x, const std::vector<int>& mode, const std::vector<double>& alpha,
-           const HigherOrderSet* higher = nullptr);
+  /// One row in a mode; `alpha` over switching functions (the sliding values at this point).
+  /// Selections that nothing determines are recorded as NaN; outputs have the ones that they are handed.
+  void row(double t, const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha);
   /// A row with the mode before the events at t, of which this is the first one (or would be, if there are none).
   void row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event);
   /// A switch, if a listed switching function changes its mode; returns whether it did.
@@ -95,11 +94,9 @@ class Recorder {
   Recording::Event& begin(double t, result::EventKind kind);
   void append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode);
   [[nodiscard]] std::size_t keep(const std::vector<double>& x);
-  [[nodiscard]] std::size_t number(const std::vector<int>& mode, const std::vector<double>& alpha,
+  [[nodiscard]] std::size_t number(const ModeState& state, const std::vector<double>& alpha,
                                    const HigherOrderSet* higher);
-  [[nodiscard]] std::size_t number(const ModeState& state) {
-    return number(state.mode, state.alpha, state.higher.get());
-  }
+  [[nodiscard]] std::size_t number(const ModeState& state) { return number(state, state.alpha, state.higher.get()); }
   void set_states(Recording::Event& event, const std::vector<double>& x, const std::vector<double>& x_after);
   void set_passage(Recording::Event& event, const Passage& passage);
   void add_surface(Recording::Event& event, std::size_t surface);

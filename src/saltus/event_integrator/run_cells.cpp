@@ -45,10 +45,14 @@ bool Run::jump_with_cells() {
     // The projection leaves a few roundings of psi; a jump leaves something of its size.
     if (!cells_.moved_in(j) || std::abs(values[at(j)]) <= 64.0 * rounding_unit * magnitude[at(j)]) held.push_back(j);
   }
+  held.insert(held.end(), freed_.begin(), freed_.end());
+  RestingSurfaces resting;
+  if (!find_resting(resting)) return false;
   Transition& transition = transition_;
-  transition = decide_behind_jump(surroundings_, before, t_, x_.data(), h_scale_, held);
+  transition = decide_behind_jump(surroundings_, before, t_, x_.data(), h_scale_, held, resting);
   if (transition.termination == Termination::completed && transition.state.mode != before.mode) {
-    transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the jump of " +
+    transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the " +
+                        (cell_change_ == CellChange::jump ? "jump of " : "kink of ") +
                         cells_.moved_names(surroundings_.system);
   }
   search_.forget_user_zeros();

@@ -110,7 +110,7 @@ bool Run::pass(const Located& located, int surface) {
   stiffness_.reset();
   search_.enter(state_, transition_.zero_order, t_, x_.data());
   if (across) {
-    recorder_.row(t_, x_, state_.mode, field_.alpha());
+    recorder_.row(t_, x_, state_, field_.alpha());
     series_.note(t_, j, before_.mode[j]);
     h_ = step_memory_.change(state_.mode, j, t_, h_);
   } else {

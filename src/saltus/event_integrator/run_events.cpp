@@ -59,7 +59,7 @@ void Run::accumulates() {
 
 bool Run::change_mode(const Located& located) {
   cell_change_ = leave_cells(located);
-  if (cell_change_ == CellChange::jump) return jump_with_cells();
+  if (cell_change_ == CellChange::jump || change_resting_with_cells()) return running_ && jump_with_cells();
   Occasion& occasion = occasion_;
   occasion.t = t_;
   occasion.x = x_.data();
@@ -93,6 +93,7 @@ bool Run::change_mode(const Located& located) {
     occasion.at_zero.push_back(function.index);
     occasion.touched.push_back(function.index);
   }
+  const ModeState& from = freed_.empty() ? before_ : slid_on_freed(occasion);
   for (const int j : state_.sliding) {
     // Sliding goes on with the new gradient, or ends, behind a kink of its own psi.
     if (cell_change_ != CellChange::none && cells_.moved_in(j)) occasion.touched.push_back(j);
@@ -110,12 +111,12 @@ bool Run::change_mode(const Located& located) {
   note_ties(kernel_, state_, occasion);
   Transition& transition = transition_;
   const bool slope_holds = cells_.empty() && jumps_.none();  // no cell was left, and no guard released, here
-  if (!single_surface_.decide(before_, occasion, transition, slope_holds ? &slope_ : nullptr) &&
-      !surface_pair_.decide(before_, occasion, transition)) {
-    transition = decide_mode(surroundings_, before_, occasion);
+  if (!single_surface_.decide(from, occasion, transition, slope_holds ? &slope_ : nullptr) &&
+      !surface_pair_.decide(from, occasion, transition)) {
+    transition = decide_mode(surroundings_, from, occasion);
   }
   if (transition.termination == Termination::completed) {
-    other_continuations(surroundings_, before_, occasion, transition);
+    other_continuations(surroundings_, from, occasion, transition);
   }
   return go_on();
 }
@@ -197,7 +198,7 @@ Run::Step Run::handle(const Located& located) {
     return depart(arrival);
   }
   const bool released = release(located);
-  if (change_mode(located) && released) {
+  if (change_mode(located) && released && freed_.empty()) {
     Transition same;
     same.state = state_;
     same.zero_order.assign(state_.mode.size(), 0);

@@ -1,6 +1,7 @@
 // A run in progress: the state of the engine between its sources. integrate.cpp begins and ends it, run_steps.cpp takes
-// the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it, run_jumps.cpp and
-// run_limits.cpp jumps and their accumulation, run_spirals.cpp and run_shrinking.cpp that of switches.
+// the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it, run_jumps.cpp,
+// run_limits.cpp and run_resting.cpp jumps, their accumulation, and what is at rest behind it, run_spirals.cpp and
+// run_shrinking.cpp the accumulation of switches.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +23,7 @@
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/projected_fields.hpp"
 #include "saltus/event_integrator/recorder.hpp"
+#include "saltus/event_integrator/resting_surfaces.hpp"
 #include "saltus/event_integrator/single_surface.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/event_integrator/step_memory.hpp"
@@ -81,6 +83,10 @@ class Run {
     Transition transition;
   };
 
+  struct RestingGuards {
+    std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
+  };
+
   bool begin();
   Step attempt();
   [[nodiscard]] std::optional<Located> surface_within_rounding();
@@ -118,8 +124,10 @@ class Run {
     return next_choice_ < options_.choices.size() ? options_.choices[next_choice_] : Choice{-1};
   }
   bool change_mode(const Located& located);
+  const ModeState& slid_on_freed(Occasion& occasion);
   CellChange leave_cells(const Located& located);
   Located breaks_here();
+  bool change_resting_with_cells();
   bool jump_with_cells();
   bool find_undefined_cells();
   bool go_on();
@@ -155,6 +163,10 @@ class Run {
   bool decide_behind_jumps(Landing& landing);
   bool hold_resting(Landing& landing);
   bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
+  bool find_resting(RestingSurfaces& resting);
+  std::vector<int> surfaces_keeping(int function);
+  RestingGuards pressed_guards(const Landing& landing);
+  std::vector<HeldGuard> guards_kept_by_sliding(const Landing& landing, const RestingGuards& others);
   void give_directions(Landing& landing);
   [[nodiscard]] Landing& landing_here();
   [[nodiscard]] Landing& landing_at(const Located& located);
@@ -249,6 +261,7 @@ class Run {
   std::vector<int> user_signs_;   ///< under construction, as are
   std::vector<bool> user_zeros_;  ///< these
   std::vector<int> executed_;     ///< jumps, in their order
+  std::vector<int> freed_;        ///< surfaces that a guard has kept at zero, which was released by the event in hand
   Holding holding_;
   EventSeries jump_series_;
   EventSeries switch_laps_;                  ///< of switches, by surface and mode behind, while they tighten
@@ -267,6 +280,7 @@ class Run {
   double error_share_ = 1.0;             ///< the mean square over the continuous states to that over all, its root
   ModeState state_;
   ModeState before_;  ///< of the event being handled, as are the next four
+  ModeState slid_;    ///< before_ with what a released guard has kept at zero slid on
   std::vector<double> x_before_;
   std::vector<long> cells_before_;
   Occasion occasion_;

@@ -45,6 +45,7 @@ Run::Landing& Run::landing_here() {
   if (jumps_.none()) return landing;
   landing.executed.clear();
   landing.zeros = state_.sliding;
+  landing.zeros.insert(landing.zeros.end(), state_.resting.begin(), state_.resting.end());
   const auto n = at(kernel_.event_functions());
   for (auto* values : {&landing.zero_values, &values_.value, &values_.magnitude, &values_.slope}) values->resize(n);
   kernel_.functions(t_, x_.data(), state_.alpha.data(), landing.zero_values.data());
@@ -164,7 +165,9 @@ bool Run::decide_behind_jumps(Landing& landing) {
   for (const int function : landing.zeros) {
     if (function < kernel_.switching_functions()) surfaces.push_back(function);
   }
-  landing.transition = decide_behind_jump(surroundings_, state_, t_, x_.data(), h_scale_, surfaces);
+  RestingSurfaces resting;
+  if (!find_resting(resting)) return false;
+  landing.transition = decide_behind_jump(surroundings_, state_, t_, x_.data(), h_scale_, surfaces, resting);
   if (landing.transition.termination != Termination::completed) {
     fail(landing.transition.termination, landing.transition.message);
     return false;
@@ -203,71 +206,24 @@ Motion Run::motion_of(int function, const Landing& landing) {
   return fields.motion(state_.alpha, function, rate.value, scale);
 }
 
-/// Holds the guards of executed jumps, and those held before, that were left at zero without a velocity and are pressed
-/// on. Returns whether the field has changed.
-bool Run::hold_resting(Landing& landing) {
-  std::vector<HeldGuard> guards, loose;
-  std::vector<int> jumps;
-  for (const auto& executed : landing.executed.items()) {
-    if (!contains(jumps, executed.jump)) jumps.push_back(executed.jump);
-  }
-  for (const auto& guard : landing.held_before) {
-    if (!contains(jumps, guard.hold.jump)) jumps.push_back(guard.hold.jump);
-  }
-  const auto& vanish = search_.user_zeros();
-  for (const int jump : jumps) {
-    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
-      const int function = kernel_.jump_guard(jump, g);
-      const bool at_zero = vanish[at(function - kernel_.switching_functions())];
-      if (!at_zero || jumps_.is_discrete_guard(function)) continue;
-      const Motion motion = motion_of(function, landing);
-      const int drift = static_cast<int>(motion.side.drift);
-      const int inward = jumps_.trigger_sign(jump, g, jump_point(), drift);
-      if (motion.order < 2 || inward == 0 || drift != inward) continue;
-      auto& list = holding_.can_rest({jump, function}, t_, state_.alpha, x_) ? guards : loose;
-      list.push_back({{jump, function}, inward});
-    }
-  }
-  if (guards.empty()) return false;
-  for (const auto& guard : guards) {
-    const bool known = std::any_of(landing.held_before.begin(), landing.held_before.end(),
-                                   [&](const HeldGuard& other) { return other.hold.function == guard.hold.function; });
-    if (!known && !contains(landing.resting, guard.hold.jump)) landing.resting.push_back(guard.hold.jump);
-  }
-  return hold(std::move(guards), std::move(loose), landing);
-}
-
-/// Puts the state on the guards and keeps it there; false if that fails, with the status set.
-bool Run::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing) {
-  for (const auto* list : {&guards, &loose}) {
-    for (const auto& guard : *list) {
-      if (!contains(landing.zeros, guard.hold.function)) landing.zeros.push_back(guard.hold.function);
-    }
-  }
-  if (const auto problem = holding_.hold(std::move(guards), std::move(loose), t_, state_.alpha, x_)) {
-    fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", t_, *problem));
-    return false;
-  }
-  search_.set_held(holding_.guards(), holding_.followers());
-  read_user_signs(landing);
-  return true;
-}
-
 /// Signs of functions that are at zero behind jumps: those they get along the motion.
 void Run::give_directions(Landing& landing) {
   auto& values = values_.value;
   kernel_.functions(t_, x_.data(), state_.alpha.data(), values.data());
   auto& signs = user_signs_ = search_.user_signs();
   auto& vanish = user_zeros_ = search_.user_zeros();
+  std::vector<int> orders(signs.size(), 1);
   for (std::size_t user = 0; user < signs.size(); ++user) {
     const int function = kernel_.switching_functions() + static_cast<int>(user);
     if (!vanish[user] || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
-    signs[user] = static_cast<int>(motion_of(function, landing).side.drift);
+    const Motion motion = motion_of(function, landing);
+    signs[user] = static_cast<int>(motion.side.drift);
+    orders[user] = std::clamp(motion.order, 1, 2);  // as many as the search divides out
     // A jump that leaves it here leaves it this sign.
     if (!contains(landing.zeros, function)) landing.zeros.push_back(function);
     landing.zero_values[at(function)] = values[at(function)];
   }
-  search_.set_user_signs(signs, vanish);
+  search_.set_user_signs(signs, vanish, orders);
   search_.enter(state_, landing.transition.zero_order, t_, x_.data());
 }
 

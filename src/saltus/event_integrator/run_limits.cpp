@@ -1,6 +1,7 @@
 // Accumulation of jumps: its limit, and what holds behind it.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -38,9 +39,11 @@ void Run::note_series(const Landing& landing) {
 
 /// Held guards on which nothing presses any more are free; returns whether there were any.
 bool Run::release(const Located& located) {
+  freed_.clear();
   std::vector<HeldGuard> guards = holding_.guards();
   auto signs = search_.user_signs();
   std::vector<bool> vanish(signs.size(), false);
+  std::vector<int> orders(signs.size(), 1);
   for (const auto function : located.functions) {
     const auto& entry = search_.functions()[function];
     if (entry.kind == FunctionKind::user) vanish[at(entry.index - kernel_.switching_functions())] = true;
@@ -57,9 +60,15 @@ bool Run::release(const Located& located) {
     const auto user = at(guard.hold.function - kernel_.switching_functions());
     signs[user] = -guard.inward;
     vanish[user] = true;
+    orders[user] = 2;  // at least: nothing presses on it
   }
   search_.set_held(holding_.guards(), holding_.followers());
-  search_.set_user_signs(signs, vanish);
+  search_.set_user_signs(signs, vanish, orders);
+  RestingSurfaces resting;
+  if (!state_.resting.empty() && find_resting(resting)) {
+    std::set_difference(state_.resting.begin(), state_.resting.end(), resting.surfaces.begin(), resting.surfaces.end(),
+                        std::back_inserter(freed_));
+  }
   return true;
 }
 

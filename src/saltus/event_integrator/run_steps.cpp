@@ -15,7 +15,7 @@ using result::Termination;
 
 void Run::row(double t, const std::vector<double>& x) {
   if (!state_.sliding.empty()) field_(t, x.data(), row_slope_.data());
-  recorder_.row(t, x, state_.mode, state_.sliding.empty() ? state_.alpha : field_.alpha(), state_.higher.get());
+  recorder_.row(t, x, state_, state_.sliding.empty() ? state_.alpha : field_.alpha());
 }
 
 /// Rows at requested times in (t_, t_end), from the dense output of the step under way.

@@ -90,6 +90,7 @@ void read_signs(const Surroundings& s, double t, const double* x, const Projecte
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     if (s.system.switching[at(j)].role == model::SwitchingRole::region) continue;
+    if (std::binary_search(state.resting.begin(), state.resting.end(), j)) continue;
     if (s.system.switching[at(j)].role == model::SwitchingRole::discrete) {
       read_discrete(s, t, x, j, state);
       continue;
@@ -171,8 +172,9 @@ struct Point {
 };
 
 /// A point as one at which the solution starts: the surfaces through it, and the sides of the others that it is on.
-/// `held` are taken to pass through it.
-Point read_point(const Surroundings& s, double t, const double* x, double time_scale, const std::vector<int>& held) {
+/// `held` are taken to pass through it, `resting` to stay there.
+Point read_point(const Surroundings& s, double t, const double* x, double time_scale, const std::vector<int>& held,
+                 const RestingSurfaces& resting = {}) {
   Point point;
   auto& [occasion, state] = point;
   occasion.t = t;
@@ -183,6 +185,11 @@ Point read_point(const Surroundings& s, double t, const double* x, double time_s
   const auto n_psi = at(s.kernel.switching_functions());
   state.mode.assign(n_psi, 1);
   state.alpha.assign(n_psi, 1.0);
+  state.resting = resting.surfaces;
+  for (std::size_t i = 0; i < resting.surfaces.size(); ++i) {
+    state.mode[at(resting.surfaces[i])] = 0;
+    state.alpha[at(resting.surfaces[i])] = resting.alpha[i];
+  }
   read_signs(s, t, x, fields, held, state, occasion.at_zero);
   note_ties(s.kernel, state, occasion);
   return point;
@@ -252,15 +259,18 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
 }
 
 Transition decide_behind_jump(const Surroundings& s, const ModeState& before, double t, const double* x,
-                              double time_scale, const std::vector<int>& held) {
+                              double time_scale, const std::vector<int>& held, const RestingSurfaces& resting) {
   Transition transition;
   if (s.kernel.switching_functions() == 0) {  // nothing to decide
     transition.beside.assign(x, x + s.kernel.states());
     return transition;
   }
-  auto [occasion, state] = read_point(s, t, x, time_scale, held);
+  auto [occasion, state] = read_point(s, t, x, time_scale, held, resting);
   // Selections of the sliding motion before are where a search for the new ones starts.
-  for (const int j : held) state.alpha[at(j)] = before.alpha[at(j)];
+  for (const int j : held) {
+    const bool rests = std::binary_search(state.resting.begin(), state.resting.end(), j);
+    if (!rests) state.alpha[at(j)] = before.alpha[at(j)];
+  }
   if (!finite_at_start(s, t, x, state, transition)) return transition;
   if (signs_say_it_all(s, occasion)) {
     transition.zero_order.assign(state.mode.size(), 0);

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "saltus/event_integrator/resting_surfaces.hpp"
 #include "saltus/event_integrator/transition.hpp"
 
 namespace saltus::event_integrator {
@@ -20,9 +21,10 @@ struct Start {
                                  const std::vector<std::pair<int, int>>& forced);
 
 /// The mode behind a jump of the model or of the state at (t, x): as at a start, but surfaces of `held` (located here,
-/// or sliding, and still at zero) are at zero whatever is left of their psi.
+/// or sliding, and still at zero) are at zero whatever is left of their psi. Those of `resting` are not decided.
 [[nodiscard]] Transition decide_behind_jump(const Surroundings& surroundings, const ModeState& before, double t,
-                                            const double* x, double time_scale, const std::vector<int>& held);
+                                            const double* x, double time_scale, const std::vector<int>& held,
+                                            const RestingSurfaces& resting = {});
 
 /// Selections read pointwise at (t, x), inner functions first; those at zero keep what they have in `alpha`, functions
 /// of discrete states have what is written.

@@ -38,6 +38,7 @@ void begin_transition(const ModeState& before, const Occasion& occasion, std::si
   state.alpha = before.alpha;
   state.sliding = before.sliding;
   state.higher.reset();
+  state.resting = before.resting;
   transition.termination = result::Termination::completed;
   transition.message.clear();
   // Both fields are finite here; where they are not behind the projection onto the surface, this point is as good.
