@@ -201,7 +201,7 @@ const std::vector<Scaling>& atlas_scalings(Tree tree) {
 AtlasTable compare_tree(Tree tree, const AtlasOptions& options) {
   AtlasTable table;
   AtlasInstances instances(options.seed);
-  const auto& scalings = atlas_scalings(tree);
+  const auto& of_tree = atlas_scalings(tree);
   for (long i = 0; i < options.instances; ++i) {
     AtlasInstance one = instances.next(tree);
     const TreeAnswer answer = ask_tree(tree, one);
@@ -212,8 +212,8 @@ AtlasTable compare_tree(Tree tree, const AtlasOptions& options) {
       ++table[{impossible ? "DU" : answer.leaf + " undecided", 0}].instances;
       continue;
     }
-    for (std::size_t s = 0; s < std::min(scalings.size(), options.scalings); ++s) {
-      const Scaling kappa = one.kappa(scalings[s]);
+    for (std::size_t s = 0; s < std::min(of_tree.size(), options.scalings); ++s) {
+      const Scaling kappa = one.kappa(of_tree[s]);
       if ((tree == Tree::edge || tree == Tree::fold) && !(Derivatives(one).trace(kappa) < 0.0)) continue;
       auto expected = answer;
       std::string leaf = answer.leaf;

@@ -139,7 +139,7 @@ TEST_P(MultiplierOrder, OfSelectionsIsThatOfTheStagesAndOfTheMethodAtTheEnds) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<MultiplierOrder::ParamType>& test) {
+std::string method_and_form(const testing::TestParamInfo<MultiplierOrder::ParamType>& test) {
   const auto& [i, form] = test.param;
   return std::string(runge_kutta_methods[i].name) + (form == Reformulation::step ? "Step" : "Stewart");
 }
@@ -147,7 +147,7 @@ std::string name_of(const testing::TestParamInfo<MultiplierOrder::ParamType>& te
 INSTANTIATE_TEST_SUITE_P(Table, MultiplierOrder,
                          testing::Combine(testing::Range<std::size_t>(0, runge_kutta_methods.size()),
                                           testing::Values(Reformulation::step, Reformulation::stewart)),
-                         name_of);
+                         method_and_form);
 
 class SensitivityOrder : public testing::TestWithParam<std::size_t> {};
 

@@ -38,12 +38,12 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
   return largest;
 }
 
-struct Measurement {
+struct LayerMeasurement {
   double epsilon = 0.0;
   double error = 0.0;
 };
 
-double slope_of(const std::vector<Measurement>& points) {
+double slope_of(const std::vector<LayerMeasurement>& points) {
   double mean_x = 0.0, mean_y = 0.0, covariance = 0.0, variance = 0.0;
   for (const auto& p : points) {
     mean_x += std::log(p.epsilon) / static_cast<double>(points.size());
@@ -70,7 +70,7 @@ class Smoothed : public testing::TestWithParam<SmoothedCase> {};
 TEST_P(Smoothed, ConvergesToTheEventEngineWithOrderOne) {
   const ReferenceProblem& problem = reference(GetParam().model);
   const Simulator model = Simulator::from_reference(problem);
-  std::vector<Measurement> points;
+  std::vector<LayerMeasurement> points;
   std::string table;
   constexpr int levels = 7;
   for (int level = 0; level < levels; ++level) {
@@ -143,7 +143,7 @@ TEST(SmoothedRegions, ConvergeWhereIndicatorsDependOnEachOther) {
     options.atol = 1e-13;
     const Result event = model.run(options);
     ASSERT_EQ(event.status.termination, result::Termination::completed) << event.status.message;
-    std::vector<Measurement> points;
+    std::vector<LayerMeasurement> points;
     for (const double epsilon : {1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6}) {
       const Result result = model.run(smoothed(options, epsilon));
       ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "problems/value_or_throw.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/build.hpp"
 
@@ -13,12 +14,6 @@ namespace {
 
 const SourceLocation here{.file = "relabelled"};
 constexpr const char* prefix = "relabelled";
-
-template <class T>
-T value_or_throw(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(to_text(expected.error()));
-  return *std::move(expected);
-}
 
 expression::NodePtr scaled(double factor, const expression::NodePtr& node) {
   const expression::Binary product{expression::BinaryOperator::multiply, expression::number(factor, here), node};

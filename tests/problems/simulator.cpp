@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "problems/value_or_throw.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/toml_model.hpp"
 #include "saltus/model/build.hpp"
@@ -12,12 +13,6 @@
 
 namespace saltus::problems {
 namespace {
-
-template <class T>
-T value_or_throw(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(to_text(expected.error()));
-  return *std::move(expected);
-}
 
 io::ModelFile read_from_catalogue(const std::string& name) {
   return value_or_throw(io::read_model(std::filesystem::path(SALTUS_SOURCE_DIR "/models") / (name + ".toml")));

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "hybrid_systems.hpp"
+#include "states.hpp"
 
 namespace saltus::robustness {
 namespace {
@@ -13,7 +14,6 @@ namespace {
 using result::Event;
 using result::EventKind;
 using result::Result;
-using State = std::vector<double>;
 
 double value(const Course& course, double t) {
   if (course.times.empty()) return course.constant + course.amplitude * std::sin(course.frequency * t);
@@ -32,18 +32,6 @@ double slope(const Course& course, double t) {
   const auto next = std::upper_bound(course.times.begin(), course.times.end(), t);
   const auto k = static_cast<std::size_t>(next - course.times.begin());
   return (course.values[k] - course.values[k - 1]) / (course.times[k] - course.times[k - 1]);
-}
-
-double size_of(const State& x) {
-  double size = 1.0;
-  for (const double entry : x) size = std::max(size, std::abs(entry));
-  return size;
-}
-
-double distance(const State& a, const State& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
 }
 
 /// A stretch of one mode: its laws' signs (0: sticks), and the walls that hold.
@@ -155,12 +143,6 @@ class Stretch {
   std::vector<int> signs_;
   std::vector<bool> held_;
 };
-
-State moved(const State& x, double h, const State& slope_there) {
-  State y = x;
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += h * slope_there[i];
-  return y;
-}
 
 /// Runge-Kutta steps of one length from row to row, halved until two lengths agree.
 std::string follow(const Stretch& stretch, double t, double t_next, const State& x, const State& x_next, double rtol) {

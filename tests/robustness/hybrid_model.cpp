@@ -9,6 +9,7 @@
 #include "hybrid_systems.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/builder.hpp"
+#include "states.hpp"
 
 namespace saltus::robustness {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 using casadi::SX;
 using result::Result;
 using result::Termination;
-
-constexpr double end_time = 10.0;
 
 SX course_of(model::Builder& builder, const Course& course, int& tables) {
   if (course.times.empty()) return course.constant + course.amplitude * sin(course.frequency * builder.time());
@@ -85,12 +84,6 @@ model::System to_model(const Hybrid& hybrid) {
   return std::move(*system);
 }
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
-
 /// How far neighbours of the start part, per unit of their distance; infinite where one meets another fate.
 double sensitivity(const HybridModel& model, const Hybrid& hybrid, const Result& reference, double bound) {
   double largest = 1.0;
@@ -106,12 +99,9 @@ double sensitivity(const HybridModel& model, const Hybrid& hybrid, const Result&
   return largest;
 }
 
-constexpr const char* integrator_names[] = {"dopri5", "dop853", "taylor"};
-
 void compare(const HybridModel& model, const Hybrid& hybrid, const std::vector<Result>& results, Tally& tally) {
-  double size = 1.0;
-  for (const double value : results.front().final.x) size = std::max(size, std::abs(value));
-  const double bound = 1e-8 * (10.0 + static_cast<double>(results.front().events.size())) * size;
+  const double bound =
+      1e-8 * (10.0 + static_cast<double>(results.front().events.size())) * size_of(results.front().final.x);
   const bool agree = std::all_of(results.begin(), results.end(), [&](const Result& result) {
     return distance(results.front().final.x, result.final.x) <= bound;
   });

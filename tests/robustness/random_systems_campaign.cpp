@@ -10,6 +10,7 @@
 
 #include "random_systems_check.hpp"
 #include "random_systems_model.hpp"
+#include "states.hpp"
 
 namespace saltus::robustness {
 namespace {
@@ -19,21 +20,9 @@ using result::Termination;
 
 constexpr Accuracy standard_accuracies[] = {
     {Integrator::dopri5, 1e-8}, {Integrator::dop853, 1e-8}, {Integrator::taylor, 1e-8}};
-constexpr const char* integrator_names[] = {"dopri5", "dop853", "taylor"};
 constexpr Accuracy fine{Integrator::dop853, 1e-11};
 
 bool is_completed(const Result& result) { return result.status.termination == Termination::completed; }
-
-bool is_unique(const Result& result) {
-  return std::all_of(result.events.begin(), result.events.end(),
-                     [](const result::Event& event) { return event.unique.value_or(false); });
-}
-
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
 
 /// How far neighbours end up, per unit of their distance; infinite if one meets another fate. Neighbours start
 /// elsewhere by as much as no run resolves (1e-8) and as the compared runs may be wrong by (`bound`), or their surfaces

@@ -9,31 +9,13 @@
 #include <fmt/format.h>
 
 #include "random_systems_field.hpp"
+#include "states.hpp"
 
 namespace saltus::robustness {
 namespace {
 
 using result::Event;
 using result::Result;
-using State = std::vector<double>;
-
-double size_of(const State& x) {
-  double size = 1.0;
-  for (const double value : x) size = std::max(size, std::abs(value));
-  return size;
-}
-
-double distance(const State& a, const State& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
-
-State moved(const State& x, double h, const State& slope) {
-  State y = x;
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += h * slope[i];
-  return y;
-}
 
 /// One mode's checks at points and over stretches.
 class ModeCheck {

@@ -8,6 +8,7 @@
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/model/builder.hpp"
 #include "saltus/reformulation/dcs.hpp"
+#include "states.hpp"
 
 namespace saltus::robustness {
 namespace {

@@ -21,8 +21,6 @@ struct Elements {
   int stages = 4;
   long steps = 800;
 };
-/// The simulations start at 0 and end here.
-inline constexpr double end_time = 10.0;
 
 /// The compiled system: states x0, x1, …; switching functions s0, s1, … in the order of the random system.
 class Model {

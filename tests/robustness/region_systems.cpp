@@ -10,6 +10,7 @@
 #include "dice.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/builder.hpp"
+#include "states.hpp"
 
 namespace saltus::robustness {
 namespace {
@@ -18,23 +19,10 @@ using casadi::SX;
 using result::Result;
 using result::Termination;
 
-constexpr double end_time = 10.0;
-
 std::vector<double> point(Dice& dice, std::size_t n) {
   std::vector<double> x(n);
   for (auto& entry : x) entry = dice.coefficient(1.0);
   return x;
-}
-
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
-
-bool is_unique(const Result& result) {
-  return std::all_of(result.events.begin(), result.events.end(),
-                     [](const auto& event) { return event.unique.value_or(false); });
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ double distance(const Result& a, const Result& b) {
   return largest / size;
 }
 
-struct Tally {
+struct ElementTally {
   int compared = 0;
   int left_out = 0;  ///< not unique (also in the form), accumulating, outside the class, or too sensitive
   std::string disagreements;
@@ -56,7 +56,7 @@ struct Campaign {
   std::uint64_t systems = 100;
 };
 
-void compare(const Campaign& campaign, std::uint64_t seed, Tally& tally) {
+void compare(const Campaign& campaign, std::uint64_t seed, ElementTally& tally) {
   const RandomSystem system = draw(campaign.family, seed);
   const Model model(system);
   const Result tight = model.run({Integrator::dop853, 1e-12}, system.start);
@@ -83,7 +83,7 @@ class RandomElements : public testing::TestWithParam<Campaign> {};
 
 TEST_P(RandomElements, AgreeWithTheEventEngineWhereTheSolutionIsUnique) {
   const Campaign& campaign = GetParam();
-  Tally tally;
+  ElementTally tally;
   for (std::uint64_t seed = 0; seed < campaign.systems; ++seed) compare(campaign, seed, tally);
   EXPECT_EQ(tally.disagreements, "") << tally.compared << " compared, " << tally.left_out << " left out";
   EXPECT_GE(10 * static_cast<std::uint64_t>(tally.compared), 7 * campaign.systems);

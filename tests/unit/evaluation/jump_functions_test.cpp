@@ -11,7 +11,7 @@ namespace {
 using casadi::SX;
 
 /// One switching function, an event with one guard and three jumps: a condition of two comparisons, times, a guard.
-model::System example() {
+model::System jumping_example() {
   model::System s = blank_system(3.0, 1);
   model::SwitchingFunction surface;
   surface.psi = s.x(0);
@@ -51,7 +51,7 @@ model::System example() {
 }
 
 TEST(JumpFunctions, AreNumberedBehindTheGuardsOfEventsAndEvaluated) {
-  const auto kernel = ModelKernel::compile(example());
+  const auto kernel = ModelKernel::compile(jumping_example());
   ASSERT_TRUE(kernel.has_value());
   ASSERT_EQ(kernel->event_functions(), 5);
   EXPECT_EQ(kernel->jump_guard(0, 0), 2);
@@ -81,7 +81,7 @@ TEST(JumpFunctions, AreNumberedBehindTheGuardsOfEventsAndEvaluated) {
 }
 
 TEST(JumpFunctions, OfTimeAndDiscreteStatesOnlyIsAFunctionOfTimeBetweenJumps) {
-  model::System s = example();
+  model::System s = jumping_example();
   s.discrete_states = {true, false};
   s.events[0].guards = SX::vertcat({s.t - s.x(0), s.t - s.x(1), s.u - s.t * s.x(0)});
   s.events[0].guard_alpha = SX::sym("g", 3);

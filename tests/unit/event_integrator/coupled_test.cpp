@@ -18,7 +18,7 @@ using casadi::SX;
 using model::Builder;
 using result::Termination;
 
-Integration run(Builder& builder, double until, const std::vector<std::pair<int, int>>& forced = {}) {
+Integration run_coupled(Builder& builder, double until, const std::vector<std::pair<int, int>>& forced = {}) {
   IntegrationOptions options;
   options.tolerances = {1e-10, 1e-12};
   options.until = until;
@@ -38,7 +38,7 @@ TEST(Coupled, AnExitOnWhichBothFieldsAreTangentGoesWhereTheyTurn) {
     const SX y_rate = 0.5 + 2 * alpha_x - 2 * alpha_y;
     b.dynamics("x", (1 - alpha_y) + alpha_y * (b.time() - c) - 0.3 * y_rate);
     b.dynamics("y", y_rate);
-    const auto result = run(b, c + 1.0, {{0, 0}, {1, 0}});
+    const auto result = run_coupled(b, c + 1.0, {{0, 0}, {1, 0}});
     ASSERT_EQ(result.status.termination, Termination::completed) << c << ": " << result.status.message;
     EXPECT_EQ(result.final.mode, (result::Mode{1, 1})) << c;
     EXPECT_NEAR(result.final.x[0] + 0.3 * result.final.x[1], 0.5, 1e-9) << c;
@@ -55,7 +55,7 @@ TEST(Coupled, BehindACrossingNestedFunctionsHaveTheSelectionsOfTheNewSliding) {
   b.dynamics("x", -1 + 1.5 * b.sign(z + 0.5 * side));
   b.dynamics("y", -0.15 - 0.65 * b.sign(x) - side);
   b.dynamics("z", 0);
-  const auto result = run(b, 2);
+  const auto result = run_coupled(b, 2);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_NEAR(result.final.x[0], -0.25 * (2.0 - 1.0 / 2.2), 1e-9);
 }
@@ -87,7 +87,7 @@ TEST(Coupled, SurfacesThatCoincideAreSlidOnTogether) {
     const SX y = b.state("y", {-2});
     b.dynamics("x", 0.3 * b.time() - first * b.sign(x * (1 + 0.1 * y)) - second * b.sign(x));
     b.dynamics("y", 1);
-    const auto result = run(b, 6);
+    const auto result = run_coupled(b, 6);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     EXPECT_EQ(result.events.back().kind, result::EventKind::leave_sliding);
     EXPECT_NEAR(result.events.back().t, 5.0, 1e-9);
@@ -107,7 +107,7 @@ TEST(Coupled, SlidingOfSecondOrderIsNotTakenForACrossing) {
   b.dynamics("x", 0.2 + alpha_y - 0.9 * alpha_x);
   b.dynamics("y", 2 * (1 - alpha_x) + alpha_x * z);
   b.dynamics("z", 1 - 1.3 * alpha_y);
-  const auto result = run(b, 10, {{0, 0}, {1, 0}});
+  const auto result = run_coupled(b, 10, {{0, 0}, {1, 0}});
   EXPECT_TRUE(result.status.termination == Termination::outside_class ||
               result.status.termination == Termination::completed)
       << result.status.message;

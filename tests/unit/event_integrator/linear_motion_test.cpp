@@ -3,11 +3,11 @@
 #include "saltus/event_integrator/linear_motion.hpp"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "systems.hpp"
 
@@ -15,7 +15,6 @@ namespace saltus::event_integrator {
 namespace {
 
 using casadi::SX;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 evaluation::ModelKernel compiled(const model::System& system) {
   auto kernel = evaluation::ModelKernel::compile(system);

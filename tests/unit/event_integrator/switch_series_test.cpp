@@ -2,14 +2,13 @@
 #include "saltus/event_integrator/switch_series.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
+
 namespace saltus::event_integrator {
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 TEST(SwitchSeries, LapsThatHalveUntilNoModelLivesThereHaveALimit) {
   SwitchSeries series(10.0);

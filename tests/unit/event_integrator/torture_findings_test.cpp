@@ -14,8 +14,8 @@ using result::EventKind;
 using result::Mode;
 using result::Termination;
 
-Integration run(const model::System& system, double until, double rtol = 1e-8,
-                ode::Method method = ode::Method::dop853) {
+Integration run_found(const model::System& system, double until, double rtol = 1e-8,
+                      ode::Method method = ode::Method::dop853) {
   auto kernel = evaluation::ModelKernel::compile(system);
   EXPECT_TRUE(kernel.has_value());
   IntegrationOptions options;
@@ -34,7 +34,7 @@ TEST(TortureFindings, ASpiralEndsBeforeItTurnsInPlace) {
   const SX s1 = sign_of(s.alpha(0));
   const SX s2 = sign_of(s.alpha(1));
   testing::set_field(s, {-0.5 * s1 - 1.5 * s2, 1.5 * s1 - 0.5 * s2}, {1.0, 0.3});
-  const auto result = run(s, 10.0);
+  const auto result = run_found(s, 10.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_GT(result.events.size(), 10U);
   EXPECT_NEAR(result.events.back().t, 1.3, 1e-12);  // |x1| + |x2| falls at the rate 1
@@ -55,7 +55,7 @@ model::System sign_inside_of_sign(double rate, std::vector<double> initial) {
 
 TEST(TortureFindings, ANestedFunctionIsNotAtZeroWhereItJumpsOverZero) {
   // At the start the inner sign is open; half of it would put the outer function at 0.
-  const auto result = run(sign_inside_of_sign(-1.0, {0.0, 0.0}), 1.0);
+  const auto result = run_found(sign_inside_of_sign(-1.0, {0.0, 0.0}), 1.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.size(), 2U);
   EXPECT_EQ(result.events[0].mode_after, (Mode{-1, -1}));  // outer = x2 - 1/2
@@ -65,7 +65,7 @@ TEST(TortureFindings, ANestedFunctionIsNotAtZeroWhereItJumpsOverZero) {
 }
 
 TEST(TortureFindings, SlidingEndsWhereItsFunctionJumpsAway) {
-  const auto result = run(sign_inside_of_sign(1.0, {-1.0, 0.5}), 3.0);
+  const auto result = run_found(sign_inside_of_sign(1.0, {-1.0, 0.5}), 3.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.size(), 3U);
   EXPECT_EQ(result.events[0].kind, EventKind::start);
@@ -87,7 +87,7 @@ TEST(TortureFindings, SlidingGoesOnBehindAKinkThatItsSelectionMoves) {
   testing::add_surface(s, "E", s.x(1) + s.alpha(0) * s.x(0));
   const SX sign = sign_of(s.alpha(1));
   testing::set_field(s, {1 + 1.5 * sign, -4 * sign}, {-1.0, 0.0});
-  const auto result = run(s, 2.0);
+  const auto result = run_found(s, 2.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_EQ(result.events.size(), 1U);
   EXPECT_NEAR(result.final.x[0], 1.6, 1e-14);
@@ -102,7 +102,7 @@ TEST(TortureFindings, SelectionsBesideSlidingAreExact) {
   testing::add_surface(s, "outer", s.x(1) + 0.5 * sign_of(s.alpha(0)));
   testing::set_field(s, {0.1 * s.t - 0.07 * sign_of(s.alpha(0)) + 0.003 * s.x(1), 0.01 * sign_of(s.alpha(1))},
                      {0.0, 0.01});
-  const auto result = run(s, 3.0);
+  const auto result = run_found(s, 3.0);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.back().kind, EventKind::leave_sliding);
   const auto& rows = result.trajectory;
@@ -122,7 +122,7 @@ TEST(TortureFindings, SlidingIntoATwoFoldPointIsSaid) {
       testing::add_surface(s, "z", s.x(2));
       const SX turn = k * sign_of(s.alpha(0));
       testing::set_field(s, {-1 + turn, -1 - turn, (1 - s.alpha(0)) * s.x(1) - s.alpha(0) * s.x(0)}, {1.0, 1.5, 0.0});
-      const auto result = run(s, 2.0, 1e-8, method);
+      const auto result = run_found(s, 2.0, 1e-8, method);
       EXPECT_EQ(result.status.termination, Termination::outside_class) << k << result.status.message;
       EXPECT_NE(result.status.message.find("two-fold"), std::string::npos) << result.status.message;
       EXPECT_NEAR(result.status.time_reached, 1.25, 1e-5);
@@ -136,7 +136,7 @@ TEST(TortureFindings, SlowNormalComponentsOfFastFieldsAreResolved) {
   const SX u = 1.0 / 3.0 + sin(s.t) / 7.0;
   testing::add_surface(s, "sum", s.x(0) + s.x(1));
   testing::set_field(s, {u, -u + 1e-6 * (s.t - sign_of(s.alpha(0)))}, {0.0, 0.0});
-  const auto result = run(s, 2.0, 1e-11);
+  const auto result = run_found(s, 2.0, 1e-11);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.size(), 2U);
   EXPECT_NEAR(result.events[1].t, 1.0, 1e-9);
@@ -160,7 +160,7 @@ TEST(TortureFindings, AStepFromAUserEventToASwitchLeavesNoZeroBehind) {
   s.switching[0].role = model::SwitchingRole::time_event;
   const SX rate = 1.0 - 2.0 * s.alpha(0);
   for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
-    const auto result = run(passing_one(s, rate), 3.5, 1e-8, method);
+    const auto result = run_found(passing_one(s, rate), 3.5, 1e-8, method);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     ASSERT_EQ(result.events.size(), 2U);
     EXPECT_NEAR(result.events[0].t, 1.0, 1e-12);
@@ -175,7 +175,7 @@ TEST(TortureFindings, StepsFromUserEventToUserEventFindThemAll) {
   second.value = s.x(0) - 2.0;
   s.events.push_back(second);
   for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
-    const auto result = run(s, 4.0, 1e-8, method);
+    const auto result = run_found(s, 4.0, 1e-8, method);
     ASSERT_EQ(result.events.size(), 4U);
     const double exact[] = {(3.0 - std::sqrt(5.0)) / 2.0, 1.0, 2.0, (3.0 + std::sqrt(5.0)) / 2.0};
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(result.events[i].t, exact[i], 1e-9);

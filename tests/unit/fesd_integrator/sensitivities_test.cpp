@@ -19,7 +19,7 @@ using casadi::SX;
 using discretization::TableauFamily;
 using reformulation::Form;
 
-struct Settings {
+struct Discretization {
   TableauFamily family = TableauFamily::radau_iia;
   int stages = 3;
   long steps = 40;
@@ -27,7 +27,7 @@ struct Settings {
   IntegrationOptions::Switches switches = IntegrationOptions::Switches::detected;
 };
 
-Integration run(model::System system, double until, const Settings& settings) {
+Integration run_with(model::System system, double until, const Discretization& settings) {
   const auto dcs = reformulation::reformulate(system, {settings.form, std::nullopt});
   EXPECT_TRUE(dcs.has_value());
   IntegrationOptions options;
@@ -93,7 +93,7 @@ TEST(Sensitivities, ACrossingHasTheRatioOfItsSpeeds) {
   const auto system = crossing();
   for (const auto form : {Form::step, Form::stewart}) {
     for (const auto& [family, stages] : families) {
-      const auto integration = run(system, 2.0, {family, stages, 7, form});
+      const auto integration = run_with(system, 2.0, {family, stages, 7, form});
       expect_near(integration.sensitivities->x0, {{1.0 / 3.0}}, 1e-12);
     }
   }
@@ -103,7 +103,7 @@ TEST(Sensitivities, TimeSteppingGivesAWrongValueForEveryStep) {
   const auto system = crossing();
   for (const long steps : {7L, 70L, 700L}) {
     const auto integration =
-        run(system, 2.0, {TableauFamily::radau_iia, 1, steps, Form::step, IntegrationOptions::Switches::fixed});
+        run_with(system, 2.0, {TableauFamily::radau_iia, 1, steps, Form::step, IntegrationOptions::Switches::fixed});
     EXPECT_GT(std::abs(integration.sensitivities->x0[0][0] - 1.0 / 3.0), 0.3) << steps;
   }
 }
@@ -112,10 +112,10 @@ TEST(Sensitivities, TheRotatingOscillatorHasItsMatrix) {
   const std::vector<std::vector<double>> exact{{21.66946501324, -2.06995427137}, {56.63750249010, -4.34234751571}};
   const auto system = rotating_oscillator();
   for (const auto form : {Form::step, Form::stewart}) {
-    expect_near(run(system, std::numbers::pi / 2.0, {TableauFamily::radau_iia, 5, 40, form}).sensitivities->x0, exact,
-                1e-9);
+    expect_near(run_with(system, std::numbers::pi / 2.0, {TableauFamily::radau_iia, 5, 40, form}).sensitivities->x0,
+                exact, 1e-9);
   }
-  expect_near(run(system, std::numbers::pi / 2.0, {TableauFamily::gauss_legendre, 4, 40}).sensitivities->x0, exact,
+  expect_near(run_with(system, std::numbers::pi / 2.0, {TableauFamily::gauss_legendre, 4, 40}).sensitivities->x0, exact,
               1e-8);
 }
 
@@ -123,14 +123,15 @@ TEST(Sensitivities, TheyConvergeWithTheOrderOfTheMethod) {
   const auto system = rotating_oscillator();
   std::array<double, 2> errors{};
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto integration = run(system, std::numbers::pi / 2.0, {TableauFamily::radau_iia, 2, i == 0 ? 80L : 160L});
+    const auto integration =
+        run_with(system, std::numbers::pi / 2.0, {TableauFamily::radau_iia, 2, i == 0 ? 80L : 160L});
     errors[i] = std::abs(integration.sensitivities->x0[0][0] - 21.66946501324);
   }
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 3.0, 0.5);
 }
 
 /// Central differences of the end state: columns over initial states, then over parameters.
-std::vector<std::vector<double>> differences(const model::System& system, double until, const Settings& settings,
+std::vector<std::vector<double>> differences(const model::System& system, double until, const Discretization& settings,
                                              double d) {
   std::vector<std::vector<double>> rows(system.initial_state.size());
   const auto add = [&](auto change) {
@@ -138,7 +139,7 @@ std::vector<std::vector<double>> differences(const model::System& system, double
     for (const int sign : {-1, 1}) {
       auto changed = system;
       change(changed, sign * d);
-      ends[sign > 0 ? 1 : 0] = run(changed, until, settings).final.x;
+      ends[sign > 0 ? 1 : 0] = run_with(changed, until, settings).final.x;
     }
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back((ends[1][i] - ends[0][i]) / (2.0 * d));
   };
@@ -168,8 +169,8 @@ TEST(Sensitivities, TheyAreTheDerivativesOfTheDiscreteSolution) {
   for (const auto form : {Form::step, Form::stewart}) {
     for (const auto& [family, stages] : families) {
       SCOPED_TRACE(stages);
-      const Settings settings{family, stages, 30, form};
-      const auto integration = run(system, 10.0, settings);
+      const Discretization settings{family, stages, 30, form};
+      const auto integration = run_with(system, 10.0, settings);
       // Crosses, slides, leaves.
       ASSERT_GE(integration.events.size(), 3U);
       expect_near(side_by_side(*integration.sensitivities), differences(system, 10.0, settings, d), 1e-6);
@@ -198,8 +199,8 @@ TEST(Sensitivities, TheProjectionOfGaussMethodsTurnsWithItsEnd) {
   for (const auto form : {Form::step, Form::stewart}) {
     for (const int stages : {1, 2, 3}) {
       SCOPED_TRACE(stages);
-      const Settings settings{TableauFamily::gauss_legendre, stages, 8, form};
-      const auto integration = run(system, 4.0, settings);
+      const Discretization settings{TableauFamily::gauss_legendre, stages, 8, form};
+      const auto integration = run_with(system, 4.0, settings);
       ASSERT_EQ(integration.final.mode, result::Mode{0});
       expect_near(side_by_side(*integration.sensitivities), differences(system, 4.0, settings, d), 1e-7);
     }
@@ -224,8 +225,8 @@ TEST(Sensitivities, TimesOfEventsMoveWithParametersAndDiscreteStates) {
   const auto system = moved_events();
   for (const auto& [family, stages] : families) {
     SCOPED_TRACE(stages);
-    const Settings settings{family, stages, 11, Form::step};
-    const auto integration = run(system, 2.0, settings);
+    const Discretization settings{family, stages, 11, Form::step};
+    const auto integration = run_with(system, 2.0, settings);
     const auto found = side_by_side(*integration.sensitivities);
     expect_near(found, differences(system, 2.0, settings, d), 1e-7);
     // d x(2) / d s = -exp(-(2 - s)): x is above 0.7 by then.
@@ -236,8 +237,8 @@ TEST(Sensitivities, TimesOfEventsMoveWithParametersAndDiscreteStates) {
   // The same of time-stepping, where nothing of psi switches.
   auto without = system;
   without.initial_state[0] = 3.0;
-  const Settings fixed{TableauFamily::radau_iia, 2, 11, Form::step, IntegrationOptions::Switches::fixed};
-  expect_near(side_by_side(*run(without, 2.0, fixed).sensitivities), differences(without, 2.0, fixed, d), 1e-7);
+  const Discretization fixed{TableauFamily::radau_iia, 2, 11, Form::step, IntegrationOptions::Switches::fixed};
+  expect_near(side_by_side(*run_with(without, 2.0, fixed).sensitivities), differences(without, 2.0, fixed, d), 1e-7);
 }
 
 TEST(Sensitivities, AnEventAtTheEndOfAStepCountsAsOne) {
@@ -245,7 +246,7 @@ TEST(Sensitivities, AnEventAtTheEndOfAStepCountsAsOne) {
   const SX p = builder.parameter("p", 0.5);
   const SX x = builder.state("x", {1.0});
   builder.dynamics("x", -x + builder.step(builder.time() - p));
-  const auto integration = run(*builder.build(), 1.0, {TableauFamily::radau_iia, 3, 4});
+  const auto integration = run_with(*builder.build(), 1.0, {TableauFamily::radau_iia, 3, 4});
   expect_near(side_by_side(*integration.sensitivities), {{std::exp(-1.0), -std::exp(-0.5)}}, 1e-6);
 }
 
@@ -265,9 +266,9 @@ TEST(Sensitivities, ASwitchAtTheEndOfAStepMovesOffIt) {
   for (const auto form : {Form::step, Form::stewart}) {
     for (const auto& [family, stages] : families) {
       for (const long steps : {4L, 8L, 100L}) {
-        const Settings settings{family, stages, steps, form};
-        expect_near(run(crossed, 2.0, settings).sensitivities->x0, {{1.0 / 3.0}}, 1e-12);
-        expect_near(side_by_side(*run(entered, 2.0, settings).sensitivities), {{0.0, 0.0, 0.0}, {0.25, 1.0, 0.5}},
+        const Discretization settings{family, stages, steps, form};
+        expect_near(run_with(crossed, 2.0, settings).sensitivities->x0, {{1.0 / 3.0}}, 1e-12);
+        expect_near(side_by_side(*run_with(entered, 2.0, settings).sensitivities), {{0.0, 0.0, 0.0}, {0.25, 1.0, 0.5}},
                     1e-12);
       }
     }
@@ -281,7 +282,7 @@ TEST(Sensitivities, EventsAtOneTimeThatMoveApartAreNotDefined) {
   const SX x = builder.state("x", {1.0});
   const SX t = builder.time();
   builder.dynamics("x", -x + builder.step(t - p) + builder.step(4.0 * t * t - q));
-  const auto integration = run(*builder.build(), 1.0, {TableauFamily::radau_iia, 3, 3});
+  const auto integration = run_with(*builder.build(), 1.0, {TableauFamily::radau_iia, 3, 3});
   EXPECT_TRUE(std::isnan(integration.sensitivities->p[0][0]));
   EXPECT_TRUE(std::isnan(integration.sensitivities->p[0][1]));
   EXPECT_NEAR(integration.sensitivities->x0[0][0], std::exp(-1.0), 1e-6);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view head =
+constexpr std::string_view table_head =
     "[model]\nname = 'm'\n[states]\nx = 1\n[controls]\nu = 0\n[dynamics]\nx = 'road(x) + u'\n";
 
 class Tables : public ::testing::Test {
@@ -29,7 +29,7 @@ class Tables : public ::testing::Test {
 
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   Expected<ModelFile> parse(const std::string& rest) {
-    return parse_model(std::string(head) + rest, (folder_ / "m.toml").string());
+    return parse_model(std::string(table_head) + rest, (folder_ / "m.toml").string());
   }
   Error refused(const std::string& rest) {
     const auto model = parse(rest);

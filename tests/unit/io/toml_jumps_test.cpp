@@ -7,16 +7,16 @@
 namespace saltus::io {
 namespace {
 
-constexpr std::string_view head = "[model]\nname = 'm'\n[states]\nx = 1\nn = 0\n[dynamics]\nx = 1\n";
+constexpr std::string_view jump_head = "[model]\nname = 'm'\n[states]\nx = 1\nn = 0\n[dynamics]\nx = 1\n";
 
 Error refused(const std::string& rest) {
-  const auto model = parse_model(std::string(head) + rest, "m.toml");
+  const auto model = parse_model(std::string(jump_head) + rest, "m.toml");
   EXPECT_FALSE(model.has_value()) << "the file was accepted: " << rest;
   return model ? Error{} : model.error();
 }
 
 TEST(TomlJumps, EveryKeyIsRead) {
-  const auto model = parse_model(std::string(head) +
+  const auto model = parse_model(std::string(jump_head) +
                                      "[[jumps]]\nname = 'dose'\nwhen = 'x < 0.1 and t > 2'\n"
                                      "set = { n = 'n + 1', x = 3 }\nat_start = true\npriority = 'x'\ndelay = 0.5\n"
                                      "persistent = false\nvalues = 'execution'\n"

@@ -7,16 +7,16 @@
 namespace saltus::io {
 namespace {
 
-constexpr std::string_view head = "[model]\nname = 'm'\n[states]\nx = 1\nz = 1\n[switching]\nc = 'x'\n";
+constexpr std::string_view modal_head = "[model]\nname = 'm'\n[states]\nx = 1\nz = 1\n[switching]\nc = 'x'\n";
 
-Error refused(const std::string& rest) {
-  const auto model = parse_model(std::string(head) + rest, "m.toml");
+Error modes_refused(const std::string& rest) {
+  const auto model = parse_model(std::string(modal_head) + rest, "m.toml");
   EXPECT_FALSE(model.has_value()) << "the file was accepted";
   return model ? Error{} : model.error();
 }
 
 TEST(TomlModes, AreReadInTheOrderOfTheFile) {
-  const auto model = parse_model(std::string(head) +
+  const auto model = parse_model(std::string(modal_head) +
                                      "[[modes]]\nwhen = 'c > 0'\ndynamics = { z = 'x', x = 2 }\n"
                                      "[[modes]]\nwhen = 'otherwise'\ngroup = 'g'\n[modes.dynamics]\nx = '-z'\n"
                                      "[[modes]]\nindicator = 'x^2'\nname = 'near'\ndynamics = {}\n",
@@ -38,18 +38,18 @@ TEST(TomlModes, AreReadInTheOrderOfTheFile) {
 }
 
 TEST(TomlModes, MistakesAreFoundWithTheirPlace) {
-  const Error no_dynamics = refused("[[modes]]\nwhen = 'c > 0'\n");
+  const Error no_dynamics = modes_refused("[[modes]]\nwhen = 'c > 0'\n");
   EXPECT_NE(no_dynamics.message.find("no `dynamics`"), std::string::npos) << no_dynamics.message;
   EXPECT_EQ(no_dynamics.location.line, 8);
-  const Error key = refused("[[modes]]\nwhen = 'c > 0'\ndynamic = {}\n");
+  const Error key = modes_refused("[[modes]]\nwhen = 'c > 0'\ndynamic = {}\n");
   EXPECT_NE(key.remedy.find("'dynamics'"), std::string::npos) << key.remedy;
   EXPECT_EQ(key.location.line, 10);
-  const Error number = refused("[[modes]]\nwhen = true\ndynamics = {}\n");
+  const Error number = modes_refused("[[modes]]\nwhen = true\ndynamics = {}\n");
   EXPECT_NE(number.message.find("an expression in quotes"), std::string::npos) << number.message;
   EXPECT_EQ(number.location.line, 9);
-  const Error list = refused("[[modes]]\nwhen = 'c > 0'\ndynamics = ['x']\n");
+  const Error list = modes_refused("[[modes]]\nwhen = 'c > 0'\ndynamics = ['x']\n");
   EXPECT_NE(list.message.find("found a list"), std::string::npos) << list.message;
-  const Error table = refused("[modes]\nwhen = 'c > 0'\n");
+  const Error table = modes_refused("[modes]\nwhen = 'c > 0'\n");
   EXPECT_NE(table.message.find("[[modes]]"), std::string::npos) << table.message;
 }
 

@@ -1,17 +1,16 @@
 #include "saltus/ode/bernstein.hpp"
 
-#include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "polynomials.hpp"
 
 namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 long double exact_value(const BernsteinCoefficients& coefficients, long double theta) {
   std::array<long double, event_nodes> b;

@@ -1,15 +1,14 @@
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "ode_tools.hpp"
 
 namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 class DenseOutput : public ::testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(DenseStep, DenseOutput, ::testing::ValuesIn(all_methods));

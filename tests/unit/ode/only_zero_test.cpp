@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "polynomials.hpp"
 #include "saltus/ode/only_zero_internal.hpp"
 
@@ -10,7 +10,6 @@ namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 TEST(OnlyZero, is_within_its_bracket) {
   Random random(31);

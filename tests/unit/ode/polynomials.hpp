@@ -11,6 +11,8 @@
 
 namespace saltus::ode::trial {
 
+inline constexpr double resolution = 0x1p-40;  // of sign changes, in theta
+
 /// factor * product of (theta - zero) * product of ((theta - centre)^2 + distance^2), degree at most event_degree.
 struct Polynomial {
   struct Pair {

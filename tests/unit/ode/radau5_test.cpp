@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "ode_tools.hpp"
 #include "saltus/ode/radau5_tableau.hpp"
 
@@ -11,7 +11,6 @@ namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 using Tableau = Radau5Tableau;
 
 /// Integral of the j-th Lagrange polynomial of the nodes from 0 to their i-th node.

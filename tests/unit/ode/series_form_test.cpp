@@ -1,18 +1,16 @@
 // Polynomials of the degree of Taylor series: their Bernstein form, and their first sign changes.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "polynomials.hpp"
 
 namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double resolution = 0x1p-40;
 
 long double value_of(const SeriesCoefficients& terms, long double theta) {
   long double sum = 0.0L;

@@ -6,13 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "ode_tools.hpp"
 
 namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// A field with its linear part, which the stepper is handed beside it.
 struct Affine {

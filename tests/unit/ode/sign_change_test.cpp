@@ -1,16 +1,14 @@
 #include <algorithm>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "polynomials.hpp"
 
 namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double resolution = 0x1p-40;
 
 /// Sign of a polynomial just behind 0.
 int sign_behind_zero(const Polynomial& p) { return p(1e-300L) > 0.0L ? 1 : -1; }

@@ -15,11 +15,8 @@ namespace {
 using casadi::SX;
 using model::Builder;
 
-constexpr ReformulationOptions as_step{.reformulation = Form::step, .lifting = std::nullopt};
-constexpr ReformulationOptions as_stewart{.reformulation = Form::stewart};
-
 /// sum over the 2^n sign patterns of field i times its multiplier, by a nest of if: every pattern has a field.
-model::System all_patterns(int n) {
+model::System patterns_as_field(int n) {
   Builder builder("patterns");
   std::vector<SX> alpha;
   for (int j = 0; j < n; ++j) {
@@ -39,7 +36,7 @@ model::System all_patterns(int n) {
 
 TEST(Sizes, AreThoseOfThePapersTable4) {
   for (int n = 2; n <= 10; ++n) {
-    const auto system = all_patterns(n);
+    const auto system = patterns_as_field(n);
     const int regions = 1 << n;
     for (const int factors : {2, 3, 5}) {
       const auto sizes = sizes_of(system, {.reformulation = Form::step, .lifting = factors});
@@ -65,7 +62,7 @@ TEST(Sizes, AreThoseOfThePapersTable4) {
 
 TEST(Lifted, HasTheSameFieldForAllSelections) {
   for (int n = 2; n <= 10; n += 2) {
-    const auto system = all_patterns(n);
+    const auto system = patterns_as_field(n);
     const Dcs plain = dcs_of(system, as_step);
     for (const int factors : {2, 3}) {
       const Dcs lifted = dcs_of(system, {.reformulation = Form::step, .lifting = factors});
@@ -194,7 +191,7 @@ TEST(StewartForm, RefusesWhatItIsNotFor) {
   EXPECT_NE(refused.error().message.find("enter the dynamics of x nonlinearly"), std::string::npos);
   EXPECT_NEAR(field(dcs_of(system, as_step), {0.0}, {0.25})[0], (1 + 0.75) * (0.5 - 1), 1e-15);
 
-  const auto many = reformulate(all_patterns(10), as_stewart);
+  const auto many = reformulate(patterns_as_field(10), as_stewart);
   EXPECT_TRUE(many) << "ten are covered";
   Builder eleven("eleven");
   SX product = 1;

@@ -13,6 +13,9 @@
 
 namespace saltus::reformulation {
 
+inline constexpr ReformulationOptions as_step{.reformulation = Form::step, .lifting = std::nullopt};
+inline constexpr ReformulationOptions as_stewart{.reformulation = Form::stewart};
+
 inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 inline model::System built(model::Builder& builder) {

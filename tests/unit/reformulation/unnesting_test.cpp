@@ -14,9 +14,6 @@ namespace {
 using casadi::SX;
 using model::Builder;
 
-constexpr ReformulationOptions as_step{.reformulation = Form::step, .lifting = std::nullopt};
-constexpr ReformulationOptions as_stewart{.reformulation = Form::stewart};
-
 std::vector<std::string> names(const Dcs& dcs) {
   std::vector<std::string> result;
   for (const auto& surface : dcs.surfaces) result.push_back(surface.name);

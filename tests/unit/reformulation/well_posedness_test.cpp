@@ -13,9 +13,7 @@ namespace {
 using casadi::SX;
 using model::Builder;
 
-constexpr ReformulationOptions as_step{.reformulation = Form::step, .lifting = std::nullopt};
 constexpr ReformulationOptions as_lifted{.reformulation = Form::step, .lifting = 2};
-constexpr ReformulationOptions as_stewart{.reformulation = Form::stewart};
 
 ActiveSetRank rank_of(const model::System& system, const ReformulationOptions& options, const SolutionPoint& point) {
   return WellPosedness(dcs_of(system, options), system).rank_at(point);

@@ -22,7 +22,7 @@ Point velocity(const Point& alpha) {
 }
 
 /// Default speeds: over the largest component at a corner.
-constexpr Point largest{1.5, 1.7};
+constexpr Point largest_speeds{1.5, 1.7};
 
 std::vector<int> ends_in(const Point& start) {
   const HiddenSituation situation{{Arrival::along, Arrival::along}, {start[0], start[1]}};
@@ -36,7 +36,7 @@ std::vector<int> ends_in(const Point& start) {
   return decision.mode;
 }
 
-const std::vector<int> up{1, 1}, down{-1, -1};
+const std::vector<int> both_up{1, 1}, both_down{-1, -1};
 
 // Only the two regions across are reached, each from a part of the square; the picture is not symmetric.
 TEST(Basins, OfTwoRegionsShareTheSquare) {
@@ -45,8 +45,8 @@ TEST(Basins, OfTwoRegionsShareTheSquare) {
   for (int i = 0; i < cells; ++i) {
     for (int k = 0; k < cells; ++k) {
       const auto mode = ends_in({(i + 0.5) / cells, (k + 0.5) / cells});
-      ASSERT_TRUE(mode == up || mode == down);
-      ups += mode == up ? 1 : 0;
+      ASSERT_TRUE(mode == both_up || mode == both_down);
+      ups += mode == both_up ? 1 : 0;
     }
   }
   EXPECT_GT(ups, cells * cells / 3);
@@ -64,7 +64,7 @@ TEST(Basins, AreSeparatedByTheMotionsThatSlideOut) {
     Point u = start;
     const auto backwards = [](const Point& at) {
       const Point g = velocity(at);
-      return Point{-g[0] / largest[0], -g[1] / largest[1]};
+      return Point{-g[0] / largest_speeds[0], -g[1] / largest_speeds[1]};
     };
     int compared = 0;
     for (int step = 0; step < 20000; ++step) {
@@ -72,8 +72,8 @@ TEST(Basins, AreSeparatedByTheMotionsThatSlideOut) {
       const double distance = std::hypot(u[0] - 0.5, u[1] - 0.5);
       if (step % 500 == 250 && distance > 1e-5) {
         const double across = 1e-3 * distance * side / std::hypot(v[0], v[1]);
-        EXPECT_EQ(ends_in({u[0] + across * v[1], u[1] - across * v[0]}), down) << step;
-        EXPECT_EQ(ends_in({u[0] - across * v[1], u[1] + across * v[0]}), up) << step;
+        EXPECT_EQ(ends_in({u[0] + across * v[1], u[1] - across * v[0]}), both_down) << step;
+        EXPECT_EQ(ends_in({u[0] - across * v[1], u[1] + across * v[0]}), both_up) << step;
         ++compared;
       }
       constexpr double h = 1e-3;

@@ -16,7 +16,6 @@ namespace {
 
 using Point = HiddenSimulation::Point;
 
-constexpr std::array<Point, 3> scalings{{{1.0, 1.0}, {10.0, 1.0}, {1.0, 10.0}}};
 constexpr int enough_steps = 400000;  // past the bottleneck that the root leaves
 
 /// g_j = q_j x + p_j y + d_j x y about a point of the square.

@@ -12,6 +12,9 @@
 
 namespace saltus::switching {
 
+/// Speeds kappa of the two selections.
+inline constexpr std::array<std::array<double, 2>, 3> scalings{{{1.0, 1.0}, {10.0, 1.0}, {1.0, 10.0}}};
+
 class HiddenSimulation {
  public:
   using Point = std::array<double, 2>;

@@ -13,8 +13,6 @@ namespace {
 using Fields = Velocities;
 using Point = HiddenSimulation::Point;
 
-constexpr std::array<Point, 3> scalings{{{1.0, 1.0}, {10.0, 1.0}, {1.0, 10.0}}};
-
 std::string text(const Fields& f) {
   std::string result;
   for (const auto& row : f) {
