@@ -1,7 +1,6 @@
 // Surfaces whose gradients depend on each other all along the set where they vanish: fewer conditions than selections.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "saltus/event_integrator/higher_order.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
+#include "saltus/switching/additive_map.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -89,75 +89,38 @@ class DependentSearch {
     return true;
   }
 
-  /// f without any of the selections, and what each of them adds.
+  /// What each of the selections adds to f.
   bool fields() {
-    const std::size_t n = x_.size(), q = sliding_.size();
-    std::vector<double> trial = alpha_, f(n);
-    field_jumps(s_.kernel, t_, x_.data(), alpha_, sliding_, base_, jumps_);
-    if (!is_finite(base_) || !jumps_.allFinite()) return reject("a field is not finite on the surfaces");
-    // Corners with ones at every second, third, fourth place, and everywhere: products of selections show in these.
-    for (std::size_t stride = 1; stride <= 4; ++stride) {
-      for (std::size_t first = 0; first < stride; ++first) {
-        for (const int j : sliding_) trial[at(j)] = 0.0;
-        for (std::size_t i = first; i < q; i += stride) trial[at(sliding_[i])] = 1.0;
-        s_.kernel.field(t_, x_.data(), trial.data(), f.data());
-        for (std::size_t k = 0; k < n; ++k) {
-          double sum = base_[k], size = std::abs(base_[k]);
-          for (std::size_t i = first; i < q; i += stride) {
-            sum += jumps_(index(k), index(i));
-            size += std::abs(jumps_(index(k), index(i)));
-          }
-          if (!(std::abs(f[k] - sum) <= accuracy * size)) return reject("their selections multiply each other");
-        }
-      }
-    }
+    std::vector<double> trial = alpha_, f(x_.size());
+    const auto field = [&](const std::vector<double>& selections, Eigen::VectorXd& value) {
+      for (std::size_t i = 0; i < sliding_.size(); ++i) trial[at(sliding_[i])] = selections[i];
+      s_.kernel.field(t_, x_.data(), trial.data(), f.data());
+      value = Eigen::Map<const Eigen::VectorXd>(f.data(), index(f.size()));
+    };
+    auto map = switching::additive_map(sliding_.size(), field);
+    if (!map) return reject("their selections multiply each other");
+    if (!map->constant.allFinite() || !map->effects.allFinite()) return reject("a field is not finite on the surfaces");
+    jumps_ = std::move(map->effects);
     return true;
   }
 
   /// Functions that share selections are balanced together.
   bool make_balances() {
     functions_.differentiate(t_, x_.data());
-    const Eigen::MatrixXd effects = functions_.rows() * jumps_;
-    const Eigen::MatrixXd terms = functions_.rows().cwiseAbs() * jumps_.cwiseAbs();
-    const std::size_t r = set_.functions.size(), q = sliding_.size();
-    std::vector<std::size_t> group(r);
-    std::iota(group.begin(), group.end(), std::size_t{0});
-    const auto acts = [&](std::size_t k, std::size_t i) {
-      return std::abs(effects(index(k), index(i))) > accuracy * terms(index(k), index(i));
-    };
-    for (std::size_t i = 0; i < q; ++i) {
-      std::size_t first = r;
-      for (std::size_t k = 0; k < r; ++k) {
-        if (!acts(k, i)) continue;
-        if (first == r) {
-          first = group[k];
-        } else if (group[k] != first) {
-          const std::size_t other = group[k];
-          std::replace(group.begin(), group.end(), other, first);
-        }
-      }
-      if (first < r) continue;
+    const auto found =
+        switching::balances_of(functions_.rows() * jumps_, functions_.rows().cwiseAbs() * jumps_.cwiseAbs());
+    for (const std::size_t i : found.unused) {
       if (jumps_.col(index(i)).cwiseAbs().maxCoeff() > 0.0) {
         return reject("the motion depends on a selection that nothing determines");
       }
       set_.undetermined.push_back(sliding_[i]);
     }
-    for (std::size_t g = 0; g < r; ++g) {
-      Balance balance;
-      for (std::size_t k = 0; k < r; ++k) {
-        if (group[k] == g) balance.functions.push_back(k);
-      }
-      if (balance.functions.empty()) continue;
-      for (std::size_t i = 0; i < q; ++i) {
-        const auto& own = balance.functions;
-        if (std::any_of(own.begin(), own.end(), [&](std::size_t k) { return acts(k, i); })) balance.rows.push_back(i);
-      }
+    for (const auto& balance : found.all) {
       if (balance.rows.size() < balance.functions.size()) return reject("no selection moves some of the surfaces");
-      if (balance.rows.size() > balance.functions.size()) {
-        for (const std::size_t i : balance.rows) set_.undetermined.push_back(sliding_[i]);
-      }
-      set_.balances.push_back(std::move(balance));
+      if (balance.rows.size() == balance.functions.size()) continue;
+      for (const std::size_t i : balance.rows) set_.undetermined.push_back(sliding_[i]);
     }
+    set_.balances = found.all;
     std::sort(set_.undetermined.begin(), set_.undetermined.end());
     return true;
   }
@@ -184,7 +147,7 @@ class DependentSearch {
   const std::vector<int>& sliding_;
   double t_;
   std::vector<double>& x_;
-  std::vector<double> alpha_, base_;
+  std::vector<double> alpha_;
   std::vector<int> dependent_;
   Eigen::MatrixXd jumps_;  ///< n_x x q
   HeldFunctions functions_;

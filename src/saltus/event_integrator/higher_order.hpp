@@ -9,6 +9,7 @@
 
 #include "saltus/event_integrator/held_functions.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
+#include "saltus/switching/selection_balances.hpp"
 #include "saltus/switching/selection_range.hpp"
 
 namespace saltus::event_integrator {
@@ -16,12 +17,9 @@ namespace saltus::event_integrator {
 struct Occasion;
 struct Surroundings;
 
-/// grad c . f(t, x, alpha) + d c/dt = 0 for one of the held functions, or several that share selections: what
-/// determines selections. No selection is in two of them. Into several functions selections enter additively.
-struct Balance {
-  std::vector<std::size_t> functions;  ///< in HigherOrderSet::functions
-  std::vector<std::size_t> rows;       ///< of the sliding set: the surfaces whose selections are in it
-};
+/// grad c . f(t, x, alpha) + d c/dt = 0 for one of the held functions (numbers in HigherOrderSet::functions), or
+/// several that share selections (rows of the sliding set). Into several functions selections enter additively.
+using switching::Balance;
 
 /// Where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and the
 /// balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones. The

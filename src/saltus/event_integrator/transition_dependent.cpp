@@ -10,50 +10,27 @@
 
 #include "saltus/event_integrator/higher_order.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
+#include "saltus/switching/additive_map.hpp"
 #include "saltus/switching/selection_complementarity.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-/// y = w + W lambda for the surfaces at zero.
-struct AdditiveVelocities {
-  Eigen::MatrixXd effects;   ///< W
-  Eigen::VectorXd constant;  ///< w
-};
-
-/// nullopt where selections multiply each other, or velocities are not finite.
-std::optional<AdditiveVelocities> additive_velocities(const Surroundings& s, const ModeState& state,
-                                                      const Occasion& occasion) {
+/// y = w + W lambda for the surfaces at zero; nullopt where selections multiply each other, or velocities are not
+/// finite.
+std::optional<switching::AdditiveMap> additive_velocities(const Surroundings& s, const ModeState& state,
+                                                          const Occasion& occasion) {
   const auto& meeting = occasion.at_zero;
   const ProjectedFields fields(s.kernel, occasion);
-  const auto m = static_cast<Eigen::Index>(meeting.size());
-  const auto velocities_at = [&](const std::vector<double>& alpha) {
-    const auto values = fields.velocities(alpha, meeting);
-    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), m));
-  };
   std::vector<double> alpha = state.alpha;
-  for (const int j : meeting) alpha[at(j)] = 0.0;
-  AdditiveVelocities found{Eigen::MatrixXd(m, m), velocities_at(alpha)};
-  for (Eigen::Index i = 0; i < m; ++i) {
-    double& own = alpha[at(meeting[static_cast<std::size_t>(i)])];
-    own = 1.0;
-    found.effects.col(i) = velocities_at(alpha) - found.constant;
-    own = 0.0;
-  }
-  if (!found.effects.allFinite() || !found.constant.allFinite()) return std::nullopt;
-  // Corners with ones everywhere, at every second, third, fourth place: products of selections show in these.
-  for (Eigen::Index stride = 1; stride <= 4; ++stride) {
-    Eigen::VectorXd sum = found.constant, size = found.constant.cwiseAbs();
-    for (const int j : meeting) alpha[at(j)] = 0.0;
-    for (Eigen::Index i = 0; i < m; i += stride) {
-      alpha[at(meeting[static_cast<std::size_t>(i)])] = 1.0;
-      sum += found.effects.col(i);
-      size += found.effects.col(i).cwiseAbs();
-    }
-    const Eigen::VectorXd difference = (velocities_at(alpha) - sum).cwiseAbs();
-    if ((difference.array() > 1e-9 * size.array()).any()) return std::nullopt;
-  }
-  return found;
+  const auto velocities = [&](const std::vector<double>& selections, Eigen::VectorXd& value) {
+    for (std::size_t i = 0; i < meeting.size(); ++i) alpha[at(meeting[i])] = selections[i];
+    const auto values = fields.velocities(alpha, meeting);
+    value = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  };
+  auto map = switching::additive_map(meeting.size(), velocities);
+  if (!map || !map->effects.allFinite() || !map->constant.allFinite()) return std::nullopt;
+  return map;
 }
 
 /// Whether selections in [0, 1] are determined on all sliding surfaces, as usual.
