@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "agreement/networks.hpp"
 #include "problems/simulator.hpp"
 
 namespace saltus::problems {
@@ -18,35 +19,6 @@ using result::EventKind;
 using result::Result;
 using result::Termination;
 
-constexpr Accuracy fine_explicit{pipeline::Integrator::dopri5, 1e-12, 1e-14};
-constexpr Accuracy fine_implicit{pipeline::Integrator::radau5, 1e-12, 1e-14};
-
-Result simulated(const std::string& text, const Accuracy& accuracy) {
-  const Simulator simulator = Simulator::from_text(text);
-  return simulator.run(with(simulator.options(), accuracy));
-}
-
-/// Three agents, each drawn to each other at speed 1; the third one pushed by t. Functions in units of `scale`.
-std::string three_agents(const std::string& start, const std::string& until, double scale = 1.0) {
-  return fmt::format(R"toml(
-[model]
-name = "three agents"
-[states]
-{0}
-[switching]
-s12 = "{2}*(x1 - x2)"
-s13 = "{2}*(x1 - x3)"
-s23 = "{2}*(x2 - x3)"
-[dynamics]
-x1 = "-sign(s12) - sign(s13)"
-x2 = "sign(s12) - sign(s23)"
-x3 = "sign(s13) + sign(s23) + t"
-[simulate]
-until = {1}
-)toml",
-                     start, until, scale);
-}
-
 /// x' = (2, 0, -2 + t) from (0, 1, 3): the first two meet at t = 1/2 and go on at 1 together; the third one reaches
 /// them where 3 - 2t + t^2/2 = 1/2 + t. All stay until the push on the third one, less its mean, is 2: t = 3.
 TEST(DependentSurfaces, ThreeAgentsMeetStayAndPart) {
@@ -54,7 +26,7 @@ TEST(DependentSurfaces, ThreeAgentsMeetStayAndPart) {
   for (const double scale : {1.0, 1e8, 1e-8}) {
     const std::string text = three_agents("x1 = 0\nx2 = 1\nx3 = 3", "5", scale);
     for (const auto& accuracy : {fine, fine_explicit, fine_implicit, standard}) {
-      const Result result = simulated(text, accuracy);
+      const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
       const auto events = switches_of(result);
       ASSERT_EQ(events.size(), 3U);
@@ -96,7 +68,7 @@ TEST(DependentSurfaces, TheModelOfAgreementPartsInTime) {
 }
 
 TEST(DependentSurfaces, AStartWhereAllMeetIsHeld) {
-  const Result result = simulated(three_agents("x1 = 1\nx2 = 1\nx3 = 1", "4"), standard);
+  const Result result = simulate_text(three_agents("x1 = 1\nx2 = 1\nx3 = 1", "4"), standard);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_EQ(*result.events.front().mode_after, (std::vector<int>{0, 0, 0}));
   EXPECT_NEAR(result.events.back().t, 3.0, 1e-9);
@@ -121,7 +93,7 @@ spread = "abs(x1 - 2*x2 + x3) + abs(x2)"
 [simulate]
 until = 4
 )toml";
-  const Result result = simulated(text, fine);
+  const Result result = simulate_text(text, fine);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_EQ(result.final.mode, (std::vector<int>{0, 0, 0}));
   // x' = 1 + x/2 until x = 0 at 2 log 2, then x' = 1 - x/2.
@@ -132,10 +104,10 @@ until = 4
 /// Where all meet, a mode that does not hold all of them must lead away.
 TEST(DependentSurfaces, AModeThatIsForcedIsChecked) {
   const std::string text = three_agents("x1 = 1\nx2 = 1\nx3 = 1", "4") + "[simulate.initial_mode]\n";
-  const Result held = simulated(text + "s12 = 0\ns13 = 0\ns23 = 0\n", standard);
+  const Result held = simulate_text(text + "s12 = 0\ns13 = 0\ns23 = 0\n", standard);
   ASSERT_EQ(held.status.termination, Termination::completed) << held.status.message;
   EXPECT_NEAR(held.events.back().t, 3.0, 1e-9);
-  const Result parted = simulated(text + "s12 = 0\ns13 = -1\ns23 = -1\n", standard);
+  const Result parted = simulate_text(text + "s12 = 0\ns13 = -1\ns23 = -1\n", standard);
   EXPECT_EQ(parted.status.termination, Termination::no_admissible_mode) << parted.status.message;
 }
 
@@ -154,7 +126,7 @@ v2 = "sign(v1 - v2) - 0.5*sign(v2)"
 [simulate]
 until = 3
 )toml";
-  const Result result = simulated(text, fine);
+  const Result result = simulate_text(text, fine);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   const auto events = switches_of(result);
   std::vector<double> times;
@@ -182,7 +154,7 @@ x2 = "-sign(x2 - 1) - sign(x1 + x2 - 2)"
 [simulate]
 until = 10
 )toml";
-  const Result result = simulated(text, fine);
+  const Result result = simulate_text(text, fine);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_NEAR(result.final.x[0], 1.0, 1e-12);
   EXPECT_NEAR(result.final.x[1], 1.0, 1e-12);
@@ -205,7 +177,7 @@ x3 = "sign(x2 - x3)"
 [simulate]
 until = 3
 )toml";
-  const Result result = simulated(text, fine);
+  const Result result = simulate_text(text, fine);
   EXPECT_EQ(result.status.termination, Termination::outside_class);
   EXPECT_NE(result.status.message.find("depend on each other"), std::string::npos) << result.status.message;
 }
@@ -221,7 +193,7 @@ TEST(DependentSurfaces, TooManyAreRefusedAtOnce) {
     }
     dynamics += fmt::format("x{} = \"0{}\"\n", i, sum);
   }
-  const Result result = simulated(
+  const Result result = simulate_text(
       fmt::format("[model]\nname = \"many\"\n[states]\n{}[dynamics]\n{}[simulate]\nuntil = 20\n", states, dynamics),
       standard);
   EXPECT_EQ(result.status.termination, Termination::outside_class);
@@ -231,29 +203,9 @@ TEST(DependentSurfaces, TooManyAreRefusedAtOnce) {
 /// Agents on a random graph, each pushed by a sine, against layers of width 1e-7.
 TEST(DependentSurfaces, RandomNetworksAgreeWithLayers) {
   std::mt19937_64 random(2026);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
   int held = 0, compared = 0;
   for (int instance = 0; instance < 40; ++instance) {
-    const int n = 3 + instance % 3;
-    std::vector<std::string> rates;
-    std::string states;
-    for (int i = 0; i < n; ++i) {
-      states += fmt::format("x{} = {}\n", i, instance % 4 == 0 ? 0.5 : 2.0 * unit(random) - 1.0);
-      rates.push_back(
-          fmt::format("{}*sin({}*t + {})", 4.0 * unit(random) - 2.0, 0.5 + 1.5 * unit(random), 6.0 * unit(random)));
-    }
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < i; ++j) {
-        if (unit(random) < 0.2) continue;
-        const double force = 0.2 + 0.8 * unit(random);
-        rates[static_cast<std::size_t>(i)] += fmt::format(" - {}*sign(x{} - x{})", force, i, j);
-        rates[static_cast<std::size_t>(j)] += fmt::format(" + {}*sign(x{} - x{})", force, i, j);
-      }
-    }
-    std::string dynamics;
-    for (int i = 0; i < n; ++i) dynamics += fmt::format("x{} = \"{}\"\n", i, rates[static_cast<std::size_t>(i)]);
-    const Simulator simulator = Simulator::from_text(fmt::format(
-        "[model]\nname = \"network\"\n[states]\n{}[dynamics]\n{}[simulate]\nuntil = 6\n", states, dynamics));
+    const Simulator simulator = Simulator::from_text(agents_on_a_graph(instance, random));
     const Result exact = simulator.run(with(simulator.options(), standard));
     ASSERT_EQ(exact.status.termination, Termination::completed) << instance << ": " << exact.status.message;
     for (const Event& event : exact.events) {

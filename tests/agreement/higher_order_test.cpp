@@ -17,14 +17,6 @@ using result::EventKind;
 using result::Result;
 using result::Termination;
 
-constexpr Accuracy fine_implicit{pipeline::Integrator::radau5, 1e-12, 1e-14};
-constexpr Accuracy fine_explicit{pipeline::Integrator::dopri5, 1e-12, 1e-14};
-
-Result simulated(const std::string& text, const Accuracy& accuracy) {
-  const Simulator simulator = Simulator::from_text(text);
-  return simulator.run(with(simulator.options(), accuracy));
-}
-
 /// x1' = x2, x2' = -10 (sign(x1) + 0.3 sign(x2)) + a(t), and a third state.
 std::string twisting(const std::string& start, const std::string& disturbance, const std::string& z_rate,
                      const std::string& until, double scale = 1.0) {
@@ -63,7 +55,7 @@ TEST(HigherOrder, TwistingReachesTheOriginAndStays) {
   for (const double scale : {1.0, 1e8, 1e-8}) {
     const std::string text = twisting("x1 = 10\nx2 = 10", "0", "1 - z + x1", "15", scale);
     for (const auto& accuracy : {fine, fine_explicit, fine_implicit, standard, implicit}) {
-      const Result result = simulated(text, accuracy);
+      const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
       const auto limits = of_kind(result, EventKind::accumulation);
       ASSERT_EQ(limits.size(), 1U);
@@ -91,7 +83,7 @@ TEST(HigherOrder, TwistingLosesAgainstADisturbanceThatGrows) {
   for (const bool reflected : {false, true}) {
     const std::string text = twisting("x1 = 1\nx2 = 0", reflected ? "-t" : "t", "x1", "15");
     for (const auto& accuracy : {fine, fine_explicit, fine_implicit, standard}) {
-      const Result result = simulated(text, accuracy);
+      const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
       const auto exits = of_kind(result, EventKind::leave_sliding);
       ASSERT_EQ(exits.size(), 1U);
@@ -108,7 +100,7 @@ TEST(HigherOrder, TwistingLosesAgainstADisturbanceThatGrows) {
 }
 
 TEST(HigherOrder, AStartAtTheOriginOfATwistingControllerStays) {
-  const Result result = simulated(twisting("x1 = 0\nx2 = 0", "2*sin(t)", "1", "5"), fine);
+  const Result result = simulate_text(twisting("x1 = 0\nx2 = 0", "2*sin(t)", "1", "5"), fine);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.size(), 1U);
   EXPECT_EQ(result.events[0].kind, EventKind::start);
@@ -120,14 +112,14 @@ TEST(HigherOrder, AStartAtTheOriginOfATwistingControllerStays) {
 
 // The third state takes part in the balance, but which selections hold it would change its motion.
 TEST(HigherOrder, AMotionThatDependsOnUndeterminedSelectionsIsOutsideTheClass) {
-  const Result result = simulated(twisting("x1 = 10\nx2 = 10", "0", "sign(s1)", "15"), standard);
+  const Result result = simulate_text(twisting("x1 = 10\nx2 = 10", "0", "sign(s1)", "15"), standard);
   EXPECT_EQ(result.status.termination, Termination::outside_class);
   EXPECT_NEAR(result.status.time_reached, twisting_ends, 1e-6);
 }
 
 // What multiplies both selections alike is determined: u = 10 sign(x1) + 3 sign(x2) equals the disturbance.
 TEST(HigherOrder, WhatFollowsFromTheBalanceIsDetermined) {
-  const Result result = simulated(twisting("x1 = 0\nx2 = 0", "2 + t/2", "10*sign(s1) + 3*sign(s2)", "5"), fine);
+  const Result result = simulate_text(twisting("x1 = 0\nx2 = 0", "2 + t/2", "10*sign(s1) + 3*sign(s2)", "5"), fine);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_NEAR(result.final.x[2], 2.0 * 5.0 + 25.0 / 4.0, 1e-9);
 }
@@ -158,7 +150,7 @@ TEST(HigherOrder, SuperTwistingReachesTheOriginAndStays) {
   const double limit = (1 + r) / (1.1 * (1 - r));
   EXPECT_NEAR(limit, 1.25184528752894, 1e-12);
   for (const auto& accuracy : {fine, fine_explicit, fine_implicit}) {
-    const Result result = simulated(super_twisting("x1", "0", "3"), accuracy);
+    const Result result = simulate_text(super_twisting("x1", "0", "3"), accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     const auto limits = of_kind(result, EventKind::accumulation);
     ASSERT_EQ(limits.size(), 1U);
@@ -174,7 +166,7 @@ TEST(HigherOrder, SuperTwistingReachesTheOriginAndStays) {
   }
   // Not Lipschitz at the surface: loose tolerances cost digits, but no event and no status.
   for (const auto& accuracy : {standard, implicit, Accuracy{pipeline::Integrator::dop853, 1e-6, 1e-8}}) {
-    const Result result = simulated(super_twisting("x1", "0", "3"), accuracy);
+    const Result result = simulate_text(super_twisting("x1", "0", "3"), accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     EXPECT_NEAR(result.events.back().t, limit, 1e-6);
   }
@@ -182,7 +174,7 @@ TEST(HigherOrder, SuperTwistingReachesTheOriginAndStays) {
 
 // The integral of the controller follows the disturbance: alpha = 1/2 + d(t)/(2 k2), up to d = k2.
 TEST(HigherOrder, TheSelectionOfSuperTwistingFollowsTheDisturbance) {
-  const Result result = simulated(super_twisting("x1", "0.2*t", "4"), fine);
+  const Result result = simulate_text(super_twisting("x1", "0.2*t", "4"), fine);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_EQ(result.final.mode, (std::vector<int>{0}));
   EXPECT_EQ(result.final.x[0], 0.0);
@@ -201,7 +193,7 @@ TEST(HigherOrder, SuperTwistingLosesAgainstADisturbanceThatGrows) {
     for (const auto& accuracy :
          {fine, fine_explicit, fine_implicit, standard, implicit, Accuracy{pipeline::Integrator::dop853, 1e-6, 1e-8},
           Accuracy{pipeline::Integrator::dopri5, 1e-3, 1e-5}}) {
-      const Result result = simulated(text, accuracy);
+      const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
       ASSERT_EQ(result.events.size(), 2U);
       EXPECT_EQ(result.events[1].kind, EventKind::leave_sliding);

@@ -21,11 +21,6 @@ using result::EventKind;
 using result::Result;
 using result::Termination;
 
-Result simulated(const std::string& text, const Accuracy& accuracy) {
-  const Simulator simulator = Simulator::from_text(text);
-  return simulator.run(with(simulator.options(), accuracy));
-}
-
 void expect_states(const std::vector<double>& found, const json& expected, double tolerance, const std::string& what) {
   ASSERT_EQ(found.size(), expected.size()) << what;
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i].get<double>(), tolerance) << what;
@@ -76,7 +71,7 @@ TEST(Intersection, ClosedFormsToTenDigits) {
   for (const json& problem : stored_closed_forms()) {
     if (problem.at("id") == "P13") continue;  // a family: below
     SCOPED_TRACE(problem.at("id").get<std::string>());
-    expect_closed_form(simulated(text_of(closed_form(problem)), fine), problem);
+    expect_closed_form(simulate_text(text_of(closed_form(problem)), fine), problem);
     ++checked;
   }
   EXPECT_EQ(checked, 8);
@@ -88,7 +83,7 @@ TEST(Intersection, ClosedFormsDoNotDependOnTheScaleOfTheSurfaces) {
     if (problem.at("id") == "P13") continue;
     for (const double scale : {1e8, 1e-8}) {
       SCOPED_TRACE(fmt::format("{} times {}", problem.at("id").get<std::string>(), scale));
-      expect_closed_form(simulated(text_of(closed_form(problem, scale)), fine), problem);
+      expect_closed_form(simulate_text(text_of(closed_form(problem, scale)), fine), problem);
     }
   }
 }
@@ -104,7 +99,7 @@ json stored(const std::string& id) {
 // nine times farther out from lap to lap.
 TEST(Intersection, ASpiralLeavesSelfSimilar) {
   const json problem = stored("P13");
-  const Result result = simulated(text_of(closed_form(problem)), fine);
+  const Result result = simulate_text(text_of(closed_form(problem)), fine);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.front().kind, EventKind::start);
   EXPECT_EQ(result.events.front().unique, false);
@@ -148,7 +143,7 @@ TEST(Intersection, SpiralsArriveAtTheirExactTime) {
   };
   for (const auto& [text, limit] : spirals) {
     for (const auto& accuracy : {standard, fine, implicit}) {
-      const Result result = simulated(text, accuracy);
+      const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
       const Event* arrival = accumulation_of(result);
       ASSERT_NE(arrival, nullptr);
@@ -191,7 +186,7 @@ TEST(Intersection, BothBeltsAreLeftAndReachedTogether) {
   const std::vector<std::vector<int>> modes{{0, -1}, {0, 0}, {-1, -1}, {0, 0}, {-1, -1}, {0, 0}, {-1, -1}};
   for (const auto& accuracy : {fine, Accuracy{pipeline::Integrator::radau5, 1e-12, 1e-14}}) {
     for (const bool exchanged : {false, true}) {
-      const Result result = simulated(exchanged ? two_belts("b", "a", "20") : two_belts("a", "b", "20"), accuracy);
+      const Result result = simulate_text(exchanged ? two_belts("b", "a", "20") : two_belts("a", "b", "20"), accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
       ASSERT_EQ(result.events.size(), times.size());
       for (std::size_t i = 0; i < times.size(); ++i) {
@@ -218,7 +213,7 @@ TEST(Intersection, TwoGenesSettleOnBothThresholds) {
        {Run{6, 6, {0.0678551295400, 0.2619233325203}}, Run{12, 3, {0.0287814479101, 0.0901033573574, 0.1582187908708}},
         Run{3, 6, {0.0413560621409, 0.1207524838004, 0.4201889715272}},
         Run{12, 12, {0.0901033573574, 0.2703100720720}}}) {
-    const Result result = simulated(genes(run.x1, run.x2), fine);
+    const Result result = simulate_text(genes(run.x1, run.x2), fine);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     ASSERT_EQ(result.events.size(), run.times.size()) << run.x1 << ", " << run.x2;
     for (std::size_t i = 0; i < run.times.size(); ++i) EXPECT_NEAR(result.events[i].t, run.times[i], 1e-10);
@@ -227,7 +222,7 @@ TEST(Intersection, TwoGenesSettleOnBothThresholds) {
   // All sixteen starts of the paper come to rest at (8, 8), but those that lose both genes.
   for (const double x1 : {3.0, 6.0, 9.0, 12.0}) {
     for (const double x2 : {3.0, 6.0, 9.0, 12.0}) {
-      const Result result = simulated(genes(x1, x2), standard);
+      const Result result = simulate_text(genes(x1, x2), standard);
       ASSERT_EQ(result.status.termination, Termination::completed) << x1 << ", " << x2 << ": " << result.status.message;
       const bool rests = result.final.x == std::vector<double>{8.0, 8.0};
       const bool dies = result.final.x[0] < 0.01;
@@ -244,7 +239,7 @@ TEST(Intersection, SelectionsFollowTheFieldsAtEveryTime) {
       "[model]\nname = \"drift\"\n[states]\ny1 = 0\ny2 = 0\ny3 = 0\n[dynamics]\ny1 = \"t/4 - sign(y1) + sign(y2)/2\"\n"
       "y2 = \"-t/8 - sign(y2) - sign(y1)/2\"\ny3 = \"sign(y1)*sign(y2)\"\n[simulate]\nuntil = 4\n";
   for (const auto& accuracy : {fine, standard, implicit}) {
-    const Result result = simulated(text, accuracy);
+    const Result result = simulate_text(text, accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     EXPECT_EQ(result.final.mode, (std::vector<int>{0, 0}));
     EXPECT_NEAR(2 * result.final.alpha[0] - 1, 0.15 * 4, 1e-13);
@@ -265,7 +260,7 @@ TEST(Intersection, ThreeCoupledSurfacesAreSlidOnAndOneIsLeft) {
       "\"\ny2 = \"0" + drag(2, 1, 3) + "\"\ny3 = \"0" + drag(3, 1, 2) +
       "\"\ny4 = \"sign(y1)*sign(y2)*sign(y3)\"\n[simulate]\nuntil = 3\n";
   for (const auto& accuracy : {fine, standard, implicit}) {
-    const Result result = simulated(text, accuracy);
+    const Result result = simulate_text(text, accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     const auto switches = switches_of(result);
     ASSERT_EQ(switches.size(), 1U);
@@ -288,7 +283,7 @@ TEST(Intersection, OfThreeSurfacesTheRootVanishesAtItsExactTime) {
       "y3 = \"sign(y1)/4 - sign(y3)\"\ny4 = \"sign(y1)\"\n[simulate]\nuntil = 2\n";
   const double slid = 1.0 - 1.0 / std::sqrt(3.0);
   for (const auto& accuracy : {fine, standard}) {
-    const Result result = simulated(text, accuracy);
+    const Result result = simulate_text(text, accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     const std::vector<double> times{0.1, 2.0 / 15.0, 1.0 / std::sqrt(3.0), 1.0};
     ASSERT_EQ(result.events.size(), times.size());

@@ -74,6 +74,11 @@ pipeline::SimulateOptions with(pipeline::SimulateOptions options, const Accuracy
   return options;
 }
 
+result::Result simulate_text(const std::string& toml, const Accuracy& accuracy) {
+  const Simulator simulator = Simulator::from_text(toml);
+  return simulator.run(with(simulator.options(), accuracy));
+}
+
 std::vector<result::Event> switches_of(const result::Result& result) {
   std::vector<result::Event> events = result.events;
   std::erase_if(events, [](const result::Event& event) { return event.kind == result::EventKind::start; });

@@ -49,11 +49,16 @@ struct Accuracy {
   double atol = 1e-10;
 };
 inline constexpr Accuracy fine{pipeline::Integrator::dop853, 1e-12, 1e-14};
+inline constexpr Accuracy fine_explicit{pipeline::Integrator::dopri5, 1e-12, 1e-14};
+inline constexpr Accuracy fine_implicit{pipeline::Integrator::radau5, 1e-12, 1e-14};
 inline constexpr Accuracy standard{};
 inline constexpr Accuracy implicit{pipeline::Integrator::radau5, 1e-8, 1e-10};
 inline constexpr Accuracy series{pipeline::Integrator::taylor, 1e-8, 1e-10};
 
 [[nodiscard]] pipeline::SimulateOptions with(pipeline::SimulateOptions options, const Accuracy& accuracy);
+
+/// A model file as text, with its own options but for these.
+[[nodiscard]] result::Result simulate_text(const std::string& toml, const Accuracy& accuracy);
 
 /// Events without a leading `start`.
 [[nodiscard]] std::vector<result::Event> switches_of(const result::Result& result);

@@ -55,6 +55,14 @@ void ActiveSet::unknowns(const double* all, double* unknown) const {
   for (std::size_t k = 0; k < sliding_.size(); ++k) unknown[k] = all[at(sliding_[k].selection)];
 }
 
+void ActiveSet::set_balances(std::vector<switching::Balance> balances) {
+  balances_ = std::move(balances);
+  undetermined_.assign(modes_.size(), false);
+  for (const auto& balance : balances_) {
+    for (const std::size_t k : balance.rows) undetermined_[at(sliding_[k].selection)] = true;
+  }
+}
+
 double ActiveSet::side(int selection, const double* indicator) const {
   const int reference = references_[at(selection)];
   if (reference >= 0) return indicator[at(selection)] - indicator[at(reference)];

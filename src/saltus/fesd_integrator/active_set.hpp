@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "saltus/switching/selection_balances.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -42,6 +45,14 @@ class ActiveSet {
   [[nodiscard]] const std::vector<int>& modes() const { return modes_; }
   [[nodiscard]] const std::vector<Sliding>& sliding() const { return sliding_; }
   [[nodiscard]] const std::vector<Condition>& conditions() const { return conditions_; }
+  /// Where surfaces that slide have gradients that depend on each other: those whose selections share their conditions,
+  /// fewer than these are (numbers in sliding()). Such a selection is not determined; its conditions `lower` and
+  /// `upper` are SelectionMargins::value. They belong to a place, not to the modes.
+  [[nodiscard]] const std::vector<switching::Balance>& balances() const { return balances_; }
+  void set_balances(std::vector<switching::Balance> balances);
+  [[nodiscard]] bool is_determined(int selection) const {
+    return balances_.empty() || !undetermined_[static_cast<std::size_t>(selection)];
+  }
   [[nodiscard]] bool operator==(const ActiveSet& other) const { return modes_ == other.modes_; }
 
   /// All selections from the unknown ones (one per entry of sliding()).
@@ -59,7 +70,7 @@ class ActiveSet {
   [[nodiscard]] double side(int selection, const double* indicator) const;
   /// The active region that a region is compared with; -1 for a step selection.
   [[nodiscard]] int reference(int selection) const { return references_[static_cast<std::size_t>(selection)]; }
-  /// Value of any condition.
+  /// Value of any condition, of a selection that is determined.
   [[nodiscard]] double value(const Condition& condition, const double* indicator, const double* selections) const {
     const auto j = static_cast<std::size_t>(condition.selection);
     switch (condition.kind) {
@@ -79,6 +90,8 @@ class ActiveSet {
   std::vector<int> references_;  ///< per selection: the reference of its simplex, -1 for a step selection
   std::vector<Sliding> sliding_;
   std::vector<Condition> conditions_;
+  std::vector<switching::Balance> balances_;
+  std::vector<bool> undetermined_;  ///< per selection; empty without balances
 };
 
 }  // namespace saltus::fesd_integrator

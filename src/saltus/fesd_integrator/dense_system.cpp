@@ -88,19 +88,35 @@ Eigen::MatrixXd DenseSystem::null_space() const {
   return orthogonal_.colsPermutation() * basis;
 }
 
-bool DenseSystem::solve(double negligible) {
+bool DenseSystem::solve(double negligible, Unit unit) {
   if (n_ == 0) return true;
   if (!keep_copy()) return false;
   factorised_ = eliminate();
   if (factorised_) return solve_again();
   orthogonal_.setThreshold(1e-12);
+  // Rows in units of their own, by powers of two: surfaces and states have nothing in common, and which rank a matrix
+  // has is relative to its largest column.
   const Eigen::Map<const Eigen::MatrixXd> original(copy_.data(), n_, n_);
-  orthogonal_.compute(original);
-  right() = orthogonal_.solve(right_copy_.head(n_));
+  auto scaled = matrix();
+  const auto power = [&](Eigen::Index i) {
+    const double largest = original.row(i).cwiseAbs().maxCoeff();
+    return largest > 0.0 ? -std::ilogb(largest) : 0;
+  };
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    const int own = power(i);
+    for (Eigen::Index j = 0; j < n_; ++j) scaled(i, j) = std::ldexp(original(i, j), own);
+    right_(i) = std::ldexp(right_copy_(i), own);
+  }
+  orthogonal_.compute(scaled);
+  right() = orthogonal_.solve(right());
   if (!right().allFinite()) return false;
   // Consistent but for the threshold.
-  const double wanted = right_copy_.head(n_).cwiseAbs().maxCoeff();
-  const double missed = (original * right() - right_copy_.head(n_)).cwiseAbs().maxCoeff();
+  double wanted = 0.0, missed = 0.0;
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    const int own = unit == Unit::row ? power(i) : 0;
+    wanted = std::max(wanted, std::abs(std::ldexp(right_copy_(i), own)));
+    missed = std::max(missed, std::abs(std::ldexp(original.row(i).dot(right()) - right_copy_(i), own)));
+  }
   return missed <= 1e-9 * wanted + negligible;
 }
 

@@ -31,8 +31,10 @@ class DenseSystem {
   [[nodiscard]] Eigen::Map<Eigen::MatrixXd> matrix() { return {memory_.data(), n_, n_}; }
   [[nodiscard]] Eigen::Map<Eigen::VectorXd> right() { return {right_.data(), n_}; }
   /// Leaves the solution in right(); false if something is not finite, or a singular system has none but for an error
-  /// beyond `negligible` (the rounding level of the right side). Cost: n^3 / 3.
-  [[nodiscard]] bool solve(double negligible);
+  /// beyond `negligible` (the rounding level of the right side, as it is or in units of the largest entry of each row).
+  /// Cost: n^3 / 3.
+  enum class Unit { right_side, row };
+  [[nodiscard]] bool solve(double negligible, Unit unit = Unit::right_side);
   /// The same for another right() and the matrix that was solved for last, if that was regular. Cost: n^2.
   [[nodiscard]] bool is_factorised() const { return factorised_; }
   [[nodiscard]] bool solve_again();

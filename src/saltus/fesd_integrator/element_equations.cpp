@@ -1,8 +1,8 @@
-#include "saltus/fesd_integrator/element_equations_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "saltus/fesd_integrator/element_equations_internal.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
@@ -219,12 +219,14 @@ bool ElementEquations::project(double t, const double* held, Element& element) {
     projection_.reset(count);
     auto matrix = projection_.matrix();
     auto right = projection_.right();
+    double steepest = 0.0;
     for (Index k = 0; k < count; ++k) {
       surface_row(active, static_cast<std::size_t>(k), at);
+      steepest = std::max(steepest, row_.cwiseAbs().maxCoeff());
       for (Index l = 0; l < count; ++l) matrix(k, l) = row_.dot(along.col(l));
       right(k) = -active.surface(static_cast<std::size_t>(k), at.indicator.data());
     }
-    if (!projection_.solve(negligible(element))) return false;
+    if (!projection_.solve(negligible(element) * steepest)) return false;
     for (Index l = 0; l < count; ++l) x_1 += right(l) * along.col(l);
     double change = 0.0;
     for (Index i = 0; i < n_x_; ++i) {
@@ -306,7 +308,7 @@ std::optional<double> ElementEquations::step(const double* held, Matrix matrix, 
   if (at_end_) evaluate_end(element, held);
   if (own) assemble_matrix(element);
   assemble_right(element);
-  if (!(own ? system_.solve(negligible(element)) : system_.solve_again())) return std::nullopt;
+  if (!(own ? system_.solve(negligible(element), DenseSystem::Unit::row) : system_.solve_again())) return std::nullopt;
   const double change = update(element);
   return std::isfinite(change) ? std::optional(change) : std::nullopt;
 }

@@ -1,6 +1,7 @@
 #include "saltus/fesd_integrator/element_recorder.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace saltus::fesd_integrator {
 
@@ -12,7 +13,11 @@ ElementRecorder::ElementRecorder(const discretization::StageKernel& kernel, cons
 }
 
 void ElementRecorder::add(const Element& element, const std::vector<double>& left, const std::vector<double>& right,
-                          double end, const double* held) {
+                          double end, const ActiveSet& set, const double* held) {
+  undetermined_.clear();
+  for (const auto& balance : set.balances()) {
+    for (const std::size_t k : balance.rows) undetermined_.push_back(set.sliding()[k].selection);
+  }
   point(element.t, element.x.data(), left.data(), held);
   for (std::size_t m = 0; m < nodes_.size(); ++m) {
     const double t = nodes_[m] == 1.0 ? end : element.t + element.warp.at(nodes_[m]) * element.h;
@@ -32,7 +37,8 @@ void ElementRecorder::point(double t, const double* x, const double* selections,
   }
   elements_.t.push_back(t);
   elements_.lambda.push_back(indicators_);
-  elements_.selection.emplace_back(selections, selections + indicators_.size());
+  auto& row = elements_.selection.emplace_back(selections, selections + indicators_.size());
+  for (const int j : undetermined_) row[static_cast<std::size_t>(j)] = std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace saltus::fesd_integrator

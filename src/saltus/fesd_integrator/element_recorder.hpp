@@ -18,10 +18,11 @@ class ElementRecorder {
   ElementRecorder(const discretization::StageKernel& kernel, const Facts& facts,
                   const discretization::ButcherTableau& tableau);
 
-  /// `left`, `right`: selections at its ends, limits from its inside; `end`: its right end.
+  /// `left`, `right`: selections at its ends, limits from its inside; `end`: its right end. Selections that
+  /// are not determined are not finite.
   /// Cost: an evaluation of the indicators per point.
   void add(const Element& element, const std::vector<double>& left, const std::vector<double>& right, double end,
-           const double* held);
+           const ActiveSet& set, const double* held);
   [[nodiscard]] result::Elements take() { return std::move(elements_); }
 
  private:
@@ -31,6 +32,7 @@ class ElementRecorder {
   const Facts& facts_;
   std::vector<double> nodes_;
   std::vector<double> indicators_;
+  std::vector<int> undetermined_;  ///< selections of the element in hand
   result::Elements elements_;
 };
 

@@ -207,6 +207,7 @@ RowVectorXd ElementTangent::condition(const Condition& condition, const Element&
                                       const std::vector<double>& right, const double* held, const Directions& go) {
   evaluate(element.t + element.h, element.end.data(), right.data(), set, held, right_);
   const bool side = condition.kind == Condition::Kind::side;
+  if (!side && !set.is_determined(condition.selection)) return margin(condition, set, right, go);
   const MatrixXd change =
       side ? MatrixXd(ConstMatrix(right_.indicator_x.data(), n_, n_x_) * go.x + indicator(right_, go.t, go.p))
            : projected_selections(set, right_, go);
@@ -215,6 +216,19 @@ RowVectorXd ElementTangent::condition(const Condition& condition, const Element&
     sigma(c) = side ? set.side(condition.selection, change.col(c).data()) : change(condition.selection, c);
   }
   return sigma;
+}
+
+/// 0 is on a facet of the velocities of a balance: with selections that hold the surfaces, what moves the facet's
+/// normal takes no part, and it goes as the rates of the surfaces do along it.
+RowVectorXd ElementTangent::margin(const Condition& condition, const ActiveSet& set, const std::vector<double>& right,
+                                   const Directions& go) {
+  std::vector<double> selections = right;
+  margins_.evaluate(set, field_view(right_), selections.data());
+  const std::vector<double> normal = margins_.normal(set, condition);
+  const MatrixXd rate = ConstMatrix(right_.rate_x.data(), n_, n_x_) * go.x +
+                        ConstVector(right_.rate_t.data(), n_) * go.t +
+                        ConstMatrix(right_.rate_p.data(), n_, n_p_) * go.p;
+  return ConstVector(normal.data(), static_cast<Index>(normal.size())).transpose() * surfaces_of(set, rate);
 }
 
 }  // namespace saltus::fesd_integrator

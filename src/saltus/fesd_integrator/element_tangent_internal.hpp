@@ -10,6 +10,7 @@
 #include "saltus/discretization/tangent_kernel.hpp"
 #include "saltus/fesd_integrator/active_set.hpp"
 #include "saltus/fesd_integrator/element.hpp"
+#include "saltus/fesd_integrator/selection_margins.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -37,6 +38,8 @@ class ElementTangent {
                                              const Directions& go);
 
  private:
+  [[nodiscard]] Eigen::RowVectorXd margin(const Condition& condition, const ActiveSet& set,
+                                          const std::vector<double>& right, const Directions& go);
   using Index = Eigen::Index;
   using Matrix = Eigen::MatrixXd;
 
@@ -61,6 +64,7 @@ class ElementTangent {
   discretization::TangentValues left_, right_;
   discretization::DirectionValues direction_;
   std::vector<double> inside_;
+  SelectionMargins margins_;
 };
 
 }  // namespace saltus::fesd_integrator

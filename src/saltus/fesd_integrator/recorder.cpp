@@ -1,6 +1,7 @@
 #include "saltus/fesd_integrator/recorder.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace saltus::fesd_integrator {
@@ -41,7 +42,11 @@ ModeView Recorder::view(const ActiveSet& set, const std::vector<double>& selecti
       mode = mode == -1 ? -1 : 0;
     }
   }
-  functions_.alpha(selections.data(), held, view.alpha.data());
+  // What is not determined has no value.
+  for (std::size_t j = 0; j < middle.size(); ++j) {
+    middle[j] = set.is_determined(static_cast<int>(j)) ? selections[j] : std::numeric_limits<double>::quiet_NaN();
+  }
+  functions_.alpha(middle.data(), held, view.alpha.data());
   return view;
 }
 
@@ -126,6 +131,8 @@ void Recorder::finish(result::Event& event, const Columns& after, const std::vec
   event.alpha_after = after.alpha;
   if (!facts_.regions.empty()) event.regions_after = after.regions;
   event.unique = std::all_of(found.begin(), found.end(), [](const auto& other) { return other.determined; });
+  const bool decided = std::all_of(found.begin(), found.end(), [](const auto& other) { return other.decided; });
+  if (event.unique == true && !decided) event.unique = std::nullopt;
   for (std::size_t k = 1; k < found.size(); ++k) {
     Columns other = columns(found[k].set, found[k].selections, held);
     // Sets that differ only where it does not show (inside a nested function) are one continuation.

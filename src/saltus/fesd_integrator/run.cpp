@@ -276,7 +276,7 @@ void Run::accept(const Element& element, const std::vector<double>& left, const 
   } else if (!record_user_events(element, left, end)) {
     return;
   }
-  if (element_recorder_) element_recorder_->add(element, left, right, end, held_.data());
+  if (element_recorder_) element_recorder_->add(element, left, right, end, set_, held_.data());
   t_ = end;
   x_ = element.end;
   selections_ = right;

@@ -85,11 +85,18 @@ std::optional<Run::EventZero> Run::first_event_zero(const Element& element, cons
 void Run::event_state(const Element& element, const std::vector<double>& selections, double theta) {
   solver_.interpolate(element, theta, between_x_.data());
   between_selections_ = selections;
-  if (set_.sliding().empty()) return;
-  if (!projected_.solve(element.t + theta * element.h, between_x_.data(), set_, held_.data(),
-                        between_selections_.data())) {
-    between_selections_ = selections;
+  if (!project_selections(element.t + theta * element.h, between_x_)) between_selections_ = selections;
+}
+
+/// From between_selections_ to those that hold the surfaces at a point; those nearest to 1/2 where they are not
+/// determined.
+bool Run::project_selections(double t, const std::vector<double>& x) {
+  if (set_.sliding().empty()) return true;
+  if (!projected_.solve(t, x.data(), set_, held_.data(), between_selections_.data())) return false;
+  if (!set_.balances().empty()) {
+    margins_.evaluate(set_, field_view(projected_.values()), between_selections_.data());
   }
+  return true;
 }
 
 /// The zero itself: where an element that begins with this one, and is shorter, ends at zero.
@@ -108,10 +115,7 @@ double Run::refined_event(const Element& element, const std::vector<double>& sel
     }
     between_selections_ = selections;
     const double t = element.t + theta * element.h;
-    if (!set_.sliding().empty() &&
-        !projected_.solve(t, shorter_.end.data(), set_, held_.data(), between_selections_.data())) {
-      break;
-    }
+    if (!project_selections(t, shorter_.end)) break;
     functions_.event_values(t, shorter_.end.data(), between_selections_.data(), held_.data(), values.data());
     const double value = values[zero.function];
     if (!(std::abs(value) < best)) break;  // at the rounding level, or astray

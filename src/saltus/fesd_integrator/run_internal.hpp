@@ -157,6 +157,7 @@ class Run {
                                                           const Stretch& part);
   void settle_event_signs(const Element& element, const std::vector<double>& selections);
   void event_state(const Element& element, const std::vector<double>& selections, double theta);
+  [[nodiscard]] bool project_selections(double t, const std::vector<double>& x);
   [[nodiscard]] double refined_event(const Element& element, const std::vector<double>& selections,
                                      const EventZero& zero, std::vector<double>& x, std::vector<double>& at);
   /// User events and output times of an element that is accepted; false if an event stops the run.
@@ -186,6 +187,7 @@ class Run {
   Watch watch_;
   Transition transition_;
   ProjectedField projected_;
+  SelectionMargins margins_;
   FixedElement fixed_;
   HeldValues held_;
   Recorder recorder_;

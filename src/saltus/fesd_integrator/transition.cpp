@@ -45,9 +45,10 @@ Transition::Transition(const discretization::StageKernel& kernel, std::span<cons
 
 /// Which functions are zero at the point, in groups that influence each other; signs of the others into `modes`.
 /// @return false where the indicators of regions are not finite, so that none of them is the smallest
-bool Transition::find_groups(const Decision& decision, std::vector<int>& modes) {
+bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<int>& modes) {
   const std::size_t n = kernel_.selections(), n_x = kernel_.states();
   groups_.clear();
+  depends_ = false;
   modes.assign(n, -1);
   std::vector<double> middle(n, 0.5);
   discretization::StageValues values;
@@ -125,7 +126,11 @@ bool Transition::find_groups(const Decision& decision, std::vector<int>& modes) 
     for (std::size_t b = a; b < members.size(); ++b) {
       if (group[b] == group[a]) entry.members.push_back(members[b]);
     }
-    entry.patterns = patterns_of(entry, decision);
+    if (rule == Rule::dependent && find_dependent(decision, modes, entry)) {
+      depends_ = true;
+    } else {
+      entry.patterns = patterns_of(entry, decision);
+    }
   }
   return true;
 }
@@ -181,7 +186,8 @@ double Transition::margin(const Decision& decision, const Group& group, Continua
   const double from_middle = margin_from(unknown, decision, group, candidate);
   // The selections of several surfaces solve a multi-affine system with several roots: also from near the corners.
   constexpr std::size_t most_sliding = 4;
-  if (from_middle >= -undecided || sliding.size() < 2 || sliding.size() > most_sliding) return from_middle;
+  const bool one_root = sliding.size() < 2 || !candidate.set.balances().empty();
+  if (from_middle >= -undecided || one_root || sliding.size() > most_sliding) return from_middle;
   for (unsigned corner = 0; corner < 1U << sliding.size(); ++corner) {
     for (std::size_t k = 0; k < unknown.size(); ++k) unknown[k] = (corner >> k & 1U) != 0 ? 0.85 : 0.15;
     const double value = margin_from(unknown, decision, group, candidate);
@@ -204,10 +210,12 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
   }
   projected_.rates(rate_);
   if (!take_from_trial(decision, candidate)) return -1.0;
+  if (!set.balances().empty()) margins_.evaluate(set, field_view(projected_.values()), candidate.selections.data());
   double least = 1.0;
   for (const Condition& condition : set.conditions()) {
     if (std::find(group.members.begin(), group.members.end(), condition.selection) == group.members.end()) continue;
-    double value = set.value(condition, rate_.data(), candidate.selections.data());
+    const bool margin = condition.kind != Condition::Kind::side && !set.is_determined(condition.selection);
+    double value = margin ? margins_.value(condition) : set.value(condition, rate_.data(), candidate.selections.data());
     if (condition.kind == Condition::Kind::side) {
       double size = size_[at(condition.selection)];
       for (const int j : group.members) {
@@ -284,8 +292,13 @@ Transition::Trial Transition::try_elements(const Decision& decision, const Group
 }
 
 std::vector<Continuation> Transition::continuations(const Decision& decision) {
+  auto found = continuations(decision, Rule::dependent);
+  return found.empty() && depends_ ? continuations(decision, Rule::enumeration) : found;
+}
+
+std::vector<Continuation> Transition::continuations(const Decision& decision, Rule rule) {
   std::vector<int> modes;
-  finite_ = find_groups(decision, modes);
+  finite_ = find_groups(decision, rule, modes);
   if (!finite_) return {};
   // A first guess at every group, so that each is asked with the others in place: what has the largest margin.
   std::vector<std::vector<Option>> options(groups_.size());
@@ -298,7 +311,7 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     for (const auto& pattern : groups_[g].patterns) {
       auto trial = modes;
       put(groups_[g], pattern, trial);
-      Continuation candidate{ActiveSet(parts_, trial), {}, true};
+      Continuation candidate{make_set(decision, trial), {}};
       const double value = margin(decision, groups_[g], candidate);
       if (value < -undecided) continue;
       options[g].push_back({pattern, value});
@@ -314,14 +327,15 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     for (Option& option : options[g]) {
       auto trial = guess;
       put(groups_[g], option.pattern, trial);
-      Continuation candidate{ActiveSet(parts_, trial), {}, true};
-      if (option.margin <= undecided) {
+      Continuation candidate{make_set(decision, trial), {}};
+      if (option.margin <= undecided || groups_[g].dependent) {
         if (margin(decision, groups_[g], candidate) < -undecided) continue;
         option.trial = try_elements(decision, groups_[g], candidate);
         if (option.trial == Trial::fails || option.trial == Trial::unsolved) continue;
       }
       option.selections = std::move(candidate.selections);
       passed.push_back(std::move(option));
+      if (groups_[g].dependent) break;
     }
     for (const Option& option : passed) {
       if (!is_sliding_of_another(option, passed)) admissible[g].push_back(option.pattern);
@@ -333,8 +347,9 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
   Group all;
   for (const Group& group : groups_) all.members.insert(all.members.end(), group.members.begin(), group.members.end());
   const auto keep = [&](const std::vector<int>& chosen) {
-    Continuation candidate{ActiveSet(parts_, chosen), {}, true};
+    Continuation candidate{make_set(decision, chosen), {}};
     if (margin(decision, all, candidate) < -undecided) return;
+    candidate.decided = std::all_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.decided; });
     if (!projected_.regular()) {
       candidate.determined =
           solve_trial(decision, candidate, decision.trial_length) == ElementSolver::Outcome::solved &&

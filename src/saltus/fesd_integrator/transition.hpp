@@ -10,6 +10,7 @@
 #include "saltus/fesd_integrator/active_set.hpp"
 #include "saltus/fesd_integrator/element.hpp"
 #include "saltus/fesd_integrator/projected_field.hpp"
+#include "saltus/fesd_integrator/selection_margins.hpp"
 #include "saltus/fesd_integrator/watch.hpp"
 
 namespace saltus::fesd_integrator {
@@ -19,6 +20,7 @@ struct Continuation {
   ActiveSet set;
   std::vector<double> selections;
   bool determined = true;  ///< ElementSolver::determined of an element that begins here
+  bool decided = true;     ///< whether there are no others that were not looked for
 };
 
 /// What is known of a point where a set ended.
@@ -37,7 +39,9 @@ struct Decision {
 /// behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a short
 /// element does, or a longer one where psi is within its rounding behind that. A side that the solution does not get
 /// to, as psi stays at zero, is no other continuation than sliding with the selections of that side. Functions that do
-/// not influence each other are enumerated one by one.
+/// not influence each other are enumerated one by one. Surfaces whose gradients depend on each other, with selections
+/// that enter additively, are not enumerated: a complementarity problem says which are slid on and which are left [ADR
+/// 20]; where it leaves that open, the one just behind the point does.
 ///
 /// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
 /// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
@@ -57,8 +61,14 @@ class Transition {
   struct Group {
     std::vector<int> members;                ///< functions of the step form, or regions of a simplex
     std::vector<std::vector<int>> patterns;  ///< modes of the members
+    bool dependent = false;                  ///< these are by the complementarity problem, the likeliest one first
+    bool decided = true;                     ///< which has one motion as its solution
   };
-  [[nodiscard]] bool find_groups(const Decision& decision, std::vector<int>& modes);
+  enum class Rule { dependent, enumeration };
+  [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision, Rule rule);
+  [[nodiscard]] bool find_dependent(const Decision& decision, const std::vector<int>& modes, Group& group);
+  [[nodiscard]] ActiveSet make_set(const Decision& decision, std::vector<int> modes);
+  [[nodiscard]] bool find_groups(const Decision& decision, Rule rule, std::vector<int>& modes);
   [[nodiscard]] std::vector<std::vector<int>> patterns_of(const Group& group, const Decision& decision) const;
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
@@ -89,6 +99,8 @@ class Transition {
   std::vector<Group> groups_;
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
+  bool depends_ = false;  ///< whether a group of the decision in hand is dependent
+  SelectionMargins margins_;
   bool finite_ = true;
   std::vector<double> rate_, size_, noise_;
 };

@@ -78,8 +78,31 @@ double Watch::noise(const Condition& condition) const {
 }
 
 double Watch::end_value(const ActiveSet& set, const Condition& condition) const {
-  const std::size_t last = (points_ - 1) * kernel_.selections();
-  return set.value(condition, indicators_.data() + last, selections_.data() + last);
+  return value_at(set, condition, points_ - 1);
+}
+
+double Watch::value_at(const ActiveSet& set, const Condition& condition, std::size_t point) const {
+  const std::size_t row = point * kernel_.selections();
+  if (condition.kind == Condition::Kind::side || set.is_determined(condition.selection)) {
+    return set.value(condition, indicators_.data() + row, selections_.data() + row);
+  }
+  const auto& margins = condition.kind == Condition::Kind::lower ? lower_ : upper_;
+  return margins[row + static_cast<std::size_t>(condition.selection)];
+}
+
+/// Of selections that are not determined; they become those nearest to 1/2.
+void Watch::note_margins(const ActiveSet& set, std::size_t point, double* selections) {
+  const std::size_t n = kernel_.selections();
+  lower_.resize(selections_.size());
+  upper_.resize(selections_.size());
+  margins_.evaluate(set, field_view(projected_.values()), selections);
+  for (const auto& balance : set.balances()) {
+    for (const std::size_t k : balance.rows) {
+      const int j = set.sliding()[k].selection;
+      lower_[point * n + static_cast<std::size_t>(j)] = margins_.value({Condition::Kind::lower, j});
+      upper_[point * n + static_cast<std::size_t>(j)] = margins_.value({Condition::Kind::upper, j});
+    }
+  }
 }
 
 Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const double* held,
@@ -103,6 +126,7 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
     if (slides) {
       if (!projected_.solve(t, x_.data(), set, held, at, rounding)) return Answer::not_finite;
       if (!projected_.regular()) take_from_stages(element, set, i, at);
+      if (!set.balances().empty()) note_margins(set, i, at);
       std::copy(at, at + n, selections.begin());
     }
     kernel_.indicators(t, x_.data(), held, indicators_.data() + i * n);
@@ -112,7 +136,7 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   for (const Condition& condition : set.conditions()) {
     if (!only.empty() && std::find(only.begin(), only.end(), condition.selection) == only.end()) continue;
     for (std::size_t i = 0; i < points_; ++i) {
-      values_[i] = set.value(condition, indicators_.data() + i * n, selections_.data() + i * n);
+      values_[i] = value_at(set, condition, i);
       if (!std::isfinite(values_[i])) return Answer::not_finite;
     }
     first_change(set, element, condition, earliest, found);

@@ -12,6 +12,7 @@
 #include "saltus/fesd_integrator/defect.hpp"
 #include "saltus/fesd_integrator/element.hpp"
 #include "saltus/fesd_integrator/projected_field.hpp"
+#include "saltus/fesd_integrator/selection_margins.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -57,6 +58,8 @@ class Watch {
   [[nodiscard]] double error_of(const ActiveSet& set, const Condition& condition) const;
   void find_errors(const Element& element, const ActiveSet& set, const double* held,
                    const std::vector<double>& selections);
+  void note_margins(const ActiveSet& set, std::size_t point, double* selections);
+  [[nodiscard]] double value_at(const ActiveSet& set, const Condition& condition, std::size_t point) const;
   void take_from_stages(const Element& element, const ActiveSet& set, std::size_t point, double* selections);
   void find_warped_errors(const Element& element, const ActiveSet& set, const double* f, const double* held,
                           const std::vector<double>& selections);
@@ -79,6 +82,8 @@ class Watch {
   std::size_t interpolation_ = 0;   ///< of the element in hand
   std::vector<double> indicators_;  ///< one row per watch point
   std::vector<double> selections_;
+  SelectionMargins margins_;
+  std::vector<double> lower_, upper_;  ///< margins of selections that are not determined; as selections_
   std::vector<double> values_, x_, noise_, left_rates_;
   discretization::StageValues left_;
   bool may_miss_ = false;

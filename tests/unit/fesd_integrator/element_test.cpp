@@ -234,7 +234,7 @@ TEST(ElementRecorder, KeepsMultipliersAtEndsAndStages) {
     const auto solved = solve(model, method, {1.0, {-1.0}, selections, 1.0}, 0.3, set);
     ASSERT_EQ(solved.outcome, Outcome::solved);
     ElementRecorder recorder(model.kernel, model.facts, method);
-    recorder.add(solved.element, selections, selections, 1.3, nullptr);
+    recorder.add(solved.element, selections, selections, 1.3, set, nullptr);
     const auto elements = recorder.take();
     EXPECT_EQ(elements.points, 4U);
     EXPECT_EQ(elements.selections.front(),
