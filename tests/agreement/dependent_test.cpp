@@ -200,6 +200,37 @@ TEST(DependentSurfaces, TooManyAreRefusedAtOnce) {
   EXPECT_NE(result.status.message.find("too many"), std::string::npos) << result.status.message;
 }
 
+/// Four absolute values pull, two sines push. The solution drifts through the edge of a layer so slowly that velocities
+/// on both sides of it are rounding; nothing slides on it all the same.
+TEST(DependentSurfaces, LayersAreLeftAndEnteredHoweverSlowly) {
+  const std::string text = R"toml(
+[model]
+name = "flow"
+[states]
+x0 = 0.58
+x1 = 0.88
+[switching]
+s1 = "0.85*x0 + 0.65*x1"
+s2 = "-0.87*x0 + 0.19*x1"
+s3 = "0.74*x0 + 0.7*x1"
+s4 = "0.26*x0 + 0.66*x1"
+[dynamics]
+x0 = "-1.0115*sign(s1) + 1.0179*sign(s2) - 0.7918*sign(s3) - 0.0832*sign(s4) + 2.97*sin(0.85*t+5.09)"
+x1 = "-0.7735*sign(s1) - 0.2223*sign(s2) - 0.749*sign(s3) - 0.2112*sign(s4) + 2.91*sin(0.84*t+2.14)"
+[simulate]
+until = 4
+)toml";
+  const Simulator simulator = Simulator::from_text(text);
+  const Result exact = simulator.run(with(simulator.options(), standard));
+  auto options = simulator.options();
+  options.method = pipeline::Method::smoothed;
+  options.smoothed.epsilon = 1e-7;
+  const Result smooth = simulator.run(options);
+  ASSERT_EQ(smooth.status.termination, Termination::completed) << smooth.status.message;
+  // A few layers, as for the networks.
+  for (std::size_t i = 0; i < exact.final.x.size(); ++i) EXPECT_NEAR(exact.final.x[i], smooth.final.x[i], 1e-5);
+}
+
 /// Agents on a random graph, each pushed by a sine, against layers of width 1e-7.
 TEST(DependentSurfaces, RandomNetworksAgreeWithLayers) {
   std::mt19937_64 random(2026);

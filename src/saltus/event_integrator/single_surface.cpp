@@ -121,6 +121,8 @@ bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Tr
   if (below.drift == Drift::stays || above.drift == Drift::stays) return false;
   const auto decision = switching::decide_surface(situation);
   if (!is_plain(decision, before.mode[at(j)]) || (exit != 0 && decision.mode != exit)) return false;
+  // Nothing slides on a kink: velocities that say so are rounding.
+  if (decision.mode == 0 && surroundings_.system.switching[at(j)].is_kink()) return false;
   fill(before, occasion, decision, transition);
   const bool alone = before.sliding.size() == (exit != 0 ? 1U : 0U);
   return alone || select_others(occasion, transition.state);
@@ -139,6 +141,7 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
   situation.arrival = arrival_from(before.mode[at(surface)]);
   auto decision = switching::decide_surface(situation);
   if (!is_plain(decision, before.mode[at(surface)])) return std::nullopt;
+  if (decision.mode == 0 && surroundings_.system.switching[at(surface)].is_kink()) return std::nullopt;
   return decision;
 }
 

@@ -127,6 +127,22 @@ void Decider::note_scales(const std::vector<int>& group, const switching::Corner
   }
 }
 
+/// Nothing slides on a kink, and none is left to both sides: f is one and the same there. Velocities that say so, or
+/// nothing, are rounding, as at the edge of a thin layer that a solution drifts through; the kink was seen to be
+/// passed.
+bool Decider::passes_kink(const std::vector<int>& group, const switching::GroupDecision& decision) {
+  const int j = group.front();
+  const int arrived = before_.mode[at(j)];
+  if (group.size() > 1 || arrived == 0 || occasion_.start) return false;
+  if (!s_.system.switching[at(j)].is_kink()) return false;
+  const auto& surface = decision.surfaces.front();
+  if (decision.verdict == Verdict::decided && surface.mode != 0 && surface.other_modes.empty()) return false;
+  decisions_.emplace_back(j,
+                          SurfaceDecision{Verdict::decided, -arrived, arrived < 0 ? 1.0 : 0.0, {}, "a kink is passed"});
+  standing_.push_back(j);
+  return true;
+}
+
 bool Decider::decide(const std::vector<int>& group) {
   if (group.size() > 1) {
     for (const int j : group) {
@@ -163,6 +179,7 @@ bool Decider::decide(const std::vector<int>& group) {
     if (spiral_out(group, switching::plane_table(table), *tree)) return true;
   }
   const auto decision = ask(group, table);
+  if (passes_kink(group, decision)) return true;
   const auto culprit = [&] { return s_.system.switching[at(group[at(std::max(decision.culprit, 0))])].name; };
   switch (decision.verdict) {
     case Verdict::decided:

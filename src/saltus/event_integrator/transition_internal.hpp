@@ -127,6 +127,7 @@ class Decider {
 
  private:
   bool decide(const std::vector<int>& group);
+  bool passes_kink(const std::vector<int>& group, const switching::GroupDecision& decision);
   bool decide_parts(const std::vector<std::vector<int>>& parts);
   bool decide_parts(const std::vector<int>& group, const switching::CornerTable& table);
   bool passes(int surface) const;

@@ -33,6 +33,9 @@ struct SwitchingFunction {
   /// for this are two. Other functions that depend on discrete states have the value of the first comparison that uses
   /// them: it counts where psi is identically 0 until a jump.
   double alpha_at_zero = 0.5;
+  bool continuous = false;  ///< listed, though nothing jumps on its surface: an edge of a layer
+  /// Whether f is the same on both sides: then nothing slides on the surface.
+  [[nodiscard]] bool is_kink() const { return role == SwitchingRole::kink || continuous; }
 };
 
 /// A column of the result: a switching function, or an alias of one (the same surface named twice).

@@ -156,6 +156,7 @@ void Regulariser::add_function(int j) {
     }
     const SX psi = copy.psi;
     copy.named = false;
+    copy.continuous = true;
     copy.psi = psi + epsilon_;
     copy.name = fmt::format("{} = -epsilon", function.name);
     const int lower = add(copy);
@@ -194,6 +195,7 @@ std::optional<Error> Regulariser::add_regions(const model::ModeGroup& group) {
     const SX ahead = psi[at(j - group.first)] - largest;
     SwitchingFunction weight = original_.switching[at(j)];
     weight.role = SwitchingRole::listed;
+    weight.continuous = true;
     weight.named = false;
     weight.inner.clear();
     weight.name = fmt::format("weight of {}", original_.switching[at(j)].name);
