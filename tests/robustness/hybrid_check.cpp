@@ -229,11 +229,13 @@ std::vector<int> signs_of(const Hybrid& hybrid, const Result& result, std::size_
 }
 
 /// What the state may move by at a time: rounding, or where jumps have their limit what their last lap, which is
-/// extrapolated, leaves of velocities.
-double limit_moves(const Result& result, double t, const State& x) {
+/// extrapolated, leaves of velocities, and what it moves by at these rates in the time that is left: laps that shrink
+/// by 0.95, the largest restitution, leave 19 times the last one.
+double limit_moves(const Result& result, double t, const State& x, const State& rates) {
   double last = t, before = t, moves = 1e-13 * size_of(x);
   for (const Event& event : result.events) {
-    if (event.kind == EventKind::accumulation && event.t == t) moves = 1e-6 + 20.0 * (last - before) * size_of(x);
+    if (event.kind == EventKind::accumulation && event.t == t)
+      moves = 1e-6 + 20.0 * (last - before) * std::max(size_of(x), size_of(rates));
     if (event.kind != EventKind::jump || event.t == last) continue;
     before = last;
     last = event.t;
@@ -275,7 +277,8 @@ std::string complaint(const Hybrid& hybrid, const Result& result, double rtol) {
     const bool same_time = rows.t[i + 1] == rows.t[i];
     const double moves = distance(rows.x[i], rows.x[i + 1]);
     if (same_time || event_at(rows.t[i + 1], is_limit)) {
-      const double may_move = limit_moves(result, rows.t[i + 1], rows.x[i]);
+      const Stretch stretch(hybrid, signs_of(hybrid, result, i), rows.x[i], rows.x[i + 1]);
+      const double may_move = limit_moves(result, rows.t[i + 1], rows.x[i], stretch.rates(rows.t[i], rows.x[i]));
       if (moves > may_move && !event_at(rows.t[i + 1], is_jump))
         return where(fmt::format("moves by {} at once", moves));
       continue;
