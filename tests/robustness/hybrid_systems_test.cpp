@@ -41,6 +41,15 @@ TEST(HybridSystems, OnesThatFailedOnceAreSolvedOrRefused) {
   }
 }
 
+/// Regions of one indicator (908, 11810), and six that some weights hold together at a point, but not their own.
+TEST(RegionSystems, OnesThatFailedOnceAreRefused) {
+  for (const std::uint64_t seed : {908U, 1491U, 11810U}) {
+    const Tally tally = run_region_campaign(seed, 1);
+    for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
+    EXPECT_EQ(tally.outside_class, 1);
+  }
+}
+
 TEST(HybridSystemsJudge, FindsPlantedMistakes) {
   const Hybrid system = draw(HybridFamily::jumps, 0);
   const result::Result good = HybridModel(system).run(HybridIntegrator::dopri5, 1e-8, system.start);

@@ -96,6 +96,39 @@ double fastest(const ProjectedFields& fields, const RegionRange& group, const Mo
 
 }  // namespace
 
+std::optional<std::pair<int, int>> same_indicators(const ModelKernel& kernel, const ModeState& state,
+                                                   const Occasion& occasion) {
+  const auto& tied = occasion.tied;
+  std::vector<std::pair<int, int>> same;
+  for (std::size_t a = 0; a < tied.size(); ++a) {
+    for (std::size_t b = a + 1; b < tied.size(); ++b) {
+      if (same_group(kernel, tied[a], tied[b])) same.emplace_back(tied[a], tied[b]);
+    }
+  }
+  const auto n = at(kernel.event_functions());
+  std::vector<double> values(n), magnitude(n), slope(n);
+  for (const unsigned pattern : {0U, 1U, 2U}) {
+    // Each state by another part of its size, so that no symmetry of the model cancels them.
+    constexpr double step = 0x1p-10;
+    const double t = occasion.t + step * (1.0 + std::abs(occasion.t));
+    std::vector<double> x(occasion.x, occasion.x + kernel.states());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double weight = (pattern >> (i % 2) & 1U) != 0 ? -1.0 : 1.0;
+      x[i] += weight * step * (1.0 + std::abs(x[i])) * (1.0 + 0.37 * static_cast<double>(i % 5));
+    }
+    kernel.functions(t, x.data(), state.alpha.data(), values.data());
+    kernel.scales(t, x.data(), state.alpha.data(), magnitude.data(), slope.data());
+    std::erase_if(same, [&](const auto& pair) {
+      const auto [i, j] = pair;
+      // A thousandth of their slopes, but for those of one function: roundings.
+      const double size = magnitude[at(i)] + magnitude[at(j)] + slope[at(i)] + slope[at(j)];
+      return !(std::abs(values[at(i)] - values[at(j)]) <= 1e-9 * size);
+    });
+  }
+  if (same.empty()) return std::nullopt;
+  return same.front();
+}
+
 void complete_ties(const ModelKernel& kernel, const ModeState& before, Occasion& occasion) {
   const auto located = occasion.at_zero;
   for (const auto& group : kernel.region_groups()) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -34,6 +36,11 @@ void complete_weights(const evaluation::ModelKernel& kernel, ModeState& state);
 
 /// Regions of one group that are at its minimum where an occasion is: those at zero, and their references.
 void note_ties(const evaluation::ModelKernel& kernel, const ModeState& before, Occasion& occasion);
+
+/// Two of the regions at the minimum (`tied`) whose indicators are one and the same function, near by and as time goes,
+/// too: nothing says which of them is active.
+[[nodiscard]] std::optional<std::pair<int, int>> same_indicators(const evaluation::ModelKernel& kernel,
+                                                                 const ModeState& state, const Occasion& occasion);
 
 /// Adds to those at zero of a group the regions that are so to rounding of psi or of the time: where several reach the
 /// minimum within a few roundings, as at the end of a spiral, which one is located there means nothing.

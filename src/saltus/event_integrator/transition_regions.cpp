@@ -150,6 +150,12 @@ bool Decider::decide_regions(const std::vector<int>& group) {
   const auto& candidates = meeting.candidates;
   const auto sets = sets_that_go_on(meeting);
   if (sets.empty() && spiral_out(meeting, *range)) return true;
+  if (sets.empty() && meeting.basis && switching::can_be_held(tie_at(meeting, occasion_.t, occasion_.x))) {
+    return fail(result::Termination::outside_class,
+                fmt::format("the regions {} meet at t = {}: some weights keep their indicators equal, but those that "
+                            "follow the indicators come to rest nowhere, so that the weights are not determined",
+                            names(s_.system, candidates), occasion_.t));
+  }
   if (sets.empty()) {
     return fail(result::Termination::no_admissible_mode,
                 fmt::format("the regions {} meet at t = {}, and no set of them continues the solution",

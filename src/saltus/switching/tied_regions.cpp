@@ -160,6 +160,28 @@ std::vector<RegionSet> admissible_region_faces(const RegionTie& tie, double tole
   return found;
 }
 
+bool can_be_held(const RegionTie& tie) {
+  const auto m = tie.rates.rows();
+  const auto n = tie.rates.cols();
+  if (n <= m) return false;
+  std::vector<bool> taken(static_cast<std::size_t>(n), false);
+  std::fill(taken.begin(), taken.begin() + m + 1, true);
+  Matrix equations(m + 1, m + 1);
+  const Eigen::VectorXd sum_is_one = Eigen::VectorXd::Unit(m + 1, m);
+  do {
+    Eigen::Index column = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!taken[static_cast<std::size_t>(i)]) continue;
+      equations.col(column).head(m) = tie.rates.col(i);
+      equations(m, column++) = 1.0;
+    }
+    // A corner that is 0 to rounding may be on either side: a face of the others has it, too.
+    const Eigen::VectorXd weights = equations.partialPivLu().solve(sum_is_one);
+    if (weights.allFinite() && weights.minCoeff() >= 0.0) return true;
+  } while (std::prev_permutation(taken.begin(), taken.end()));
+  return false;
+}
+
 bool motion_depends_on_weights(const RegionTie& tie, const RegionSet& set, const Eigen::MatrixXd& fields) {
   const auto face = face_of(tie, set.active);
   if (!face) return false;

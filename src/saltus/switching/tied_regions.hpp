@@ -30,6 +30,11 @@ struct RegionTie {
 /// is. LIMIT: roots that none of these starts leads to are not found; parallelograms have at most two.
 [[nodiscard]] std::vector<RegionSet> admissible_region_faces(const RegionTie& tie, double tolerance);
 
+/// Whether some weights of all regions together keep their indicators equal: 0 is a convex combination of the rates, of
+/// m + 1 of them then (Caratheodory). The weights of RegionWeights need not be among these.
+/// Cost: binomial(n, m + 1) linear systems.
+[[nodiscard]] bool can_be_held(const RegionTie& tie);
+
 /// Whether the motion of a set depends on which of all weights with the same ds/dt are taken: then Stewart's system has
 /// solutions that move differently.
 /// @param fields  n_x x n, in the order of the tie

@@ -19,6 +19,20 @@ using result::Regions;
 using result::Termination;
 using testing::run_tightly;
 
+TEST(Regions, TwoOfOneIndicatorAreOutsideTheClass) {
+  // Behind x = 0 nothing says which of two fields holds.
+  Builder b("twins");
+  const SX x = b.state("x", {-1.0});
+  b.state("y", {0.0});
+  b.region(x, {{"x", SX(1.0)}, {"y", SX(0.0)}}, "before");
+  b.region(-x, {{"x", SX(1.0)}, {"y", SX(1.0)}}, "up");
+  b.region(-x, {{"x", SX(1.0)}, {"y", SX(-1.0)}}, "down");
+  const auto run = run_tightly(b, 2.0);
+  EXPECT_EQ(run.status.termination, Termination::outside_class);
+  EXPECT_NE(run.status.message.find("'up' and 'down' have the same indicator"), std::string::npos)
+      << run.status.message;
+}
+
 TEST(Regions, TwoAreTheSameModelAsAStep) {
   const auto state = [](Builder& b) {
     const SX x = b.state("x", {1.0});

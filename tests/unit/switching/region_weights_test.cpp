@@ -152,6 +152,16 @@ TEST(TiedRegions, SetsAreThoseOfStewartsSystemWhereNothingDepends) {
   }
 }
 
+// Quadrants of the plane, whose fields point inwards; with 4 added to one component they all point to one side.
+TEST(TiedRegions, AreHeldBySomeWeightsWhereTheirFieldsSurroundZero) {
+  Eigen::MatrixXd points(4, 2), rates(2, 4);
+  points << 1, 1, -1, 1, -1, -1, 1, -1;
+  rates << -1, 2, 1, -3, -1, -1, 2, 1;
+  EXPECT_TRUE(can_be_held({*RegionPolytope::make(points), rates}));
+  rates.row(0).array() += 4.0;
+  EXPECT_FALSE(can_be_held({*RegionPolytope::make(points), rates}));
+}
+
 TEST(TiedRegions, MotionsThatHangOnTheWeightsAreFound) {
   MatrixXd points(4, 2), velocities(2, 4);
   points << 0, 0, 1, 0, 0, 1, 1, 1;
