@@ -31,9 +31,8 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
   SALTUS_ASSERT(0 <= function && function < event_functions());
   auto& self = *implementation_;
   auto& gradient = self.gradients[index(function)];
-  const auto n = self.x.numel();
   if (!gradient.constant.empty()) {
-    std::copy_n(gradient.constant.begin(), n, row);
+    std::copy(gradient.constant.begin(), gradient.constant.end() - 1, row);
     *rate = gradient.constant.back();
     return;
   }
@@ -45,7 +44,7 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
   gradient.function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
                     std::array<double*, 2>{row, rate});
   if (is_affine(function) && inner(function).empty()) {
-    gradient.constant.assign(row, row + n);
+    gradient.constant.assign(row, row + self.x.numel());
     gradient.constant.push_back(*rate);
   }
 }

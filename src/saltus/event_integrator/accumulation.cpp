@@ -12,13 +12,31 @@ namespace {
 
 constexpr double hundredth = 0.01;
 
-double longest(const std::vector<double>& shortest, const std::vector<int>& jumps) {
-  double result = 0.0;
-  for (const int jump : jumps) result = std::max(result, shortest[at(jump)]);
-  return result;
+}  // namespace
+
+void EventSeries::Executed::set(const std::vector<int>& executed) {
+  if (executed.size() == 1) {
+    only = executed.front();
+  } else {
+    only = several;
+    jumps = executed;
+  }
 }
 
-}  // namespace
+void EventSeries::Executed::append_to(std::vector<int>& list) const {
+  if (only != several) {
+    list.push_back(only);
+  } else {
+    list.insert(list.end(), jumps.begin(), jumps.end());
+  }
+}
+
+double EventSeries::Executed::largest(const std::vector<double>& values) const {
+  if (only != several) return std::max(0.0, values[at(only)]);
+  double result = 0.0;
+  for (const int jump : jumps) result = std::max(result, values[at(jump)]);
+  return result;
+}
 
 void EventSeries::clear() {
   clear_laps();
@@ -28,22 +46,34 @@ void EventSeries::clear() {
 void EventSeries::clear_laps() {
   entries_.clear();
   std::fill(std::begin(laps_), std::end(laps_), std::size_t{0});
+  shortest_repeated_ = 0;
+  shrinks_ = is_sequence_ = false;
 }
 
 void EventSeries::add(double t, const std::vector<int>& jumps, const std::vector<double>& x) {
   Recent& recent = recent_.append();
   recent.t = t;
-  recent.jumps = jumps;
+  recent.executed.set(jumps);
   Entry& entry = entries_.append();
   entry.t = t;
-  entry.only = jumps.size() == 1 ? jumps.front() : several;
-  entry.jumps = jumps;
-  entry.x = x;
+  entry.executed.set(jumps);
+  if (!entry.place) {
+    n_x_ = x.size();
+    if (states_.empty()) states_.reserve(entries_.first_items * n_x_);
+    entry.place = states_.size();
+    states_.resize(states_.size() + n_x_);
+  }
+  std::copy(x.begin(), x.end(), states_.begin() + static_cast<std::ptrdiff_t>(*entry.place));
+  std::copy_backward(lately_.begin(), lately_.end() - 1, lately_.end());
+  lately_[0] = entry.executed.only;
+  shortest_repeated_ = 0;
+  shrinks_ = is_sequence_ = false;
   for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
-    if (!repeats(0, period)) {
+    if (lately_[period] != lately_[0] || !repeats(0, period)) {
       laps_[period] = 0;
       continue;
     }
+    if (shortest_repeated_ == 0) shortest_repeated_ = period;
     const double before = back(period).t;
     const bool shrinks = entries_.size() > 2 * period && t - before < before - back(2 * period).t;
     if (laps_[period] == 0 || !shrinks) {
@@ -52,11 +82,9 @@ void EventSeries::add(double t, const std::vector<int>& jumps, const std::vector
     } else {
       ++laps_[period];
     }
+    shrinks_ = shrinks_ || laps_[period] >= 2;
+    is_sequence_ = is_sequence_ || laps_[period] >= 2 * period;
   }
-}
-
-bool EventSeries::shrinks() const {
-  return std::any_of(std::begin(laps_), std::end(laps_), [](std::size_t laps) { return laps >= 2; });
 }
 
 EventSeries::Durations EventSeries::durations(std::size_t period, std::size_t skipped, std::size_t most) const {
@@ -82,10 +110,12 @@ double EventSeries::ratio(std::size_t period, std::size_t skipped) const {
 }
 
 std::vector<double> EventSeries::extrapolated(std::size_t period, double ratio) const {
-  std::vector<double> x = back(0).x;
+  std::vector<double> x = last_state();
+  const double* earlier = state(period);
+  const double* first = state(2 * period);
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double last = x[i] - back(period).x[i];
-    const double before = back(period).x[i] - back(2 * period).x[i];
+    const double last = x[i] - earlier[i];
+    const double before = earlier[i] - first[i];
     // Differences that do not shrink like the laps are rounding.
     if (!(std::abs(last) <= 0.5 * (1.0 + ratio) * std::abs(before)) || last == 0.0) continue;
     x[i] += last * last / (before - last);
@@ -96,7 +126,7 @@ std::vector<double> EventSeries::extrapolated(std::size_t period, double ratio) 
 std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
   std::vector<int> result;
   for (std::size_t k = 0; k < entries; ++k) {
-    result.insert(result.end(), back(k).jumps.begin(), back(k).jumps.end());
+    back(k).executed.append_to(result);
   }
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
@@ -128,7 +158,7 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double drow
     // tangentially, with no rate: their limit is where they are.
     const double fast = now.of[0] / now.of[1];
     if (!(fast <= 0.5 && now.of[0] <= 1e-6 * (t - start_[period]))) {
-      return SeriesLimit{t, back(0).x, last_jumps(period), now.of[0], false};
+      return SeriesLimit{t, last_state(), last_jumps(period), now.of[0], false};
     }
     const double left = now.of[0] * fast / (1.0 - fast);
     return SeriesLimit{t + left, extrapolated(period, fast), last_jumps(period), now.of[0], false};
@@ -161,24 +191,23 @@ std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double
   }
   double drowning = 0.0;
   for (std::size_t k = 0; k < recent_.size(); ++k) {
-    drowning = std::max(drowning, longest(shortest, recent_.back(k).jumps));
+    drowning = std::max(drowning, recent_.back(k).executed.largest(shortest));
   }
   const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * drowning);
   if (taken > static_cast<double>(many) * resolved) return std::nullopt;
   std::vector<int> jumps;
   for (std::size_t k = 0; k < recent_.size(); ++k) {
-    const auto& executed = recent_.back(k).jumps;
-    jumps.insert(jumps.end(), executed.begin(), executed.end());
+    recent_.back(k).executed.append_to(jumps);
   }
   std::sort(jumps.begin(), jumps.end());
   jumps.erase(std::unique(jumps.begin(), jumps.end()), jumps.end());
-  return SeriesLimit{t, back(0).x, std::move(jumps), resolved, true};
+  return SeriesLimit{t, last_state(), std::move(jumps), resolved, true};
 }
 
 std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortest) const {
   double drowning = 0.0;
-  for (std::size_t period = 1; period <= longest_period && entries_.size() > 2 * period; ++period) {
-    drowning = std::max(drowning, longest(shortest, back(period - 1).jumps));
+  for (std::size_t period = 1; is_sequence_ && period <= longest_period && entries_.size() > 2 * period; ++period) {
+    drowning = std::max(drowning, back(period - 1).executed.largest(shortest));
     // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
     if (laps_[period] < 2 * period || is_far_from_limit(period, drowning)) continue;
     if (auto found = limit_of(period, drowning)) return found;
@@ -187,7 +216,8 @@ std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortes
 }
 
 std::optional<SeriesLimit> EventSeries::nearly() const {
-  for (std::size_t period = 1; period <= longest_period && entries_.size() > 2 * period; ++period) {
+  if (shortest_repeated_ == 0) return std::nullopt;
+  for (std::size_t period = shortest_repeated_; period <= longest_period && entries_.size() > 2 * period; ++period) {
     if (!repeats(0, period) || !repeats(period, 2 * period)) continue;
     const double lap = back(0).t - back(period).t;
     const double before = back(period).t - back(2 * period).t;
@@ -196,17 +226,15 @@ std::optional<SeriesLimit> EventSeries::nearly() const {
     if (!(lap <= hundredth * before)) return std::nullopt;
     // What would remain.
     if (lap * (lap / before) <= 1e-7 * (back(0).t - entries_.front().t)) {
-      return SeriesLimit{back(0).t, back(0).x, last_jumps(period), lap, false};
+      return SeriesLimit{back(0).t, last_state(), last_jumps(period), lap, false};
     }
   }
   return std::nullopt;
 }
 
 std::optional<double> EventSeries::closed_lap() const {
-  for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
-    if (repeats(0, period)) return back(0).t - back(period).t;
-  }
-  return std::nullopt;
+  if (shortest_repeated_ == 0) return std::nullopt;
+  return back(0).t - back(shortest_repeated_).t;
 }
 
 std::optional<double> EventSeries::last_lap() const {

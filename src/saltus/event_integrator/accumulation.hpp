@@ -22,9 +22,11 @@ struct SeriesLimit {
 template <class Item, std::size_t capacity>
 class LastItems {
  public:
+  static constexpr std::size_t first_items = 32;  ///< room for them is made at once: most sequences are shorter
   /// A new last item; its members hold what an earlier one has left there.
   Item& append() {
     last_ = last_ + 1 == capacity ? 0 : last_ + 1;
+    if (items_.empty()) items_.reserve(std::min(capacity, first_items));
     if (last_ == items_.size()) items_.emplace_back();
     size_ = std::min(size_ + 1, capacity);
     return items_[last_];
@@ -60,7 +62,7 @@ class EventSeries {
   void add(double t, const std::vector<int>& jumps, const std::vector<double>& x);
   /// Whether the last event has closed a lap that was shorter than the one before: only then there may be a limit, but
   /// for rattling.
-  [[nodiscard]] bool shrinks() const;
+  [[nodiscard]] bool shrinks() const { return shrinks_; }
   /// @param shortest  by jump: laps not longer than this drown in the rounding of its guard; their sequence is
   ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
   ///                  hundredth of it, in any order, have their limit where they are.
@@ -78,28 +80,40 @@ class EventSeries {
   [[nodiscard]] bool empty() const { return entries_.empty(); }
 
  private:
+  /// Jumps executed at one time: the usual one alone without a list.
+  struct Executed {
+    static constexpr int several = -1;
+    int only = several;
+    std::vector<int> jumps;  ///< if they are several, or none
+
+    void set(const std::vector<int>& executed);
+    [[nodiscard]] bool operator==(const Executed& other) const {
+      return only == other.only && (only != several || jumps == other.jumps);
+    }
+    void append_to(std::vector<int>& list) const;
+    /// The largest of the values that belong to them, at least 0.
+    [[nodiscard]] double largest(const std::vector<double>& values) const;
+  };
   struct Entry {
     double t = 0.0;
-    int only = 0;  ///< the jump, if it is one alone; otherwise `several`
-    std::vector<int> jumps;
-    std::vector<double> x;
+    Executed executed;
+    std::optional<std::size_t> place;  ///< of the state in states_
   };
-  static constexpr int several = -1;
   static constexpr std::size_t longest_period = 8;
   struct Recent {
     double t = 0.0;
-    std::vector<int> jumps;
+    Executed executed;
   };
   /// Jumps without a pattern that are looked at together.
   static constexpr std::size_t many = 64;
   /// Laps whose durations give the ratio, at most: more average out the rounding of t where the ratio is near 1.
   static constexpr std::size_t most_laps = 48;
   [[nodiscard]] const Entry& back(std::size_t steps) const { return entries_.back(steps); }
+  [[nodiscard]] const double* state(std::size_t steps) const { return states_.data() + *back(steps).place; }
+  [[nodiscard]] std::vector<double> last_state() const { return {state(0), state(0) + n_x_}; }
   /// Whether the entries so many steps before the last one are of the same jumps.
   [[nodiscard]] bool repeats(std::size_t steps, std::size_t earlier) const {
-    const Entry& a = back(steps);
-    const Entry& b = back(earlier);
-    return a.only == b.only && (a.only != several || a.jumps == b.jumps);
+    return back(steps).executed == back(earlier).executed;
   }
   [[nodiscard]] bool is_far_from_limit(std::size_t period, double drowning) const;
   [[nodiscard]] std::optional<SeriesLimit> limit_of(std::size_t period, double drowning) const;
@@ -119,9 +133,15 @@ class EventSeries {
   [[nodiscard]] double ratio(std::size_t period, std::size_t skipped) const;
 
   LastItems<Entry, longest_period*(most_laps + 2)> entries_;
-  LastItems<Recent, many> recent_;             ///< for rattling
-  double start_[longest_period + 1] = {};      ///< of the shrinking sequence of each period
-  std::size_t laps_[longest_period + 1] = {};  ///< in it
+  std::size_t n_x_ = 0;
+  std::vector<double> states_;                    ///< behind the entries, n_x_ numbers each
+  LastItems<Recent, many> recent_;                ///< for rattling
+  std::array<int, longest_period + 1> lately_{};  ///< Executed::only of the last entries, the last one first
+  double start_[longest_period + 1] = {};         ///< of the shrinking sequence of each period
+  std::size_t laps_[longest_period + 1] = {};     ///< in it
+  std::size_t shortest_repeated_ = 0;             ///< the shortest period that the last event closes, 0 = none
+  bool shrinks_ = false;                          ///< see shrinks()
+  bool is_sequence_ = false;                      ///< some period has shrunk as often as limit() asks for
 };
 
 }  // namespace saltus::event_integrator

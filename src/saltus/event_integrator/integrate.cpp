@@ -93,6 +93,7 @@ void Run::fail(Termination termination, std::string message) {
 
 bool Run::enter(const Transition& transition) {
   state_ = transition.state;
+  no_surface_at_.reset();
   set_references(kernel_, state_);
   if (!options_.layers.empty()) {
     const auto wanted = local_tolerances(options_.tolerances);

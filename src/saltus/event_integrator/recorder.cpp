@@ -25,6 +25,27 @@ std::string_view why_executed(const model::Jump& jump) {
   __builtin_unreachable();
 }
 
+/// So many numbers are appended one by one, which is quicker than what the standard library does for any number.
+constexpr std::size_t few = 8;
+
+void append(std::vector<double>& list, const std::vector<double>& values) {
+  if (values.size() > few) {
+    list.insert(list.end(), values.begin(), values.end());
+  } else {
+    for (const double value : values) list.push_back(value);
+  }
+}
+
+/// Room for so many more; returns where it begins.
+double* extend(std::vector<double>& list, std::size_t count) {
+  if (count > few) {
+    list.resize(list.size() + count);
+  } else {
+    for (std::size_t k = 0; k < count; ++k) list.push_back(0.0);
+  }
+  return list.data() + list.size() - count;
+}
+
 /// What result::kind_of_switch says of it.
 result::EventKind kind_of(const SurfaceSwitch& change) {
   if (change.after == 0) return result::EventKind::enter_sliding;
@@ -65,14 +86,10 @@ void Recorder::row_before(double t, const std::vector<double>& x, const ModeStat
 
 void Recorder::append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode) {
   recording_.row_times.push_back(t);
-  recording_.row_states.insert(recording_.row_states.end(), x.begin(), x.end());
-  const auto appended = [](std::vector<double>& list, std::size_t count) {
-    list.resize(list.size() + count);
-    return list.data() + list.size() - count;
-  };
-  if (recording_.n_u > 0) kernel_.inputs(t, alpha.data(), appended(recording_.row_inputs, recording_.n_u));
+  append(recording_.row_states, x);
+  if (recording_.n_u > 0) kernel_.inputs(t, alpha.data(), extend(recording_.row_inputs, recording_.n_u));
   if (recording_.n_y > 0) {
-    kernel_.outputs(t, x.data(), alpha.data(), appended(recording_.row_outputs, recording_.n_y));
+    kernel_.outputs(t, x.data(), alpha.data(), extend(recording_.row_outputs, recording_.n_y));
   }
   recording_.row_modes.push_back(mode);
 }
@@ -101,7 +118,7 @@ Recording::Event& Recorder::begin(double t, result::EventKind kind) {
 }
 
 std::size_t Recorder::keep(const std::vector<double>& x) {
-  recording_.states.insert(recording_.states.end(), x.begin(), x.end());
+  append(recording_.states, x);
   return recording_.states.size() - x.size();
 }
 
@@ -249,9 +266,10 @@ void Recorder::user(double t, const Passage& passage, int event) {
   entry.entry = at(event);
   set_passage(entry, passage);
   const bool condition = system_.events[at(event)].guards.numel() > 0;
-  std::string reason = condition ? "edge of a condition of [[events]]" : "zero of an expression of [[events]]";
-  if (passage.x != passage.x_after) reason += ", by a jump";
-  add_reason(entry, reason);
+  add_reason(entry, condition ? "edge of a condition of [[events]]" : "zero of an expression of [[events]]");
+  if (passage.x == passage.x_after) return;
+  recording_.text += ", by a jump";
+  entry.reason.end = recording_.text.size();
 }
 
 void Recorder::jumped(double t, std::span<const ExecutedJump> jumps, const ModeState* before,

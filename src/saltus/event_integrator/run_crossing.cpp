@@ -56,7 +56,7 @@ bool Run::meet(const Located& located, int surface) {
                                  : single_surface_.decide(state_, surface, t, x, slope_beyond_, slope_);
   if (!decision) return false;
   const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
-  x_ = located.x;
+  std::copy(located.x.begin(), located.x.end(), x_.begin());
   if (change.after != 0) {
     field_.cross(j, constants);
     slope_.swap(slope_beyond_);

@@ -176,6 +176,7 @@ Run::Arrival Run::arrive(RowBefore row) {
 
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
+  no_surface_at_.reset();
   if (is_ordinary(located) && switch_shortly(located)) return running_ ? Step::taken : Step::failed;
   const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.

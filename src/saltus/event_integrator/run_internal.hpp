@@ -94,6 +94,7 @@ class Run {
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
   [[nodiscard]] std::vector<double> all_functions(double t, const double* x);
+  void find_functions(double t, const double* x, std::vector<double>& values);
   [[nodiscard]] std::string undefined_function_beyond();
   Step accept(double t_new);
   Step handle(const Located& located);
@@ -287,6 +288,10 @@ class Run {
   Transition transition_;
   std::optional<SpiralStart> spiral_start_;  ///< of the mode just entered: time and state jump over the first lap
   int rooted_ = -1;                          ///< of the mode just entered: the surface that it leaves along a root
+  std::vector<std::size_t> all_searched_;    ///< the numbers of all functions that are searched
+  std::vector<double> values_here_;          ///< of these
+  std::optional<double>
+      no_surface_at_;  ///< where surface_within_rounding() has found none, and nothing else has happened
   double root_tried_at_ = -std::numeric_limits<double>::infinity();
   std::optional<double> stiff_at_;  ///< where the explicit method first looked out of place
   double h_ = 0.0;                  ///< proposed step

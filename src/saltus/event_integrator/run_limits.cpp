@@ -40,6 +40,7 @@ void Run::note_series(const Landing& landing) {
 /// Held guards on which nothing presses any more are free; returns whether there were any.
 bool Run::release(const Located& located) {
   freed_.clear();
+  if (holding_.guards().empty()) return false;
   std::vector<HeldGuard> guards = holding_.guards();
   auto signs = search_.user_signs();
   std::vector<bool> vanish(signs.size(), false);

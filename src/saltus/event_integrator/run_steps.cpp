@@ -94,10 +94,14 @@ std::string Run::undefined_beyond() {
 /// Values of all functions that are searched.
 std::vector<double> Run::all_functions(double t, const double* x) {
   std::vector<double> values;
-  std::vector<std::size_t> all(search_.functions().size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  search_.evaluate(t, x, all, values);
+  find_functions(t, x, values);
   return values;
+}
+
+void Run::find_functions(double t, const double* x, std::vector<double>& values) {
+  all_searched_.resize(search_.functions().size());
+  std::iota(all_searched_.begin(), all_searched_.end(), std::size_t{0});
+  search_.evaluate(t, x, all_searched_, values);
 }
 
 /// The switching function, event or jump that is undefined a little further along the right-hand side, in words; empty
@@ -120,7 +124,8 @@ std::string Run::undefined_function_beyond() {
 /// A surface that the state cannot come nearer to, as its next digit is on it or behind it, although time could go on:
 /// steps that change nothing succeed there, and all others are undefined.
 std::optional<Located> Run::surface_within_rounding() {
-  const std::vector<double> values = all_functions(t_, x_.data());
+  auto& values = values_here_;
+  find_functions(t_, x_.data(), values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& function = search_.functions()[i];
     if (function.kind != FunctionKind::surface || !(std::abs(values[i]) <= search_.noise(i))) continue;
@@ -156,13 +161,14 @@ Run::Step Run::undefined_step() {
     if (rooted_ >= 0) leave_root();
     if (t_ > before) return running_ ? Step::taken : Step::failed;
   }
-  const std::vector<double> values = all_functions(t_, x_.data());
+  auto& values = values_here_;
+  find_functions(t_, x_.data(), values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& function = search_.functions()[i];
     const bool surface = function.kind == FunctionKind::surface;
     if (!surface && function.kind != FunctionKind::loss) continue;
     // The zero lies within the time that can no longer be resolved, or the selection has become double.
-    const double rate = surface ? kernel_.lie_derivative(function.index, 1, t_, x_.data(), state_.alpha.data()) : 0.0;
+    const double rate = surface ? rate_along_field(function.index, t_, x_.data(), slope_.data()).value : 0.0;
     // NOTE: the last step may have ended at 0 itself, or a rounding beyond it.
     const bool ahead = function.sign * rate < 0.0 || (function.sign == 0 && values[i] * rate < 0.0);
     // Of sqrt(x) + 1 the rate is infinite at x = 0, and nothing is reached.
@@ -282,8 +288,9 @@ Run::Step Run::attempt() {
   dense_is_last_ = false;
   if (field_.attempt(stepper_, t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
     // Not on the way of a long step, which has others to look at.
-    if (h <= 1e3 * smallest_step()) {
+    if (h <= 1e3 * smallest_step() && no_surface_at_ != t_) {
       if (const auto located = surface_within_rounding()) return handle(*located);
+      no_surface_at_ = t_;
     }
     return shorten(0.25) ? Step::shortened : undefined_step();
   }
@@ -301,6 +308,7 @@ Run::Step Run::attempt() {
   // Events must not depend on the rows: where nothing can vanish there is no search, with and without a dense output.
   const bool may_vanish = search_.may_vanish(stepper_);
   if (may_vanish || rows_inside) {
+    no_surface_at_.reset();  // the search finds the roundings of functions anew
     if (!dense_is_last_ && stepper_.dense(right_hand_side(), dense_) == ode::Attempt::undefined) {
       if (may_vanish) return shorten(0.5) ? Step::shortened : undefined_step();
       rows_by_steps(t_new);

@@ -85,10 +85,10 @@ double SingleSurface::velocity(double t, const double* x, int surface, const std
   return along_row(f, rate);
 }
 
-/// row_ . f + rate.
+/// row_ . f + rate, f finite.
 double SingleSurface::along_row(const std::vector<double>& f, double rate) const {
   double velocity = rate;
-  for (std::size_t i = 0; i < f.size(); ++i) velocity += row_[i] == 0.0 ? 0.0 : row_[i] * f[i];
+  for (std::size_t i = 0; i < f.size(); ++i) velocity += row_[i] * f[i];
   return velocity;
 }
 
@@ -132,11 +132,12 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
                                                                 const double* x, const std::vector<double>& below,
                                                                 const std::vector<double>& above) {
   switching::SurfaceSituation situation;
+  if (!is_finite(below) || !is_finite(above)) return std::nullopt;
   double rate = 0.0;
   surroundings_.kernel.gradient(surface, t, x, before.alpha.data(), row_.data(), &rate);
   situation.below.velocity = along_row(below, rate);
   situation.above.velocity = along_row(above, rate);
-  if (!is_finite(below) || !is_finite(above) || !find_drifts(situation)) return std::nullopt;
+  if (!find_drifts(situation)) return std::nullopt;
   if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return std::nullopt;
   situation.arrival = arrival_from(before.mode[at(surface)]);
   auto decision = switching::decide_surface(situation);
