@@ -149,6 +149,22 @@ ode::BernsteinCoefficients AffineForms::along(std::size_t i, const ode::DenseSte
   return b;
 }
 
+ode::NestedPolynomial AffineForms::nested_along(std::size_t i, const ode::DenseStep& step) const {
+  const Form& form = forms_[i];
+  ode::NestedPolynomial sum;
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
+    step.add_nested(terms_[k].column, terms_[k].coefficient, sum);
+  }
+  if (form.rate != 0.0) {
+    sum.c[0] += form.rate * step.t;
+    sum.c[1] += form.rate * step.h;
+    sum.end += form.rate * (step.t + step.h);
+  }
+  sum.c[0] += form.offset;
+  sum.end += form.offset;
+  return sum;
+}
+
 void AffineForms::AlongSeries::subtract(double offset) {
   terms[0] -= offset;
   for (double& b : coefficients) b -= offset;
@@ -282,6 +298,14 @@ void AffineForms::ignore(std::size_t i) {
 
 bool AffineForms::reaches_zero(const Form& form, const StepBounds& bounds) const {
   const double side = form.sign;
+  if (form.threshold) {  // the same without its loops
+    const auto [column, coefficient] = terms_[form.first];
+    const double low = bounds.low[column];
+    const double high = bounds.high[column];
+    const double slope = side * coefficient;
+    const double size = std::abs(form.offset) + std::abs(coefficient) * std::max(std::abs(low), std::abs(high));
+    return !(side * form.offset + slope * (slope > 0.0 ? low : high) > margin * size);
+  }
   const double at_begin = form.rate == 0.0 ? 0.0 : side * form.rate * bounds.begin;
   const double at_end = form.rate == 0.0 ? 0.0 : side * form.rate * bounds.end;
   double least = side * form.offset + std::min(at_begin, at_end);

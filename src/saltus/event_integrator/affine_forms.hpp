@@ -53,11 +53,19 @@ class AffineForms {
   [[nodiscard]] std::size_t state(std::size_t i) const { return terms_[forms_[i].first].column; }
   [[nodiscard]] double factor(std::size_t i) const { return terms_[forms_[i].first].coefficient; }
   [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
+  /// The same of a threshold, which no time is in.
+  [[nodiscard]] double threshold_value(std::size_t i, const double* x) const {
+    const auto [column, coefficient] = terms_[forms_[i].first];
+    return 0.0 + coefficient * x[column] + forms_[i].offset;
+  }
   /// d phi_i / dt along f (n_x); nullopt where that is no more than the rounding of its terms.
   [[nodiscard]] std::optional<double> rate_along(std::size_t i, const double* f) const;
   /// Bernstein coefficients of the form along a step.
   [[nodiscard]] ode::BernsteinCoefficients along(std::size_t i, const ode::DenseStep& step) const;
-  /// The same where the step is a series, with its terms, and what roundings may have changed the polynomial by.
+  /// The same in the form that the step is kept in.
+  [[nodiscard]] ode::NestedPolynomial nested_along(std::size_t i, const ode::DenseStep& step) const;
+  /// Bernstein coefficients where the step is a series, with its terms, and what roundings may have changed the
+  /// polynomial by.
   struct AlongSeries {
     ode::SeriesCoefficients terms;  ///< of theta^k
     ode::SeriesCoefficients coefficients;

@@ -154,10 +154,14 @@ class EventSearch {
   }
   void rescale(double t, const double* x, const std::vector<std::size_t>& which, const Parts& parts);
   void set_noise(std::size_t i, const double* x);
-  [[nodiscard]] bool is_threshold(std::size_t i) const;
+  /// Whether a form of one state stands for function i wherever it is evaluated.
+  [[nodiscard]] bool is_threshold(std::size_t i) const {
+    const auto kind = functions_[i].kind;
+    return (kind == FunctionKind::surface || kind == FunctionKind::user) && forms_.is_threshold(i);
+  }
   [[nodiscard]] Parts parts_of(const std::vector<std::size_t>& which) const;
   void evaluate_parts(double t, const double* x, const Parts& parts);
-  [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
+  [[nodiscard]] double value(std::size_t i, const double* x) const;
   [[nodiscard]] std::size_t exit_function(std::size_t row) const { return first_exit_ + 2 * row; }
   bool turn_exits(double t, const double* x);
   void forget_specials();
@@ -178,8 +182,12 @@ class EventSearch {
               const ode::BernsteinCoefficients& coefficients, double accuracy);
   [[nodiscard]] bool is_far(std::size_t i) const;
   void find_suspects(const ode::DenseStep& step);
-  void sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which,
-              std::size_t stride = 1);
+  /// Every so many from the first one on.
+  struct Nodes {
+    std::size_t first = 0;
+    std::size_t stride = 1;
+  };
+  void sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which, Nodes nodes);
   [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;
   void read_user_signs();
   void find_pressure(double t, const double* x);

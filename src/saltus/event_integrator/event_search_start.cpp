@@ -117,7 +117,7 @@ void EventSearch::read_start(double t, const double* x) {
   if (field_.solve() == SlidingSolve::decoupled) parts.exits = false;
   rescale(t, x, inspected_, parts);
   evaluate_parts(t, x, parts);
-  for (const std::size_t i : inspected_) point_[i] = value(i, t, x);
+  for (const std::size_t i : inspected_) point_[i] = value(i, x);
   read_user_signs();
   for (const std::size_t i : inspected_) {
     auto& function = functions_[i];
@@ -135,11 +135,11 @@ void EventSearch::read_start(double t, const double* x) {
 /// Values of some functions into point_.
 void EventSearch::read_values(double t, const double* x, const std::vector<std::size_t>& which) {
   if (which.size() == 1 && is_threshold(which.front())) {
-    point_[which.front()] = forms_.value(which.front(), t, x) - functions_[which.front()].offset;
+    point_[which.front()] = forms_.threshold_value(which.front(), x) - functions_[which.front()].offset;
     return;
   }
   evaluate_parts(t, x, parts_of(which));
-  for (const std::size_t i : which) point_[i] = value(i, t, x);
+  for (const std::size_t i : which) point_[i] = value(i, x);
 }
 
 void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {

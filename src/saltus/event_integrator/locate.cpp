@@ -57,7 +57,7 @@ bool Locator::take(double h) {
   trial_.h = h;
   if (field_.attempt(stepper_, start_.t, start_.x, start_.slope, h, tolerances_) == ode::Attempt::undefined)
     return false;
-  trial_.x.assign(stepper_.x_new(), stepper_.x_new() + n_);
+  std::copy_n(stepper_.x_new(), n_, trial_.x.begin());
   const bool projected = field_.project(start_.t + h, trial_.x.data());
   if (projected && explicit_) {
     field_(start_.t + h, trial_.x.data(), slope_.data());
@@ -133,7 +133,11 @@ bool Locator::correct(const Hit& hit) {
     }
     const double value = trial_.values[place_];
     sharpen();
-    if (vanishes(value) || trial_.h == 0.0 || (!flat_ && finish(slope))) return true;
+    // What is left within the rounding of the function counts where it is the last digits of t.
+    const double t = start_.t + trial_.h;
+    const double left = value / slope;
+    const bool is_there = vanishes(value) && (flat_ || t - left == t || !(std::abs(left) <= time_resolution()));
+    if (is_there || trial_.h == 0.0 || (!flat_ && finish(slope))) return true;
     (value * hit.sign > 0.0 ? before : beyond) = h;
     // The interpolant's slope is good to many digits; only where it fails (near a double zero) is a secant better.
     if (iteration > 0 && (flat_ || std::abs(value) > 0.1 * std::abs(previous_value)) && h != previous_h &&
@@ -220,7 +224,7 @@ const Located* Locator::locate(const StepStart& start, const ode::DenseStep& den
   // A shorter step than the accepted one can only be worse where the field is singular (a selection that is 0/0).
   if (trial_.h > 0.0 && !(stepper_.error_norm() <= 2.0)) return nullptr;
   located_.t = start_.t + trial_.h;
-  located_.x = trial_.x;
+  std::copy(trial_.x.begin(), trial_.x.end(), located_.x.begin());
   located_.short_of = trial_.values[place_] * hit.sign > search_.noise(hit.function);
   find_vanishing_with(hit.function);
   located_.signs.clear();

@@ -1,5 +1,4 @@
-// The dense output in its nested form, with s = theta and r = 1 - theta:
-//   x(t + theta h) = c0 + s (c1 + r (c2 + s (c3 + r (c4 + ...)))).
+// What is read off the nested form of the dense output.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,43 +8,12 @@
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/bernstein_internal.hpp"
 #include "saltus/ode/lanes_internal.hpp"
+#include "saltus/ode/nested_form_internal.hpp"
 #include "saltus/ode/series_internal.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::ode {
 namespace {
-
-/// Value and derivative with respect to theta.
-struct Jet {
-  double value;
-  double slope;
-};
-
-/// c_first + factor (c_first+1 + ...), factors s and r in turn: s behind even coefficients, r behind odd ones.
-template <std::size_t first, std::size_t last>
-inline double nested(const double* coefficients, std::size_t n, std::size_t i, double s, double r) {
-  const double own = coefficients[first * n + i];
-  if constexpr (first == last) {
-    return own;
-  } else {
-    return own + (first % 2 == 0 ? s : r) * nested<first + 1, last>(coefficients, n, i, s, r);
-  }
-}
-
-template <std::size_t first, std::size_t last>
-inline Jet nested_jet(const double* coefficients, std::size_t n, std::size_t i, double s, double r) {
-  const double own = coefficients[first * n + i];
-  if constexpr (first == last) {
-    return {own, 0.0};
-  } else {
-    const Jet inner = nested_jet<first + 1, last>(coefficients, n, i, s, r);
-    if constexpr (first % 2 == 0) {
-      return {own + s * inner.value, inner.value + s * inner.slope};
-    } else {
-      return {own + r * inner.value, r * inner.slope - inner.value};
-    }
-  }
-}
 
 template <std::size_t degree>
 inline double value_from_start(const double* coefficients, std::size_t n, std::size_t i, double theta) {
@@ -103,8 +71,8 @@ constexpr auto products = [] {
   constexpr std::size_t degree = event_degree;
   std::array<BernsteinPairs, degree> table{};
   for (std::size_t k = 0; k < table.size(); ++k) {
-    const std::size_t a = (k + 1) / 2;
-    const std::size_t b = k / 2;
+    const std::size_t a = power_of_s(k);
+    const std::size_t b = power_of_r(k);
     double numbers[event_nodes + 1] = {};
     for (std::size_t i = a; i + b <= degree; ++i) numbers[i] = binomial(degree - k, i - a) / binomial(degree, i);
     for (std::size_t q = 0; q < table[k].size(); ++q) table[k][q] = Pair{numbers[2 * q], numbers[2 * q + 1]};
@@ -126,6 +94,17 @@ inline void add_products(const double* coefficients, std::size_t n, std::size_t 
   (add_product<k + 1>(coefficients[(k + 1) * n + i], b), ...);
 }
 
+template <std::size_t... k>
+inline void add_component(const double* own, std::size_t n, double factor, NestedPolynomial& sum,
+                          std::index_sequence<k...>) {
+  ((sum.c[k] += factor * own[k * n]), ...);
+}
+template <std::size_t degree>
+inline void add_component(const double* own, std::size_t n, double factor, NestedPolynomial& sum) {
+  sum.degree = static_cast<int>(degree);
+  add_component(own, n, factor, sum, std::make_index_sequence<degree + 1>{});
+}
+
 template <std::size_t degree>
 BernsteinCoefficients bernstein_form(const double* coefficients, std::size_t n, std::size_t i, double end) {
   BernsteinPairs pairs;
@@ -144,6 +123,23 @@ SeriesCoefficients DenseStep::terms(std::size_t i) const {
   SeriesCoefficients terms;
   for (std::size_t k = 0; k < terms.size(); ++k) terms[k] = place[2 * k];
   return terms;
+}
+
+void DenseStep::add_nested(std::size_t i, double factor, NestedPolynomial& sum) const {
+  const double* own = coefficients_.data() + i;
+  const auto n = static_cast<std::size_t>(n_);
+  sum.end += factor * end_[i];
+  switch (method_) {
+    case Method::dopri5:
+      return add_component<4>(own, n, factor, sum);
+    case Method::dop853:
+      return add_component<7>(own, n, factor, sum);
+    case Method::taylor:
+      break;
+    case Method::radau5:
+      return add_component<3>(own, n, factor, sum);
+  }
+  SALTUS_ASSERT(!is_series());
 }
 
 BernsteinCoefficients DenseStep::bernstein(std::size_t i) const {

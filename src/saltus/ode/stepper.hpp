@@ -8,6 +8,7 @@
 
 #include "saltus/base/function_ref.hpp"
 #include "saltus/ode/bernstein.hpp"
+#include "saltus/ode/nested_polynomial.hpp"
 #include "saltus/ode/stages_function.hpp"
 
 namespace saltus::ode {
@@ -43,6 +44,8 @@ class DenseStep {
   /// others have a few roundings of the largest one. Cost: some fifty operations.
   /// Not of a series.
   [[nodiscard]] BernsteinCoefficients bernstein(std::size_t i) const;
+  /// Adds the same in the form that the step is kept in, times a factor, to a sum of such. Not of a series.
+  void add_nested(std::size_t i, double factor, NestedPolynomial& sum) const;
   /// Whether this is a Taylor series, and the terms of one component: x_i(t + theta h) = sum_k terms_k theta^k.
   [[nodiscard]] bool is_series() const { return method_ == Method::taylor; }
   [[nodiscard]] SeriesCoefficients terms(std::size_t i) const;
