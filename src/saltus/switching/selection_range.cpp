@@ -6,6 +6,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "saltus/switching/column_flats.hpp"
+
 namespace saltus::switching {
 namespace {
 
@@ -15,12 +17,6 @@ using Eigen::VectorXd;
 
 /// Below this, relative to what it is the sum of, d . B_i is 0: B comes from gradients and fields, good to 12 digits.
 constexpr double tiny = 1e-10;
-
-double binomial(Index n, Index k) {
-  double count = 1.0;
-  for (Index i = 0; i < k; ++i) count *= static_cast<double>(n - i) / static_cast<double>(i + 1);
-  return count;
-}
 
 /// The direction normal to some columns, of length 1; false unless it is one.
 bool normal_to(const MatrixXd& effects, const std::vector<Index>& columns, VectorXd& normal) {
@@ -40,19 +36,6 @@ bool normal_to(const MatrixXd& effects, const std::vector<Index>& columns, Vecto
   // The last diagonal entry of R is the smallest one.
   if (!(std::abs(qr.matrixR()(r - 2, r - 2)) > 1e-9)) return false;
   normal = qr.householderQ() * VectorXd::Unit(r, r - 1);
-  return true;
-}
-
-/// The next choice of k out of n, in lexical order; false behind the last one.
-bool next_choice(std::vector<Index>& chosen, Index n) {
-  const auto k = static_cast<Index>(chosen.size());
-  Index place = k - 1;
-  while (place >= 0 && chosen[static_cast<std::size_t>(place)] == n - k + place) --place;
-  if (place < 0) return false;
-  ++chosen[static_cast<std::size_t>(place)];
-  for (Index i = place + 1; i < k; ++i) {
-    chosen[static_cast<std::size_t>(i)] = chosen[static_cast<std::size_t>(i - 1)] + 1;
-  }
   return true;
 }
 
@@ -78,16 +61,16 @@ bool SelectionRange::set(const MatrixXd& effects) {
   of_facets_ = effects;
   facets_.clear();
   const Index r = effects.rows(), q = effects.cols();
-  if (r == 0 || q < r || !effects.allFinite() || binomial(q, r - 1) > most_candidates) return false;
+  if (r == 0 || q < r || !effects.allFinite()) return false;
   // Rows in units of their own: velocities of different functions have nothing in common.
   const VectorXd sizes = effects.cwiseAbs().rowwise().sum();
   if (!(sizes.minCoeff() > 0.0)) return false;
   const MatrixXd scaled = sizes.cwiseInverse().asDiagonal() * effects;
   if (Eigen::ColPivHouseholderQR<MatrixXd>(scaled.transpose()).rank() < r) return false;
-  std::vector<Index> chosen(static_cast<std::size_t>(r - 1));
-  for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = static_cast<Index>(i);
+  const auto hyperplanes = column_hyperplanes(scaled, most_flats);
+  if (!hyperplanes) return false;
   VectorXd normal;
-  do {
+  for (const auto& chosen : *hyperplanes) {
     if (!normal_to(scaled, chosen, normal)) continue;
     Facets facets;
     double sum = 0.0;
@@ -103,13 +86,13 @@ bool SelectionRange::set(const MatrixXd& effects) {
     if (turn < 0.0) {
       for (auto& s : facets.sign) s = static_cast<std::int8_t>(-s);
     }
-    // Other choices of columns in the same facet.
+    // Hyperplanes that differ by less than the rounding of their columns.
     const bool known =
         std::any_of(facets_.begin(), facets_.end(), [&](const Facets& other) { return other.sign == facets.sign; });
     if (known) continue;
     facets.normal = turn / sum * sizes.cwiseInverse().cwiseProduct(normal);
     facets_.push_back(std::move(facets));
-  } while (next_choice(chosen, q));
+  }
   return !facets_.empty();
 }
 

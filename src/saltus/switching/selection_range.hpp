@@ -10,7 +10,7 @@ namespace saltus::switching {
 
 /// The set { a + B lambda : lambda in [0, 1]^q } in R^r, a zonotope, for B of rank r <= q. It holds 0 as long as every
 /// pair of parallel facets has 0 between them; facets follow from B alone and are found again only where that changes
-/// by more than rounding. Cost: binomial(q, r - 1) solutions of r - 1 equations per new B.
+/// by more than rounding. Cost per new B: that of column_hyperplanes().
 class SelectionRange {
  public:
   /// Both facets with a normal d: lambda_i is at opposite bounds on them, and free where d . B_i = 0.
@@ -25,14 +25,14 @@ class SelectionRange {
   };
 
   /// @param effects  B, r x q
-  /// @return false if its rank is below r, or there are more facets to look at than `most_candidates`
+  /// @return false if its rank is below r, or there are more flats of one rank than `most_flats`
   bool set(const Eigen::MatrixXd& effects);
   [[nodiscard]] const std::vector<Facets>& facets() const { return facets_; }
   /// @param constant  a, r
   [[nodiscard]] Span span(std::size_t facets, const Eigen::VectorXd& constant) const;
 
-  /// Candidates for normals that are looked at: all of eight agents, each with each; about a second.
-  static constexpr double most_candidates = 400000;
+  /// Ten agents, each with each, have up to 42 525 of a rank; about a second.
+  static constexpr std::size_t most_flats = 50000;
 
  private:
   Eigen::MatrixXd effects_, of_facets_;  ///< B, and the one that facets belong to
