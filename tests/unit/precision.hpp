@@ -1,4 +1,4 @@
-// What tests measure errors of rounding in.
+// Limits of doubles, as tests measure rounding in them.
 #pragma once
 
 #include <limits>
@@ -6,5 +6,6 @@
 namespace saltus {
 
 inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace saltus

@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "polynomials.hpp"
 
 namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int degrees[] = {3, 4, 7};
 
 /// c0 + s (c1 + r (c2 + ...)) in more digits.

@@ -1,15 +1,14 @@
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "../precision.hpp"
 #include "ode_tools.hpp"
 
 namespace saltus::ode {
 namespace {
 
 using namespace trial;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Limits {
   double smallest;
