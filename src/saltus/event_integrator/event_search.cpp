@@ -52,16 +52,10 @@ double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
 /// thousandth costs it one more step, cutting the interval in two eighteen evaluations and more.
 bool passes_once(const ode::BernsteinCoefficients& coefficients, int sign, double error, double size) {
   constexpr double worth_a_step = 1e-3;
-  const double band = 8.0 * error;
-  if (!(error <= worth_a_step * size) || !(sign * coefficients.front() > band)) return false;
-  int before = 1;
-  bool falls = sign * coefficients.back() < -band;
-  for (const double b : coefficients) {
-    const int side = static_cast<int>(sign * b > band) - static_cast<int>(sign * b < -band);
-    falls = falls && side <= before;
-    before = side;
-  }
-  return falls;
+  if (!(error <= worth_a_step * size)) return false;
+  ode::BernsteinCoefficients turned = coefficients;
+  for (double& b : turned) b *= sign;
+  return ode::falls_once(turned, 8.0 * error);
 }
 
 /// Whether a smooth function with these values at the five Chebyshev-Lobatto nodes of an interval keeps its sign by a

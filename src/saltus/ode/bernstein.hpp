@@ -53,6 +53,21 @@ struct SignChange {
   double upper = 0.0;
 };
 
+/// Whether coefficients are beyond the noise at first, then within it, then beyond it on the other side, so that the
+/// polynomial falls through the noise once (variation diminishing property). Behind a zero at 0 of the order `begin`
+/// the first coefficients, which are 0, do not count. False for NaN.
+template <std::size_t nodes>
+[[nodiscard]] inline bool falls_once(const std::array<double, nodes>& b, double noise, std::size_t begin = 0) {
+  if (!(b.back() < -noise)) return false;
+  std::size_t k = begin;
+  while (k < nodes && b[k] > noise) ++k;
+  if (k == begin) return false;
+  while (k < nodes && b[k] >= -noise && b[k] <= noise) ++k;
+  if (k == nodes) return false;
+  while (k < nodes && b[k] < -noise) ++k;
+  return k == nodes;
+}
+
 /// True only if first_sign_change finds nothing with the same arguments: no coefficient is beyond the noise on the
 /// other side. The cheap way out for almost every event function in almost every step; false for NaN.
 template <std::size_t nodes = event_nodes>

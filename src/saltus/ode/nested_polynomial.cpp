@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/ode/bernstein.hpp"
 #include "saltus/ode/bernstein_internal.hpp"
 #include "saltus/ode/nested_form_internal.hpp"
 
@@ -59,19 +60,6 @@ inline Extent extent(const std::array<double, count>& b, std::index_sequence<i..
   ((of.least = std::min(of.least, b[i]), of.largest = std::max(of.largest, std::abs(b[i])), of.none += 0.0 * b[i]),
    ...);
   return of;
-}
-
-/// Whether numbers are beyond the noise at first, then within it, then beyond it on the other side.
-template <std::size_t count>
-bool falls_once(const std::array<double, count>& b, double noise) {
-  int before = 1;
-  bool falls = b.front() > noise && b.back() < -noise;
-  for (const double value : b) {
-    const int side = static_cast<int>(value > noise) - static_cast<int>(value < -noise);
-    falls = falls && side <= before;
-    before = side;
-  }
-  return falls;
 }
 
 /// Where the cubic theta(y) through the ends of a falling polynomial, with their slopes, is at y = 0. Slopes that are

@@ -73,20 +73,6 @@ Verdict judge(const Coefficients<nodes>& b, double noise) {
   return shallow ? Verdict::none : Verdict::split;
 }
 
-/// Whether a polynomial is high at first, then near, then low: it has one sign change, and everything before is high or
-/// near. The same behind a zero at 0 of the order `begin`, whose coefficients are 0.
-template <std::size_t nodes>
-bool falls_once(const Coefficients<nodes>& b, double noise, std::size_t begin = 0) {
-  if (!(b.back() < -noise)) return false;
-  std::size_t k = begin;
-  while (k < b.size() && b[k] > noise) ++k;
-  if (k == begin) return false;
-  while (k < b.size() && std::abs(b[k]) <= noise) ++k;
-  if (k == b.size()) return false;
-  while (k < b.size() && b[k] < -noise) ++k;
-  return k == b.size();
-}
-
 /// The part in which the polynomial gets low for the first time (exactly once, or at the limit of resolution).
 template <std::size_t nodes>
 std::optional<Part<nodes>> first_descent(const Coefficients<nodes>& coefficients, double noise) {
