@@ -190,9 +190,7 @@ std::vector<double> HeldFunctions::displaced(double t, const double* x, double s
   std::vector<double> moved(x, x + row_.size());
   for (std::size_t k = 0; k < row_.size(); ++k) {
     if (!tangent_direction(k, functions_.size(), direction_)) continue;
-    // Neighbouring states get different weights, so that no symmetry of the model cancels them.
-    const double weight = (pattern >> (k % 2) & 1U) != 0 ? -1.0 : 1.0;
-    const double length = weight * step * (1.0 + std::abs(x[k])) * (1.0 + 0.37 * static_cast<double>(k % 5));
+    const double length = displacement(k, x[k], step, pattern);
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += length * direction_[i];
   }
   static_cast<void>(project(t, moved.data()));

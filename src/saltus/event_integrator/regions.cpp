@@ -108,14 +108,10 @@ std::optional<std::pair<int, int>> same_indicators(const ModelKernel& kernel, co
   const auto n = at(kernel.event_functions());
   std::vector<double> values(n), magnitude(n), slope(n);
   for (const unsigned pattern : {0U, 1U, 2U}) {
-    // Each state by another part of its size, so that no symmetry of the model cancels them.
     constexpr double step = 0x1p-10;
     const double t = occasion.t + step * (1.0 + std::abs(occasion.t));
     std::vector<double> x(occasion.x, occasion.x + kernel.states());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double weight = (pattern >> (i % 2) & 1U) != 0 ? -1.0 : 1.0;
-      x[i] += weight * step * (1.0 + std::abs(x[i])) * (1.0 + 0.37 * static_cast<double>(i % 5));
-    }
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += displacement(i, x[i], step, pattern);
     kernel.functions(t, x.data(), state.alpha.data(), values.data());
     kernel.scales(t, x.data(), state.alpha.data(), magnitude.data(), slope.data());
     std::erase_if(same, [&](const auto& pair) {

@@ -21,15 +21,11 @@ class RestingSearch {
                 const std::vector<double>& x)
       : s_(s), holding_(holding), t_(t), alpha_(alpha) {
     points_.push_back({t, x});
-    // Near by on the guards, also as time goes; neighbouring states are moved in different ways, so that no symmetry of
-    // the model cancels them.
+    // Near by on the guards, also as time goes.
     for (const unsigned pattern : {0U, 1U}) {
       constexpr double step = 0x1p-10;
       Point point{t + step * (1.0 + std::abs(t)), x};
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        const double weight = (pattern >> (i % 2) & 1U) != 0 ? -1.0 : 1.0;
-        point.x[i] += weight * step * (1.0 + std::abs(x[i])) * (1.0 + 0.37 * static_cast<double>(i % 5));
-      }
+      for (std::size_t i = 0; i < x.size(); ++i) point.x[i] += displacement(i, x[i], step, pattern);
       static_cast<void>(holding.project(point.t, alpha, point.x));
       points_.push_back(std::move(point));
     }

@@ -21,6 +21,13 @@ inline bool is_finite(const std::vector<double>& values) {
   return none == 0.0;
 }
 
+/// What state k is moved by to look near by, `step` of its size or so: neighbours by different weights, of signs by
+/// pattern, so that no symmetry of the model cancels them.
+inline double displacement(std::size_t k, double x, double step, unsigned pattern) {
+  const double weight = (pattern >> (k % 2) & 1U) != 0 ? -1.0 : 1.0;
+  return weight * step * (1.0 + std::abs(x)) * (1.0 + 0.37 * static_cast<double>(k % 5));
+}
+
 /// A list whose items keep their own storage when it is cleared: append() returns one that holds what an earlier one
 /// has left there.
 template <class Item>
