@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/model_input.hpp"
@@ -85,13 +86,13 @@ std::string_view role_text(model::SwitchingRole role) {
 std::string nesting(const model::System& system, const model::SwitchingFunction& function) {
   if (function.inner.empty()) return "";
   std::vector<std::string> names;
-  for (const int index : function.inner) names.push_back(system.switching[static_cast<std::size_t>(index)].name);
+  for (const int index : function.inner) names.push_back(system.switching[at(index)].name);
   return fmt::format("; contains the selection of {}", fmt::join(names, ", "));
 }
 
 /// A column whose function was named before under another name.
 std::string alias_text(const model::System& system, const model::SwitchingColumn& column) {
-  const auto& function = system.switching[static_cast<std::size_t>(column.function)];
+  const auto& function = system.switching[at(column.function)];
   return fmt::format("  {}: alias of {}{}\n", column.name, function.name,
                      column.orientation < 0 ? ", with the sides swapped" : "");
 }
@@ -200,7 +201,7 @@ std::string jumps_text(const model::System& system) {
   std::string text = heading("jumps", system.jumps.size());
   for (const auto& jump : system.jumps) {
     std::vector<std::string> targets;
-    for (const int target : jump.targets) targets.push_back(system.state_names[static_cast<std::size_t>(target)]);
+    for (const int target : jump.targets) targets.push_back(system.state_names[at(target)]);
     text += fmt::format("  {}: {}; sets {}\n", jump.name, trigger_text(jump), fmt::join(targets, ", "));
   }
   return text;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/discretization/quadrature_nodes_internal.hpp"
 
 namespace saltus::discretization {
@@ -36,10 +37,10 @@ ButcherTableau collocation(const Nodes& nodes) {
   for (int j = 0; j < static_cast<int>(s); ++j) {
     const auto integral = [&](long double x) { return static_cast<double>(integral_of_lagrange(nodes, j, x)); };
     for (int i = 0; i < static_cast<int>(s); ++i) {
-      tableau.A(index(i), index(j)) = integral(nodes[static_cast<std::size_t>(i)]);
+      tableau.A(index(i), index(j)) = integral(nodes[at(i)]);
     }
     tableau.b[index(j)] = integral(1.0L);
-    tableau.c[index(j)] = static_cast<double>(nodes[static_cast<std::size_t>(j)]);
+    tableau.c[index(j)] = static_cast<double>(nodes[at(j)]);
   }
   return tableau;
 }
@@ -54,7 +55,7 @@ ButcherTableau lobatto_iiic(int stages) {
   for (int i = 0; i < stages; ++i) {
     tableau.A(index(i), 0) = static_cast<double>(first);
     for (int j = 1; j < stages; ++j) {
-      const long double integral = integral_of_lagrange(others, j - 1, nodes[static_cast<std::size_t>(i)]);
+      const long double integral = integral_of_lagrange(others, j - 1, nodes[at(i)]);
       tableau.A(index(i), index(j)) = static_cast<double>(integral - first * lagrange(others, j - 1, 0.0L));
     }
   }

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <casadi/core/function.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/discretization/dcs_expressions_internal.hpp"
 #include "saltus/discretization/element_expressions_internal.hpp"
 
@@ -124,14 +125,14 @@ class ElementBuilder {
       slopes.push_back(is_integral() ? at_stages_.back().f : column(variables_.stage, m));
     }
     for (int m = 0; m < stages(); ++m) {
-      const SX& f = at_stages_[static_cast<std::size_t>(m)].f;
+      const SX& f = at_stages_[at(m)].f;
       if (!is_integral()) {
         result_.element.equation(column(variables_.stage, m) - f);
       } else if (invertible) {
         // Collocation: A^-1 (X - x_left) = h F, each row with the model of one stage only.
         result_.element.equation(combination(tableau_.A.inverse().row(m), increments) - h * f);
       } else {
-        result_.element.equation(increments[static_cast<std::size_t>(m)] - h * combination(tableau_.A.row(m), slopes));
+        result_.element.equation(increments[at(m)] - h * combination(tableau_.A.row(m), slopes));
       }
     }
     if (result_.layout.end_state.count > 0) {
@@ -148,7 +149,7 @@ class ElementBuilder {
 
   [[nodiscard]] SX combination(const Eigen::RowVectorXd& weights, const std::vector<SX>& terms) const {
     SX sum = SX::zeros(dcs_.x.numel());
-    for (int j = 0; j < stages(); ++j) sum += weights[j] * terms[static_cast<std::size_t>(j)];
+    for (int j = 0; j < stages(); ++j) sum += weights[j] * terms[at(j)];
     return sum;
   }
 
@@ -168,7 +169,7 @@ class ElementBuilder {
     for (int point = 0; point < result_.layout.points(); ++point) {
       const bool is_stage = point < stages();
       const SX indicator = is_stage
-                               ? at_stages_[static_cast<std::size_t>(point)].indicator
+                               ? at_stages_[at(point)].indicator
                                : call(result_.depends_on_time ? variables_.end_time : SX(0.0), variables_.end_state,
                                       SX::zeros(dcs_.selection.numel()), SX::zeros(dcs_.lifted.numel()))
                                      .indicator;
@@ -193,7 +194,7 @@ class ElementBuilder {
           ++simplex;
         }
       }
-      if (is_stage) result_.element.equation(at_stages_[static_cast<std::size_t>(point)].lifting);
+      if (is_stage) result_.element.equation(at_stages_[at(point)].lifting);
     }
   }
 

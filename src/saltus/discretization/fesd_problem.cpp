@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/discretization/fesd_kernel_internal.hpp"
 #include "saltus/discretization/placed_function_internal.hpp"
@@ -142,7 +143,7 @@ struct FesdProblem::Implementation {
     }
     const int n_lambda = static_cast<int>(kernel.pairs.size());
     for (int k = 0; k < n_lambda; ++k) {
-      const auto& pair = kernel.pairs[static_cast<std::size_t>(k)];
+      const auto& pair = kernel.pairs[at(k)];
       const double value = indicator[pair.selection];
       const bool is_lambda_n = !pair.is_region && !pair.complement;
       constants[kernel.left_size() - n_lambda + k] = std::max(is_lambda_n ? -value : value, 0.0);
@@ -154,7 +155,7 @@ struct FesdProblem::Implementation {
     const auto& block = layout.element.lambda;
     Eigen::MatrixXd lambda(block.size, block.count + 1);
     const auto left = left_lambda(n);
-    for (int i = 0; i < block.size; ++i) lambda(i, 0) = value_at(left[static_cast<std::size_t>(i)], w, constants);
+    for (int i = 0; i < block.size; ++i) lambda(i, 0) = value_at(left[at(i)], w, constants);
     lambda.rightCols(block.count) = matrix(n, block, w);
     return lambda;
   }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/discretization/placed_function_internal.hpp"
 
@@ -23,7 +24,7 @@ void PlacedFunction::add(const std::vector<int>& places, const RowPlace& rows) {
   for (int i = 0; i < function_.equations(); ++i) copy.rows.push_back(rows.first_equation + i);
   for (int i = 0; i < function_.pairs(); ++i) copy.rows.push_back(rows.equations + rows.first_pair + i);
   for (int i = 0; i < function_.pairs(); ++i) copy.rows.push_back(rows.equations + rows.pairs + rows.first_pair + i);
-  const auto is_variable = [&places](int local) { return places[static_cast<std::size_t>(local)] >= 0; };
+  const auto is_variable = [&places](int local) { return places[at(local)] >= 0; };
   const auto& jacobian = function_.jacobian_pattern();
   for (std::size_t e = 0; e < jacobian.row.size(); ++e) {
     if (is_variable(jacobian.column[e])) copy.jacobian.push_back(static_cast<int>(e));
@@ -39,7 +40,7 @@ void PlacedFunction::write_signs(std::vector<mpcc::Sign>& signs, int equations) 
   for (const auto& copy : copies_) {
     for (std::size_t i = 0; i < function_.signs().size(); ++i) {
       const int row = copy.rows[static_cast<std::size_t>(function_.equations()) + i];
-      signs[static_cast<std::size_t>(row - equations)] = function_.signs()[i];
+      signs[at(row - equations)] = function_.signs()[i];
     }
   }
 }
@@ -48,10 +49,10 @@ void PlacedFunction::add_patterns(mpcc::Pattern& jacobian, mpcc::Pattern& hessia
   const auto& local_jacobian = function_.jacobian_pattern();
   const auto& local_hessian = function_.hessian_pattern();
   for (const auto& copy : copies_) {
-    const auto place = [&copy](int local) { return copy.places[static_cast<std::size_t>(local)]; };
+    const auto place = [&copy](int local) { return copy.places[at(local)]; };
     for (const int entry : copy.jacobian) {
       const auto e = static_cast<std::size_t>(entry);
-      jacobian.add(copy.rows[static_cast<std::size_t>(local_jacobian.row[e])], place(local_jacobian.column[e]));
+      jacobian.add(copy.rows[at(local_jacobian.row[e])], place(local_jacobian.column[e]));
     }
     for (const int entry : copy.hessian) {
       const auto e = static_cast<std::size_t>(entry);
@@ -63,7 +64,7 @@ void PlacedFunction::add_patterns(mpcc::Pattern& jacobian, mpcc::Pattern& hessia
 }
 
 const std::vector<double>& PlacedFunction::gather(int copy, ConstVectorView w, const Eigen::VectorXd& constants) {
-  const auto& places = copies_[static_cast<std::size_t>(copy)].places;
+  const auto& places = copies_[at(copy)].places;
   for (std::size_t i = 0; i < places.size(); ++i) z_[i] = value_at(places[i], w, constants);
   return z_;
 }
@@ -105,7 +106,7 @@ double* PlacedFunction::jacobian(ConstVectorView w, const Eigen::VectorXd& const
                                  double* next) {
   for (std::size_t i = 0; i < copies_.size(); ++i) {
     function_.jacobian(gather(static_cast<int>(i), w, constants).data(), parameters.data(), entries_.data());
-    for (const int entry : copies_[i].jacobian) *next++ = entries_[static_cast<std::size_t>(entry)];
+    for (const int entry : copies_[i].jacobian) *next++ = entries_[at(entry)];
   }
   return next;
 }
@@ -116,7 +117,7 @@ double* PlacedFunction::hessian(ConstVectorView w, const Eigen::VectorXd& consta
     for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k] = y[copies_[i].rows[k]];
     function_.hessian(gather(static_cast<int>(i), w, constants).data(), parameters.data(), factor, rows_.data(),
                       entries_.data());
-    for (const int entry : copies_[i].hessian) *next++ = entries_[static_cast<std::size_t>(entry)];
+    for (const int entry : copies_[i].hessian) *next++ = entries_[at(entry)];
   }
   return next;
 }

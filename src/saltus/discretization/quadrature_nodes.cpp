@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "saltus/base/at.hpp"
 #include "saltus/discretization/quadrature_nodes_internal.hpp"
 
 namespace saltus::discretization {
@@ -90,7 +91,7 @@ std::vector<long double> lobatto_nodes(int n) {
 
 long double lagrange(const std::vector<long double>& nodes, int j, long double x) {
   long double product = 1.0L;
-  const long double own = nodes[static_cast<std::size_t>(j)];
+  const long double own = nodes[at(j)];
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (static_cast<int>(i) != j) product *= (x - nodes[i]) / (own - nodes[i]);
   }

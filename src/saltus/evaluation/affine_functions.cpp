@@ -9,6 +9,7 @@
 // Needs names that only the headers above bring.
 #include <casadi/core/calculus.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/affine_functions_internal.hpp"
 
 namespace saltus::evaluation {
@@ -43,8 +44,6 @@ int degree_of(casadi_int operation, const std::vector<int>& operands) {
 }
 
 std::vector<SX> inputs(const ModelSymbols& symbols) { return {symbols.t, symbols.x, symbols.p, symbols.alpha}; }
-
-std::size_t at(casadi_int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

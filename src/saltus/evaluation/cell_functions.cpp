@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/cell_functions_internal.hpp"
 
 namespace saltus::evaluation {
@@ -46,7 +47,7 @@ void CellFunctions::compile(const std::vector<SX>& variables, const model::Syste
 }
 
 void CellFunctions::move(int cell, long target, std::vector<double>& parameters) {
-  Place& place = places_[static_cast<std::size_t>(cell)];
+  Place& place = places_[at(cell)];
   place.index = target;
   for (int column = 0; column < place.table->columns; ++column) {
     parameters[place.constants + static_cast<std::size_t>(column)] = place.table->constant(target, column);
@@ -55,9 +56,9 @@ void CellFunctions::move(int cell, long target, std::vector<double>& parameters)
   parameters[place.lower] = place.table->lower(target);
 }
 
-double CellFunctions::argument(int cell, const std::array<const double*, 4>& at) {
+double CellFunctions::argument(int cell, const std::array<const double*, 4>& here) {
   double value = 0.0;
-  places_[static_cast<std::size_t>(cell)].argument(at, std::array<double*, 1>{&value});
+  places_[at(cell)].argument(here, std::array<double*, 1>{&value});
   return value;
 }
 

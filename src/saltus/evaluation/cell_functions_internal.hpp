@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/model_function.hpp"
 #include "saltus/model/system.hpp"
 
@@ -27,7 +28,7 @@ class CellFunctions {
   [[nodiscard]] const model::CellTable& table(int cell) const { return *place(cell).table; }
   [[nodiscard]] long index(int cell) const { return place(cell).index; }
   void move(int cell, long target, std::vector<double>& parameters);
-  [[nodiscard]] double argument(int cell, const std::array<const double*, 4>& at);
+  [[nodiscard]] double argument(int cell, const std::array<const double*, 4>& here);
   /// For every row of `expression`, the cells whose constants it holds.
   [[nodiscard]] std::vector<std::vector<bool>> dependencies(const std::vector<std::vector<int>>& on_parameters) const;
 
@@ -39,7 +40,7 @@ class CellFunctions {
     casadi::SX upper_symbol, lower_symbol;
     ModelFunction argument{};
   };
-  [[nodiscard]] const Place& place(int cell) const { return places_[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] const Place& place(int cell) const { return places_[at(cell)]; }
   std::vector<Place> places_;
 };
 

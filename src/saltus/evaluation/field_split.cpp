@@ -11,13 +11,13 @@
 // Needs names that only the headers above bring.
 #include <casadi/core/calculus.hpp>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::evaluation {
 namespace {
 
 using casadi::SX;
 using casadi::SXElem;
-
-std::size_t at(casadi_int i) { return static_cast<std::size_t>(i); }
 
 /// A value of the tape: an expression over (p, alpha), or over (t, x, constants).
 struct Value {
@@ -88,7 +88,7 @@ class Splitter {
       constants_.push_back(value.expression);
       symbols_.push_back(SXElem::sym("c" + std::to_string(value.constant)));
     }
-    return symbols_[static_cast<std::size_t>(value.constant)];
+    return symbols_[at(value.constant)];
   }
 
   casadi::Function tape_;

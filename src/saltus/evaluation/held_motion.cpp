@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/held_motion_internal.hpp"
 
 namespace saltus::evaluation {
@@ -57,7 +58,7 @@ class Hold {
   /// A state that moves does. So does one of rate 0 that is in the guard's rate: the velocity of a free ball, as
   /// opposed to a counter of its impacts.
   [[nodiscard]] bool absorbs(const HeldGuard& held, int state, const SX& normal) const {
-    return !held.discrete_states[static_cast<std::size_t>(state)] || !vanishes(normal(0, state));
+    return !held.discrete_states[at(state)] || !vanishes(normal(0, state));
   }
 
   /// d_k, a column of n_x.
@@ -65,7 +66,7 @@ class Hold {
     const SX all_changes = SX::sparsify(SX::jacobian(held.values, x_));
     std::vector<casadi_int> states, rows;
     for (casadi_int i = 0; i < all_changes.size1(); ++i) {
-      const int state = held.targets[static_cast<std::size_t>(i)];
+      const int state = held.targets[at(i)];
       if (!absorbs(held, state, normal)) continue;
       states.push_back(state);
       rows.push_back(i);

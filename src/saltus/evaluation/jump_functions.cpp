@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
 
@@ -56,12 +57,12 @@ double JumpFunctions::value(Quantity& quantity, const Arguments& at) {
 
 JumpFunctions::Entry& JumpFunctions::entry(int jump) {
   SALTUS_ASSERT(0 <= jump && jump < static_cast<int>(entries_.size()));
-  return entries_[static_cast<std::size_t>(jump)];
+  return entries_[at(jump)];
 }
 
 int JumpFunctions::guard(int jump, int guard) const {
   SALTUS_ASSERT(0 <= jump && jump < static_cast<int>(entries_.size()));
-  const Entry& found = entries_[static_cast<std::size_t>(jump)];
+  const Entry& found = entries_[at(jump)];
   SALTUS_ASSERT(0 <= guard && guard < found.guards);
   return found.first_guard + guard;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/field_split_internal.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 #include "saltus/model/system.hpp"
@@ -13,18 +14,16 @@ namespace {
 
 using casadi::SX;
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 /// For every row of `expression`, which entries of `variables` it depends on.
 std::vector<std::vector<int>> dependencies(const SX& expression, const SX& variables) {
-  std::vector<std::vector<int>> rows(index(static_cast<int>(expression.numel())));
+  std::vector<std::vector<int>> rows(at(expression.numel()));
   if (expression.numel() == 0 || variables.numel() == 0) return rows;
   const auto sparsity = SX::jacobian_sparsity(SX::densify(expression), variables);
   const casadi_int* column_start = sparsity.colind();
   const casadi_int* row = sparsity.row();
   for (casadi_int column = 0; column < sparsity.size2(); ++column) {
     for (casadi_int k = column_start[column]; k < column_start[column + 1]; ++k) {
-      rows[static_cast<std::size_t>(row[k])].push_back(static_cast<int>(column));
+      rows[at(row[k])].push_back(static_cast<int>(column));
     }
   }
   return rows;
@@ -55,7 +54,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   }
   first_jump_guard = static_cast<int>(SX::vertcat(rows).numel());
   discrete = system.discrete_states;
-  discrete.resize(index(static_cast<int>(x.numel())), false);
+  discrete.resize(at(x.numel()), false);
   for (const auto& jump : system.jumps) {
     rows.push_back(SX::vec(jump.guards));
     for (casadi_int i = 0; i < jump.guards.numel(); ++i) {
@@ -67,7 +66,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   cells = CellFunctions(system, p, parameters);
   for (auto& end : cells.rows(system)) rows.push_back(std::move(end));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
-  gradients.resize(index(static_cast<int>(phi.numel())));
+  gradients.resize(at(phi.numel()));
 
   const std::vector<SX> arguments{t, x, p, alpha};
   compile_field(free, "saltus_field");
@@ -88,13 +87,13 @@ void ModelKernel::Implementation::find_structure() {
   const int n_phi = static_cast<int>(phi.numel());
   affine = affine_entries(phi, symbols());
   affine_rows = AffineRowFunctions(phi, symbols(), affine);
-  time_only.assign(index(n_phi), true);
+  time_only.assign(at(n_phi), true);
   inner = dependencies(phi, alpha);
   const auto on_states = dependencies(phi, x);
-  const auto is_discrete = [&](int state) { return static_cast<bool>(discrete[index(state)]); };
+  const auto is_discrete = [&](int state) { return static_cast<bool>(discrete[at(state)]); };
   for (int j = 0; j < n_phi; ++j) {
-    const auto& states = on_states[index(j)];
-    time_only[index(j)] = std::all_of(states.begin(), states.end(), is_discrete);
+    const auto& states = on_states[at(j)];
+    time_only[at(j)] = std::all_of(states.begin(), states.end(), is_discrete);
   }
   if (cells.size() > 0) on_cells = cells.dependencies(dependencies(phi, p));
   free.depends = normal_dependencies(free.f);
@@ -103,12 +102,12 @@ void ModelKernel::Implementation::find_structure() {
 std::vector<std::vector<bool>> ModelKernel::Implementation::normal_dependencies(const SX& f) const {
   const auto on_states = dependencies(phi, x);
   const auto field_on_alpha = dependencies(f, alpha);
-  std::vector<std::vector<bool>> depends(index(n_psi), std::vector<bool>(index(n_psi), false));
+  std::vector<std::vector<bool>> depends(at(n_psi), std::vector<bool>(at(n_psi), false));
   for (int i = 0; i < n_psi; ++i) {
-    for (const int component : on_states[index(i)]) {
-      for (const int j : field_on_alpha[index(component)]) depends[index(i)][index(j)] = true;
+    for (const int component : on_states[at(i)]) {
+      for (const int j : field_on_alpha[at(component)]) depends[at(i)][at(j)] = true;
     }
-    for (const int j : inner[index(i)]) depends[index(i)][index(j)] = true;
+    for (const int j : inner[at(i)]) depends[at(i)][at(j)] = true;
   }
   return depends;
 }

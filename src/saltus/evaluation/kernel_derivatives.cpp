@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 
@@ -10,8 +11,6 @@ namespace saltus::evaluation {
 namespace {
 
 using casadi::SX;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -30,7 +29,7 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
                            double* rate) const {
   SALTUS_ASSERT(0 <= function && function < event_functions());
   auto& self = *implementation_;
-  auto& gradient = self.gradients[index(function)];
+  auto& gradient = self.gradients[at(function)];
   if (!gradient.constant.empty()) {
     std::copy(gradient.constant.begin(), gradient.constant.end() - 1, row);
     *rate = gradient.constant.back();
@@ -62,7 +61,7 @@ double ModelKernel::lie_derivative(int function, int order, double t, const doub
   return value;
 }
 
-bool ModelKernel::is_affine(int function) const { return implementation_->affine[index(function)]; }
+bool ModelKernel::is_affine(int function) const { return implementation_->affine[at(function)]; }
 void ModelKernel::affine_rows(const double* alpha, AffineRows& rows) const {
   implementation_->affine_rows.fill(implementation_->parameters.data(), alpha, rows);
 }
@@ -94,10 +93,10 @@ const ode::LinearField* ModelKernel::linear_field(const double* alpha, ode::Line
   return &own;
 }
 
-bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[index(function)]; }
-const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[index(function)]; }
+bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[at(function)]; }
+const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[at(function)]; }
 bool ModelKernel::depends(int surface, int alpha) const {
-  return implementation_->motion->depends[index(surface)][index(alpha)];
+  return implementation_->motion->depends[at(surface)][at(alpha)];
 }
 
 }  // namespace saltus::evaluation

@@ -2,16 +2,11 @@
 #include <array>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 
 namespace saltus::evaluation {
-namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 void ModelKernel::field(double t, const double* x, const double* alpha, double* xdot) const {
   auto& self = *implementation_;
   prepare_field(alpha, self.constants);
@@ -21,7 +16,7 @@ void ModelKernel::field(double t, const double* x, const double* alpha, double* 
 void ModelKernel::prepare_field(const double* alpha, FieldConstants& constants) const {
   auto& self = *implementation_;
   auto& function = self.motion->constants;
-  constants.values.resize(index(static_cast<int>(function.function().numel_out(0))));
+  constants.values.resize(at(function.function().numel_out(0)));
   constants.alpha.assign(alpha, alpha + self.n_psi);
   constants.motion = self.field_use.motion = self.motion;
   constants.direct = self.motion->direct;
@@ -46,7 +41,7 @@ Expected<Motion> ModelKernel::Implementation::compile_held(const std::vector<int
   std::vector<HeldGuard> guards;
   for (const int function : functions_held) {
     SALTUS_ASSERT(first_jump_guard <= function && function < static_cast<int>(phi.numel()));
-    guards.push_back(jump_guards[index(function - first_jump_guard)]);
+    guards.push_back(jump_guards[at(function - first_jump_guard)]);
   }
   auto expressions = held_motion(t, x, free.f, guards);
   if (!expressions) return tl::unexpected(expressions.error());

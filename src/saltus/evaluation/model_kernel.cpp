@@ -4,15 +4,10 @@
 #include <array>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 
 namespace saltus::evaluation {
-namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 ModelKernel::ModelKernel(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 ModelKernel::ModelKernel(ModelKernel&&) noexcept = default;
 ModelKernel& ModelKernel::operator=(ModelKernel&&) noexcept = default;
@@ -53,8 +48,8 @@ bool ModelKernel::condition(int event, double t, const double* x, const double* 
                             const double* guard_alpha) const {
   auto& self = *implementation_;
   double value = 0.0;
-  self.conditions[index(event)](std::array<const double*, 5>{&t, x, self.parameters.data(), alpha, guard_alpha},
-                                std::array<double*, 1>{&value});
+  self.conditions[at(event)](std::array<const double*, 5>{&t, x, self.parameters.data(), alpha, guard_alpha},
+                             std::array<double*, 1>{&value});
   return value > 0.5;
 }
 
@@ -88,7 +83,7 @@ void ModelKernel::set_reference(std::size_t group, int function) const {
   auto& self = *implementation_;
   if (!self.regions.set_reference(group, function, self.parameters)) return;
   const auto& range = self.regions.groups()[group];
-  for (int j = range.first; j < range.first + range.count; ++j) self.gradients[index(j)].constant.clear();
+  for (int j = range.first; j < range.first + range.count; ++j) self.gradients[at(j)].constant.clear();
 }
 
 int ModelKernel::cells() const { return implementation_->cells.size(); }
@@ -100,7 +95,7 @@ void ModelKernel::set_cell(int cell, long target) const {
   auto& self = *implementation_;
   self.cells.move(cell, target, self.parameters);
   for (std::size_t j = 0; j < self.on_cells.size(); ++j) {
-    if (self.on_cells[j][index(cell)]) self.gradients[j].constant.clear();
+    if (self.on_cells[j][at(cell)]) self.gradients[j].constant.clear();
   }
 }
 
@@ -109,7 +104,7 @@ double ModelKernel::cell_argument(int cell, double t, const double* x, const dou
 }
 
 bool ModelKernel::depends_on_cell(int function, int cell) const {
-  return implementation_->on_cells[index(function)][index(cell)];
+  return implementation_->on_cells[at(function)][at(cell)];
 }
 
 }  // namespace saltus::evaluation

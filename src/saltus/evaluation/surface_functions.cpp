@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/model_function.hpp"
 
 namespace saltus::evaluation {
@@ -61,9 +62,9 @@ class Composer {
     for (const int i : dependencies(psi, system_.x)) result.states.insert(i);
     result.on_time = !dependencies(psi, system_.t).empty();
     for (const int symbol : dependencies(psi, symbols_)) {
-      const int cell = owners_[static_cast<std::size_t>(symbol)];
+      const int cell = owners_[at(symbol)];
       result.cells.insert(cell);
-      include(arguments_[static_cast<std::size_t>(cell)], result);
+      include(arguments_[at(cell)], result);
     }
     const auto inner = dependencies(psi, system_.alpha);
     if (!inner.empty() && composed_.empty()) {
@@ -74,7 +75,7 @@ class Composer {
     }
     SX selections = SX::zeros(system_.alpha.numel(), 1);
     for (const int j : inner) {
-      const auto& other = composed_[static_cast<std::size_t>(j)];
+      const auto& other = composed_[at(j)];
       selections(j) = SX::if_else(other.psi > 0, 1, 0);
       include(other, result);
     }
@@ -86,7 +87,7 @@ class Composer {
   /// The arguments of all cells, each over x and the constants of earlier ones.
   [[nodiscard]] const std::vector<Composed>& arguments() const { return arguments_; }
   [[nodiscard]] const SX& symbols() const { return symbols_; }
-  [[nodiscard]] const Composed& function(int j) const { return composed_[static_cast<std::size_t>(j)]; }
+  [[nodiscard]] const Composed& function(int j) const { return composed_[at(j)]; }
 
  private:
   static void include(const Composed& part, Composed& whole) {
@@ -125,7 +126,7 @@ std::optional<AffineForm> affine_part(const model::System& system, const Compose
   std::vector<double> slopes(origin.size());
   AffineForm affine;
   function(std::array{origin.data()}, std::array{slopes.data(), &affine.constant});
-  for (const int i : states) affine.gradient.push_back(slopes[static_cast<std::size_t>(i)]);
+  for (const int i : states) affine.gradient.push_back(slopes[at(i)]);
   affine.rate = slopes.back();
   const bool finite = std::all_of(slopes.begin(), slopes.end(), [](double value) { return std::isfinite(value); });
   if (!finite || !std::isfinite(affine.constant)) return std::nullopt;
@@ -194,7 +195,7 @@ Composed difference(const model::System& system, const Composer& composer, const
                     int i) {
   SX reference = SX::zeros(group.regions, 1);
   reference(r) = 1;
-  const SX& psi = system.switching[static_cast<std::size_t>(group.first + i)].psi;
+  const SX& psi = system.switching[at(group.first + i)].psi;
   return composer.compose(SX::substitute(psi, group.reference, reference));
 }
 
@@ -208,7 +209,7 @@ SurfaceFunction region_border(const model::System& system, const Composer& compo
   SurfaceFunction surface;
   surface.owner = SurfaceOwner::region_border;
   const auto label = [&](int region) {
-    const auto& name = group.mode_names[static_cast<std::size_t>(region)];
+    const auto& name = group.mode_names[at(region)];
     return group.name.empty() ? name : group.name + "." + name;
   };
   surface.name = label(i) + " | " + label(k);

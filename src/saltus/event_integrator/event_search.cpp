@@ -6,13 +6,13 @@
 #include <numbers>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/event_integrator/cells.hpp"
 #include "saltus/event_integrator/event_search_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int deepest = 10;  // a step is cut into at most 2^10 pieces before it is shortened instead
 

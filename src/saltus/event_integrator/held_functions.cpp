@@ -150,7 +150,7 @@ void HeldFunctions::remove_normal_part(std::vector<double>& f) {
     if ((rows_.row(r).array() != 0.0).count() != 1) continue;
     Index only = 0;
     rows_.row(r).cwiseAbs().maxCoeff(&only);
-    double& rate = f[static_cast<std::size_t>(only)];
+    double& rate = f[at(only)];
     if (std::isfinite(rate)) rate = rates_[r] == 0.0 ? 0.0 : -rates_[r] / rows_(r, only);
   }
 }

@@ -134,10 +134,10 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
   std::vector<double> base;
   field_jumps(kernel_, t, x, functions_.alpha(), surfaces, base, coupled.jumps);
   for (Eigen::Index k = 0; k < r; ++k) {
-    coupled.constant[k] = functions_.velocity(balance.functions[static_cast<std::size_t>(k)], base);
+    coupled.constant[k] = functions_.velocity(balance.functions[at(k)], base);
   }
   for (Eigen::Index k = 0; k < r; ++k) {
-    const auto row = functions_.rows().row(static_cast<Eigen::Index>(balance.functions[static_cast<std::size_t>(k)]));
+    const auto row = functions_.rows().row(static_cast<Eigen::Index>(balance.functions[at(k)]));
     coupled.effects.row(k) = row * coupled.jumps;
   }
   const bool known = coupled.range.set(coupled.effects);

@@ -21,10 +21,10 @@ std::vector<bool> discrete_guards(const model::System& system, const model::Jump
   using casadi::SX;
   std::vector<SX> moving{system.t, system.u};
   for (casadi_int i = 0; i < system.x.numel(); ++i) {
-    if (!system.discrete_states[static_cast<std::size_t>(i)]) moving.push_back(system.x(i));
+    if (!system.discrete_states[at(i)]) moving.push_back(system.x(i));
   }
   for (casadi_int j = 0; j < system.alpha.numel(); ++j) {
-    if (system.switching[static_cast<std::size_t>(j)].role != model::SwitchingRole::discrete) {
+    if (system.switching[at(j)].role != model::SwitchingRole::discrete) {
       moving.push_back(system.alpha(j));
     }
   }
@@ -82,7 +82,7 @@ double Jumps::time_of(int jump) const {
   const long passed = times_passed_[at(jump)];
   // A multiple of the period, not a sum of periods: nothing accumulates.
   if (entry.every > 0.0) return from_ + static_cast<double>(passed + 1) * entry.every;
-  return passed < static_cast<long>(entry.times.size()) ? entry.times[static_cast<std::size_t>(passed)] : never;
+  return passed < static_cast<long>(entry.times.size()) ? entry.times[at(passed)] : never;
 }
 
 void Jumps::find_next_time() {

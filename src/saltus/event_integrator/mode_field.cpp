@@ -325,7 +325,7 @@ bool ModeField::solve_independent_equations() {
   take_rows(rows_, independent_, base_rows_);
   base_residual_.resize(base_rows_.rows());
   for (Eigen::Index k = 0; k < base_residual_.size(); ++k) {
-    base_residual_[k] = residual_[independent_[static_cast<std::size_t>(k)]];
+    base_residual_[k] = residual_[independent_[at(k)]];
   }
   normal_matrix_.noalias() = base_rows_ * base_rows_.transpose();
   cholesky_.compute(normal_matrix_);
@@ -333,7 +333,7 @@ bool ModeField::solve_independent_equations() {
   cholesky_.solveInPlace(base_residual_);
   residual_.setZero();
   for (Eigen::Index k = 0; k < base_residual_.size(); ++k) {
-    residual_[independent_[static_cast<std::size_t>(k)]] = base_residual_[k];
+    residual_[independent_[at(k)]] = base_residual_[k];
   }
   return true;
 }

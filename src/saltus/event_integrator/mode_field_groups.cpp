@@ -123,8 +123,7 @@ void ModeField::find_independent_rows() {
     const auto* regions = tie_of(row);
     if (regions == nullptr) return false;
     const auto& base = regions->basis.base;
-    return std::none_of(base.begin(), base.end(),
-                        [&](auto k) { return regions->rows[static_cast<std::size_t>(k)] == row; });
+    return std::none_of(base.begin(), base.end(), [&](auto k) { return regions->rows[at(k)] == row; });
   };
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
     if (!is_dependent(row)) independent_.push_back(static_cast<Eigen::Index>(row));
@@ -135,7 +134,7 @@ void ModeField::find_independent_rows() {
 std::vector<int> ModeField::independent() const {
   if (independent_.empty()) return sliding_;
   std::vector<int> surfaces;
-  for (const auto row : independent_) surfaces.push_back(sliding_[static_cast<std::size_t>(row)]);
+  for (const auto row : independent_) surfaces.push_back(sliding_[at(row)]);
   return surfaces;
 }
 
@@ -243,7 +242,7 @@ void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions)
   const auto& base = regions.basis.base;
   const auto velocities = [&](const std::vector<double>& f, Eigen::Index column) {
     for (std::size_t k = 0; k < base.size(); ++k) {
-      tie_rates_(static_cast<Eigen::Index>(k), column) = normal_velocity(rows[static_cast<std::size_t>(base[k])], f);
+      tie_rates_(static_cast<Eigen::Index>(k), column) = normal_velocity(rows[at(base[k])], f);
     }
   };
   tie_rates_.resize(static_cast<Eigen::Index>(base.size()), static_cast<Eigen::Index>(rows.size()) + 1);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::event_integrator {
 
 void set_surface(ModeState& state, int surface, int mode, double alpha) {
@@ -27,8 +29,8 @@ void set_corner_alpha(ModeState& state) {
   for (std::size_t corner = 0; corner < 2; ++corner) {
     auto& alpha = state.corner_alpha[corner];
     alpha = state.alpha;
-    for (const int j : state.sliding) alpha[static_cast<std::size_t>(j)] = 0.0;
-    alpha[static_cast<std::size_t>(state.sliding.front())] = static_cast<double>(corner);
+    for (const int j : state.sliding) alpha[at(j)] = 0.0;
+    alpha[at(state.sliding.front())] = static_cast<double>(corner);
   }
 }
 

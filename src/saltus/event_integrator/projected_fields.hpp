@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/switching/group_decision.hpp"
@@ -60,7 +61,7 @@ class ProjectedFields {
   [[nodiscard]] std::vector<double> point_beside(const std::vector<double>& alpha) const;
 
   /// Rounding level of psi at the point.
-  [[nodiscard]] double noise(int surface) const { return noise_[static_cast<std::size_t>(surface)]; }
+  [[nodiscard]] double noise(int surface) const { return noise_[at(surface)]; }
 
  private:
   const evaluation::ModelKernel& kernel_;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/event_integrator/recording.hpp"
@@ -54,7 +55,7 @@ class Recorder {
   /// own selection. Cost: O(1).
   void switched(double t, const std::vector<double>& x, const SurfaceSwitch& change);
   /// Whether a surface is listed.
-  [[nodiscard]] bool lists(int surface) const { return !listed_columns_[static_cast<std::size_t>(surface)].empty(); }
+  [[nodiscard]] bool lists(int surface) const { return !listed_columns_[at(surface)].empty(); }
   /// A row in the mode before or behind the last event, with its selections.
   void row_before_last_event(const std::vector<double>& x, const std::vector<double>& alpha) {
     const auto& event = recording_.event_list.back();
@@ -84,7 +85,7 @@ class Recorder {
   /// Of the last event; there must be one.
   [[nodiscard]] std::optional<bool> last_unique() const { return recording_.event_list.back().unique; }
   [[nodiscard]] long events() const { return static_cast<long>(recording_.event_list.size()); }
-  [[nodiscard]] double event_time(long event) const { return recording_.event_list[static_cast<std::size_t>(event)].t; }
+  [[nodiscard]] double event_time(long event) const { return recording_.event_list[at(event)].t; }
   /// Whether one of the last events is about a listed switching function.
   [[nodiscard]] bool switched_lately(int function, long events) const;
   [[nodiscard]] std::size_t rows() const { return recording_.row_times.size(); }

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::event_integrator {
 namespace {
 
@@ -42,15 +44,15 @@ RegionCoordinates coordinates_in(const RegionBasis& basis, const MatrixXd& rows)
   if (m == 0) return coordinates;
   RegionCoordinates normal(m, m), right(m, rows.rows());
   for (Index k = 0; k < m; ++k) {
-    const auto row = rows.row(basis.base[static_cast<std::size_t>(k)]);
-    for (Index l = 0; l < m; ++l) normal(k, l) = row.dot(rows.row(basis.base[static_cast<std::size_t>(l)]));
+    const auto row = rows.row(basis.base[at(k)]);
+    for (Index l = 0; l < m; ++l) normal(k, l) = row.dot(rows.row(basis.base[at(l)]));
     for (Index i = 0; i < rows.rows(); ++i) right(k, i) = row.dot(rows.row(i));
   }
   const Eigen::LDLT<RegionCoordinates> factors(normal);
   coordinates.bottomRows(rows.rows()) = factors.solve(right).transpose();
   for (Index k = 0; k < m; ++k) {  // exactly what they are
-    coordinates.row(basis.base[static_cast<std::size_t>(k)] + 1).setZero();
-    coordinates(basis.base[static_cast<std::size_t>(k)] + 1, k) = 1.0;
+    coordinates.row(basis.base[at(k)] + 1).setZero();
+    coordinates(basis.base[at(k)] + 1, k) = 1.0;
   }
   return coordinates;
 }

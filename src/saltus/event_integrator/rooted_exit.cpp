@@ -162,7 +162,7 @@ std::optional<std::vector<double>> RootedExit::step(double t, const std::vector<
       const auto& here = row.back();
       std::vector<double> next(here.size());
       for (std::size_t i = 0; i < next.size(); ++i) {
-        next[i] = here[i] + (here[i] - before[static_cast<std::size_t>(k - 1)][i]) / ratio;
+        next[i] = here[i] + (here[i] - before[at(k - 1)][i]) / ratio;
       }
       row.push_back(std::move(next));
     }

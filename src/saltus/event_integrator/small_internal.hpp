@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::event_integrator {
 
 /// Relative spacing of doubles.
 inline constexpr double rounding_unit = std::numeric_limits<double>::epsilon();
-
-inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 inline bool is_finite(const std::vector<double>& values) {
   double none = 0.0;  // NaN if a value is not finite: without a way out of the loop

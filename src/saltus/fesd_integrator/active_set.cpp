@@ -2,15 +2,10 @@
 
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::fesd_integrator {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 ActiveSet::ActiveSet(std::span<const Part> parts, std::vector<int> modes)
     : modes_(std::move(modes)), fixed_(modes_.size(), 0.0), references_(modes_.size(), -1) {
   for (const Part& part : parts) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/selection_balances.hpp"
 
 namespace saltus::fesd_integrator {
@@ -50,9 +51,7 @@ class ActiveSet {
   /// `upper` are SelectionMargins::value. They belong to a place, not to the modes.
   [[nodiscard]] const std::vector<switching::Balance>& balances() const { return balances_; }
   void set_balances(std::vector<switching::Balance> balances);
-  [[nodiscard]] bool is_determined(int selection) const {
-    return balances_.empty() || !undetermined_[static_cast<std::size_t>(selection)];
-  }
+  [[nodiscard]] bool is_determined(int selection) const { return balances_.empty() || !undetermined_[at(selection)]; }
   [[nodiscard]] bool operator==(const ActiveSet& other) const { return modes_ == other.modes_; }
 
   /// All selections from the unknown ones (one per entry of sliding()).
@@ -69,7 +68,7 @@ class ActiveSet {
   /// Value of a condition of kind `side`: positive on the side of this set; also for rates of the indicators.
   [[nodiscard]] double side(int selection, const double* indicator) const;
   /// The active region that a region is compared with; -1 for a step selection.
-  [[nodiscard]] int reference(int selection) const { return references_[static_cast<std::size_t>(selection)]; }
+  [[nodiscard]] int reference(int selection) const { return references_[at(selection)]; }
   /// Value of any condition, of a selection that is determined.
   [[nodiscard]] double value(const Condition& condition, const double* indicator, const double* selections) const {
     const auto j = static_cast<std::size_t>(condition.selection);

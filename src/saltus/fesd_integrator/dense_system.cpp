@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/dense_system_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -42,7 +43,7 @@ bool DenseSystem::eliminate() {
       }
     }
     if (!(largest > singular * column_sizes_(k))) return false;
-    pivots_[static_cast<std::size_t>(k)] = pivot;
+    pivots_[at(k)] = pivot;
     if (pivot != k) {
       for (Eigen::Index j = 0; j < n_; ++j) std::swap(memory_[j * n_ + k], memory_[j * n_ + pivot]);
     }
@@ -61,7 +62,7 @@ bool DenseSystem::eliminate() {
 void DenseSystem::substitute() {
   double* b = right_.data();
   for (Eigen::Index k = 0; k < n_; ++k) {
-    const Eigen::Index pivot = pivots_[static_cast<std::size_t>(k)];
+    const Eigen::Index pivot = pivots_[at(k)];
     if (pivot != k) std::swap(b[k], b[pivot]);
   }
   for (Eigen::Index k = 0; k < n_; ++k) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/element_equations_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -91,18 +92,18 @@ Index ElementEquations::point_of(Index stage) const {
 /// f and the indicators at the stages, with derivatives or without.
 void ElementEquations::evaluate(const Element& element, const double* held, Parts parts) {
   for (Index m = 0; m < n_s_; ++m) {
-    auto& at = values_[static_cast<std::size_t>(m)];
+    auto& here = values_[at(m)];
     const double t = element.t + element.h * c_(m);
     const double* state = element.stage_states.data() + m * n_x_;
     const double* selections = element.stage_selections.data() + m * n_psi_;
     if (!roots_.empty()) {
-      roots_.evaluate(static_cast<std::size_t>(m), t, state, selections, held, at);
-      find_directions(m, at);
+      roots_.evaluate(static_cast<std::size_t>(m), t, state, selections, held, here);
+      find_directions(m, here);
     } else if (parts == Parts::values) {
-      kernel_.values(t, state, selections, held, at);
+      kernel_.values(t, state, selections, held, here);
     } else {
-      kernel_.evaluate(t, state, selections, held, at);
-      find_directions(m, at);
+      kernel_.evaluate(t, state, selections, held, here);
+      find_directions(m, here);
     }
   }
 }
@@ -110,33 +111,33 @@ void ElementEquations::evaluate(const Element& element, const double* held, Part
 void ElementEquations::assemble_right(const Element& element) {
   auto right = system_.right();
   for (Index m = 0; m < n_s_; ++m) {
-    const Index place = offset_[static_cast<std::size_t>(m)];
+    const Index place = offset_[at(m)];
     double* residual = right.data() + place;
     const double* state = element.stage_states.data() + m * n_x_;
-    for (Index i = 0; i < n_x_; ++i) residual[i] = element.x[static_cast<std::size_t>(i)] - state[i];
+    for (Index i = 0; i < n_x_; ++i) residual[i] = element.x[at(i)] - state[i];
     for (Index l = 0; l < n_s_; ++l) {
       const double weight = element.h * A_(m, l);
       if (weight == 0.0) continue;
-      const double* f = values_[static_cast<std::size_t>(l)].f.data();
+      const double* f = values_[at(l)].f.data();
       for (Index i = 0; i < n_x_; ++i) residual[i] += weight * f[i];
     }
-    const auto& at = values_[static_cast<std::size_t>(point_of(m))];
+    const auto& here = values_[at(point_of(m))];
     for (Index k = 0; k < unknowns(m); ++k) {
-      residual[n_x_ + k] = -set(m).surface(static_cast<std::size_t>(k), at.indicator.data());
+      residual[n_x_ + k] = -set(m).surface(static_cast<std::size_t>(k), here.indicator.data());
     }
   }
 }
 
 void ElementEquations::assemble_matrix(const Element& element) {
-  system_.reset(offset_[static_cast<std::size_t>(n_s_)]);
+  system_.reset(offset_[at(n_s_)]);
   auto matrix = system_.matrix();
   const Index rows = matrix.rows();
-  const auto place = [&](Index stage) { return offset_[static_cast<std::size_t>(stage)]; };
+  const auto place = [&](Index stage) { return offset_[at(stage)]; };
   for (Index m = 0; m < n_s_; ++m) {
     for (Index l = 0; l < n_s_; ++l) {
       const double weight = element.h * A_(m, l);
       if (weight == 0.0) continue;
-      const double* f_x = values_[static_cast<std::size_t>(l)].f_x.data();
+      const double* f_x = values_[at(l)].f_x.data();
       double* block = matrix.data() + place(l) * rows + place(m);
       for (Index j = 0; j < n_x_; ++j, f_x += n_x_, block += rows) {
         for (Index i = 0; i < n_x_; ++i) block[i] = -weight * f_x[i];
@@ -149,16 +150,16 @@ void ElementEquations::assemble_matrix(const Element& element) {
   }
   for (Index m = 0; m < n_s_; ++m) {
     const Index point = point_of(m);
-    const auto& at = values_[static_cast<std::size_t>(point)];
+    const auto& here = values_[at(point)];
     for (Index k = 0; k < unknowns(m); ++k) {
       const Index equation = place(m) + n_x_ + k;
-      surface_row(set(m), static_cast<std::size_t>(k), at);
+      surface_row(set(m), static_cast<std::size_t>(k), here);
       if (point < n_s_) {
         matrix.block(equation, place(point), 1, n_x_) = row_.transpose();
         continue;
       }
       for (Index l = 0; l < n_s_; ++l) {
-        const auto& stage = values_[static_cast<std::size_t>(l)];
+        const auto& stage = values_[at(l)];
         matrix.block(equation, place(l), 1, n_x_) =
             element.h * b_(l) * row_.transpose() * ConstMatrix(stage.f_x.data(), n_x_, n_x_);
         if (unknowns(l) > 0) {
@@ -174,7 +175,7 @@ double ElementEquations::update(Element& element) {
   const auto step = system_.right();
   double change = 0.0, root_change = 0.0;
   for (Index m = 0; m < n_s_; ++m) {
-    const Index begin = offset_[static_cast<std::size_t>(m)];
+    const Index begin = offset_[at(m)];
     change = std::max(change, step.segment(begin, n_x_).cwiseAbs().maxCoeff());
     states.col(m) += step.segment(begin, n_x_);
     if (!roots_.empty()) {
@@ -184,7 +185,7 @@ double ElementEquations::update(Element& element) {
     double* all = element.stage_selections.data() + m * n_psi_;
     const auto& sliding = set(m).sliding();
     for (Index k = 0; k < unknowns(m); ++k) {
-      const Sliding& entry = sliding[static_cast<std::size_t>(k)];
+      const Sliding& entry = sliding[at(k)];
       const double correction = step(begin + n_x_ + k) / element.h;
       all[entry.selection] += correction;
       if (entry.reference >= 0) all[entry.reference] -= correction;
@@ -206,25 +207,25 @@ void ElementEquations::guess_by_euler(const Point& left, const double* held, Ele
 
 /// NOTE: without this the methods with c_s != 1 lose half their order on curved surfaces.
 bool ElementEquations::project(double t, const double* held, Element& element) {
-  auto& at = values_[static_cast<std::size_t>(n_s_)];
+  auto& here = values_[at(n_s_)];
   const ActiveSet& active = set(n_s_ - 1);
   const auto count = static_cast<Index>(active.sliding().size());
   const double* selections = element.stage_selections.data() + (n_s_ - 1) * n_psi_;
   Vector x_1(element.end.data(), n_x_);
   double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    kernel_.evaluate(t + element.h, element.end.data(), selections, held, at);
-    if (iteration == 0) find_directions(n_s_, at);
+    kernel_.evaluate(t + element.h, element.end.data(), selections, held, here);
+    if (iteration == 0) find_directions(n_s_, here);
     const auto along = directions_.middleCols(n_s_ * n_psi_, count);
     projection_.reset(count);
     auto matrix = projection_.matrix();
     auto right = projection_.right();
     double steepest = 0.0;
     for (Index k = 0; k < count; ++k) {
-      surface_row(active, static_cast<std::size_t>(k), at);
+      surface_row(active, static_cast<std::size_t>(k), here);
       steepest = std::max(steepest, row_.cwiseAbs().maxCoeff());
       for (Index l = 0; l < count; ++l) matrix(k, l) = row_.dot(along.col(l));
-      right(k) = -active.surface(static_cast<std::size_t>(k), at.indicator.data());
+      right(k) = -active.surface(static_cast<std::size_t>(k), here.indicator.data());
     }
     if (!projection_.solve(negligible(element) * steepest)) return false;
     for (Index l = 0; l < count; ++l) x_1 += right(l) * along.col(l);
@@ -257,7 +258,7 @@ void ElementEquations::set_guess(std::size_t stage, const Point& left, ElementSo
   mu_.head(count).setZero();
   sets_[stage]->unknowns(selections, mu_.data());
   for (Index k = 0; k < count && !is_known; ++k) {
-    const bool region = sets_[stage]->sliding()[static_cast<std::size_t>(k)].reference >= 0;
+    const bool region = sets_[stage]->sliding()[at(k)].reference >= 0;
     mu_(k) = region ? mu_(k) : std::clamp(mu_(k), 1e-3, 1.0 - 1e-3);
   }
   sets_[stage]->selections(mu_.data(), selections);

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/dense_system_internal.hpp"
 #include "saltus/fesd_integrator/element.hpp"
 #include "saltus/fesd_integrator/root_unknowns_internal.hpp"
@@ -37,7 +38,7 @@ class ElementEquations {
   /// Directions in which the unknowns of the last step may move without changing any equation.
   [[nodiscard]] Eigen::MatrixXd free_directions() const { return system_.null_space(); }
   /// Where the unknowns of a stage begin; the states come first.
-  [[nodiscard]] Eigen::Index place(Eigen::Index stage) const { return offset_[static_cast<std::size_t>(stage)]; }
+  [[nodiscard]] Eigen::Index place(Eigen::Index stage) const { return offset_[at(stage)]; }
   /// Whether the selections of a stage are known: taken from the left end.
   [[nodiscard]] bool known(Eigen::Index stage) const { return left_limit_ && stage == 0; }
   [[nodiscard]] bool explicit_method() const { return explicit_method_; }
@@ -47,7 +48,7 @@ class ElementEquations {
   void set_warp(const TimeWarp& wanted);
   void set_guess(std::size_t stage, const Point& left, ElementSolver::Guess guess, Element& element);
   void guess_by_euler(const Point& left, const double* held, Element& element);
-  [[nodiscard]] const ActiveSet& set(Eigen::Index stage) const { return *sets_[static_cast<std::size_t>(stage)]; }
+  [[nodiscard]] const ActiveSet& set(Eigen::Index stage) const { return *sets_[at(stage)]; }
   [[nodiscard]] Eigen::Index unknowns(Eigen::Index stage) const {
     return known(stage) ? 0 : static_cast<Eigen::Index>(set(stage).sliding().size());
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::fesd_integrator {
 
 ElementRecorder::ElementRecorder(const discretization::StageKernel& kernel, const Facts& facts,
@@ -38,7 +40,7 @@ void ElementRecorder::point(double t, const double* x, const double* selections,
   elements_.t.push_back(t);
   elements_.lambda.push_back(indicators_);
   auto& row = elements_.selection.emplace_back(selections, selections + indicators_.size());
-  for (const int j : undetermined_) row[static_cast<std::size_t>(j)] = std::numeric_limits<double>::quiet_NaN();
+  for (const int j : undetermined_) row[at(j)] = std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace saltus::fesd_integrator

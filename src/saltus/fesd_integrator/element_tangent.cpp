@@ -3,6 +3,7 @@
 
 #include <Eigen/QR>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/element_tangent_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -61,7 +62,7 @@ void ElementTangent::evaluate(double t, const double* x, const double* selection
   constexpr double off = 1e-9;
   inside_.assign(selections, selections + n_);
   for (const Sliding& entry : set.sliding()) {
-    auto& value = inside_[static_cast<std::size_t>(entry.selection)];
+    auto& value = inside_[saltus::at(entry.selection)];
     if (entry.reference < 0) value = std::clamp(value, off, 1.0 - off);
   }
   kernel_.evaluate(t, x, inside_.data(), held, at);
@@ -141,7 +142,7 @@ MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> 
     system.basis.push_back(known(m) ? MatrixXd(n_, 0) : basis(set(m)));
     size += n_x_ + system.basis.back().cols();
     evaluate(element.t + element.h * tableau_.c(m), element.stage_states.data() + m * n_x_,
-             element.stage_selections.data() + m * n_, set(m), held, values_[static_cast<std::size_t>(m)]);
+             element.stage_selections.data() + m * n_, set(m), held, values_[at(m)]);
   }
   system.end = size;
   const Index lengths = size + n_x_;
@@ -164,10 +165,10 @@ MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> 
     for (Index l = 0; l < n_s_; ++l) {
       const double factor = element.h * weight(l);
       if (factor == 0.0) continue;
-      const auto& stage = values_[static_cast<std::size_t>(l)];
+      const auto& stage = values_[at(l)];
       const ConstMatrix by_selection(stage.f_selection.data(), n_x_, n_);
-      const Index column = system.place[static_cast<std::size_t>(l)];
-      const MatrixXd& changes = system.basis[static_cast<std::size_t>(l)];
+      const Index column = system.place[at(l)];
+      const MatrixXd& changes = system.basis[at(l)];
       system.matrix.block(row, column, n_x_, n_x_) -= factor * ConstMatrix(stage.f_x.data(), n_x_, n_x_);
       system.matrix.block(row, column + n_x_, n_x_, changes.cols()) -= factor * by_selection * changes;
       right += factor * field(stage, go.t + tableau_.c(l) * go.h, go.p);
@@ -183,9 +184,9 @@ MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> 
     system.right.middleRows(row, count) = -surfaces_of(active, indicator(at, go.t + node * go.h, go.p));
   };
   for (Index m = 0; m < n_s_; ++m) {
-    const Index row = system.place[static_cast<std::size_t>(m)];
+    const Index row = system.place[at(m)];
     add_quadrature(row, [&](Index l) { return tableau_.A(m, l); });
-    if (system.basis[static_cast<std::size_t>(m)].cols() == 0) continue;
+    if (system.basis[at(m)].cols() == 0) continue;
     // Half-explicit methods: one stage later, behind the last one at the end.
     const Index point = is_explicit && one_set ? m + 1 : m;
     if (point == n_s_) {

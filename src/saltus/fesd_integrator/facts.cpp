@@ -1,5 +1,6 @@
 #include "saltus/fesd_integrator/facts.hpp"
 
+#include "saltus/base/at.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::fesd_integrator {
@@ -8,15 +9,15 @@ namespace {
 std::string region_name(const model::System& system, const reformulation::Dcs& dcs, const reformulation::DcsPart& part,
                         int region) {
   if (part.mode_group >= 0) {
-    const auto& group = system.mode_groups[static_cast<std::size_t>(part.mode_group)];
-    const std::string& mode = group.mode_names[static_cast<std::size_t>(region)];
+    const auto& group = system.mode_groups[at(part.mode_group)];
+    const std::string& mode = group.mode_names[at(region)];
     return group.name.empty() ? mode : group.name + "." + mode;
   }
   std::string sides;
   for (std::size_t j = 0; j < part.surfaces.size(); ++j) {
     if (j > 0) sides += ", ";
     const bool above = part.signs(region, static_cast<Eigen::Index>(j)) > 0;
-    sides += dcs.surfaces[static_cast<std::size_t>(part.surfaces[j])].name + (above ? " > 0" : " < 0");
+    sides += dcs.surfaces[at(part.surfaces[j])].name + (above ? " > 0" : " < 0");
   }
   return sides;
 }
@@ -38,13 +39,13 @@ Facts facts(const model::System& system, const reformulation::Dcs& dcs) {
       if (simplex) {
         facts.selections.push_back({region_name(system, dcs, part, i), result::SelectionForm::stewart});
       } else {
-        const int surface = part.surfaces[static_cast<std::size_t>(i)];
-        facts.selections.push_back({dcs.surfaces[static_cast<std::size_t>(surface)].name, result::SelectionForm::step});
+        const int surface = part.surfaces[at(i)];
+        facts.selections.push_back({dcs.surfaces[at(surface)].name, result::SelectionForm::step});
       }
     }
   }
   for (const auto& column : system.columns) {
-    const auto& function = system.switching[static_cast<std::size_t>(column.function)];
+    const auto& function = system.switching[at(column.function)];
     facts.columns.push_back(
         {column.name, column.function, column.orientation, function.role == model::SwitchingRole::listed});
   }
@@ -53,8 +54,7 @@ Facts facts(const model::System& system, const reformulation::Dcs& dcs) {
   }
   for (const auto& symbol : dcs.held_symbols) {
     const bool cell = symbol.kind == reformulation::HeldSymbol::Kind::cell;
-    facts.held.push_back({cell, cell ? system.cells[static_cast<std::size_t>(symbol.index)].table : nullptr,
-                          symbol.column, symbol.at_zero});
+    facts.held.push_back({cell, cell ? system.cells[at(symbol.index)].table : nullptr, symbol.column, symbol.at_zero});
   }
   for (const auto& event : dcs.events) {
     facts.events.push_back({event.name, model::rule_of(event), event.action == model::AtEvent::stop});

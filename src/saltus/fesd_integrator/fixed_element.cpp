@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::fesd_integrator {
 
 FixedElement::FixedElement(const discretization::StageKernel& kernel, std::span<const Part> parts,
@@ -148,8 +150,7 @@ FixedElement::Search FixedElement::by_enumeration(const Point& left, double h, c
     long rest = number;
     for (const Choice& choice : choices) {
       const auto count = static_cast<long>(choice.modes.size());
-      modes_[choice.stage][static_cast<std::size_t>(choice.selection)] =
-          choice.modes[static_cast<std::size_t>(rest % count)];
+      modes_[choice.stage][at(choice.selection)] = choice.modes[at(rest % count)];
       rest /= count;
     }
     const bool possible = std::all_of(choices.begin(), choices.end(), [&](const Choice& choice) {

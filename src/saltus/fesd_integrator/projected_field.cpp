@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/dense_system_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -95,7 +96,7 @@ void ProjectedField::take_undetermined(const ActiveSet& set, const double* known
     const auto j = static_cast<std::size_t>(entry.selection);
     const double change = known[j] - selections[j];
     selections[j] = known[j];
-    if (entry.reference >= 0) selections[static_cast<std::size_t>(entry.reference)] -= change;
+    if (entry.reference >= 0) selections[at(entry.reference)] -= change;
   }
 }
 

@@ -4,13 +4,9 @@
 #include <limits>
 #include <utility>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::fesd_integrator {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 Recorder::Recorder(const discretization::PointFunctions& functions, const Facts& facts)
     : functions_(functions), facts_(facts) {}
 

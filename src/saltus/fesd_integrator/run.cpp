@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/run_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -106,7 +107,7 @@ void Run::start() {
   for (const double component : x_) size_ = std::max(size_, std::abs(component));
   std::vector<int> below(kernel_.selections(), -1);
   for (const Part& part : facts_.parts) {
-    if (part.simplex) below[static_cast<std::size_t>(part.first)] = 0;
+    if (part.simplex) below[at(part.first)] = 0;
   }
   set_ = ActiveSet(facts_.parts, below);
   set_.selections(selections_.data(), selections_.data());
@@ -114,9 +115,8 @@ void Run::start() {
       transition_.continuations({t_, x_, held_.data(), nullptr, {}, size_, nominal_ / options_.elements / 128.0});
   const auto chosen = std::find_if(found.begin(), found.end(), [&](const Continuation& candidate) {
     const auto view = recorder_.view(candidate.set, candidate.selections, held_.data());
-    return std::all_of(options_.initial_mode.begin(), options_.initial_mode.end(), [&](const auto& forced) {
-      return view.mode[static_cast<std::size_t>(forced.first)] == forced.second;
-    });
+    return std::all_of(options_.initial_mode.begin(), options_.initial_mode.end(),
+                       [&](const auto& forced) { return view.mode[at(forced.first)] == forced.second; });
   });
   if (chosen == found.end()) {
     if (stopped_where_not_finite()) return;

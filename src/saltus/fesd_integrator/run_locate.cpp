@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/run_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -26,10 +27,8 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
     bool failed = false;
     auto selections = selections_;
     for (int k = 0; k < count; ++k) {
-      auto& element = chain_.elements[static_cast<std::size_t>(k)];
-      const Element* last = k > 0       ? &chain_.elements[static_cast<std::size_t>(k - 1)]
-                            : previous_ ? &*previous_
-                                        : nullptr;
+      auto& element = chain_.elements[at(k)];
+      const Element* last = k > 0 ? &chain_.elements[at(k - 1)] : previous_ ? &*previous_ : nullptr;
       element.warp = {k == 0 ? warp.left : 1, k + 1 == count ? warp.right : 1};
       const bool continues = last != nullptr && last->warp.is_none() && element.warp.is_none();
       const bool warm = i > 0 || continues;  // i > 0: stage values of the last try

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/run_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -50,7 +51,7 @@ std::string Run::undetermined_message() const {
   const auto view = recorder_.view(set_, selections_, held_.data());
   std::vector<std::string> names;
   const auto add_zero = [&](int function, const std::string& name) {
-    if (view.mode[static_cast<std::size_t>(function)] == 0) names.push_back(name);
+    if (view.mode[at(function)] == 0) names.push_back(name);
   };
   for (const auto& column : facts_.columns) add_zero(column.function, column.name);
   for (const auto& group : facts_.regions) {

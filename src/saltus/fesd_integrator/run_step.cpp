@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/run_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -75,10 +76,10 @@ Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
   Point& left = begin_here();
   const int behind = previous_ ? 1 : warp_behind(h);
   for (int i = 0; i < count; ++i) {
-    auto& element = chain_.elements[static_cast<std::size_t>(i)];
+    auto& element = chain_.elements[at(i)];
     element.warp = {i == 0 ? behind : 1, 1};
     auto guess = ElementSolver::Guess::left_end;
-    const Element* last = i > 0 ? &chain_.elements[static_cast<std::size_t>(i - 1)] : previous_ ? &*previous_ : nullptr;
+    const Element* last = i > 0 ? &chain_.elements[at(i - 1)] : previous_ ? &*previous_ : nullptr;
     if (last != nullptr && h <= 2.0 * last->h && last->warp.is_none()) {
       solver_.extrapolate(*last, h, element);
       guess = ElementSolver::Guess::stages;
@@ -99,7 +100,7 @@ Run::Solved Run::solve_chain(int count, double h, Violation& violation) {
       case Watch::Answer::holds:
         break;
     }
-    chain_.errors[static_cast<std::size_t>(i)] = watch_.errors();
+    chain_.errors[at(i)] = watch_.errors();
     if (too_coarse(element, watch_.errors())) return Solved::coarse;
     if (watch_.may_miss() && divided_for_look_ < most_divisions_for_look &&
         jumps_over(left, h, most_divisions_for_look)) {

@@ -3,6 +3,8 @@
 #include <limits>
 #include <utility>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::fesd_integrator {
 namespace {
 
@@ -12,7 +14,6 @@ using Eigen::VectorXd;
 using ConstMatrix = Eigen::Map<const MatrixXd>;
 using ConstVector = Eigen::Map<const VectorXd>;
 
-std::size_t at_index(int i) { return static_cast<std::size_t>(i); }
 Index index(std::size_t i) { return static_cast<Index>(i); }
 
 /// What is left of a gradient besides those before it, relative to it, if it is one of theirs but for rounding: as the
@@ -95,7 +96,7 @@ void SelectionMargins::evaluate(const ActiveSet& set, const FieldView& at, doubl
     const bool known = range.set(effects) && constant.allFinite();
     lambda = switching::bounded_selections(effects, constant);
     for (std::size_t i = 0; i < q; ++i) {
-      const auto j = at_index(selection(i));
+      const auto j = saltus::at(selection(i));
       if (known) selections[j] = lambda[index(i)];
       const double widest = known ? 1.0 : std::numeric_limits<double>::quiet_NaN();
       Margin lower{widest, b, 0}, upper{widest, b, 0};
@@ -112,12 +113,12 @@ void SelectionMargins::evaluate(const ActiveSet& set, const FieldView& at, doubl
 
 double SelectionMargins::value(const Condition& condition) const {
   const auto& margins = condition.kind == Condition::Kind::lower ? lower_ : upper_;
-  return margins[at_index(condition.selection)].value;
+  return margins[at(condition.selection)].value;
 }
 
 std::vector<double> SelectionMargins::normal(const ActiveSet& set, const Condition& condition) const {
   const auto& margins = condition.kind == Condition::Kind::lower ? lower_ : upper_;
-  const Margin& margin = margins[at_index(condition.selection)];
+  const Margin& margin = margins[at(condition.selection)];
   std::vector<double> normal(set.sliding().size(), 0.0);
   const auto& functions = set.balances()[margin.balance].functions;
   const auto& facet = ranges_[margin.balance].facets()[margin.facet];

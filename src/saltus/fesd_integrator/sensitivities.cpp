@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/fesd_integrator/element_tangent_internal.hpp"
 
@@ -158,7 +159,7 @@ void SensitivityPropagation::held_changed(double t, const double* x, const doubl
     for (Index c = 0; c < own.size(); ++c) {
       constexpr double rounding = 1e-9;
       const bool apart = std::abs(own(c) - (*moves)(c)) > rounding * (1.0 + std::abs(own(c)));
-      if (apart) self.undefined[static_cast<std::size_t>(c)] = true;
+      if (apart) self.undefined[at(c)] = true;
     }
   }
   if (!moves) return;
@@ -178,7 +179,7 @@ result::Sensitivities SensitivityPropagation::sensitivities(const std::vector<st
       auto& row = rows.emplace_back();
       for (Index j = first; j < first + count; ++j) {
         const double value = self.boundary.x(i, j);
-        row.push_back(self.undefined[static_cast<std::size_t>(j)] || !std::isfinite(value) ? undefined : value);
+        row.push_back(self.undefined[at(j)] || !std::isfinite(value) ? undefined : value);
       }
     }
     return rows;

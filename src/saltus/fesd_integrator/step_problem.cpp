@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/solver/active_set/polish.hpp"
 #include "saltus/solver/homotopy/follow_path.hpp"
 
@@ -33,7 +34,7 @@ std::vector<int> StepProblem::modes_of(const SolvedElement& element) const {
     const double sum = element.selections.row(pair.selection).sum();
     const double a = pair.complement ? static_cast<double>(element.selections.cols()) - sum : sum;
     if (lambda[static_cast<Eigen::Index>(k)] <= a) continue;
-    modes[static_cast<std::size_t>(pair.selection)] = pair.complement ? 1 : -1;
+    modes[at(pair.selection)] = pair.complement ? 1 : -1;
   }
   return modes;
 }

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <utility>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::fesd_integrator {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Rates and selections within this of their bounds are not decided by first derivatives. Events are located to about
 /// 1e-12; a selection that ends there is off by that, times the conditioning of its equation.

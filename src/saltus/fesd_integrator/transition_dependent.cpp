@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/transition.hpp"
 #include "saltus/switching/additive_map.hpp"
 #include "saltus/switching/selection_complementarity.hpp"
@@ -16,7 +17,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 Index index(std::size_t i) { return static_cast<Index>(i); }
 
 /// Gradients and fields are good to twelve digits; what is less than this of its terms is 0.
@@ -105,7 +105,7 @@ bool Transition::find_dependent(const Decision& decision, const std::vector<int>
     std::vector<int> pattern;
     for (const int j : group.members) {
       if (const auto k = std::find(acting.begin(), acting.end(), j); k != acting.end()) {
-        pattern.push_back(solution.mode[static_cast<std::size_t>(k - acting.begin())]);
+        pattern.push_back(solution.mode[at(k - acting.begin())]);
         continue;
       }
       const auto k = std::find(followers.begin(), followers.end(), j) - followers.begin();

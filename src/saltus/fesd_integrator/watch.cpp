@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/base/at.hpp"
 #include "saltus/ode/bernstein.hpp"
 
 namespace saltus::fesd_integrator {
@@ -73,8 +74,7 @@ std::size_t Watch::find_interpolation(const TimeWarp& warp) {
 }
 
 double Watch::noise(const Condition& condition) const {
-  return condition.kind == Condition::Kind::side ? noise_[static_cast<std::size_t>(condition.selection)]
-                                                 : selection_noise;
+  return condition.kind == Condition::Kind::side ? noise_[at(condition.selection)] : selection_noise;
 }
 
 double Watch::end_value(const ActiveSet& set, const Condition& condition) const {
@@ -214,8 +214,7 @@ double Watch::error_of(const ActiveSet& set, const Condition& condition) const {
     return bend;
   }
   const int reference = set.reference(condition.selection);
-  return indicator_errors_[static_cast<std::size_t>(condition.selection)] +
-         (reference >= 0 ? indicator_errors_[static_cast<std::size_t>(reference)] : 0.0);
+  return indicator_errors_[at(condition.selection)] + (reference >= 0 ? indicator_errors_[at(reference)] : 0.0);
 }
 
 /// d psi / dt at the left end. NOTE: left_ is that of the middle later on, where a root is zero at the left end.

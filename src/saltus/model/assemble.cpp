@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/guards_internal.hpp"
 #include "saltus/model/jumps_internal.hpp"
 #include "saltus/model/reduction_internal.hpp"
@@ -221,12 +222,10 @@ class Assembly {
 
   [[nodiscard]] std::size_t alpha_index(int node) const {
     const int variable = graph_.tape()[node].variable;
-    return static_cast<std::size_t>(graph_.tape().variables()[static_cast<std::size_t>(variable)].index);
+    return static_cast<std::size_t>(graph_.tape().variables()[at(variable)].index);
   }
 
-  [[nodiscard]] const MetFunction& met(int index) const {
-    return recognition_.functions()[static_cast<std::size_t>(index)];
-  }
+  [[nodiscard]] const MetFunction& met(int index) const { return recognition_.functions()[at(index)]; }
 
   void classify_functions() {
     std::vector<int> targets = f_;
@@ -253,7 +252,7 @@ class Assembly {
     for (std::size_t k = 0; k < first.size(); ++k) {
       if (first[k] == k) continue;
       for (const std::size_t i : {discrete[k], discrete[first[k]]}) {
-        classes_[i].jumps = used_[static_cast<std::size_t>(kept_[i])];
+        classes_[i].jumps = used_[at(kept_[i])];
       }
     }
   }
@@ -277,7 +276,7 @@ class Assembly {
       reduced.push_back(*component);
     }
     for (const auto& [state, rate, location] : region_rates(statement_)) {
-      const auto& name = statement_.states[static_cast<std::size_t>(state)].name;
+      const auto& name = statement_.states[at(state)].name;
       if (bends(graph_.node(rate))) system_.inclusion_differences.push_back(name);
     }
     system_.f_as_written = column(as_written);
@@ -329,7 +328,7 @@ class Assembly {
   void take_columns() {
     for (const auto& stated : statement_.switching) {
       const SharedFunction& function = stated.declared.function;
-      const int index = new_index_[static_cast<std::size_t>(function.function)];
+      const int index = new_index_[at(function.function)];
       system_.columns.push_back({stated.declared.name, index, function.orientation});
     }
     for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -347,7 +346,7 @@ class Assembly {
         system_.warnings.push_back(
             located(stated.location, fmt::format("switching function '{}' is {}'{}' under another name", declared.name,
                                                  multiple.empty() ? "a multiple of " : multiple, declared.alias_of)));
-      } else if (!stated.referenced && !used_[static_cast<std::size_t>(declared.function.function)]) {
+      } else if (!stated.referenced && !used_[at(declared.function.function)]) {
         system_.warnings.push_back(
             located(stated.location, fmt::format("switching function '{}' is never used", declared.name)));
       }
@@ -363,9 +362,9 @@ class Assembly {
       if ((graph_.tape()[psi].reached & moving_kinds) != kind_bit(VariableKind::state)) continue;
       const auto variables = moving_variables(graph_.tape(), std::span(&psi, 1));
       const bool still = std::all_of(variables.begin(), variables.end(), [&](int variable) {
-        const auto& entry = graph_.tape().variables()[static_cast<std::size_t>(variable)];
+        const auto& entry = graph_.tape().variables()[at(variable)];
         if (entry.kind != VariableKind::state) return true;  // of a cell's argument
-        return static_cast<bool>(system_.discrete_states[static_cast<std::size_t>(entry.index)]);
+        return static_cast<bool>(system_.discrete_states[at(entry.index)]);
       });
       if (!still) continue;
       system_.warnings.push_back(fmt::format(

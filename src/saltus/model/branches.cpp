@@ -9,6 +9,7 @@
 // Needs names that only the header above brings.
 #include <casadi/core/calculus.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/recognition_internal.hpp"
 
 namespace saltus::model {
@@ -51,7 +52,7 @@ class BranchCounter {
         const auto decided = decided_.find(current);
         value = decided != decided_.end() ? decided->second : step_value(known(node.psi));
       } else if (node.variable >= 0 && node.operation != cell_operation) {
-        const Variable& variable = tape_.variables()[static_cast<std::size_t>(node.variable)];
+        const Variable& variable = tape_.variables()[at(node.variable)];
         if (variable.kind == VariableKind::parameter) value = variable.value;
       } else {
         value = node.left < 0 ? node.constant : known_operation(node);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/discrete_states_internal.hpp"
 #include "saltus/model/jumps_internal.hpp"
@@ -123,8 +124,7 @@ class Build {
     const auto discrete = discrete_states(description_);
     int index = 0;
     for (const auto& entry : description_.states) {
-      const VariableKind kind =
-          discrete[static_cast<std::size_t>(index)] ? VariableKind::discrete : VariableKind::state;
+      const VariableKind kind = discrete[at(index)] ? VariableKind::discrete : VariableKind::state;
       const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++});
       statement_.states.push_back({.name = entry.name, .symbol = symbol, .location = entry.location});
     }
@@ -185,7 +185,7 @@ class Build {
     for (const auto& entry : description_.dynamics) {
       const Meaning* meaning = scope_.names().find(entry.name);
       if (meaning == nullptr || meaning->kind != NameKind::state) return no_such_state(entry, meaning);
-      auto& state = statement_.states[static_cast<std::size_t>(meaning->index)];
+      auto& state = statement_.states[at(meaning->index)];
       if (state.dynamics) {
         return Error{ErrorCode::invalid_model,
                      fmt::format("the state '{}' has two right-hand sides", entry.name),
@@ -259,7 +259,7 @@ class Build {
       auto input = recognition_.lookup(std::make_shared<const CellTable>(step_cells(entry.times, entry.values)),
                                        statement_.time, entry.name);
       if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
-      auto& control = statement_.controls[static_cast<std::size_t>(meaning->index)];
+      auto& control = statement_.controls[at(meaning->index)];
       control.input = *input;
       control.input_location = entry.location;
     }
@@ -276,7 +276,7 @@ class Build {
                      entry.expression->location,
                      {}};
       }
-      auto& control = statement_.controls[static_cast<std::size_t>(meaning->index)];
+      auto& control = statement_.controls[at(meaning->index)];
       control.input = *input;
       control.input_location = entry.expression->location;
     }

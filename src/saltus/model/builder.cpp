@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/function_ref.hpp"
 #include "saltus/model/modes_internal.hpp"
 #include "saltus/model/names_internal.hpp"
@@ -135,7 +136,7 @@ struct Builder::Parts {
   template <class Entries>
   typename Entries::value_type* find(Entries& entries, const std::string& name, NameKind kind) {
     const Meaning* meaning = names.find(name);
-    if (meaning != nullptr && meaning->kind == kind) return &entries[static_cast<std::size_t>(meaning->index)];
+    if (meaning != nullptr && meaning->kind == kind) return &entries[at(meaning->index)];
     fail({ErrorCode::unknown_name,
           fmt::format("'{}' is not {} of this model", name, with_article(kind)),
           suggest(name, names.of({kind})),

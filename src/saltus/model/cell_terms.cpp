@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/recognition_internal.hpp"
 
 namespace saltus::model {
@@ -45,7 +46,7 @@ std::optional<SXElem> Recognition::lookup_corners(const std::shared_ptr<const Ce
     const std::vector<SXElem> symbols = graph.cell(e, table, name).symbols;
     return value_in_cell(symbols, e);
   }
-  const MetFunction function = functions_[static_cast<std::size_t>(alphas.front())];
+  const MetFunction function = functions_[at(alphas.front())];
   const auto above = lookup_corners(table, graph.with_alphas(node, {{function.alpha_node, 1.0}}), name, corners);
   const auto below = lookup_corners(table, graph.with_alphas(node, {{function.alpha_node, 0.0}}), name, corners);
   if (!above || !below) return std::nullopt;

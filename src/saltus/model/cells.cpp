@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::model {
 namespace {
 
@@ -85,12 +87,12 @@ long CellTable::cell(double argument) const {
 
 double CellTable::lower(long cell) const {
   if (kind == Breaks::integers) return static_cast<double>(cell);
-  return cell <= 0 ? -infinity : breaks[static_cast<std::size_t>(cell - 1)];
+  return cell <= 0 ? -infinity : breaks[at(cell - 1)];
 }
 
 double CellTable::upper(long cell) const {
   if (kind == Breaks::integers) return static_cast<double>(cell + 1);
-  return cell >= static_cast<long>(breaks.size()) ? infinity : breaks[static_cast<std::size_t>(cell)];
+  return cell >= static_cast<long>(breaks.size()) ? infinity : breaks[at(cell)];
 }
 
 double CellTable::constant(long cell, int column) const {

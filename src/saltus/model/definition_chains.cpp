@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 
@@ -105,7 +106,7 @@ std::optional<Error> ModelScope::translate(const Meaning& meaning) {
 }
 
 std::optional<Error> ModelScope::declare_switching(int index) {
-  const NamedExpression& stated = description_.switching[static_cast<std::size_t>(index)];
+  const NamedExpression& stated = description_.switching[at(index)];
   auto psi = expression(*stated.expression);
   if (!psi) return psi.error();
   auto declared = recognition_.declare(stated.name, *psi);
@@ -114,7 +115,7 @@ std::optional<Error> ModelScope::declare_switching(int index) {
     return declared.error();
   }
   switching_.emplace(index, *psi);
-  statement_.switching[static_cast<std::size_t>(index)].declared = *declared;
+  statement_.switching[at(index)].declared = *declared;
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 #include <optional>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/excluded_signs_internal.hpp"
 
 namespace saltus::model {
@@ -15,7 +16,7 @@ class Thresholds {
   Thresholds(const Tape& tape, const std::vector<MetFunction>& functions, const std::vector<int>& literals) {
     std::vector<int> psi;
     for (const int literal : literals) {
-      const auto& function = functions[static_cast<std::size_t>(literal)];
+      const auto& function = functions[at(literal)];
       samples_.push_back(threshold_samples(tape, function.psi_node));
       at_zero_.push_back(function.alpha_at_zero);
       discrete_.push_back(function.discrete);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/excluded_signs_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
 
@@ -65,7 +66,7 @@ class Patterns {
   [[nodiscard]] std::string pattern(const std::vector<bool>& signs) const {
     std::vector<std::string> terms;
     for (std::size_t i = 0; i < signs.size(); ++i) {
-      const auto& name = functions_[static_cast<std::size_t>(literals_[i])].name;
+      const auto& name = functions_[at(literals_[i])].name;
       terms.push_back(fmt::format("{} {} 0", name, signs[i] ? ">" : "<"));
     }
     return terms.empty() ? "everywhere" : fmt::format("{}", fmt::join(terms, ", "));

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 
@@ -178,7 +179,7 @@ bool ModelScope::is_condition(const std::string& name) const {
   // Follows definitions that are mere names of others; a cycle of them is reported as one elsewhere.
   for (std::size_t hops = 0; hops <= description_.definitions.size(); ++hops) {
     if (meaning == nullptr || meaning->kind != NameKind::definition) return false;
-    const auto& node = *description_.definitions[static_cast<std::size_t>(meaning->index)].expression;
+    const auto& node = *description_.definitions[at(meaning->index)].expression;
     const auto* other = std::get_if<saltus::expression::Name>(&node.value);
     if (other == nullptr) return translation_.is_condition(node);
     meaning = names_.find(other->name);

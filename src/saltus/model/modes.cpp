@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
@@ -154,7 +155,7 @@ std::optional<Error> add_modes(Recognition& recognition, Statement& statement) {
       // Regions are weighted by selections of their own, which the assembly makes.
       for (const auto& mode : group.modes) {
         for (const auto& [state, rate, location] : mode.rates) {
-          add_rate(statement.states[static_cast<std::size_t>(state)], SXElem(0.0), location);
+          add_rate(statement.states[at(state)], SXElem(0.0), location);
         }
       }
       continue;
@@ -171,7 +172,7 @@ std::optional<Error> add_modes(Recognition& recognition, Statement& statement) {
       const SXElem weight = recognition.graph.polynomial(regions->diagram, regions->truth[i], alphas);
       for (const auto& [state, rate, location] : mode.rates) {
         if (const auto added = recognition.graph.add(rate); !added) return added.error();
-        add_rate(statement.states[static_cast<std::size_t>(state)], recognition.graph.weighted(weight, rate), location);
+        add_rate(statement.states[at(state)], recognition.graph.weighted(weight, rate), location);
       }
     }
   }

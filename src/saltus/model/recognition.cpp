@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/recognition_internal.hpp"
 
 namespace saltus::model {
@@ -31,7 +32,7 @@ std::vector<int> Recognition::alphas_in(int node) const {
   if ((tape[node].written & kind_bit(VariableKind::alpha)) == 0) return indices;
   for (const int leaf : tape.cone(std::span(&node, 1), Links::written)) {
     if (tape[leaf].psi < 0) continue;
-    indices.push_back(tape.variables()[static_cast<std::size_t>(tape[leaf].variable)].index);
+    indices.push_back(tape.variables()[at(tape[leaf].variable)].index);
   }
   return indices;  // ascending, as the nodes of alphas are
 }
@@ -40,11 +41,11 @@ std::vector<int> Recognition::alphas_in(int node) const {
 std::optional<SharedFunction> Recognition::find(int psi_node, std::optional<double> at_zero) {
   const auto value_of = [&](const SharedFunction& found) { return found.orientation > 0 ? *at_zero : 1.0 - *at_zero; };
   const auto found = index_.find(graph.tape(), psi_node, [&](const SharedFunction& candidate) {
-    const auto& met = functions_[static_cast<std::size_t>(candidate.function)];
+    const auto& met = functions_[at(candidate.function)];
     return !met.discrete || !at_zero || !met.alpha_at_zero || *met.alpha_at_zero == value_of(candidate);
   });
   if (found && at_zero) {
-    auto& met = functions_[static_cast<std::size_t>(found->function)];
+    auto& met = functions_[at(found->function)];
     const bool on_discrete = (graph.tape()[met.psi_node].reached & kind_bit(VariableKind::discrete)) != 0;
     if (on_discrete && !met.alpha_at_zero) met.alpha_at_zero = value_of(*found);
   }
@@ -78,11 +79,11 @@ Expected<Recognition::Selection> Recognition::corner_selection(int node, const s
   TapeValues values;
   for (std::size_t corner = 0; corner < (std::size_t{1} << literals.size()); ++corner) {
     for (std::size_t k = 0; k < literals.size(); ++k) {
-      const int leaf = functions_[static_cast<std::size_t>(literals[k])].alpha_node;
-      point[static_cast<std::size_t>(tape[leaf].variable)] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+      const int leaf = functions_[at(literals[k])].alpha_node;
+      point[at(tape[leaf].variable)] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
     }
     evaluate(tape, cone, point, values);
-    result.corners.push_back(values.value[static_cast<std::size_t>(node)]);
+    result.corners.push_back(values.value[at(node)]);
   }
   return result;
 }
@@ -112,14 +113,14 @@ SXElem Recognition::value(const Selection& selection) {
     case Selection::Kind::constant:
       return SXElem(step_value(selection.constant));
     case Selection::Kind::alpha: {
-      const SXElem& alpha = functions_[static_cast<std::size_t>(selection.function.function)].alpha;
+      const SXElem& alpha = functions_[at(selection.function.function)].alpha;
       return selection.function.orientation > 0 ? alpha : 1.0 - alpha;
     }
     case Selection::Kind::polynomial:
       break;
   }
   std::vector<SXElem> alphas;
-  for (const int literal : selection.literals) alphas.push_back(functions_[static_cast<std::size_t>(literal)].alpha);
+  for (const int literal : selection.literals) alphas.push_back(functions_[at(literal)].alpha);
   std::vector<double> steps;
   for (const double corner : selection.corners) steps.push_back(step_value(corner));
   return graph.interpolation(alphas, steps);
@@ -145,7 +146,7 @@ Expected<SXElem> Recognition::choose(const SXElem& difference, const std::string
   if (!chosen) return tl::unexpected(chosen.error());
   if (chosen->kind == Selection::Kind::constant) return chosen->constant < 0.0 ? b : a;
   if (chosen->kind == Selection::Kind::alpha && chosen->function.orientation < 0) {
-    return graph.blend(functions_[static_cast<std::size_t>(chosen->function.function)].alpha, b, a);
+    return graph.blend(functions_[at(chosen->function.function)].alpha, b, a);
   }
   return graph.blend(value(*chosen), a, b);
 }
@@ -214,7 +215,7 @@ Expected<SXElem> Recognition::select(const Condition& condition, const SXElem& a
   // A single literal the other way round exchanges the branches rather than computing with 1 - alpha.
   const auto& top = diagram[*holds_where];
   if (*holds_where > 1 && top.low == 1 && top.high == 0) {
-    return graph.blend(literals[static_cast<std::size_t>(top.literal)], b, a);
+    return graph.blend(literals[at(top.literal)], b, a);
   }
   return graph.blend(graph.polynomial(diagram, *holds_where, literals), a, b);
 }
@@ -240,7 +241,7 @@ Expected<DeclaredFunction> Recognition::declare(const std::string& name, const S
     functions_.back().named = true;
     return DeclaredFunction{name, {index, +1}, ""};
   }
-  MetFunction& met = functions_[static_cast<std::size_t>(known->function)];
+  MetFunction& met = functions_[at(known->function)];
   if (met.named) return DeclaredFunction{name, *known, met.name};
   // An unnamed multiple came first (inside another declared function): it takes over name and scaling, unless that
   // would break the order of nesting.

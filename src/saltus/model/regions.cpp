@@ -1,5 +1,6 @@
 #include <casadi/core/function.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/regions_internal.hpp"
 
 namespace saltus::model {
@@ -51,7 +52,7 @@ std::vector<ModeRate> region_rates(const Statement& statement) {
 std::vector<bool> moved_by_regions(const Statement& statement) {
   std::vector<bool> moved(statement.states.size(), false);
   for (const auto& rate : region_rates(statement)) {
-    if (!rate.rate.is_zero()) moved[static_cast<std::size_t>(rate.state)] = true;
+    if (!rate.rate.is_zero()) moved[at(rate.state)] = true;
   }
   return moved;
 }
@@ -82,7 +83,7 @@ std::optional<Error> add_regions(SxGraph& graph, const Statement& statement, con
       for (const auto& [state, rate, location] : modes[i].rates) {
         SXElem reduced = rate;
         if (statement.inclusion != Inclusion::aizerman_pyatnitskii) {
-          const auto& name = statement.states[static_cast<std::size_t>(state)].name;
+          const auto& name = statement.states[at(state)].name;
           auto component = interpolate(graph, graph.node(rate), sliding, name);
           if (!component) return with_location(component.error(), location);
           reduced = *component;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/sharing_internal.hpp"
 
 namespace saltus::model {
@@ -66,7 +67,7 @@ std::optional<double> constant_value(const Tape& tape, int node) {
   Point point = blank_point(tape);
   if (tape[node].written == 0 || tape[node].written == kind_bit(VariableKind::parameter)) {
     evaluate(tape, cone, point, values);
-    return values.value[static_cast<std::size_t>(node)];
+    return values.value[at(node)];
   }
   if (!is_polynomial(tape, cone)) return std::nullopt;
   // Two values differ if they differ by more than rounding; 24 points with the alphas at random corners.
@@ -81,8 +82,8 @@ std::optional<double> constant_value(const Tape& tape, int node) {
       point[i] = seeded_draw(static_cast<std::uint64_t>(k) + 1000, i) > 0.0 ? 1.0 : 0.0;
     }
     evaluate_with_bounds(tape, cone, point, {}, epsilon, values);
-    const double value = values.value[static_cast<std::size_t>(node)];
-    const double error = values.bound[static_cast<std::size_t>(node)];
+    const double value = values.value[at(node)];
+    const double error = values.bound[at(node)];
     if (!std::isfinite(value) || !std::isfinite(error)) continue;
     const double cleaned = std::abs(value) <= error ? 0.0 : value;
     if (!first) first = cleaned;
@@ -102,8 +103,8 @@ SharingIndex::Samples SharingIndex::sample(const Tape& tape, int psi) {
     draw_pool_point(tape, cone, k, point);
     draw_cells(tape, cone, k, point);
     evaluate_with_bounds(tape, cone, point, {}, epsilon, values);
-    samples.value[static_cast<std::size_t>(k)] = values.value[static_cast<std::size_t>(psi)];
-    samples.error[static_cast<std::size_t>(k)] = values.bound[static_cast<std::size_t>(psi)];
+    samples.value[at(k)] = values.value[at(psi)];
+    samples.error[at(k)] = values.bound[at(psi)];
   }
   return samples;
 }
@@ -147,7 +148,7 @@ ThresholdSamples threshold_samples(const Tape& tape, int psi) {
     draw_pool_point(tape, cone, k, point);
     draw_cells(tape, cone, k, point);
     evaluate(tape, cone, point, values);
-    samples.value[static_cast<std::size_t>(k)] = values.value[static_cast<std::size_t>(psi)];
+    samples.value[at(k)] = values.value[at(psi)];
   }
   return samples;
 }
@@ -201,7 +202,7 @@ std::optional<SharedFunction> SharingIndex::find(const Tape& tape, int psi,
   }
   std::sort(candidates.begin(), candidates.end());  // the first-met one wins
   for (const int candidate : candidates) {
-    const Samples& known = known_[static_cast<std::size_t>(candidate)];
+    const Samples& known = known_[at(candidate)];
     const SharedFunction found{known.function, same(known, asked)};
     if (found.orientation != 0 && accepts(found)) return found;
   }

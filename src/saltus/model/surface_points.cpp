@@ -2,13 +2,14 @@
 #include <array>
 #include <cmath>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/sharing_internal.hpp"
 #include "saltus/model/surface_points_internal.hpp"
 
 namespace saltus::model {
 namespace {
 
-double entry(const std::vector<double>& values, int index) { return values[static_cast<std::size_t>(index)]; }
+double entry(const std::vector<double>& values, int index) { return values[at(index)]; }
 
 }  // namespace
 
@@ -17,7 +18,7 @@ std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots) 
   for (const int node : tape.cone(roots, Links::through_alpha)) {
     const int variable = tape[node].variable;
     if (variable < 0 || tape[node].psi >= 0) continue;
-    const VariableKind kind = tape.variables()[static_cast<std::size_t>(variable)].kind;
+    const VariableKind kind = tape.variables()[at(variable)].kind;
     if (kind != VariableKind::parameter && kind != VariableKind::cell) found.push_back(variable);
   }
   return found;
@@ -58,7 +59,7 @@ Projection::Projection(const Tape& tape, int psi)
 
 void Projection::note_sizes(const Point& point, std::vector<double>& scale) const {
   for (const int variable : variables_) {
-    double& size = scale[static_cast<std::size_t>(variable)];
+    double& size = scale[saltus::at(variable)];
     size = std::max(size, std::abs(entry(point, variable)));
   }
 }
@@ -96,7 +97,7 @@ bool Projection::step(double level, Point& point, std::vector<double>& scale) {
   const double factor = (entry(values_.value, psi_) - level) / weighted;
   for (const int variable : variables_) {
     const double size = entry(scale, variable);
-    point[static_cast<std::size_t>(variable)] -= factor * entry(slope, variable) * size * size;
+    point[saltus::at(variable)] -= factor * entry(slope, variable) * size * size;
   }
   note_sizes(point, scale);
   return true;
@@ -154,7 +155,7 @@ bool move_to_sides(const Tape& tape, Projection& held, const Selections& sides, 
       continue;
     }
     for (const auto& [alpha, side] : sides) {
-      if (discrete.contains(alpha)) point[static_cast<std::size_t>(tape[alpha].variable)] = side;
+      if (discrete.contains(alpha)) point[at(tape[alpha].variable)] = side;
     }
     return true;
   }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/sharing_internal.hpp"
 #include "saltus/model/surfaces_internal.hpp"
 
@@ -19,7 +20,7 @@ constexpr std::size_t corner_points = 16;
 /// friction beside strong springs, ten times smaller would come near the accuracy of the points.
 constexpr double jump_tolerance = 1e-9;
 
-double entry(const std::vector<double>& values, int index) { return values[static_cast<std::size_t>(index)]; }
+double entry(const std::vector<double>& values, int index) { return values[at(index)]; }
 
 /// Three values of a target: for alpha_j = 0, 1/2 and 1.
 using Triple = std::array<double, 3>;
@@ -77,7 +78,7 @@ class Profiler {
     evaluate(tape_, cone_, point, values_);
     for (const int node : cone_) {
       if (tape_[node].psi < 0 || node == surface_.alpha) continue;
-      point[static_cast<std::size_t>(tape_[node].variable)] = entry(values_.value, node) > 0.5 ? 1.0 : 0.0;
+      point[saltus::at(tape_[node].variable)] = entry(values_.value, node) > 0.5 ? 1.0 : 0.0;
     }
   }
 
@@ -160,7 +161,7 @@ class CornerSearch {
   }
 
  private:
-  double& at(Point& point, int alpha) const { return point[static_cast<std::size_t>(tape_[alpha].variable)]; }
+  double& at(Point& point, int alpha) const { return point[saltus::at(tape_[alpha].variable)]; }
 
   /// |difference|, 0 where it is no more than rounding.
   double value(Point& point, Difference difference) {

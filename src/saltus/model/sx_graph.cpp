@@ -1,5 +1,6 @@
 #include <optional>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/model/sx_graph_internal.hpp"
 
@@ -198,7 +199,7 @@ SXElem SxGraph::polynomial(const TruthDiagram& diagram, Truth truth, const std::
   }
   for (const auto& [current, unused] : below) {
     const auto& [literal, low, high] = diagram[current];
-    const SXElem& alpha = literals[static_cast<std::size_t>(literal)];
+    const SXElem& alpha = literals[at(literal)];
     values.emplace(current, alpha * values.at(high) + (1.0 - alpha) * values.at(low));
   }
   return values.at(truth);

@@ -11,6 +11,7 @@
 #include <casadi/core/sx.hpp>
 #include <casadi/core/sx_elem.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/error.hpp"
 #include "saltus/model/tape_internal.hpp"
 #include "saltus/model/truth_internal.hpp"
@@ -49,7 +50,7 @@ class SxGraph {
 
   /// A node's number for an expression that was made here.
   [[nodiscard]] int node(const SXElem& expression);
-  [[nodiscard]] const SXElem& expression(int node) const { return expressions_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] const SXElem& expression(int node) const { return expressions_[at(node)]; }
 
   /// The expression with some alphas (by node) fixed.
   [[nodiscard]] SXElem with_alphas(int node, const std::map<int, double>& fixed);

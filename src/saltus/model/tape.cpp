@@ -8,6 +8,7 @@
 // Needs names that only the header above brings.
 #include <casadi/core/calculus.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/model/finite_operations.hpp"
 #include "saltus/model/tape_internal.hpp"
@@ -47,13 +48,11 @@ bool same_operation(const TapeNode& a, const TapeNode& b) {
          std::bit_cast<std::uint64_t>(a.constant) == std::bit_cast<std::uint64_t>(b.constant);
 }
 
-double operand(const TapeValues& values, int node) {
-  return node < 0 ? 0.0 : values.value[static_cast<std::size_t>(node)];
-}
+double operand(const TapeValues& values, int node) { return node < 0 ? 0.0 : values.value[at(node)]; }
 
 double leaf_value(const TapeNode& node, const Point& point, const TapeValues& values) {
   if (node.variable < 0) return node.constant;
-  const double given = point[static_cast<std::size_t>(node.variable)];
+  const double given = point[at(node.variable)];
   return node.psi >= 0 && std::isnan(given) ? step_value(operand(values, node.psi)) : given;
 }
 
@@ -64,7 +63,7 @@ bool is_leaf(const TapeNode& node) {
 /// The constant of a cell that the point holds; NaN where it is to be looked up.
 double held_constant(const TapeNode& node, const Point& point) {
   if (node.operation != cell_operation) return std::numeric_limits<double>::quiet_NaN();
-  return point[static_cast<std::size_t>(node.variable)];
+  return point[at(node.variable)];
 }
 
 /// |d| b. A derivative that does not exist (of a negative base with respect to the exponent) has no share.
@@ -139,8 +138,8 @@ int Tape::cell(int argument, const std::shared_ptr<const CellTable>& table, int 
 double Tape::operate(const TapeNode& node, double left, double right) const {
   if (node.operation == cell_operation) {
     if (std::isnan(left)) return left;
-    const auto& variable = variables_[static_cast<std::size_t>(node.variable)];
-    const auto& [table, column] = cells_[static_cast<std::size_t>(variable.index)];
+    const auto& variable = variables_[at(node.variable)];
+    const auto& [table, column] = cells_[at(variable.index)];
     return table->constant(table->cell(left), column);
   }
   double value = 0.0;
@@ -207,7 +206,7 @@ void evaluate(const Tape& tape, std::span<const int> cone, const Point& point, T
   values.value.resize(static_cast<std::size_t>(tape.size()));
   for (const int current : cone) {
     const TapeNode& node = tape[current];
-    double& value = values.value[static_cast<std::size_t>(current)];
+    double& value = values.value[at(current)];
     if (is_leaf(node)) {
       value = leaf_value(node, point, values);
     } else if (const double held = held_constant(node, point); !std::isnan(held)) {
@@ -224,13 +223,13 @@ void evaluate_with_bounds(const Tape& tape, std::span<const int> cone, const Poi
   values.bound.resize(static_cast<std::size_t>(tape.size()));
   for (const int current : cone) {
     const TapeNode& node = tape[current];
-    double& value = values.value[static_cast<std::size_t>(current)];
-    double& bound = values.bound[static_cast<std::size_t>(current)];
+    double& value = values.value[at(current)];
+    double& bound = values.bound[at(current)];
     if (is_leaf(node)) {
       value = leaf_value(node, point, values);
       const bool moves = node.variable >= 0 && !scale.empty() && node.psi < 0;
       bound = node.psi < 0 ? local * std::abs(value) : 0.0;
-      if (moves) bound += scale[static_cast<std::size_t>(node.variable)];
+      if (moves) bound += scale[at(node.variable)];
       continue;
     }
     if (node.operation == cell_operation) {
@@ -242,8 +241,8 @@ void evaluate_with_bounds(const Tape& tape, std::span<const int> cone, const Poi
     double derivative[2] = {0.0, 0.0};
     casadi::casadi_math<double>::derF(static_cast<unsigned char>(node.operation), operand(values, node.left),
                                       operand(values, node.right), value, derivative);
-    bound = share(derivative[0], values.bound[static_cast<std::size_t>(node.left)]) + local * std::abs(value);
-    if (node.right >= 0) bound += share(derivative[1], values.bound[static_cast<std::size_t>(node.right)]);
+    bound = share(derivative[0], values.bound[at(node.left)]) + local * std::abs(value);
+    if (node.right >= 0) bound += share(derivative[1], values.bound[at(node.right)]);
   }
 }
 
@@ -255,15 +254,14 @@ std::vector<double> gradient(const Tape& tape, const TapeValues& values, int roo
     const TapeNode& node = tape[*it];
     const double seed = adjoint[*it];
     if (is_leaf(node)) {
-      if (node.variable >= 0) result[static_cast<std::size_t>(node.variable)] = seed;
+      if (node.variable >= 0) result[at(node.variable)] = seed;
       continue;
     }
     if (node.operation == cell_operation) continue;  // constant where it has a derivative
     if (seed == 0.0) continue;                       // 0 times an infinite slope of a branch not taken must stay 0
     double derivative[2] = {0.0, 0.0};
     casadi::casadi_math<double>::der(static_cast<unsigned char>(node.operation), operand(values, node.left),
-                                     operand(values, node.right), values.value[static_cast<std::size_t>(*it)],
-                                     derivative);
+                                     operand(values, node.right), values.value[at(*it)], derivative);
     adjoint[node.left] += seed * derivative[0];
     if (node.right >= 0) adjoint[node.right] += seed * derivative[1];
   }

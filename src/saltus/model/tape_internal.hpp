@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/cells.hpp"
 
 namespace saltus::model {
@@ -71,12 +72,12 @@ class Tape {
   /// Constant number `column` of the cell of a table in which `argument` lies.
   int cell(int argument, const std::shared_ptr<const CellTable>& table, int column);
 
-  [[nodiscard]] const TapeNode& operator[](int node) const { return nodes_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] const TapeNode& operator[](int node) const { return nodes_[at(node)]; }
   [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
   /// The value of an operation for given operands; a constant of a cell by looking it up.
   [[nodiscard]] double operate(const TapeNode& node, double left, double right) const;
-  void set_value(int variable, double value) { variables_[static_cast<std::size_t>(variable)].value = value; }
+  void set_value(int variable, double value) { variables_[at(variable)].value = value; }
 
   /// All nodes the roots consist of, ascending (hence in order of evaluation). Negative roots are skipped.
   [[nodiscard]] std::vector<int> cone(std::span<const int> roots, Links links) const;

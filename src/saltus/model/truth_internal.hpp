@@ -7,6 +7,8 @@
 #include <tuple>
 #include <vector>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::model {
 
 /// A diagram node: the two terminals are 0 (false) and 1 (true).
@@ -32,7 +34,7 @@ class TruthDiagram {
   /// The table of a function of the literals: entry i has bit k of i as the value of literals[k]; literals ascending.
   Truth table(std::span<const int> literals, const std::vector<bool>& entries);
 
-  [[nodiscard]] const Node& operator[](Truth node) const { return nodes_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] const Node& operator[](Truth node) const { return nodes_[at(node)]; }
   [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
   /// More nodes than any condition a person writes: further operations give `false`, and the caller reports it.
   [[nodiscard]] bool overflowed() const { return size() >= node_limit; }

@@ -3,6 +3,7 @@
 #include <complex>
 #include <limits>
 
+#include "saltus/base/at.hpp"
 #include "saltus/ode/radau5_internal.hpp"
 #include "saltus/ode/radau5_tableau.hpp"
 #include "saltus/ode/step_checks_internal.hpp"
@@ -110,13 +111,13 @@ void Radau5::start_values(double h) {
   }
   const Eigen::Map<const Matrix> p(previous_.data(), n_, 3);
   for (Eigen::Index j = 0; j < 3; ++j) {
-    const double beyond = Tableau::c[static_cast<std::size_t>(j)] * (h / previous_h_);
+    const double beyond = Tableau::c[at(j)] * (h / previous_h_);
     // The nested form from its end: x(t + h) - r (p1 - s (p2 + s p3)).
     const double s = 1.0 + beyond;
     z_.col(j) = beyond * (p.col(0) - s * (p.col(1) + s * p.col(2)));
   }
   for (Eigen::Index j = 0; j < 3; ++j) {
-    const auto& row = Tableau::t_inverse[static_cast<std::size_t>(j)];
+    const auto& row = Tableau::t_inverse[at(j)];
     w_.col(j) = row[0] * z_.col(0) + row[1] * z_.col(1) + row[2] * z_.col(2);
   }
 }
@@ -159,7 +160,7 @@ Radau5::Outcome Radau5::iterate(const RadauTrial& trial) {
 bool Radau5::stage_slopes(const RadauTrial& trial) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     argument_ = start_ + z_.col(j);
-    const double t = trial.t + Tableau::c[static_cast<std::size_t>(j)] * trial.h;
+    const double t = trial.t + Tableau::c[at(j)] * trial.h;
     if (!evaluate(trial, t, argument_, slopes_.col(j).data())) return false;
   }
   return true;
@@ -189,7 +190,7 @@ double Radau5::correct(const RadauTrial& trial) {
     double change = 0.0;
     double size = std::abs(start_[i]) + floor;
     for (Eigen::Index j = 0; j < 3; ++j) {
-      const auto& row = t[static_cast<std::size_t>(j)];
+      const auto& row = t[at(j)];
       const double dz = row[0] * w[0] + row[1] * w[1] + row[2] * w[2];
       w_(i, j) += w[j];
       z_(i, j) += dz;

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/bernstein.hpp"
 #include "saltus/ode/only_zero_internal.hpp"
@@ -212,8 +213,6 @@ class Quotient {
   }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
   Coefficients<nodes> b_;
   int degree_;
 };

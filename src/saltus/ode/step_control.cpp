@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::ode {
@@ -35,8 +36,6 @@ Gains gains(Method method) {
 
 /// Power of h in the error norm, about: what the exponents above are made for.
 int error_order(Method method) { return method == Method::radau5 ? 4 : order(method) + 1; }
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double safety = 0.9;
 // An error far below the tolerance says nothing about the next step: it counts as this much.

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 
 namespace saltus::pipeline {
@@ -99,14 +100,14 @@ Expected<void> set_choice(SimulateOptions& options, std::string_view, const Opti
     if (!nearest_names(*word, known).empty()) error.remedy = suggest(*word, known);
     return tl::unexpected(std::move(error));
   }
-  access(options) = choices.values[static_cast<std::size_t>(found - known.begin())];
+  access(options) = choices.values[at(found - known.begin())];
   return {};
 }
 
 template <auto access, const auto& choices>
 void record_choice(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
   const auto* position = std::find(choices.values.begin(), choices.values.end(), access(options));
-  record.emplace_back(key, std::string(choices.names[static_cast<std::size_t>(position - choices.values.begin())]));
+  record.emplace_back(key, std::string(choices.names[at(position - choices.values.begin())]));
 }
 
 /// [simulate.fesd] and [simulate.timestepping].

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
@@ -76,7 +77,7 @@ std::optional<int> find_region(const model::System& system, const std::string& n
   std::optional<int> found;
   for (const auto& group : system.mode_groups) {
     for (int i = 0; group.first >= 0 && i < group.regions; ++i) {
-      const auto& mode = group.mode_names[static_cast<std::size_t>(i)];
+      const auto& mode = group.mode_names[at(i)];
       if (name != mode && name != group.name + "." + mode) continue;
       if (found) return std::nullopt;
       found = group.first + i;
@@ -121,7 +122,7 @@ Expected<std::vector<double>> surface_scaling(const model::System& system, const
   for (const auto& [name, kappa] : options.event.scaling) {
     const auto found = find_column(system, "event.scaling", name);
     if (!found) return tl::unexpected(found.error());
-    scaling[static_cast<std::size_t>(found->function)] = kappa;
+    scaling[at(found->function)] = kappa;
   }
   return scaling;
 }

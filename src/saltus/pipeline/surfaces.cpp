@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/surface_functions.hpp"
 #include "saltus/pipeline/level_curves.hpp"
 
@@ -125,7 +126,7 @@ std::vector<result::Surface> surfaces(const model::System& system, const result:
     surface.name = function.name;
     surface.role = role_of(function.owner);
     surface.depends_on_time = function.depends_on_time;
-    for (const int state : function.states) surface.states.push_back(result.states[static_cast<std::size_t>(state)]);
+    for (const int state : function.states) surface.states.push_back(result.states[at(state)]);
     if (function.affine) {
       surface.affine = form_of(*function.affine);
       for (const auto& form : function.within) surface.within.push_back(form_of(form));

@@ -8,13 +8,12 @@
 
 #include <casadi/core/function.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/reformulation/groups_internal.hpp"
 
 namespace saltus::reformulation {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Numbers selections: surfaces first, then the simplexes of indicators as one each.
 class SelectionNumbers {

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::reformulation {
@@ -33,7 +34,7 @@ Lifting lift(const Eigen::MatrixXi& signs, int most_factors) {
   for (int j = 0; j < static_cast<int>(signs.cols()); ++j) {
     std::map<std::vector<std::pair<int, bool>>, int> known;
     for (Eigen::Index i = 0; i < signs.rows(); ++i) {
-      LiftedProduct& product = lifting.theta[static_cast<std::size_t>(i)];
+      LiftedProduct& product = lifting.theta[at(i)];
       if (signs(i, j) != 0) product.factors.push_back({j, signs(i, j) < 0});
       const std::size_t size = product.factors.size() + (product.beta >= 0 ? 1 : 0);
       if (j + 1 < most_factors || size < 2 || j >= last_nonzero(signs, i)) continue;

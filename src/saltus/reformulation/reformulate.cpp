@@ -1,13 +1,12 @@
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/reformulation/forms_internal.hpp"
 #include "saltus/reformulation/surface_roots_internal.hpp"
 
 namespace saltus::reformulation {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Error no_jumps() {
   return {ErrorCode::not_available, "finite elements do not cover models with [[jumps]]", "use --method event", {}, {}};

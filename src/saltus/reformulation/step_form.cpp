@@ -1,13 +1,12 @@
 // (22) of [nurkanovic2024], with the multipliers of the regions eliminated or as short products of lifted variables.
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/reformulation/forms_internal.hpp"
 #include "saltus/reformulation/lifting.hpp"
 
 namespace saltus::reformulation {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Whether the fields at alpha in {0, 1} say everything about f.
 bool is_interpolated(const model::System& system) {

@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/reformulation/forms_internal.hpp"
 
 namespace saltus::reformulation {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Error refusal(std::string message) {
   return {ErrorCode::not_available, std::move(message), "use reformulation = \"step\"", {}, {}};

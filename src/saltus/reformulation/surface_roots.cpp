@@ -6,6 +6,7 @@
 #include <casadi/core/function.hpp>
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/reformulation/same_surface_internal.hpp"
 #include "saltus/reformulation/surface_roots_internal.hpp"
 
@@ -114,7 +115,7 @@ std::optional<SXElem> RootSearch::on_sides(const SXElem& base, double exponent, 
   }
   if (surfaces.empty()) return power_of(base, exponent, borders);
   if (surfaces.size() > 1) return std::nullopt;
-  const SXElem& alpha = unnested_.surface_symbols[static_cast<std::size_t>(surfaces.front())];
+  const SXElem& alpha = unnested_.surface_symbols[at(surfaces.front())];
   SXElem sum = 0.0;
   for (const double side : {1.0, 0.0}) {
     Replacement fixed;

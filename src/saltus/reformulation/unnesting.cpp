@@ -7,6 +7,7 @@
 #include <casadi/core/function.hpp>
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/reformulation/same_surface_internal.hpp"
 #include "saltus/reformulation/unnesting_internal.hpp"
@@ -22,8 +23,6 @@ using model::System;
 /// As in the checks of a model.
 constexpr int branch_limit = 64;
 constexpr casadi_int compared_depth = 8;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// What is decided: 1 or 0 for a switching function, the number of its cell for a cell.
 using Sides = std::map<int, int>;

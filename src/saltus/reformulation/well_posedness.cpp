@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <casadi/core/function.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/reformulation/expressions_internal.hpp"
 
 namespace saltus::reformulation {
@@ -18,8 +19,6 @@ using casadi::DM;
 constexpr double rank_tolerance = 1e-8;
 /// A surface is met by a solution that slides where its psi is 0 to the accuracy of the states.
 constexpr double zero_tolerance = 1e-6;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Eigen::MatrixXd matrix(const DM& values) {
   const DM dense = DM::densify(values);
@@ -134,12 +133,12 @@ Eigen::MatrixXd system_of(const Unknowns& unknowns, const Eigen::MatrixXd& indic
   Eigen::MatrixXd gradients(n, indicator_x.cols()), fields(f_selection.rows(), n);
   Eigen::VectorXd longest_gradient = Eigen::VectorXd::Zero(n + unknowns.simplexes), longest_field = longest_gradient;
   const auto block = [&](Eigen::Index i) {
-    const int simplex = unknowns.simplex_of[static_cast<std::size_t>(i)];
+    const int simplex = unknowns.simplex_of[at(i)];
     return simplex < 0 ? i : n + simplex;
   };
   for (Eigen::Index i = 0; i < n; ++i) {
-    gradients.row(i) = indicator_x.row(unknowns.selections[static_cast<std::size_t>(i)]);
-    fields.col(i) = f_selection.col(unknowns.selections[static_cast<std::size_t>(i)]);
+    gradients.row(i) = indicator_x.row(unknowns.selections[at(i)]);
+    fields.col(i) = f_selection.col(unknowns.selections[at(i)]);
     longest_gradient(block(i)) = std::max(longest_gradient(block(i)), gradients.row(i).norm());
     longest_field(block(i)) = std::max(longest_field(block(i)), fields.col(i).norm());
   }

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::smoothed {
 namespace {
 
@@ -17,8 +19,6 @@ using model::SwitchingRole;
 using model::System;
 
 constexpr std::size_t most_inner = 6;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// 0 or 1 per inner surface: bit k of a number.
 int bit(std::size_t number, std::size_t k) { return static_cast<int>(number >> k & 1U); }

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::smoothed {
 namespace {
 
@@ -45,7 +47,7 @@ Mode modes_of(const Regularisation& regularisation, const Mode& edges) {
   }
   Mode modes;
   for (const auto& column : regularisation.columns) {
-    modes.push_back(column.orientation * layers[static_cast<std::size_t>(column.function)]);
+    modes.push_back(column.orientation * layers[at(column.function)]);
   }
   return modes;
 }
@@ -100,7 +102,7 @@ std::vector<double> weights_from(std::vector<double>& outputs, const Regularisat
 void take_from_rows(Event& event, const result::Trajectory& rows) {
   const auto [first, last] = std::equal_range(rows.t.begin(), rows.t.end(), event.t);
   if (first == last) return;
-  event.alpha_before = rows.alpha[static_cast<std::size_t>(first - rows.t.begin())];
+  event.alpha_before = rows.alpha[at(first - rows.t.begin())];
   event.alpha_after = rows.alpha[static_cast<std::size_t>(last - rows.t.begin()) - 1];
 }
 

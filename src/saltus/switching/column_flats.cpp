@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::switching {
 namespace {
 
@@ -29,7 +31,7 @@ struct Rest {
     for (int pass = 0; pass < 2; ++pass) columns -= direction * (direction.transpose() * columns);
     note_members();
   }
-  [[nodiscard]] bool has(Index i) const { return members[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] bool has(Index i) const { return members[at(i)]; }
 
  private:
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(columns.cols()); }
@@ -51,7 +53,7 @@ std::vector<Index> first_basis(const MatrixXd& unit_columns, const Members& memb
   Rest rest(unit_columns);
   std::vector<Index> basis;
   for (Index i = 0; i < unit_columns.cols() && static_cast<Index>(basis.size()) < rank; ++i) {
-    if (!members[static_cast<std::size_t>(i)] || rest.has(i)) continue;
+    if (!members[at(i)] || rest.has(i)) continue;
     rest.take(i);
     basis.push_back(i);
   }
@@ -80,7 +82,7 @@ std::optional<std::vector<std::vector<Index>>> column_hyperplanes(const MatrixXd
       const Rest rest = rest_of(unit, flat.basis);
       Members reached = flat.members;
       for (Index i = 0; i < unit.cols(); ++i) {
-        if (reached[static_cast<std::size_t>(i)]) continue;
+        if (reached[at(i)]) continue;
         direction = rest.columns.col(i).normalized();
         Members members = flat.members;
         // Those that an earlier column reached are with that one.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::switching {
@@ -109,7 +110,7 @@ std::optional<SurfaceSituation> own_situation(const CornerTable& table, const Re
     if (known && !same_side(*known, side, scale)) return std::nullopt;
     known = side;
   }
-  return SurfaceSituation{*below, *above, table.arrival[static_cast<std::size_t>(surface)]};
+  return SurfaceSituation{*below, *above, table.arrival[at(surface)]};
 }
 
 /// Decides surface j from the table as restricted so far, if one of the two rules applies.
@@ -152,7 +153,7 @@ GroupDecision decide_group(const CornerTable& table) {
         decision.culprit = j;
       }
       if (result->verdict == Verdict::two_fold || result->verdict == Verdict::coupled) return decision;
-      decision.surfaces[static_cast<std::size_t>(j)] = *result;
+      decision.surfaces[at(j)] = *result;
       decided.push_back(j);
     }
     if (decided.empty()) {
@@ -161,7 +162,7 @@ GroupDecision decide_group(const CornerTable& table) {
       return decision;
     }
     for (const int j : decided) {
-      restricted.fix(j, decision.surfaces[static_cast<std::size_t>(j)].alpha);
+      restricted.fix(j, decision.surfaces[at(j)].alpha);
       std::erase(open, j);
     }
   }
@@ -191,7 +192,7 @@ std::vector<std::vector<int>> parts_by_influence(const CornerTable& table) {
   // Who feels fewer comes first; those of one part feel the same.
   std::vector<int> order(m);
   std::iota(order.begin(), order.end(), 0);
-  const auto felt = [&](int i) { return feels[static_cast<std::size_t>(i)]; };
+  const auto felt = [&](int i) { return feels[at(i)]; };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     const int fewer = std::popcount(felt(a)), more = std::popcount(felt(b));
     return fewer != more ? fewer < more : felt(a) < felt(b);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/switching/hidden_face_internal.hpp"
 #include "saltus/switching/matrix_stability.hpp"
@@ -14,8 +15,6 @@
 
 namespace saltus::switching {
 namespace {
-
-std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
 /// Half the width of the smallest boxes: nearer roots may be missed, or taken for one.
 constexpr double smallest = 0x1p-6;

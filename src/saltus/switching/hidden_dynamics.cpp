@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/switching/hidden_face_internal.hpp"
 #include "saltus/switching/hidden_trajectory_internal.hpp"
@@ -16,8 +17,6 @@ namespace {
 
 /// Relative size below which a difference of projected fields counts as rounding.
 constexpr double rounding = 1e-12;
-
-std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
 /// A point without special position: differences of a multi-affine function there vanish only if it does not depend on
 /// the selection.

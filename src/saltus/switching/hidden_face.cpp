@@ -1,15 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/hidden_face_internal.hpp"
 
 namespace saltus::switching {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 HiddenFace::HiddenFace(int surfaces, ProjectedField g, Interpolation interpolation)
     : surfaces_(surfaces),
       g_(g),

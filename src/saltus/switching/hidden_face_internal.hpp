@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/multi_affine.hpp"
 #include "saltus/switching/projected_field.hpp"
 
@@ -28,7 +29,7 @@ class HiddenFace {
   [[nodiscard]] const std::vector<int>& free() const { return free_; }
   /// The velocities at the corners of the zone where two selections vary and g is multi-affine in them; else none.
   [[nodiscard]] const MultiAffine* pair() const { return tabulated_ && free_.size() == 2 ? &face_ : nullptr; }
-  [[nodiscard]] double speed(int j) const { return speed_[static_cast<std::size_t>(j)]; }  ///< max |v_j| at corners
+  [[nodiscard]] double speed(int j) const { return speed_[at(j)]; }  ///< max |v_j| at corners
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
  private:

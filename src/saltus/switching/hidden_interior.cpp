@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "saltus/base/at.hpp"
 #include "saltus/ode/bernstein.hpp"
 #include "saltus/ode/step_control.hpp"
 #include "saltus/switching/hidden_trajectory_internal.hpp"
@@ -22,8 +23,6 @@ constexpr double longest_step = 30.0;
 
 /// Steps by series in a zone without an event.
 constexpr int most_series = 64;
-
-std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
 }  // namespace
 

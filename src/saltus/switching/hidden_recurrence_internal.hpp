@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::switching {
 
 /// What the trajectory was doing between two passages of one section, in the same zones and direction.
@@ -35,7 +37,7 @@ class Recurrence {
 
   /// Accumulates the time integral of the selections.
   void add_time(double t) { time_ += t; }
-  void add_selection(int j, double integral) { integral_[static_cast<std::size_t>(j)] += integral; }
+  void add_selection(int j, double integral) { integral_[at(j)] += integral; }
   /// Notes that a zone is visited: its free components vary; `closed_form` if it is solved exactly.
   void visit(const std::vector<int>& zone, bool closed_form);
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/hidden_trajectory_internal.hpp"
 
 namespace saltus::switching {
@@ -14,8 +15,6 @@ namespace {
 constexpr double rounding = 1e-13;
 /// Of selections: nearer to its bound a root is on it.
 constexpr double edge = 1e-12;
-
-std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
 }  // namespace
 

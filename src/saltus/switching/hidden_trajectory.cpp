@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "saltus/base/at.hpp"
 #include "saltus/ode/bernstein.hpp"
 #include "saltus/switching/hidden_strip_internal.hpp"
 #include "saltus/switching/hidden_trajectory_internal.hpp"
@@ -14,8 +15,6 @@ namespace {
 constexpr double vanishing = 1e-12;
 /// Unstable states of rest one after the other; more are a continuum of them.
 constexpr int most_nudges = 20;
-
-std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
 }  // namespace
 

@@ -8,12 +8,12 @@
 #include <limits>
 #include <utility>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::switching {
 namespace {
 
 constexpr int exhaustive = 10;  ///< 2^10 minors of at most 10 x 10: about 0.1 ms
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Determinant of the n x n matrix a, which is overwritten.
 double determinant_of(double* a, int n, int stride) {

@@ -5,12 +5,11 @@
 #include <limits>
 #include <tuple>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/matrix_stability.hpp"
 
 namespace saltus::switching {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// d psi' / du of the hidden dynamics u_i = psi_i / eps, psi_i = g_r - g_i, i in I but its first, r: G (diag theta -
 /// theta theta^T).

@@ -8,6 +8,7 @@
 
 #include <Eigen/LU>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::switching {
@@ -27,7 +28,7 @@ SmallVector normal_through(const Eigen::MatrixXd& points, const std::vector<int>
   if (m == 1) return SmallVector::Ones(1);
   Small edges(m - 1, m);
   for (Eigen::Index k = 1; k < m; ++k) {
-    edges.row(k - 1) = points.row(through[static_cast<std::size_t>(k)]) - points.row(through[0]);
+    edges.row(k - 1) = points.row(through[at(k)]) - points.row(through[0]);
     const double length = edges.row(k - 1).norm();
     if (length == 0.0) return {};
     edges.row(k - 1) /= length;
@@ -71,7 +72,7 @@ bool RegionPolytope::find_facets() {
   do {
     std::vector<int> through;
     for (int i = 0; i < n; ++i) {
-      if (chosen[static_cast<std::size_t>(i)]) through.push_back(i);
+      if (chosen[at(i)]) through.push_back(i);
     }
     const SmallVector normal = normal_through(points_, through);
     if (normal.size() == 0) continue;

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/matrix_stability.hpp"
 
 namespace saltus::switching {
@@ -15,8 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 double largest(const std::vector<double>& values) {
   double size = 0.0;

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/column_flats.hpp"
 
 namespace saltus::switching {
@@ -27,7 +28,7 @@ bool normal_to(const MatrixXd& effects, const std::vector<Index>& columns, Vecto
   }
   MatrixXd chosen(r, static_cast<Index>(columns.size()));
   for (Index k = 0; k < chosen.cols(); ++k) {
-    const auto column = effects.col(columns[static_cast<std::size_t>(k)]);
+    const auto column = effects.col(columns[at(k)]);
     const double size = column.norm();
     if (size == 0.0) return false;
     chosen.col(k) = column / size;
@@ -102,7 +103,7 @@ SelectionRange::Span SelectionRange::span(std::size_t index, const VectorXd& con
   span.min = span.max = facets.normal.dot(constant);
   span.terms = facets.normal.cwiseAbs().dot(constant.cwiseAbs());
   for (Index i = 0; i < effects_.cols(); ++i) {
-    const auto sign = facets.sign[static_cast<std::size_t>(i)];
+    const auto sign = facets.sign[at(i)];
     if (sign == 0) continue;
     const double part = facets.normal.dot(effects_.col(i));
     (sign > 0 ? span.max : span.min) += part;

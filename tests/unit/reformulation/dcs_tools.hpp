@@ -8,6 +8,7 @@
 
 #include <casadi/core/function.hpp>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/builder.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
@@ -15,8 +16,6 @@ namespace saltus::reformulation {
 
 inline constexpr ReformulationOptions as_step{.reformulation = Form::step, .lifting = std::nullopt};
 inline constexpr ReformulationOptions as_stewart{.reformulation = Form::stewart};
-
-inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 inline model::System built(model::Builder& builder) {
   auto system = builder.build();

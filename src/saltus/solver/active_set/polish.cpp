@@ -7,6 +7,8 @@
 
 #include <Eigen/QR>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::solver::active_set {
 namespace {
 
@@ -40,7 +42,7 @@ std::vector<ActiveSide> smaller_sides(mpcc::Problem& problem, const Eigen::Vecto
   Eigen::VectorXd c(problem.rows());
   problem.functions(w, c);
   for (int i = 0; i < problem.pairs(); ++i) {
-    auto& side = sides[static_cast<std::size_t>(i)];
+    auto& side = sides[at(i)];
     const double G = std::abs(c[problem.constraints() + i]);
     const double H = std::abs(c[problem.constraints() + problem.pairs() + i]);
     if (side != ActiveSide::biactive) continue;
@@ -78,9 +80,9 @@ ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, cons
       role[r] = rows.lower[row] == rows.upper[row] ? Role::own : Role::none;
     } else {
       const int side = row - n_g;
-      const ActiveSide zero = sides[static_cast<std::size_t>(side % pairs)];
+      const ActiveSide zero = sides[at(side % pairs)];
       const bool is_zero = zero == ActiveSide::biactive || zero == (side < pairs ? ActiveSide::G : ActiveSide::H);
-      const bool implied = problem.signs()[static_cast<std::size_t>(side)] == mpcc::Sign::implied;
+      const bool implied = problem.signs()[at(side)] == mpcc::Sign::implied;
       if (is_zero) role[r] = implied ? Role::by_bounds : Role::own;
     }
     if (role[r] != Role::own) continue;
@@ -91,15 +93,15 @@ ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, cons
   std::vector<int> fixed(static_cast<std::size_t>(problem.variables()), 0);  // -1, 1: at its lower, upper bound
   for (std::size_t e = 0; e < pattern.row.size(); ++e) {
     const double slope = entries[static_cast<Eigen::Index>(e)];
-    if (role[static_cast<std::size_t>(pattern.row[e])] != Role::by_bounds || std::abs(slope) <= negligible) continue;
-    fixed[static_cast<std::size_t>(pattern.column[e])] = slope > 0.0 ? -1 : 1;
+    if (role[at(pattern.row[e])] != Role::by_bounds || std::abs(slope) <= negligible) continue;
+    fixed[at(pattern.column[e])] = slope > 0.0 ? -1 : 1;
   }
   std::vector<int> fixed_variables;
   for (int i = 0; i < problem.variables(); ++i) {
     const bool is_constant = box.lower[i] == box.upper[i];
-    const int at = is_constant ? -1 : fixed[static_cast<std::size_t>(i)];
-    const double bound = at < 0 ? box.lower[i] : box.upper[i];
-    if (at == 0 || !std::isfinite(bound)) continue;
+    const int side = is_constant ? -1 : fixed[at(i)];
+    const double bound = side < 0 ? box.lower[i] : box.upper[i];
+    if (side == 0 || !std::isfinite(bound)) continue;
     fixed_variables.push_back(i);
     residual.push_back(w[i] - bound);
   }
@@ -107,7 +109,7 @@ ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, cons
   ActiveSystem system{Eigen::Map<Eigen::VectorXd>(residual.data(), equations),
                       Eigen::MatrixXd::Zero(equations, problem.variables())};
   for (std::size_t e = 0; e < pattern.row.size(); ++e) {
-    const int row = place[static_cast<std::size_t>(pattern.row[e])];
+    const int row = place[at(pattern.row[e])];
     if (row >= 0) system.jacobian(row, pattern.column[e]) += entries[static_cast<Eigen::Index>(e)];
   }
   Eigen::Index row = equations - static_cast<Eigen::Index>(fixed_variables.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::solver::homotopy {
@@ -56,19 +57,19 @@ void RelaxedProblem::find_jacobian_pattern() {
     const auto e = static_cast<std::size_t>(entry);
     const int row = pattern.row[e];
     const int side = row - n_g;
-    const int own_row = side < 0 ? row : sign_row_[static_cast<std::size_t>(side)];
+    const int own_row = side < 0 ? row : sign_row_[at(side)];
     if (own_row >= 0) {
       copied_entries_.push_back(entry);
       jacobian_pattern_.add(own_row, pattern.column[e]);
     }
     if (side < 0) continue;
     const bool is_H = side >= pairs;
-    auto& entries = (is_H ? of_H : gradients_)[static_cast<std::size_t>(is_H ? side - pairs : side)];
+    auto& entries = (is_H ? of_H : gradients_)[at(is_H ? side - pairs : side)];
     entries.push_back({entry, pattern.column[e], is_H});
   }
   for (int pair = 0; pair < pairs; ++pair) {
-    auto& gradient = gradients_[static_cast<std::size_t>(pair)];
-    const auto& more = of_H[static_cast<std::size_t>(pair)];
+    auto& gradient = gradients_[at(pair)];
+    const auto& more = of_H[at(pair)];
     gradient.insert(gradient.end(), more.begin(), more.end());
     for (int which = 0; which < inequalities_; ++which) {
       for (const auto& side : gradient) jacobian_pattern_.add(pair_row(pair, which), side.column);
@@ -120,7 +121,7 @@ void RelaxedProblem::jacobian(ConstVectorView w, VectorView values) {
   for (int pair = 0; pair < problem_.pairs(); ++pair) {
     for (int which = 0; which < inequalities_; ++which) {
       const PairFunction phi = pair_at(pair, which);
-      for (const auto& side : gradients_[static_cast<std::size_t>(pair)]) {
+      for (const auto& side : gradients_[at(pair)]) {
         values[next++] = (side.is_H ? phi.b : phi.a) * jacobian_[side.entry];
       }
     }
@@ -148,9 +149,8 @@ void RelaxedProblem::hessian(ConstVectorView w, double objective_factor, ConstVe
       second[1] += multiplier * phi.ab;
       second[2] += multiplier * phi.bb;
     }
-    for (const auto& product : products_[static_cast<std::size_t>(pair)]) {
-      values[next++] = product.factor * second[static_cast<std::size_t>(product.sides)] * jacobian_[product.p] *
-                       jacobian_[product.q];
+    for (const auto& product : products_[at(pair)]) {
+      values[next++] = product.factor * second[at(product.sides)] * jacobian_[product.p] * jacobian_[product.q];
     }
   }
   problem_.hessian(w, objective_factor, y_, values.head(problem_.hessian_pattern().entries()));

@@ -1,0 +1,16 @@
+// Models and matrices count with signed numbers, containers with unsigned ones.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+
+namespace saltus {
+
+/// The place i >= 0 in a container, where i counts what the model or a matrix numbers: values[at(i)]. Neither checked nor
+/// needed for what is unsigned already.
+template <std::signed_integral Integer>
+[[nodiscard]] constexpr std::size_t at(Integer i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace saltus
