@@ -17,12 +17,12 @@ using result::EventKind;
 using result::Result;
 using result::Termination;
 
-struct Model {
+struct ScaledModel {
   std::string states, psi, dynamics, simulate;
 };
 
 /// Every switching function s1, s2, ... as `scale` times what `psi` lists (one a line).
-Result simulated(const Model& model, double scale, const Accuracy& accuracy) {
+std::string scaled_text(const ScaledModel& model, double scale) {
   std::string text = "[model]\nname = \"degenerate\"\n[states]\n" + model.states + "[switching]\n";
   int number = 0;
   for (std::size_t begin = 0; begin < model.psi.size();) {
@@ -30,15 +30,14 @@ Result simulated(const Model& model, double scale, const Accuracy& accuracy) {
     text += fmt::format("s{} = \"{}*({})\"\n", ++number, scale, model.psi.substr(begin, end - begin));
     begin = end + 1;
   }
-  const Simulator simulator =
-      Simulator::from_text(text + "[dynamics]\n" + model.dynamics + "[simulate]\n" + model.simulate);
-  return simulator.run(with(simulator.options(), accuracy));
+  return text + "[dynamics]\n" + model.dynamics + "[simulate]\n" + model.simulate;
 }
 
 template <class Check>
-void in_every_scale(const Model& model, const Check& check) {
+void in_every_scale(const ScaledModel& model, const Check& check) {
   for (const double scale : {1.0, 1e8, 1e-8}) {
-    for (const Accuracy& accuracy : {fine, standard, implicit}) check(simulated(model, scale, accuracy));
+    for (const Accuracy& accuracy : {fine, standard, implicit})
+      check(simulate_text(scaled_text(model, scale), accuracy));
   }
 }
 
@@ -48,8 +47,8 @@ void expect_completed(const Result& result) {
 
 // y' = (1, -2 t) below, towards y2 = 0 above: y2 = -t^2 touches the surface at t = 0 and returns.
 TEST(Degenerate, GrazingIsNoSwitch) {
-  const Model model{"y1 = -1\ny2 = -1\n", "y2\n", "y1 = \"1\"\ny2 = \"if(s1 > 0, -3, -2*t)\"\n",
-                    "from = -1\nuntil = 1\n"};
+  const ScaledModel model{"y1 = -1\ny2 = -1\n", "y2\n", "y1 = \"1\"\ny2 = \"if(s1 > 0, -3, -2*t)\"\n",
+                          "from = -1\nuntil = 1\n"};
   in_every_scale(model, [](const Result& result) {
     expect_completed(result);
     for (const Event& event : result.events) EXPECT_EQ(event.mode_after, (std::vector<int>{-1})) << event.t;
@@ -60,8 +59,8 @@ TEST(Degenerate, GrazingIsNoSwitch) {
 
 // The same with a shift of 1e-6 across the surface: |t| < 1e-3 is above it, where the field leads on.
 TEST(Degenerate, AShallowPassageIsTwoSwitches) {
-  const Model model{"y1 = -1\ny2 = -0.999999\n", "y2\n", "y1 = \"if(s1 > 0, 2, 1)\"\ny2 = \"-2*t\"\n",
-                    "from = -1\nuntil = 1\n"};
+  const ScaledModel model{"y1 = -1\ny2 = -0.999999\n", "y2\n", "y1 = \"if(s1 > 0, 2, 1)\"\ny2 = \"-2*t\"\n",
+                          "from = -1\nuntil = 1\n"};
   in_every_scale(model, [](const Result& result) {
     expect_completed(result);
     ASSERT_EQ(result.events.size(), 2U);
@@ -74,8 +73,8 @@ TEST(Degenerate, AShallowPassageIsTwoSwitches) {
 // Two surfaces at the same time are one event, 1e-9 apart they are two.
 TEST(Degenerate, SurfacesMetTogetherAreOneEvent) {
   for (const double apart : {0.0, 1e-9, 1e-6}) {
-    const Model model{"y1 = 0\ny2 = 0\ny3 = 0\n", fmt::format("y1 - 0.5\ny2 - 0.5 - {}\n", apart),
-                      "y1 = \"1\"\ny2 = \"1\"\ny3 = \"step(s1) + 2*step(s2)\"\n", "until = 1\n"};
+    const ScaledModel model{"y1 = 0\ny2 = 0\ny3 = 0\n", fmt::format("y1 - 0.5\ny2 - 0.5 - {}\n", apart),
+                            "y1 = \"1\"\ny2 = \"1\"\ny3 = \"step(s1) + 2*step(s2)\"\n", "until = 1\n"};
     in_every_scale(model, [apart](const Result& result) {
       expect_completed(result);
       ASSERT_EQ(result.events.size(), apart == 0.0 ? 1U : 2U);
@@ -123,7 +122,7 @@ TEST(Degenerate, ASelectionThatLeavesItsBoundFlatLeaves) {
 }
 
 /// Stick-slip on one belt, backwards in time, on the belt.
-Model stick_slip_reversed(const std::string& more) {
+ScaledModel stick_slip_reversed(const std::string& more) {
   return {"x1 = 0.5\nx2 = 0.2\n", "x2 - 0.2\n", "x1 = \"-x2\"\nx2 = \"x1 - if(s1 > 0, -1/(0.8 + x2), 1/(1.2 - x2))\"\n",
           "until = 7.6\n" + more};
 }
@@ -155,18 +154,19 @@ TEST(Degenerate, ForcedReversedSlidingEndsWhereItsFieldIsTangent) {
 TEST(Degenerate, TheRelayRunsBackwardsAlongItsSliding) {
   const auto relay = [](double sign, const std::string& states, const std::string& more) {
     // omega = 25, xi = 0.05.
-    return Model{states, "x1\n",
-                 fmt::format("x1 = \"{0}*(-3.5*x1 + x2 - sign(s1))\"\nx2 = \"{0}*(-627.5*x1 + x3 + 2*sign(s1))\"\n"
-                             "x3 = \"{0}*(-625*x1 - sign(s1))\"\n",
-                             sign),
-                 "until = 2.8\n" + more};
+    return ScaledModel{
+        states, "x1\n",
+        fmt::format("x1 = \"{0}*(-3.5*x1 + x2 - sign(s1))\"\nx2 = \"{0}*(-627.5*x1 + x3 + 2*sign(s1))\"\n"
+                    "x3 = \"{0}*(-625*x1 - sign(s1))\"\n",
+                    sign),
+        "until = 2.8\n" + more};
   };
   for (const Accuracy& accuracy : {fine, Accuracy{pipeline::Integrator::radau5, 1e-12, 1e-14}}) {
-    const Result forth = simulated(relay(1.0, "x1 = 0\nx2 = -0.001\nx3 = -0.02\n", ""), 1.0, accuracy);
+    const Result forth = simulate_text(scaled_text(relay(1.0, "x1 = 0\nx2 = -0.001\nx3 = -0.02\n", ""), 1.0), accuracy);
     expect_completed(forth);
     ASSERT_EQ(forth.final.mode, (std::vector<int>{0}));
     const std::string states = fmt::format("x1 = 0\nx2 = {:.17g}\nx3 = {:.17g}\n", forth.final.x[1], forth.final.x[2]);
-    const Result back = simulated(relay(-1.0, states, "initial_mode = { s1 = 0 }\n"), 1.0, accuracy);
+    const Result back = simulate_text(scaled_text(relay(-1.0, states, "initial_mode = { s1 = 0 }\n"), 1.0), accuracy);
     expect_completed(back);
     EXPECT_TRUE(switches_of(back).empty());
     EXPECT_EQ(back.final.x[0], 0.0);
@@ -177,7 +177,7 @@ TEST(Degenerate, TheRelayRunsBackwardsAlongItsSliding) {
 }
 
 /// Two belts, one behind the other, forwards (1) or backwards (-1) in time.
-Model two_belts(double sign, const std::vector<double>& x, const std::string& simulate) {
+ScaledModel belts(double sign, const std::vector<double>& x, const std::string& simulate) {
   return {fmt::format("x1 = {:.17g}\nx2 = {:.17g}\nx3 = {:.17g}\n", x[0], x[1], x[2]), "x2 - 0.2\nx3 - 0.4\n",
           fmt::format("x1 = \"{0}*((x2 + x3)/2 + x1*(x2 + 0.8)*(x3 + 0.6)*step(s1)*step(s2))\"\n"
                       "x2 = \"{0}*(-x1 + if(s1 > 0, -1/(0.8 + x2), 1/(1.2 - x2)))\"\n"
@@ -201,7 +201,7 @@ double dwell(double from, double to) {
 
 // Backwards both belts repel. Forced to stay on both the solution goes back along the sliding.
 TEST(Degenerate, BothBeltsReversedAreSlidOnBackwards) {
-  in_every_scale(two_belts(-1, {0.8, 0.2, 0.4}, "until = 4\ninitial_mode = { s1 = 0, s2 = 0 }\n"),
+  in_every_scale(belts(-1, {0.8, 0.2, 0.4}, "until = 4\ninitial_mode = { s1 = 0, s2 = 0 }\n"),
                  [](const Result& result) {
                    expect_completed(result);
                    EXPECT_TRUE(switches_of(result).empty());
@@ -217,7 +217,7 @@ TEST(Degenerate, BothBeltsReversedAreSlidOnBackwards) {
 
 // Not forced it leaves both; the other motions leave one of them, or both to other sides.
 TEST(Degenerate, BothBeltsReversedCanBeLeftAnywhere) {
-  in_every_scale(two_belts(-1, {0.8, 0.2, 0.4}, "until = 1\n"), [](const Result& result) {
+  in_every_scale(belts(-1, {0.8, 0.2, 0.4}, "until = 1\n"), [](const Result& result) {
     expect_completed(result);
     ASSERT_EQ(result.events.size(), 1U);
     EXPECT_EQ(result.events[0].unique, false);
@@ -230,9 +230,9 @@ TEST(Degenerate, BothBeltsReversedCanBeLeftAnywhere) {
 TEST(Degenerate, TheSlipOfBothBeltsRunsBackwards) {
   const std::vector<double> start{0.04, -0.01, -0.02};
   for (const Accuracy& accuracy : {fine, Accuracy{pipeline::Integrator::radau5, 1e-12, 1e-14}}) {
-    const Result near_corner = simulated(two_belts(1, start, "until = 3.255\n"), 1.0, accuracy);
-    const Result later = simulated(two_belts(1, start, "until = 7\n"), 1.0, accuracy);
-    const Result back = simulated(two_belts(-1, later.final.x, "until = 3.745\n"), 1.0, accuracy);
+    const Result near_corner = simulate_text(scaled_text(belts(1, start, "until = 3.255\n"), 1.0), accuracy);
+    const Result later = simulate_text(scaled_text(belts(1, start, "until = 7\n"), 1.0), accuracy);
+    const Result back = simulate_text(scaled_text(belts(-1, later.final.x, "until = 3.745\n"), 1.0), accuracy);
     expect_completed(back);
     EXPECT_TRUE(switches_of(back).empty());
     EXPECT_EQ(back.final.mode, (std::vector<int>{-1, -1}));

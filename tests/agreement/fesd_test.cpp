@@ -39,7 +39,7 @@ void PrintTo(const FesdCase& c, std::ostream* out) { PrintTo(c.problem, out); }
 
 /// References without jumps, whose solutions are unique, in both forms. No model is read here: this list is made at the
 /// start of every test.
-std::vector<FesdCase> cases() {
+std::vector<FesdCase> fesd_cases() {
   std::vector<FesdCase> list;
   for (const ReferenceProblem& problem : references()) {
     const bool in_the_class =
@@ -99,7 +99,7 @@ TEST_P(Fesd, DefaultsFindAllSwitches) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(References, Fesd, testing::ValuesIn(cases()), [](const auto& c) {
+INSTANTIATE_TEST_SUITE_P(References, Fesd, testing::ValuesIn(fesd_cases()), [](const auto& c) {
   return test_name(c.param.problem) + (c.param.form == Reformulation::step ? "_step" : "_stewart");
 });
 
@@ -136,7 +136,7 @@ TEST_P(FesdSuperTwisting, AgreesAsFarAsRootsLetIt) {
 
 INSTANTIATE_TEST_SUITE_P(Forms, FesdSuperTwisting, testing::Values(Reformulation::step, Reformulation::stewart));
 
-TEST(FesdReferences, MostOfTheCatalogueIsCompared) { EXPECT_GE(cases().size(), 70u); }
+TEST(FesdReferences, MostOfTheCatalogueIsCompared) { EXPECT_GE(fesd_cases().size(), 70u); }
 
 }  // namespace
 }  // namespace saltus::problems

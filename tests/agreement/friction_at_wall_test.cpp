@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "jumps.hpp"
+#include "agreement/jumps.hpp"
 
 namespace saltus::problems {
 namespace {
@@ -72,7 +72,7 @@ bool is_determined(const Result& result, double t) {
 TEST(FrictionAtAWall, AMassThatBouncesComesToRestAndLeaves) {
   const double speed = std::sqrt(18.0) / 2, ratio = std::sqrt(9.0 / 11.0) / 2;
   const double limit = std::sqrt(2.0 / 9.0) + speed * (1.0 / 11.0 + 1.0 / std::sqrt(99.0)) / (1 - ratio);
-  for (const auto& accuracy : {standard, tight, implicit}) {
+  for (const auto& accuracy : {standard, fine, implicit}) {
     for (const Dress& dress : dresses) {
       const Result result = simulated(mass("-10 + 5*max(t - 3, 0)", 1, 6.2, dress), accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
@@ -91,7 +91,7 @@ TEST(FrictionAtAWall, AMassThatBouncesComesToRestAndLeaves) {
 // At rest at the wall from the start. Pulled away first, it leaves where 2 sin t = 1; pushed into the wall first, where
 // -2 sin t = 1. Both go on with v = 2 (cos t1 - cos t) - (t - t1), and stop where that is zero.
 TEST(FrictionAtAWall, AMassLeavesWhereTheDriveExceedsFriction) {
-  for (const auto& accuracy : {standard, tight, implicit}) {
+  for (const auto& accuracy : {standard, fine, implicit}) {
     for (const Dress& dress : dresses) {
       for (const double way : {1.0, -1.0}) {
         const double leaves = std::numbers::pi / 6 + (way > 0 ? 0.0 : std::numbers::pi);
@@ -113,7 +113,7 @@ TEST(FrictionAtAWall, AMassLeavesWhereTheDriveExceedsFriction) {
 // Friction of level 1 pulls it along with the belt, but not away from the wall; when the push ends, at t = 3, it does:
 // v' = 1 until v = t - 2 is reached, which is never.
 TEST(FrictionAtAWall, ABeltStopsAndStarts) {
-  for (const auto& accuracy : {standard, tight}) {
+  for (const auto& accuracy : {standard, fine}) {
     const Result result = simulated(R"toml(
 [states]
 y = 0

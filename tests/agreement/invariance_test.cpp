@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "agreement/reference_checks.hpp"
 #include "problems/closed_forms.hpp"
 #include "problems/references.hpp"
 #include "problems/simulator.hpp"
@@ -22,15 +23,7 @@ using result::Event;
 using result::Result;
 
 // Both runs meet their tolerances, and differ by how these and rounding decide the steps.
-constexpr double tolerance = 1e-7;
-
-void expect_near(const std::vector<double>& found, const std::vector<double>& expected, const std::string& what) {
-  ASSERT_EQ(found.size(), expected.size()) << what;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (std::isnan(found[i]) && std::isnan(expected[i])) continue;  // a selection that is not determined
-    EXPECT_NEAR(found[i], expected[i], tolerance * std::max(1.0, std::abs(expected[i]))) << what;
-  }
-}
+constexpr double agreement = 1e-7;
 
 std::set<result::Mode> modes_of(const Event& event) {
   std::set<result::Mode> modes;
@@ -44,19 +37,19 @@ void expect_same(const Result& found, const Result& expected) {
   for (std::size_t i = 0; i < found.events.size(); ++i) {
     const Event &a = found.events[i], &b = expected.events[i];
     const std::string what = fmt::format("event {}", i + 1);
-    EXPECT_NEAR(a.t, b.t, tolerance * std::max(1.0, std::abs(b.t))) << what;
+    EXPECT_NEAR(a.t, b.t, agreement * std::max(1.0, std::abs(b.t))) << what;
     EXPECT_EQ(a.kind, b.kind) << what;
     EXPECT_EQ(a.surfaces, b.surfaces) << what;
     EXPECT_EQ(a.mode_before, b.mode_before) << what;
     EXPECT_EQ(a.mode_after, b.mode_after) << what << ": " << a.reason << " | " << b.reason;
-    expect_near(a.x_after, b.x_after, what);
-    if (b.alpha_after) expect_near(a.alpha_after.value(), *b.alpha_after, what + ", alpha");
+    expect_near(a.x_after, b.x_after, agreement, what);
+    if (b.alpha_after) expect_near(a.alpha_after.value(), *b.alpha_after, agreement, what + ", alpha");
     EXPECT_EQ(a.unique, b.unique) << what;
     EXPECT_EQ(modes_of(a), modes_of(b)) << what;
   }
-  expect_near(found.final.x, expected.final.x, "end state");
+  expect_near(found.final.x, expected.final.x, agreement, "end state");
   EXPECT_EQ(found.final.mode, expected.final.mode);
-  expect_near(found.final.alpha, expected.final.alpha, "alpha at the end");
+  expect_near(found.final.alpha, expected.final.alpha, agreement, "alpha at the end");
 }
 
 /// `make` gives the model, relabelled or not.

@@ -15,11 +15,9 @@ using result::EventKind;
 using result::Result;
 using result::Termination;
 
-inline constexpr Accuracy tight{pipeline::Integrator::dop853, 1e-12, 1e-14};
-
-inline Result simulated(const std::string& text, const Accuracy& accuracy = tight) {
-  const Simulator model = Simulator::from_text("[model]\nname = \"jumps\"\n" + text);
-  return model.run(with(model.options(), accuracy));
+/// A model file without its table [model].
+inline Result simulated(const std::string& text, const Accuracy& accuracy = fine) {
+  return simulate_text("[model]\nname = \"jumps\"\n" + text, accuracy);
 }
 
 inline std::vector<Event> jumps_of(const Result& result, const std::string& name = "") {

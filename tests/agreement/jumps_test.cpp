@@ -1,5 +1,5 @@
 // [[jumps]] against closed forms: triggers, order of execution, the mode behind.
-#include "jumps.hpp"
+#include "agreement/jumps.hpp"
 
 #include <cmath>
 #include <string>
@@ -43,7 +43,7 @@ until = 12
 
 // Falls from 10, keeps 9/10 of its speed: impacts at t1, t1 + 2 e t1, t1 + 2 (e + e^2) t1, …
 TEST(Jumps, BouncingBallMeetsEveryImpact) {
-  for (const auto& accuracy : {standard, tight, implicit}) {
+  for (const auto& accuracy : {standard, fine, implicit}) {
     const Result result = simulated(ball("0.9", 26), accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     std::vector<double> times{10.0 / 7.0};
@@ -453,7 +453,7 @@ set = { v = "v + 1" }
 [simulate]
 until = 3
 )toml");
-  for (const Accuracy& accuracy : {standard, tight, implicit}) {
+  for (const Accuracy& accuracy : {standard, fine, implicit}) {
     auto options = with(model.options(), accuracy);
     options.output = pipeline::EveryStep{};
     const Result steps = model.run(options);

@@ -9,7 +9,7 @@
 namespace saltus::problems {
 namespace {
 
-void expect_same(const result::Result& modes, const result::Result& text, double tolerance) {
+void expect_same_motion(const result::Result& modes, const result::Result& text, double tolerance) {
   ASSERT_EQ(modes.status.termination, result::Termination::completed) << modes.status.message;
   ASSERT_EQ(modes.events.size(), text.events.size());
   for (std::size_t i = 0; i < text.events.size(); ++i) {
@@ -42,7 +42,7 @@ dynamics = { x1 = "x1 - omega*x2", x2 = "omega*x1 + x2" }
 until = 1.5707963267948966
 output = { points = 401 }
 )toml");
-  expect_same(modes.run(modes.options()), text.run(text.options()), 0.0);
+  expect_same_motion(modes.run(modes.options()), text.run(text.options()), 0.0);
 }
 
 // A group per gene; the decay stays in [dynamics]. A sum in another order rounds differently, and the flow damps that.
@@ -120,7 +120,7 @@ output = { points = 2001 }
 )toml");
   pipeline::SimulateOptions options = with(text.options(), fine);
   options.until = 100.0;
-  expect_same(modes.run(options), text.run(options), 1e-12);
+  expect_same_motion(modes.run(options), text.run(options), 1e-12);
 }
 
 TEST(ModesForm, SlidingIsTheSame) {
@@ -145,7 +145,7 @@ dynamics = { v = "0.4" }
 until = 15.0
 output = { points = 601 }
 )toml");
-  expect_same(modes.run(modes.options()), text.run(text.options()), 1e-12);
+  expect_same_motion(modes.run(modes.options()), text.run(text.options()), 1e-12);
 }
 
 }  // namespace

@@ -37,7 +37,8 @@ model::System system_of(const std::filesystem::path& file) {
   return *std::move(system);
 }
 
-void expect_near(const std::vector<double>& found, const std::vector<double>& expected, const std::string& what) {
+void expect_same_values(const std::vector<double>& found, const std::vector<double>& expected,
+                        const std::string& what) {
   ASSERT_EQ(found.size(), expected.size()) << what;
   double size = 0.0;
   for (const double value : expected) size = std::max(size, std::abs(value));
@@ -56,9 +57,9 @@ int compare(const model::System& system, const reformulation::Dcs& dcs, const st
     if (!finite || !(expected.nearest > 1e-9)) continue;
     const auto found = values_at(dcs, system, point);
     const std::string where = name + ", point " + std::to_string(seed) + ",";
-    expect_near(found.f, expected.f, where + " f");
-    expect_near(found.alpha, expected.alpha, where + " alpha");
-    expect_near(found.outputs, expected.outputs, where + " output");
+    expect_same_values(found.f, expected.f, where + " f");
+    expect_same_values(found.alpha, expected.alpha, where + " alpha");
+    expect_same_values(found.outputs, expected.outputs, where + " output");
     ++compared;
   }
   return compared;

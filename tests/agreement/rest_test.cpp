@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "jumps.hpp"
+#include "agreement/jumps.hpp"
 
 namespace saltus::problems {
 namespace {
@@ -40,7 +40,7 @@ until = 10
 
 // Seen from the wall it falls from 1 with gravity 1: sqrt(2) (1 + e)/(1 - e).
 TEST(Rest, AFreeBallGoesWithAWallThatPushesIt) {
-  for (const auto& accuracy : {standard, tight, implicit}) {
+  for (const auto& accuracy : {standard, fine, implicit}) {
     const Result result = simulated(pushed_ball("0", ""), accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     const auto limits = limits_of(result);
@@ -53,7 +53,7 @@ TEST(Rest, AFreeBallGoesWithAWallThatPushesIt) {
 
 // The wall at 1 - cos t pushes until t = pi/2; the ball flies on with the speed 1.
 TEST(Rest, AFreeBallLeavesAWallThatBrakes) {
-  for (const auto& accuracy : {standard, tight, implicit}) {
+  for (const auto& accuracy : {standard, fine, implicit}) {
     const Result result = simulated(R"toml(
 [states]
 x = 0
@@ -148,7 +148,7 @@ until = 30
 // A jump that counts has the guard of the one that reflects: it rests with it, and leaves with it. The second guard is
 // twice the first: one of them is held.
 TEST(Rest, JumpsThatShareAGuardRestTogether) {
-  for (const auto& accuracy : {standard, tight, implicit}) {
+  for (const auto& accuracy : {standard, fine, implicit}) {
     const Result result = simulated(R"toml(
 [states]
 y = 1
@@ -187,7 +187,7 @@ until = 9
 // Ends and middle of a plate, three guards of two degrees of freedom: at rest all stand. From t = 3 on the middle is
 // pulled up with 20 (t - 3): it presses on nothing from t = 3.5 on.
 TEST(Rest, APlateStandsOnThreeLegs) {
-  for (const auto& accuracy : {standard, tight, implicit}) {
+  for (const auto& accuracy : {standard, fine, implicit}) {
     const Result result = simulated(R"toml(
 [states]
 y = 1

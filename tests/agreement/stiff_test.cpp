@@ -49,10 +49,13 @@ v = "1.5*z - sign(v)"
 until = 3
 )toml";
 
-constexpr double rate = 1e6;
-double sensor_value(double t) { return (rate * rate * std::cos(t) + rate * std::sin(t)) / (rate * rate + 1.0); }
+constexpr double sensor_rate = 1e6;
+double sensor_value(double t) {
+  return (sensor_rate * sensor_rate * std::cos(t) + sensor_rate * std::sin(t)) / (sensor_rate * sensor_rate + 1.0);
+}
 double sensor_integral(double t) {
-  return (rate * rate * std::sin(t) + rate * (1.0 - std::cos(t))) / (rate * rate + 1.0);
+  return (sensor_rate * sensor_rate * std::sin(t) + sensor_rate * (1.0 - std::cos(t))) /
+         (sensor_rate * sensor_rate + 1.0);
 }
 
 template <class Function>

@@ -4,14 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include "jumps.hpp"
+#include "agreement/jumps.hpp"
 
 namespace saltus::problems {
 namespace {
 
 // The first fall takes 10/7; the impacts accumulate at 10/7 (1 + e)/(1 - e).
 TEST(Zeno, BouncingBallsComeToRestAtTheLimit) {
-  for (const auto& accuracy : {standard, tight, implicit}) {
+  for (const auto& accuracy : {standard, fine, implicit}) {
     for (const std::string e : {"0", "1e-12", "1e-5", "0.01", "0.3", "0.7", "0.9", "0.99"}) {
       const double restitution = std::stod(e);
       const double limit = 10.0 / 7.0 * (1 + restitution) / (1 - restitution);
@@ -72,7 +72,7 @@ until = 3
 
 // Ground that moves slowly: the ball rests on it, and goes with it.
 TEST(Zeno, MovingGround) {
-  for (const auto& accuracy : {standard, tight}) {
+  for (const auto& accuracy : {standard, fine}) {
     const Result result = simulated(R"toml(
 [states]
 y = 1
@@ -162,7 +162,7 @@ until = 6
 // A drag of v |v|/2: no closed form, but the limit does not depend on how it is computed.
 TEST(Zeno, DragAgreesAcrossMethods) {
   std::vector<double> limits;
-  for (const auto& accuracy : {Accuracy{pipeline::Integrator::dopri5, 1e-11, 1e-13}, tight,
+  for (const auto& accuracy : {Accuracy{pipeline::Integrator::dopri5, 1e-11, 1e-13}, fine,
                                Accuracy{pipeline::Integrator::radau5, 1e-11, 1e-13}}) {
     const Result result = simulated(R"toml(
 [states]

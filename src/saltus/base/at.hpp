@@ -6,8 +6,8 @@
 
 namespace saltus {
 
-/// The place i >= 0 in a container, where i counts what the model or a matrix numbers: values[at(i)]. Neither checked nor
-/// needed for what is unsigned already.
+/// The place i >= 0 in a container, where i is what the model or a matrix counts with: values[at(i)].
+/// Not checked.
 template <std::signed_integral Integer>
 [[nodiscard]] constexpr std::size_t at(Integer i) {
   return static_cast<std::size_t>(i);
