@@ -77,7 +77,11 @@ bool Run::change_mode(const Located& located) {
     any = true;
     if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
     if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
-    if (function.kind == FunctionKind::loss) occasion.coalesced.push_back(function.index);
+    if (function.kind == FunctionKind::loss) {
+      occasion.coalesced.push_back(function.index);
+      // Towards a root that is lost steps shrink to nothing, over which no field changes.
+      occasion.time_scale = std::max(occasion.time_scale, longest_step_);
+    }
     if (function.kind == FunctionKind::instability) occasion.destabilised.push_back(function.index);
     const bool nested = function.kind == FunctionKind::nested;
     if (nested && !continuous_across(kernel_, corners_inside(kernel_, state_, function.index), function.index, t_, x_,

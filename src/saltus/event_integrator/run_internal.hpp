@@ -208,6 +208,7 @@ class Run {
   }
   /// For the steps of the mode behind an event. While switches tighten no step is like one before.
   void restart_control() {
+    longest_step_ = 0.0;
     if (switch_laps_.empty()) {
       control_.restart();
     } else {
@@ -297,6 +298,7 @@ class Run {
   double h_ = 0.0;                  ///< proposed step
   double h_try_ = 0.0;              ///< step under trial
   double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
+  double longest_step_ = 0.0;       ///< behind the last switch
   std::size_t next_output_ = 0;
   bool jumped_ = false;  ///< at the event in hand
   Families families_;

@@ -213,6 +213,7 @@ Run::Step Run::accept(double t_new) {
   std::copy(stepper_.x_new(), stepper_.x_new() + x_.size(), x_.begin());
   t_ = t_new;
   h_scale_ = h;
+  longest_step_ = std::max(longest_step_, h);
   const bool projected = field_.project(t_, x_.data());
   if (holding_.project(t_, state_.alpha, x_) || projected) {
     field_(t_, x_.data(), slope_.data());

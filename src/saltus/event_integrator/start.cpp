@@ -236,7 +236,22 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   for (const auto& [surface, mode] : forced) {
     if (!is_region(surface)) given.push_back({surface, mode});
   }
+  const auto is_given = [&](const Transition& transition) {
+    return transition.termination == result::Termination::completed && !transition.beyond_spiral &&
+           given.size() == forced.size() && std::all_of(given.begin(), given.end(), [&](const GivenMode& surface) {
+             return transition.state.mode[at(surface.surface)] == surface.mode;
+           });
+  };
+  if (is_given(decided)) {
+    start.transition.reason = "initial_mode" + (decided.reason.empty() ? "" : "; " + decided.reason);
+    return start;
+  }
   auto chosen = given.empty() ? std::nullopt : decide_with(s, state, occasion, given);
+  if (!chosen) {
+    // Selections of three and more surfaces are looked for from the middle, where there may be no way to a root.
+    const auto found = std::find_if(decided.alternatives.begin(), decided.alternatives.end(), is_given);
+    if (found != decided.alternatives.end()) chosen = *found;
+  }
   if (given.size() < forced.size()) chosen = with_given_modes(s.kernel, forced, chosen, decided);
   if (!chosen) {
     start.transition.termination = result::Termination::no_admissible_mode;
