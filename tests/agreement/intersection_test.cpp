@@ -156,6 +156,24 @@ TEST(Intersection, SpiralsArriveAtTheirExactTime) {
   }
 }
 
+// x1' = -a sign(x1) - b sign(x2), x2' = b sign(x1) - a sign(x2): |x1| + |x2| falls at the rate 2 a wherever the
+// solution is. Quarter turns shrink by (b - a)/(b + a) = 0.999 and 0.9995, laps of four by 0.996 and 0.998.
+TEST(Intersection, SpiralsThatShrinkByAThousandthInAQuarterTurnArrive) {
+  for (const double a : {0.5, 0.25}) {
+    const Result result = simulate_text(plane("1", "0", fmt::format("-{}*sign(x1) - {}*sign(x2)", a, 1000 - a),
+                                              fmt::format("{}*sign(x1) - {}*sign(x2)", 1000 - a, a), "3"),
+                                        standard);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    const Event* arrival = accumulation_of(result);
+    ASSERT_NE(arrival, nullptr);
+    // What remains when the limit is announced is 2e-8; its ratio, from laps of 2e-11 that t resolves to 1e-16, is
+    // wrong by 1e-7 over 48 of them, that is what remains by 1e-4.
+    EXPECT_NEAR(arrival->t, 0.5 / a, 1e-11);
+    EXPECT_EQ(*arrival->mode_after, (std::vector<int>{0, 0}));
+    EXPECT_EQ(result.final.x, (std::vector<double>{0.0, 0.0}));
+  }
+}
+
 /// The two belts of the catalogue; `first` and `second` name the surfaces, which are numbered by name.
 std::string two_belts(const std::string& first, const std::string& second, const std::string& until) {
   return fmt::format(R"toml([model]

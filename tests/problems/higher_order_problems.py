@@ -140,12 +140,10 @@ def parting(model, product, chosen, until, final):
         f = {(a, b): (mpf(t - 1) / 4 * a + b + product * a * b, mpf(-a) / 2 + b + mpf(a * b) / 5)
              for a in (-1, 1) for b in (-1, 1)}
         found = [dict(mode=k, alpha=alpha) for k, alpha in motions(f) if k != mode]
-        if mode == [0, 0]:
-            return found
-        # To stay on both, without attracting: s1 = s2 = 0, and where s2 = s1/2/(1 + s1/5) meets the other branch.
+        # On both: s1 = s2 = 0, and where s2 = s1/2/(1 + s1/5) meets the other branch, which does not attract.
         b = mpf(t - 1) / 4
         s1 = -(b + mpf(1) / 2) / (b / 5 + product / 2)
-        roots = [mpf(0)] + ([s1] if abs(s1) < 1 else [])
+        roots = ([] if mode == [0, 0] else [mpf(0)]) + ([s1] if abs(s1) < 1 else [])
         return found + [dict(mode=[0, 0], alpha=[(1 + s) / 2, (1 + s / 2 / (1 + s / 5)) / 2]) for s in roots]
 
     def solution():

@@ -43,7 +43,7 @@ bool Run::too_many_events() {
   }
   // Jumps have their own limits.
   if (jumped_ || !series_.too_dense(t_)) return false;
-  accumulates();
+  if (!follow_dense_laps()) accumulates();
   return true;
 }
 

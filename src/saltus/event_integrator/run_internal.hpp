@@ -147,6 +147,7 @@ class Run {
   void follow_roots();
   void set_tolerances();
   void accumulate_switches();
+  bool follow_dense_laps();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
   bool limits_repeat(double t);
   void pass_to(double t, std::vector<double> x);

@@ -137,6 +137,19 @@ void Run::accumulate_switches() {
   if (repeats || !follow_spiral(*limit, Behind::any)) accumulates();
 }
 
+/// Laps that hardly shrink are too many for their time before as little of it remains as a limit is asked for usually.
+/// Returns whether they have one all the same, and the run has gone on from there.
+bool Run::follow_dense_laps() {
+  const auto lap = switch_laps_.last_lap();
+  if (!lap) return false;
+  // Laps that are not longer than this are extrapolated whatever remains.
+  const std::vector<double> shortest(shortest_switch_lap_.size(), 2.0 * *lap);
+  const auto limit = switch_laps_.limit(shortest);
+  if (!limit || limit->rattling || limit->t > std::min(options_.until, jumps_.next_time())) return false;
+  switch_laps_.clear();
+  return follow_spiral(*limit, Behind::any);
+}
+
 /// Whether limits follow each other at once, laps of rounding between them: the solution stays where the switches have
 /// come together (sliding of second order on some surfaces), and no mode found there is that.
 bool Run::limits_repeat(double t) {

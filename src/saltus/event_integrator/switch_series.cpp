@@ -40,6 +40,12 @@ void SwitchSeries::remember(double t) {
   std::copy_backward(times_.begin(), times_.end() - 1, times_.end());
   times_[0] = t;
   ++switches_;
+  const double before = times_[4] - times_[8];
+  if (switches_ <= 8 || !(t - times_[4] < before)) {
+    first_lap_ = 0.0;
+  } else if (first_lap_ == 0.0) {
+    first_lap_ = before;
+  }
 }
 
 void SwitchSeries::note(double t, std::size_t surface, int before) {
@@ -64,10 +70,11 @@ bool SwitchSeries::shrinks(double t) const {
 
 bool SwitchSeries::tightens() const {
   for (std::size_t lap = 1; lap <= 4 && switches_ > 2 * lap; ++lap) {
-    // A cycle that is approached has laps of nearly one length; the slowest spirals known lose eight percent in one.
+    // A cycle that is approached has laps of nearly one length.
     if (times_[0] - times_[lap] < 0.995 * (times_[lap] - times_[2 * lap])) return true;
   }
-  return false;
+  // Those of a slow spiral shrink without end.
+  return times_[0] - times_[4] < 0.5 * first_lap_;
 }
 
 bool SwitchSeries::too_dense(double t) {

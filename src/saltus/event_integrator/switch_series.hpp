@@ -28,7 +28,8 @@ class SwitchSeries {
   /// Whether the switches before t have followed each other ever faster, down to a scale on which no model lives: a run
   /// that cannot go on there has come to their limit.
   [[nodiscard]] bool shrinks(double t) const;
-  /// Whether the last switches have followed each other faster than those before, over laps of one to four.
+  /// Whether the last switches have followed each other faster than those before, over laps of one to four; or a little
+  /// faster, until laps of four were half as long as when that began.
   [[nodiscard]] bool tightens() const;
 
  private:
@@ -49,6 +50,7 @@ class SwitchSeries {
   static constexpr std::size_t remembered = 9;
   std::array<double, remembered> times_{};  ///< of the last switches, the last one first
   std::size_t switches_ = 0;
+  double first_lap_ = 0.0;  ///< of four switches, before laps began to shrink from switch to switch; 0 if they do not
   long in_a_row_ = 0;  ///< without the time having advanced noticeably
   double start_ = 0.0;
 };

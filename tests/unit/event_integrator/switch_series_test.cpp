@@ -33,5 +33,26 @@ TEST(SwitchSeries, LapsOfOneLengthThatTimeResolvesHaveNone) {
   EXPECT_FALSE(series.shrinks(t));
 }
 
+TEST(SwitchSeries, LapsThatShrinkALittleAreTakenForASpiralOnceTheyHaveHalved) {
+  SwitchSeries series(10.0);
+  constexpr double q = 0.9995;
+  double t = 0.0;
+  double lap = 1e-3;
+  int before = 0;
+  for (; before < 5000 && !series.tightens(); ++before, lap *= q) series.note(t += lap, 0, 1);
+  // Two laps of four to tell that they shrink, and ln(1/2)/ln(q) switches from the first of them.
+  EXPECT_NEAR(before, 8 + std::log(0.5) / std::log(q), 8.0);
+}
+
+TEST(SwitchSeries, LapsThatShrinkToALengthAreACycle) {
+  SwitchSeries series(10.0);
+  double t = 0.0;
+  double more = 5e-4;
+  for (int k = 0; k < 20000; ++k, more *= 0.9995) {
+    series.note(t += 1e-3 + more, 0, 1);
+    EXPECT_FALSE(series.tightens());
+  }
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator
