@@ -10,6 +10,7 @@
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
 #include "saltus/switching/additive_map.hpp"
+#include "saltus/switching/independent_rows.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -50,16 +51,19 @@ class DependentSearch {
 
   /// Functions whose gradients the ones before do not span.
   void choose_independent() {
-    auto& chosen = set_.functions;
-    for (const int j : sliding_) {
-      chosen.push_back({j, 0});
-      functions_.set(chosen, alpha_);
-      functions_.differentiate(t_, x_.data());
-      if (functions_.independent_part(chosen.size() - 1) > 1e-6) continue;
-      chosen.pop_back();
-      dependent_.push_back(j);
+    std::vector<HeldFunction> all;
+    for (const int j : sliding_) all.push_back({j, 0});
+    functions_.set(std::move(all), alpha_);
+    functions_.differentiate(t_, x_.data());
+    const auto independent = switching::independent_rows(functions_.rows());
+    for (std::size_t i = 0; i < sliding_.size(); ++i) {
+      if (std::binary_search(independent.begin(), independent.end(), i)) {
+        set_.functions.push_back({sliding_[i], 0});
+      } else {
+        dependent_.push_back(sliding_[i]);
+      }
     }
-    functions_.set(chosen, alpha_);
+    functions_.set(set_.functions, alpha_);
   }
 
   /// The functions that were not chosen vanish with the others, now, near by on the set, and as time goes.

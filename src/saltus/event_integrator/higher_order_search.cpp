@@ -9,6 +9,7 @@
 #include "saltus/event_integrator/higher_order.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
+#include "saltus/switching/independent_rows.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -67,7 +68,8 @@ class SetSearch {
     static_cast<void>(functions_.project(t_, x_.data()));
     functions_.differentiate(t_, x_.data());
     for (std::size_t i = 0; i < sliding_.size(); ++i) {
-      if (!(functions_.independent_part(i) > 1e-6)) return reject("the gradients of the surfaces depend on each other");
+      if (!(functions_.independent_part(i) > switching::dependent_part))
+        return reject("the gradients of the surfaces depend on each other");
     }
     std::vector<double> ignored;
     static_cast<void>(velocities(0, x_, ignored));
@@ -117,7 +119,7 @@ class SetSearch {
       functions.push_back(function);
       functions_.set(functions, alpha_);
       functions_.differentiate(t_, x_.data());
-      if (!(functions_.independent_part(place) > 1e-6)) return follows(place);
+      if (!(functions_.independent_part(place) > switching::dependent_part)) return follows(place);
       set_.functions = std::move(functions);
     }
     std::vector<double> velocity;

@@ -6,6 +6,7 @@
 
 #include "saltus/event_integrator/held_functions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/switching/independent_rows.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -172,7 +173,7 @@ bool ProjectedFields::gradients_depend(const std::vector<double>& alpha, const s
   held.set(std::move(functions), alpha);
   held.differentiate(occasion_.t, occasion_.x);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    if (held.independent_part(i) <= 1e-6) return true;
+    if (held.independent_part(i) <= switching::dependent_part) return true;
   }
   return false;
 }

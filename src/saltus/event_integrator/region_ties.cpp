@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "saltus/base/at.hpp"
+#include "saltus/switching/independent_rows.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -21,7 +22,6 @@ MatrixXd rows_of(const RegionBasis& basis, const MatrixXd& rows) {
 }  // namespace
 
 RegionBasis basis_of(const MatrixXd& rows) {
-  constexpr double independent = 1e-6;
   MatrixXd rest = rows;
   for (Index i = 0; i < rest.rows(); ++i) {
     if (const double length = rest.row(i).norm(); length > 0.0) rest.row(i) /= length;
@@ -29,7 +29,7 @@ RegionBasis basis_of(const MatrixXd& rows) {
   RegionBasis basis;
   while (basis.base.size() < static_cast<std::size_t>(std::min(rest.rows(), rest.cols()))) {
     Index best = 0;
-    if (!(rest.rowwise().norm().maxCoeff(&best) > independent)) break;
+    if (!(rest.rowwise().norm().maxCoeff(&best) > switching::dependent_part)) break;
     const Eigen::RowVectorXd direction = rest.row(best).normalized();
     rest -= (rest * direction.transpose()) * direction;
     basis.base.push_back(best);

@@ -22,7 +22,7 @@ struct RegionBasis {
   [[nodiscard]] bool spans_all(Eigen::Index rows) const { return static_cast<Eigen::Index>(base.size()) == rows; }
 };
 
-/// Rows that depend on others to 1e-6 of their lengths, as for surfaces that touch, are not in the basis.
+/// Rows that depend on others to switching::dependent_part, as for surfaces that touch, are not in the basis.
 [[nodiscard]] RegionBasis basis_of(const Eigen::MatrixXd& rows);
 
 /// Of up to 12 regions, which is what meets.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/switching/independent_rows.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
@@ -16,29 +17,7 @@ using ConstVector = Eigen::Map<const VectorXd>;
 
 Index index(std::size_t i) { return static_cast<Index>(i); }
 
-/// What is left of a gradient besides those before it, relative to it, if it is one of theirs but for rounding: as the
-/// event engine has it.
-constexpr double dependent = 1e-6;
-
 }  // namespace
-
-std::vector<std::size_t> independent_rows(const MatrixXd& gradients) {
-  std::vector<std::size_t> chosen;
-  MatrixXd basis(gradients.cols(), gradients.rows());
-  for (Index k = 0; k < gradients.rows(); ++k) {
-    VectorXd rest = gradients.row(k).transpose();
-    const double size = rest.norm();
-    if (!(size > 0.0)) continue;
-    rest /= size;
-    const auto spanned = basis.leftCols(index(chosen.size()));
-    // Twice: what the first pass leaves of a gradient that is nearly one of theirs is rounding.
-    for (int pass = 0; pass < 2; ++pass) rest -= spanned * (spanned.transpose() * rest);
-    if (!(rest.norm() > dependent)) continue;
-    basis.col(index(chosen.size())) = rest.normalized();
-    chosen.push_back(static_cast<std::size_t>(k));
-  }
-  return chosen;
-}
 
 bool find_balances(const FieldView& at, ActiveSet& set) {
   const auto& sliding = set.sliding();
@@ -50,7 +29,7 @@ bool find_balances(const FieldView& at, ActiveSet& set) {
     gradients.row(index(k)) = indicator_x.row(sliding[k].selection);
     jumps.col(index(k)) = f_selection.col(sliding[k].selection);
   }
-  const auto independent = independent_rows(gradients);
+  const auto independent = switching::independent_rows(gradients);
   if (independent.size() == sliding.size()) return false;
   const MatrixXd held = gradients(independent, Eigen::all);
   auto found = switching::balances_of(held * jumps, held.cwiseAbs() * jumps.cwiseAbs());

@@ -58,7 +58,4 @@ class SelectionMargins {
 /// @return whether it has some now
 [[nodiscard]] bool find_balances(const FieldView& at, ActiveSet& set);
 
-/// Of these surfaces (rows of gradients, one each) the first ones that span the others.
-[[nodiscard]] std::vector<std::size_t> independent_rows(const Eigen::MatrixXd& gradients);
-
 }  // namespace saltus::fesd_integrator

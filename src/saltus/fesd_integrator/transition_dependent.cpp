@@ -8,6 +8,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/transition.hpp"
 #include "saltus/switching/additive_map.hpp"
+#include "saltus/switching/independent_rows.hpp"
 #include "saltus/switching/selection_complementarity.hpp"
 
 namespace saltus::fesd_integrator {
@@ -84,7 +85,7 @@ bool Transition::find_dependent(const Decision& decision, const std::vector<int>
     (acts ? acting : followers).push_back(j);
   }
   const auto own = gradients_of(values, acting);
-  if (acting.size() < 2 || independent_rows(own.rows).size() == acting.size()) return false;
+  if (acting.size() < 2 || switching::independent_rows(own.rows).size() == acting.size()) return false;
 
   std::vector<double> f(n_x);
   const auto decide_at = [&](double t, const std::vector<double>& x, std::vector<double>& motion) {
