@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "saltus/switching/matrix_stability.hpp"
+#include "saltus/switching/newton_steps_internal.hpp"
 
 namespace saltus::switching {
 namespace {
@@ -135,10 +136,8 @@ void RegionWeights::evaluate(const Eigen::MatrixXd& rates) {
 
 bool RegionWeights::iterate(const Eigen::MatrixXd& rates) {
   constexpr int iterations = 50;
-  constexpr double settled = 1e-7;  // from here a step squares to rounding level
-  constexpr double rounding = 4e-16;
   constexpr double astray = 1e6;
-  double previous = 0.0;
+  NewtonSteps steps;
   for (int k = 0; k < iterations; ++k) {
     evaluate(rates);
     const Eigen::PartialPivLU<Small> factors(jacobian_);
@@ -148,9 +147,7 @@ bool RegionWeights::iterate(const Eigen::MatrixXd& rates) {
     const double size = step_.cwiseAbs().maxCoeff();
     const double reach = p_.cwiseAbs().maxCoeff();
     if (!(reach < astray)) return false;
-    if (size <= rounding * (1.0 + reach)) return true;
-    if (k > 0 && size <= settled && size > 0.7 * previous) return true;
-    previous = size;
+    if (steps.end_with({size, reach})) return true;
   }
   return false;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "saltus/switching/newton_steps_internal.hpp"
+
 namespace saltus::switching {
 
 SelectionNewton::SelectionNewton(int surfaces, Interpolation interpolation)
@@ -17,10 +19,8 @@ SelectionNewton::SelectionNewton(int surfaces, Interpolation interpolation)
 
 bool SelectionNewton::solve(ProjectedField g, double* alpha) {
   constexpr int iterations = 30;
-  constexpr double settled = 1e-7;  // from here a step squares to rounding level
-  constexpr double rounding = 4e-16;
   constexpr double astray = 1e3;
-  double previous = 0.0;
+  NewtonSteps steps;
   for (int k = 0; k < iterations; ++k) {
     g(alpha, g_.data());
     selection_jacobian(g, interpolation_, surfaces_, alpha, g_.data(), jacobian_.data(), shifted_.data());
@@ -36,11 +36,7 @@ bool SelectionNewton::solve(ProjectedField g, double* alpha) {
       reach = std::max(reach, std::abs(alpha[j]));
     }
     if (!(reach < astray)) return false;
-    if (size <= rounding * (1.0 + reach)) return true;
-    // Rounding has the last word where the steps no longer shrink. Towards a double root they halve until they are as
-    // long as the distance to its twin, and square from there.
-    if (k > 0 && size <= settled && size > 0.7 * previous) return true;
-    previous = size;
+    if (steps.end_with({size, reach})) return true;
   }
   return false;
 }
