@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/ode/geometric_limit.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -114,11 +115,7 @@ std::vector<double> EventSeries::extrapolated(std::size_t period, double ratio) 
   const double* earlier = state(period);
   const double* first = state(2 * period);
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double last = x[i] - earlier[i];
-    const double before = earlier[i] - first[i];
-    // Differences that do not shrink like the laps are rounding.
-    if (!(std::abs(last) <= 0.5 * (1.0 + ratio) * std::abs(before)) || last == 0.0) continue;
-    x[i] += last * last / (before - last);
+    x[i] = ode::geometric_limit({first[i], earlier[i], x[i]}, ratio);
   }
   return x;
 }

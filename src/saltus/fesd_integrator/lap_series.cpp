@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "saltus/ode/geometric_limit.hpp"
+
 namespace saltus::fesd_integrator {
 
 void LapSeries::clear() {
@@ -75,11 +77,7 @@ std::optional<LapSeries::Limit> LapSeries::limit_of(std::size_t period, Wanted w
   if (std::abs(difference) > 0.02 * remaining + 4.0 * resolution) return std::nullopt;
   limit.t += remaining;
   for (std::size_t i = 0; i < limit.x.size(); ++i) {
-    const double last = limit.x[i] - back(period).x[i];
-    const double before = back(period).x[i] - back(2 * period).x[i];
-    // Differences that do not shrink like the laps are rounding.
-    if (!(std::abs(last) <= 0.5 * (1.0 + ratio) * std::abs(before)) || last == 0.0) continue;
-    limit.x[i] += last * last / (before - last);
+    limit.x[i] = ode::geometric_limit({back(2 * period).x[i], back(period).x[i], limit.x[i]}, ratio);
   }
   return limit;
 }
