@@ -46,7 +46,7 @@ void EventSearch::forget_specials() {
   for (const std::size_t i : special_) {
     functions_[i].zero_order = 0;
     functions_[i].offset = 0.0;
-    if (forms_.has(i)) forms_.watch(i, functions_[i].sign);
+    if (forms_.has(i) && functions_[i].sign != 0) forms_.watch(i, functions_[i].sign);
   }
 }
 
@@ -72,8 +72,8 @@ void EventSearch::cross(std::size_t surface, const ModeState& state, double t, c
 }
 
 /// A crossing, of surfaces that nothing else of the mode depends on but the exits of what is slid on: only signs
-/// change, and these. Returns false if the mode is another one than that: it is entered afresh. Cost: O(1) for each
-/// surface crossed, but for the comparison of the modes.
+/// change, and these; user functions are read anew. Returns false if the mode is another one than that: it is entered
+/// afresh. Cost: O(1) for each surface crossed, but for the comparison of the modes.
 bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
   if (!flips_ || state.sliding != state_.sliding || state.higher || !held_.empty() || !followers_.empty()) return false;
   inspected_.clear();
@@ -103,6 +103,12 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
       functions_[i].offset = 0.0;
       inspected_.push_back(i);
     }
+  }
+  for (std::size_t i = users_; i < users_end_; ++i) {
+    forms_.ignore(i);
+    functions_[i].zero_order = 0;
+    functions_[i].offset = 0.0;
+    inspected_.push_back(i);
   }
   read_start(t, x);
   special_.clear();
@@ -205,7 +211,7 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   sort_functions();
   const bool selections_are_plain =
       state.sliding.empty() || (field_.solve() == SlidingSolve::decoupled && kernel_.region_groups().empty());
-  flips_ = !any_nesting_ && selections_are_plain && users_ == functions_.size() && followers_.empty();
+  flips_ = !any_nesting_ && selections_are_plain && users_end_ == functions_.size() && followers_.empty();
   only_signs_change_ = state.sliding.empty() && !state.higher && held_.empty() && followers_.empty() &&
                        kernel_.cells() == 0 && kernel_.region_groups().empty();
 }
@@ -363,6 +369,7 @@ void EventSearch::set_user_signs(const std::vector<int>& signs, const std::vecto
 }
 
 void EventSearch::set_user_sign(std::size_t function, int sign, double t, const double* x) {
+  const bool others_begin_anew = zeros_at_ && *zeros_at_ != t;
   start_at(t);
   auto& entry = functions_[function];
   const auto user = at(entry.index - kernel_.switching_functions());
@@ -375,7 +382,9 @@ void EventSearch::set_user_sign(std::size_t function, int sign, double t, const 
   user_sign_[user] = sign;
   user_vanishes_[user] = true;
   if (!user_order_.empty()) user_order_[user] = 1;
-  sort_functions();
+  if (others_begin_anew) return sort_functions();
+  forms_.ignore(function);
+  if (std::find(special_.begin(), special_.end(), function) == special_.end()) special_.push_back(function);
 }
 
 }  // namespace saltus::event_integrator

@@ -159,7 +159,9 @@ void Run::flip_user_functions(const Located& located) {
     }
   };
   // The signs before become known now, if they were not; only then do all of them change.
-  each([&](std::size_t function, int sign) { search_.set_user_sign(function, sign, t_, x_.data()); });
+  each([&](std::size_t function, int sign) {
+    if (search_.functions()[function].sign != sign) search_.set_user_sign(function, sign, t_, x_.data());
+  });
   static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
   each([&](std::size_t function, int sign) { search_.set_user_sign(function, -sign, t_, x_.data()); });
 }

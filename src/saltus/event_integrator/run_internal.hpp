@@ -78,6 +78,7 @@ class Run {
     std::vector<int> zeros;           ///< event functions that are at zero here whatever is left of their value
     std::vector<double> zero_values;  ///< what is left
     std::vector<Rate> rates;          ///< by event function: largest |dg/dt| of guards of jumps at this time
+    std::vector<std::optional<Motion>> motions;  ///< by event function: found since the mode here was decided
     std::vector<HeldGuard> held_before;
     std::vector<int> resting;  ///< jumps whose guards stay at zero from here on
     Transition transition;
@@ -167,8 +168,8 @@ class Run {
   bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
   bool find_resting(RestingSurfaces& resting);
   std::vector<int> surfaces_keeping(int function);
-  RestingGuards pressed_guards(const Landing& landing);
-  std::vector<HeldGuard> guards_kept_by_sliding(const Landing& landing, const RestingGuards& others);
+  RestingGuards pressed_guards(Landing& landing);
+  std::vector<HeldGuard> guards_kept_by_sliding(Landing& landing, const RestingGuards& others);
   void give_directions(Landing& landing);
   [[nodiscard]] Landing& landing_here();
   [[nodiscard]] Landing& landing_at(const Located& located);
@@ -178,7 +179,8 @@ class Run {
   void drop_zeros(Landing& landing);
   void read_user_signs(const Landing& landing);
   [[nodiscard]] double size_at(int function);
-  [[nodiscard]] Motion motion_of(int function, const Landing& landing);
+  [[nodiscard]] Motion motion_of(int function, Landing& landing);
+  [[nodiscard]] Motion find_motion(int function, const Landing& landing);
   [[nodiscard]] Rate rate_along_field(int function, double t, const double* x, const double* slope);
   bool release(const Located& located);
   void accumulate_jumps();

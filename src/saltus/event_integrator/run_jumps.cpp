@@ -50,6 +50,7 @@ Run::Landing& Run::landing_here() {
   for (auto* values : {&landing.zero_values, &values_.value, &values_.magnitude, &values_.slope}) values->resize(n);
   kernel_.functions(t_, x_.data(), state_.alpha.data(), landing.zero_values.data());
   landing.rates.assign(n, {});
+  landing.motions.assign(n, std::nullopt);
   landing.held_before = holding_.resting();
   landing.resting.clear();
   if (kernel_.switching_functions() > 0) landing.transition = {};
@@ -157,6 +158,7 @@ bool Run::execute_jump(Landing& landing) {
 
 /// The mode afresh, as at a start (rule 6).
 bool Run::decide_behind_jumps(Landing& landing) {
+  landing.motions.assign(landing.motions.size(), std::nullopt);
   if (kernel_.switching_functions() == 0) {  // nothing to decide
     landing.transition.beside = x_;
     return enter(landing.transition);
@@ -178,13 +180,19 @@ bool Run::decide_behind_jumps(Landing& landing) {
 
 /// Of the terms of an event function here.
 double Run::size_at(int function) {
-  std::vector<double> magnitude(at(kernel_.event_functions())), slope(magnitude.size());
-  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), slope.data());
-  return magnitude[at(function)];
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), values_.magnitude.data(), values_.slope.data());
+  return values_.magnitude[at(function)];
 }
 
-/// Where a function at zero goes along the motion of the mode.
-Motion Run::motion_of(int function, const Landing& landing) {
+/// Where a function at zero goes along the motion of the mode. Asked again before the mode is decided anew, it is
+/// known.
+Motion Run::motion_of(int function, Landing& landing) {
+  auto& known = landing.motions[at(function)];
+  if (!known) known = find_motion(function, landing);
+  return *known;
+}
+
+Motion Run::find_motion(int function, const Landing& landing) {
   // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
   // than sign_tolerance / 1000 of them.
   constexpr double cancelled = 1e-3;

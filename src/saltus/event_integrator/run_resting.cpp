@@ -30,6 +30,7 @@ bool Run::find_resting(RestingSurfaces& resting) {
 /// The surfaces that keep a guard at zero at rest by sliding: with other selections of theirs it would leave. None if
 /// the guard is not kept so.
 std::vector<int> Run::surfaces_keeping(int function) {
+  if (state_.sliding.empty()) return {};
   const auto bend = [&](const std::vector<double>& alpha) {
     return kernel_.lie_derivative(function, 2, t_, x_.data(), alpha.data());
   };
@@ -50,7 +51,7 @@ std::vector<int> Run::surfaces_keeping(int function) {
 
 /// Guards at zero that what slides keeps at rest: they are held as well, so that nothing has to be asked where sliding
 /// ends and the guard takes over. None where the guards alone do not keep all of that at zero.
-std::vector<HeldGuard> Run::guards_kept_by_sliding(const Landing& landing, const RestingGuards& others) {
+std::vector<HeldGuard> Run::guards_kept_by_sliding(Landing& landing, const RestingGuards& others) {
   std::vector<HeldGuard> kept;
   std::vector<int> surfaces;
   if (state_.sliding.empty() || !holding_.guards().empty()) return kept;
@@ -82,7 +83,7 @@ std::vector<HeldGuard> Run::guards_kept_by_sliding(const Landing& landing, const
 }
 
 /// Guards of executed jumps, and those held before, that were left at zero without a velocity and are pressed on.
-Run::RestingGuards Run::pressed_guards(const Landing& landing) {
+Run::RestingGuards Run::pressed_guards(Landing& landing) {
   RestingGuards guards;
   std::vector<int> jumps;
   for (const auto& executed : landing.executed.items()) {
