@@ -40,6 +40,13 @@ void subtract(const switching::MultiAffine& ahead, double time, switching::Multi
   }
 }
 
+/// Whether it is the mode that was chosen, and the same root.
+bool is_chosen(const switching::HiddenDecision& chosen, const auto& mode) {
+  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-6; };
+  return std::equal(mode.mode.begin(), mode.mode.end(), chosen.mode.begin()) &&
+         std::equal(mode.alpha.begin(), mode.alpha.end(), chosen.alpha.begin(), near);
+}
+
 double largest(const switching::MultiAffine& g) {
   double result = 0.0;
   for (int row = 0; row < g.rows(); ++row) {
@@ -117,11 +124,8 @@ void Decider::note_others(const std::vector<int>& group, const switching::PlaneM
 /// The same of any number of surfaces.
 void Decider::note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen,
                           const std::vector<switching::GroupMode>& modes) {
-  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-6; };
   for (const auto& other : modes) {
-    const bool same =
-        other.mode == chosen.mode && std::equal(other.alpha.begin(), other.alpha.end(), chosen.alpha.begin(), near);
-    if (same) continue;
+    if (is_chosen(chosen, other)) continue;
     transition_.unique = false;
     std::vector<GivenMode> choice;
     for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], other.mode[k], other.alpha[k]});
@@ -241,7 +245,7 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   if (plane) {
     switching::PlaneModes others;
     for (const auto& mode : switching::admissible_modes(switching::plane_table(table))) {
-      if (mode.mode != PlaneMode{hidden.mode[0], hidden.mode[1]}) others.push(mode);
+      if (!is_chosen(hidden, mode)) others.push(mode);
     }
     note_others(group, others);
   } else if (s_.affine_in_alpha && group.size() <= at(switching::largest_enumerated)) {

@@ -1,4 +1,5 @@
 // Surfaces that influence each other: modes behind their events, where fields are tangent, nested, or of no help.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -161,6 +162,36 @@ TEST(Coupled, OfThreeSurfacesStabilityIsThatOfTheScalingTheSlidingBeganWithToo) 
   EXPECT_GT(stability_at(0.0), 1e-3);
   EXPECT_GT(stability_at(wanted - 1e-9), 0.0);
   EXPECT_LT(stability_at(wanted + 1e-9), 0.0);
+}
+
+TEST(Coupled, TheOtherRootOfAModeIsAnAlternativeWhereAScalingDecidesToo) {
+  // Slides on x = 0 with lambda_x = -1/2 and y' = 3/4 to y = 0 (leaf E10, and not every scaling slides on both). Of the
+  // roots (0, -1/3) has det G = 1/2, (1/4, -1/7) has det G = -1/2.
+  for (const auto selection : {switching::SelectionPolicy::active_dominant, switching::SelectionPolicy::scaled}) {
+    Builder b("two roots");
+    const SX x = b.state("x", {0}), y = b.state("y", {-0.75});
+    const SX lambda_x = b.sign(b.switching("sx", x)), lambda_y = b.sign(b.switching("sy", y));
+    b.dynamics("x", 0.5 - lambda_x + 1.5 * lambda_y + lambda_x * lambda_y);
+    b.dynamics("y", 0.25 - 0.25 * lambda_x + 0.75 * lambda_y + 2.25 * lambda_x * lambda_y);
+    IntegrationOptions options;
+    options.until = 2.0;
+    options.selection = selection;
+    options.scaling = {100.0, 1.0};
+    const auto result = testing::run_model(b, options);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    const auto& event = result.events.back();
+    EXPECT_NEAR(event.t, 1.0, 1e-12);
+    ASSERT_EQ(event.mode_after, (result::Mode{0, 0}));
+    EXPECT_NEAR((*event.alpha_after)[1], 1.0 / 3.0, 1e-12);
+    EXPECT_EQ(event.unique, false);
+    EXPECT_EQ(event.alternatives.size(), 2U);  // and leaving both
+    const auto root = std::find_if(event.alternatives.begin(), event.alternatives.end(), [](const auto& other) {
+      return other.mode == result::Mode{0, 0};
+    });
+    ASSERT_NE(root, event.alternatives.end());
+    EXPECT_NEAR(root->alpha[0], 5.0 / 8.0, 1e-12);
+    EXPECT_NEAR(root->alpha[1], 3.0 / 7.0, 1e-12);
+  }
 }
 
 }  // namespace
