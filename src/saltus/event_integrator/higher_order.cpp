@@ -10,26 +10,13 @@
 
 namespace saltus::event_integrator {
 
-void field_jumps(const evaluation::ModelKernel& kernel, double t, const double* x, std::vector<double> alpha,
-                 const std::vector<int>& surfaces, std::vector<double>& base, Eigen::MatrixXd& jumps) {
-  const auto n = at(kernel.states());
-  base.resize(n);
-  jumps.resize(kernel.states(), static_cast<Eigen::Index>(surfaces.size()));
-  for (const int j : surfaces) alpha[at(j)] = 0.0;
-  kernel.field(t, x, alpha.data(), base.data());
-  std::vector<double> f(n);
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    alpha[at(surfaces[i])] = 1.0;
-    kernel.field(t, x, alpha.data(), f.data());
-    alpha[at(surfaces[i])] = 0.0;
-    for (std::size_t k = 0; k < n; ++k) {
-      jumps(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = f[k] - base[k];
-    }
-  }
-}
-
 HigherOrderField::HigherOrderField(const evaluation::ModelKernel& kernel)
-    : kernel_(kernel), functions_(kernel), motion_(at(kernel.states())), x_(motion_.size()) {}
+    : kernel_(kernel),
+      functions_(kernel),
+      motion_(at(kernel.states())),
+      x_(motion_.size()),
+      base_(motion_.size()),
+      f_(motion_.size()) {}
 
 void HigherOrderField::enter(const HigherOrderSet& set, const std::vector<int>& sliding,
                              const std::vector<double>& alpha) {
@@ -109,16 +96,35 @@ bool HigherOrderField::hold_one(std::size_t b, double t, const double* x) {
   return determines(balance, range);
 }
 
-/// Whether f is a function of the velocities of the held functions: what selections that leave these add to f vanishes.
-bool HigherOrderField::determines(const Coupled& coupled) const {
-  const Eigen::MatrixXd rest =
-      coupled.jumps -
-      coupled.effects.transpose().completeOrthogonalDecomposition().solve(coupled.jumps.transpose()).transpose() *
-          coupled.effects;
-  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    if (!(rest.row(i).cwiseAbs().maxCoeff() <= 1e-8 * coupled.jumps.row(i).cwiseAbs().maxCoeff())) return false;
+/// f with the selections of a balance at 0, and what each of them adds to it at 1.
+void HigherOrderField::find_jumps(const Balance& balance, Eigen::MatrixXd& jumps, double t, const double* x) {
+  const auto q = static_cast<Eigen::Index>(balance.rows.size());
+  trial_ = functions_.alpha();
+  for (const std::size_t row : balance.rows) trial_[at(sliding_[row])] = 0.0;
+  kernel_.field(t, x, trial_.data(), base_.data());
+  jumps.resize(kernel_.states(), q);
+  for (Eigen::Index i = 0; i < q; ++i) {
+    double& selection = trial_[at(sliding_[balance.rows[at(i)]])];
+    selection = 1.0;
+    kernel_.field(t, x, trial_.data(), f_.data());
+    selection = 0.0;
+    for (Eigen::Index k = 0; k < jumps.rows(); ++k) jumps(k, i) = f_[at(k)] - base_[at(k)];
   }
-  return true;
+}
+
+/// Whether f is a function of the velocities of the held functions: what selections that leave these add to f vanishes.
+bool HigherOrderField::Coupled::determines_motion() {
+  const bool decided = decided_jumps.size() == jumps.size();
+  if (decided && jumps == decided_jumps && effects == decided_effects) return determined;
+  decided_jumps = jumps;
+  decided_effects = effects;
+  const Eigen::MatrixXd rest =
+      jumps - effects.transpose().completeOrthogonalDecomposition().solve(jumps.transpose()).transpose() * effects;
+  determined = true;
+  for (Eigen::Index i = 0; i < rest.rows() && determined; ++i) {
+    determined = rest.row(i).cwiseAbs().maxCoeff() <= 1e-8 * jumps.row(i).cwiseAbs().maxCoeff();
+  }
+  return determined;
 }
 
 /// A balance of several functions, with an exit per pair of facets: whether the motion is determined.
@@ -129,21 +135,18 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
   const auto r = static_cast<Eigen::Index>(balance.functions.size());
   coupled.effects.resize(r, q);
   coupled.constant.resize(r);
-  std::vector<int> surfaces;
-  for (const std::size_t row : balance.rows) surfaces.push_back(sliding_[row]);
-  std::vector<double> base;
-  field_jumps(kernel_, t, x, functions_.alpha(), surfaces, base, coupled.jumps);
+  find_jumps(balance, coupled.jumps, t, x);
   for (Eigen::Index k = 0; k < r; ++k) {
-    coupled.constant[k] = functions_.velocity(balance.functions[at(k)], base);
+    coupled.constant[k] = functions_.velocity(balance.functions[at(k)], base_);
   }
   for (Eigen::Index k = 0; k < r; ++k) {
     const auto row = functions_.rows().row(static_cast<Eigen::Index>(balance.functions[at(k)]));
-    coupled.effects.row(k) = row * coupled.jumps;
+    coupled.effects.row(k).noalias() = row * coupled.jumps;
   }
   const bool known = coupled.range.set(coupled.effects);
   too_many_ = too_many_ || !known;
-  const auto selections = switching::central_selections(coupled.effects, coupled.constant);
-  for (std::size_t i = 0; i < surfaces.size(); ++i) alpha_[at(surfaces[i])] = selections[static_cast<Eigen::Index>(i)];
+  coupled.selections = coupled.central.solve(coupled.effects, coupled.constant);
+  take_selections(b);
   const auto& facets = coupled.range.facets();
   // Each surface stands for some pairs of facets, of which the nearest one says when.
   for (std::size_t i = 0; i < balance.rows.size(); ++i) {
@@ -175,7 +178,13 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
     }
     ranges_.push_back(range);
   }
-  return known && determines(coupled);
+  return known && coupled.determines_motion();
+}
+
+/// Those of a balance of several functions.
+void HigherOrderField::take_selections(std::size_t b) {
+  Eigen::Index i = 0;
+  for (const std::size_t row : set_.balances[b].rows) alpha_[at(sliding_[row])] = coupled_[b].selections[i++];
 }
 
 void HigherOrderField::evaluate(double t, const double* point) {
@@ -198,10 +207,10 @@ void HigherOrderField::evaluate(double t, const double* point) {
   if (!determined) std::fill(motion_.begin(), motion_.end(), std::numeric_limits<double>::quiet_NaN());
   // What is recorded lies in the box.
   for (std::size_t b = 0; b < set_.balances.size(); ++b) {
-    const auto& rows = set_.balances[b].rows;
     if (set_.balances[b].functions.size() == 1) continue;
-    const auto bounded = switching::bounded_selections(coupled_[b].effects, coupled_[b].constant);
-    for (std::size_t i = 0; i < rows.size(); ++i) alpha_[at(sliding_[rows[i]])] = bounded[static_cast<Eigen::Index>(i)];
+    auto& coupled = coupled_[b];
+    switching::bound_selections(coupled.effects, coupled.constant, coupled.selections);
+    take_selections(b);
   }
 }
 

@@ -43,11 +43,6 @@ struct BalanceRange {
   double exactness = 1.0;                      ///< how much larger its rounding is than that of its terms
 };
 
-/// f with the selections of these surfaces at 0 (base, n_x), and what each of them adds to it at 1 (jumps, n_x x q).
-/// Cost: q + 1 evaluations of f.
-void field_jumps(const evaluation::ModelKernel& kernel, double t, const double* x, std::vector<double> alpha,
-                 const std::vector<int>& surfaces, std::vector<double>& base, Eigen::MatrixXd& jumps);
-
 /// The field on a higher-order set. Selections of a balance of one function lie on the line between the two corners
 /// where it falls and rises most, those of several functions next to 1/2; the field does not depend on which of the
 /// others are taken. Owns its work space. Cost: one evaluation of f per corner of every balance of one function, per
@@ -75,13 +70,20 @@ class HigherOrderField {
     Eigen::MatrixXd effects;  ///< r x q
     Eigen::VectorXd constant;
     switching::SelectionRange range;
+    switching::CentralSelections central;
+    Eigen::VectorXd selections;
+    /// Whether the motion is determined, and where that was looked at: the same jumps and effects have one answer.
+    [[nodiscard]] bool determines_motion();
+    Eigen::MatrixXd decided_jumps, decided_effects;
+    bool determined = false;
   };
 
   bool hold_one(std::size_t b, double t, const double* x);
   bool hold_several(std::size_t b, double t, const double* x);
   void evaluate(const Balance& balance, BalanceRange& range, double t, const double* x);
   [[nodiscard]] bool determines(const Balance& balance, const BalanceRange& range) const;
-  [[nodiscard]] bool determines(const Coupled& coupled) const;
+  void find_jumps(const Balance& balance, Eigen::MatrixXd& jumps, double t, const double* x);
+  void take_selections(std::size_t b);
   [[nodiscard]] double selection(std::size_t corner, std::size_t bit) const { return corner >> bit & 1U ? 1.0 : 0.0; }
 
   const evaluation::ModelKernel& kernel_;
@@ -89,7 +91,7 @@ class HigherOrderField {
   std::vector<int> sliding_;
   HeldFunctions functions_;
   std::vector<BalanceRange> ranges_;
-  std::vector<double> alpha_, trial_, motion_, x_;
+  std::vector<double> alpha_, trial_, motion_, x_, base_, f_;
   std::vector<std::vector<double>> corners_;  ///< f of the balance at hand
   std::vector<double> velocities_;
   std::vector<Coupled> coupled_;  ///< by balance

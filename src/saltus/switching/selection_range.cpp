@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include "saltus/base/at.hpp"
 #include "saltus/switching/column_flats.hpp"
@@ -113,15 +112,31 @@ SelectionRange::Span SelectionRange::span(std::size_t index, const VectorXd& con
 }
 
 VectorXd central_selections(const MatrixXd& effects, const VectorXd& constant) {
-  const VectorXd half = VectorXd::Constant(effects.cols(), 0.5);
-  const VectorXd excess = constant + effects * half;
-  return half - effects.completeOrthogonalDecomposition().solve(excess);
+  return CentralSelections().solve(effects, constant);
+}
+
+const VectorXd& CentralSelections::solve(const MatrixXd& effects, const VectorXd& constant) {
+  const bool same_size = effects.rows() == effects_.rows() && effects.cols() == effects_.cols();
+  if (!same_size || effects != effects_) {
+    effects_ = effects;
+    factors_.compute(effects_);
+    half_.setConstant(effects.cols(), 0.5);
+  }
+  excess_ = constant;
+  excess_.noalias() += effects_ * half_;
+  lambda_ = half_ - factors_.solve(excess_);
+  return lambda_;
 }
 
 VectorXd bounded_selections(const MatrixXd& effects, const VectorXd& constant) {
-  const Index r = effects.rows(), q = effects.cols();
   VectorXd lambda = central_selections(effects, constant);
-  if (lambda.minCoeff() >= 0.0 && lambda.maxCoeff() <= 1.0) return lambda;
+  bound_selections(effects, constant, lambda);
+  return lambda;
+}
+
+void bound_selections(const MatrixXd& effects, const VectorXd& constant, VectorXd& lambda) {
+  const Index r = effects.rows(), q = effects.cols();
+  if (lambda.minCoeff() >= 0.0 && lambda.maxCoeff() <= 1.0) return;
   VectorXd mu = VectorXd::Zero(r);
   const auto dual = [&](const VectorXd& at) {
     double value = constant.dot(at);
@@ -151,7 +166,6 @@ VectorXd bounded_selections(const MatrixXd& effects, const VectorXd& constant) {
     mu += length * step;
     value = next;
   }
-  return lambda;
 }
 
 }  // namespace saltus::switching

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 
 namespace saltus::switching {
 
@@ -42,8 +43,22 @@ class SelectionRange {
 /// The solution of a + B lambda = 0 nearest to lambda = 1/2, bounds or not: 1/2 - B^T (B B^T)^-1 (a + B 1/2).
 [[nodiscard]] Eigen::VectorXd central_selections(const Eigen::MatrixXd& effects, const Eigen::VectorXd& constant);
 
+/// The same bits from one point of a motion to the next: B is factored again only where it changes.
+class CentralSelections {
+ public:
+  [[nodiscard]] const Eigen::VectorXd& solve(const Eigen::MatrixXd& effects, const Eigen::VectorXd& constant);
+
+ private:
+  Eigen::MatrixXd effects_;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors_;  ///< of effects_
+  Eigen::VectorXd half_, excess_, lambda_;
+};
+
 /// The solution in [0, 1]^q nearest to 1/2, by Newton's method for the r multipliers of a + B clip(1/2 + B^T mu) = 0;
 /// the nearest miss where there is none. Cost: some ten solutions of r equations.
 [[nodiscard]] Eigen::VectorXd bounded_selections(const Eigen::MatrixXd& effects, const Eigen::VectorXd& constant);
+
+/// The same where the central ones are known: `lambda` becomes those in the box. Cost: nothing where it lies there.
+void bound_selections(const Eigen::MatrixXd& effects, const Eigen::VectorXd& constant, Eigen::VectorXd& lambda);
 
 }  // namespace saltus::switching
