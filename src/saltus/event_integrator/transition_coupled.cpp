@@ -1,4 +1,5 @@
 // Surfaces that influence each other: decision trees for two, the hidden dynamics for more and where no tree decides.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -40,11 +41,23 @@ void subtract(const switching::MultiAffine& ahead, double time, switching::Multi
   }
 }
 
-/// Whether it is the mode that was chosen, and the same root.
-bool is_chosen(const switching::HiddenDecision& chosen, const auto& mode) {
-  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-6; };
-  return std::equal(mode.mode.begin(), mode.mode.end(), chosen.mode.begin()) &&
-         std::equal(mode.alpha.begin(), mode.alpha.end(), chosen.alpha.begin(), near);
+/// Which of the modes is the one that was chosen: of two roots of a mode the nearer one, as behind the end of sliding
+/// the hidden dynamics has the fields of a little later; one past the last if none is.
+std::size_t find_chosen(const switching::HiddenDecision& chosen, const auto& modes) {
+  std::size_t found = modes.size();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const auto& mode = modes[i];
+    if (!std::equal(mode.mode.begin(), mode.mode.end(), chosen.mode.begin())) continue;
+    double distance = 0.0;
+    for (std::size_t k = 0; k < mode.alpha.size(); ++k) {
+      distance = std::max(distance, std::abs(mode.alpha[k] - chosen.alpha[k]));
+    }
+    if (!(distance < nearest)) continue;
+    nearest = distance;
+    found = i;
+  }
+  return found;
 }
 
 double largest(const switching::MultiAffine& g) {
@@ -121,11 +134,25 @@ void Decider::note_others(const std::vector<int>& group, const switching::PlaneM
   }
 }
 
+/// Whether it is sliding on, at the double root that is the last of this sliding. As its time is known to 1e-12 the two
+/// roots may be 1e-6 apart.
+bool Decider::is_vanishing(const std::vector<int>& group, const auto& mode) const {
+  constexpr double near = 1e-5;
+  const auto on_its_root = [&](std::size_t k) {
+    return mode.mode[k] == 0 && std::abs(mode.alpha[k] - before_.alpha[at(group[k])]) <= near;
+  };
+  bool vanishes = std::any_of(group.begin(), group.end(), [&](int j) { return contains(occasion_.coalesced, j); });
+  for (std::size_t k = 0; k < group.size(); ++k) vanishes = vanishes && on_its_root(k);
+  return vanishes;
+}
+
 /// The same of any number of surfaces.
 void Decider::note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen,
                           const std::vector<switching::GroupMode>& modes) {
-  for (const auto& other : modes) {
-    if (is_chosen(chosen, other)) continue;
+  const std::size_t taken = find_chosen(chosen, modes);
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const auto& other = modes[i];
+    if (i == taken || is_vanishing(group, other)) continue;
     transition_.unique = false;
     std::vector<GivenMode> choice;
     for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], other.mode[k], other.alpha[k]});
@@ -244,8 +271,10 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   take(group, hidden.mode, hidden.alpha);
   if (plane) {
     switching::PlaneModes others;
-    for (const auto& mode : switching::admissible_modes(switching::plane_table(table))) {
-      if (!is_chosen(hidden, mode)) others.push(mode);
+    const auto modes = switching::admissible_modes(switching::plane_table(table));
+    const std::size_t taken = find_chosen(hidden, modes);
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      if (i != taken && !is_vanishing(group, modes[i])) others.push(modes[i]);
     }
     note_others(group, others);
   } else if (s_.affine_in_alpha && group.size() <= at(switching::largest_enumerated)) {

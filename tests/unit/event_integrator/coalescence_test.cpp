@@ -67,13 +67,14 @@ TEST(Coalescence, WhereDetGVanishesLikeTheRootOfTheTimeLeftItCostsFewSteps) {
 }
 
 /// Slides on a = b = c = 0 with lambda_a = 5/4 lambda_b and 5/4 lambda_b^2 = 0.3 - y, y' = 0.7: the root is double at
-/// t = 3/7. Behind it b, then a go off to the side -side, where lambda_c = -1/10, a' = -side/4, b' = -side (0.7 + y).
+/// t = 3/7. Behind it b, then a go off to the side -side, with lambda_c = -1/10 at first, a' = -side/4, b' = -side (0.7
+/// + y).
 Integration slide_on_three(int side) {
   Builder b("fold of three");
   const SX x = b.state("a", {0}), y = b.state("b", {0}), z = b.state("c", {0}), height = b.state("y", {0});
   const SX lambda_a = b.sign(b.switching("sa", x)), lambda_b = b.sign(b.switching("sb", y)),
            lambda_c = b.sign(b.switching("sc", z));
-  const SX balance = lambda_c - 0.3 * side * lambda_a - 0.2;
+  const SX balance = lambda_c - 0.3 * side * lambda_a - 0.2 - 0.5 * (height - 0.3);
   b.dynamics("a", 1.25 * lambda_b - lambda_a + 0.1 * balance);
   b.dynamics("b", side * (0.3 - height - lambda_a * lambda_b));
   b.dynamics("c", -balance);
@@ -95,6 +96,9 @@ TEST(Coalescence, OfThreeSurfacesIsLeftToTheSideThatTheFieldsTurnTo) {
     EXPECT_EQ(run.events[1].mode_after, (result::Mode{-side, -side, 0}));
     ASSERT_TRUE(run.events[1].alpha_after.has_value());
     EXPECT_NEAR((*run.events[1].alpha_after)[2], 0.45, 1e-12);
+    // No other mode has its field point away from c = 0 or from where it is; the double root is the last one.
+    EXPECT_EQ(run.events[1].unique, true);
+    EXPECT_TRUE(run.events[1].alternatives.empty());
     const double* x = run.trajectory.x.back().data();
     EXPECT_NEAR(x[0], -side / 7.0, 1e-10);
     EXPECT_NEAR(x[1], -side * 24.0 / 35.0, 1e-10);  // 4/7 + 0.35 (4/7)^2
