@@ -51,7 +51,7 @@ class SwitchSeries {
   std::array<double, remembered> times_{};  ///< of the last switches, the last one first
   std::size_t switches_ = 0;
   double first_lap_ = 0.0;  ///< of four switches, before laps began to shrink from switch to switch; 0 if they do not
-  long in_a_row_ = 0;  ///< without the time having advanced noticeably
+  long in_a_row_ = 0;       ///< without the time having advanced noticeably
   double start_ = 0.0;
 };
 
