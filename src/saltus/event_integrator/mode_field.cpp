@@ -4,14 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/switching/surface_decision.hpp"
 
 namespace saltus::event_integrator {
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The only column of a row that is not 0, or -1.
 int only_column(const Eigen::MatrixXd& rows, Eigen::Index row) {
@@ -35,116 +32,6 @@ ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha
   trial_.resize(n_psi);
   alpha_.resize(n_psi);
   values_.resize(at(kernel.event_functions()));
-}
-
-void ModeField::enter(const ModeState& state) {
-  linear_motion_.forget();
-  // Alone, a surface is one group whatever happens around it.
-  const bool same_single = is_single() && state.sliding == sliding_ && !state.higher && kernel_.region_groups().empty();
-  sliding_ = state.sliding;
-  start_alpha_ = state.alpha;
-  alpha_ = state.alpha;
-  solve_ = SlidingSolve::none;
-  independent_.clear();
-  ties_known_ = true;
-  if (sliding_.empty()) {
-    kernel_.prepare_field(alpha_.data(), constants_[0]);
-    return;
-  }
-  // Cells may change a gradient that is constant in each.
-  const bool same_rows = same_single && constant_row_.front() && kernel_.cells() == 0;
-  if (!same_rows) resize_rows();
-  if (same_single) {
-    solve_ = SlidingSolve::decoupled;
-  } else {
-    find_regions(state);
-    find_groups();
-  }
-  if (state.higher) {
-    solve_ = SlidingSolve::higher_order;
-    higher_order_.emplace(kernel_);
-    higher_order_->enter(*state.higher, sliding_, state.alpha);
-  }
-  single_ = is_single() ? sliding_.front() : -1;
-  if (sliding_.size() != 1) return;
-  between_.clear();
-  for (std::size_t corner = 0; corner < 2; ++corner) {
-    corner_[corner] = state.corner_alpha[corner];
-    kernel_.prepare_field(corner_[corner].data(), constants_[corner]);
-  }
-  for (std::size_t i = 0; i < alpha_.size(); ++i) {
-    if (corner_[0][i] == corner_[1][i]) {
-      alpha_[i] = corner_[0][i];
-    } else {
-      between_.push_back(i);
-    }
-  }
-  if (same_rows) refer_to_constants();
-}
-
-void ModeField::resize_rows() {
-  const auto m = static_cast<Eigen::Index>(sliding_.size());
-  rows_.resize(m, kernel_.states());
-  rates_.resize(m);
-  residual_.resize(m);
-  normal_matrix_.resize(m, m);
-  exits_.assign(sliding_.size(), {});
-  coordinate_.assign(sliding_.size(), -1);
-  constant_row_.assign(sliding_.size(), false);
-}
-
-void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& other) {
-  linear_motion_.forget();
-  start_alpha_[surface] = alpha_[surface] = other.alpha[surface];
-  constants_[0] = other;
-}
-
-void ModeField::slide_from_region(std::size_t surface, double selection, Region side,
-                                  const evaluation::FieldConstants& other) {
-  linear_motion_.forget();
-  start_alpha_[surface] = alpha_[surface] = selection;
-  if (side == Region::below) std::swap(constants_[0], constants_[1]);
-  constants_[side == Region::below ? 0 : 1] = other;
-  for (std::size_t corner = 0; corner < 2; ++corner) corner_[corner] = constants_[corner].alpha;
-  const int j = static_cast<int>(surface);
-  sliding_.assign(1, j);
-  between_.assign(1, surface);
-  if (single_ != j) {
-    resize_rows();
-    find_groups();
-    SALTUS_ASSERT(is_single());
-    single_ = j;
-  }
-  solve_ = SlidingSolve::decoupled;
-  refer_to_constants();
-}
-
-void ModeField::leave_to(Region side) {
-  linear_motion_.forget();
-  const auto j = at(sliding_.front());
-  start_alpha_[j] = alpha_[j] = side == Region::below ? 0.0 : 1.0;
-  if (side == Region::above) std::swap(constants_[0], constants_[1]);
-  sliding_.clear();
-  solve_ = SlidingSolve::none;
-}
-
-void ModeField::pass(std::size_t surface, const std::vector<double>& alpha,
-                     FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of) {
-  linear_motion_.forget();
-  const auto slid = at(sliding_.front());
-  start_alpha_[surface] = alpha_[surface] = alpha[surface];
-  start_alpha_[slid] = alpha_[slid] = alpha[slid];
-  for (std::size_t corner = 0; corner < 2; ++corner) {
-    corner_[corner][surface] = alpha[surface];
-    constants_[corner] = constants_of(corner_[corner]);
-  }
-  refer_to_constants();
-}
-
-/// For native steps on one surface.
-void ModeField::refer_to_constants() {
-  sliding_constants_ = {
-      constants_[0].values.data(), constants_[1].values.data(), rows_.data(), rates_[0], row_square_, coordinate_[0]};
 }
 
 void ModeField::gradients(double t, const double* x) {
@@ -307,57 +194,6 @@ void ModeField::evaluate_nonaffine(double t, const double* x) {
   kernel_.field(t, x, alpha_.data(), f_[0].data());
 }
 
-bool ModeField::solve_normal_equations() {
-  if (sliding_.size() == 1) {
-    residual_[0] /= row_square_;
-    return row_square_ > 0.0;
-  }
-  if (!independent_.empty()) return solve_independent_equations();
-  normal_matrix_.noalias() = rows_ * rows_.transpose();
-  cholesky_.compute(normal_matrix_);
-  if (cholesky_.info() != Eigen::Success) return false;
-  cholesky_.solveInPlace(residual_);
-  return true;
-}
-
-/// Rows that depend on others follow them.
-bool ModeField::solve_independent_equations() {
-  take_rows(rows_, independent_, base_rows_);
-  base_residual_.resize(base_rows_.rows());
-  for (Eigen::Index k = 0; k < base_residual_.size(); ++k) {
-    base_residual_[k] = residual_[independent_[at(k)]];
-  }
-  normal_matrix_.noalias() = base_rows_ * base_rows_.transpose();
-  cholesky_.compute(normal_matrix_);
-  if (cholesky_.info() != Eigen::Success) return false;
-  cholesky_.solveInPlace(base_residual_);
-  residual_.setZero();
-  for (Eigen::Index k = 0; k < base_residual_.size(); ++k) {
-    residual_[independent_[at(k)]] = base_residual_[k];
-  }
-  return true;
-}
-
-void ModeField::remove_normal_part(double* xdot) {
-  for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    residual_[static_cast<Eigen::Index>(row)] = normal_velocity(row, f_[0]);
-  }
-  const bool independent = solve_normal_equations();
-  for (std::size_t i = 0; i < f_[0].size(); ++i) {
-    double correction = 0.0;
-    for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
-      correction += rows_(row, static_cast<Eigen::Index>(i)) * residual_[row];
-    }
-    xdot[i] = independent ? f_[0][i] - correction : not_a_number;
-  }
-  for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    const auto r = static_cast<Eigen::Index>(row);
-    if (const int only = coordinate_[row]; only >= 0 && independent && std::isfinite(xdot[only])) {
-      xdot[only] = rates_[r] == 0.0 ? 0.0 : -rates_[r] / rows_(r, only);
-    }
-  }
-}
-
 void ModeField::select(double t, const double* x) {
   if (solve_ != SlidingSolve::higher_order) gradients(t, x);
   switch (solve_) {
@@ -403,38 +239,6 @@ void ModeField::exits(double t, const double* x, ExitValues* values) {
     if (solve_ == SlidingSolve::coupled) find_stability();
   }
   std::copy(exits_.begin(), exits_.end(), values);
-}
-
-bool ModeField::project(double t, double* x) {
-  if (solve_ == SlidingSolve::none) return false;
-  if (solve_ == SlidingSolve::higher_order) return higher_order_->project(t, x);
-  bool changed = false;
-  // Newton converges quadratically from O(tolerance): three steps reach rounding, the fourth proves it.
-  for (int iteration = 0; iteration < 4; ++iteration) {
-    kernel_.functions(t, x, start_alpha_.data(), values_.data());
-    double largest = 0.0;
-    for (std::size_t row = 0; row < sliding_.size(); ++row) {
-      const double psi = values_[at(sliding_[row])];
-      residual_[static_cast<Eigen::Index>(row)] = psi;
-      largest = std::max(largest, std::abs(psi));
-    }
-    if (largest == 0.0 || !std::isfinite(largest)) return changed;
-    gradients(t, x);
-    if (!solve_normal_equations()) return changed;
-    bool moved = false;
-    for (std::size_t i = 0; i < f_[0].size(); ++i) {
-      double correction = 0.0;
-      for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
-        correction += rows_(row, static_cast<Eigen::Index>(i)) * residual_[row];
-      }
-      const double next = x[i] - correction;
-      moved = moved || next != x[i];
-      x[i] = next;
-    }
-    changed = changed || moved;
-    if (!moved) return changed;
-  }
-  return changed;
 }
 
 }  // namespace saltus::event_integrator

@@ -1,7 +1,6 @@
 // Sliding on several surfaces: selections group by group, as far as they influence each other.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "saltus/event_integrator/mode_field.hpp"
@@ -12,8 +11,6 @@
 
 namespace saltus::event_integrator {
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Which of both roots a mode slides on, from the fields where it begins: the one whose selections it has; where these
 /// say nothing (a forced mode) the one with det G > 0 if it is in the square, else the other one if that is.

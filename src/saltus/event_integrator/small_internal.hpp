@@ -15,6 +15,8 @@ namespace saltus::event_integrator {
 /// Relative spacing of doubles.
 inline constexpr double rounding_unit = std::numeric_limits<double>::epsilon();
 
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
 inline bool is_finite(const std::vector<double>& values) {
   double none = 0.0;  // NaN if a value is not finite: without a way out of the loop
   for (const double value : values) none += 0.0 * value;

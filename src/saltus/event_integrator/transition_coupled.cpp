@@ -1,7 +1,6 @@
 // Surfaces that influence each other: decision trees for two, the hidden dynamics for more and where no tree decides.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -17,8 +16,6 @@ using switching::PlaneDecision;
 using switching::PlaneMode;
 using switching::PlaneTable;
 using switching::SelectionPolicy;
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Normal components of all corner fields of a group.
 switching::MultiAffine corner_velocities(const ProjectedFields& fields, const ModeState& state,

@@ -88,6 +88,13 @@ std::optional<Transition> decide_dependent(const Surroundings& s, const ModeStat
 /// The mode behind an event of a state that is held so.
 Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion);
 
+/// The mode where functions jump away from zero on surfaces inside them that are crossed; nullopt if none does.
+std::optional<Transition> cross_with_jump(const Surroundings& s, const ModeState& before, const Occasion& occasion);
+
+/// Sliding on functions that have a kink on the touched surfaces: goes on, or ends, with their new gradients behind the
+/// kinks. nullopt if other surfaces are touched, or if the new motion does not lead away from the kinks.
+std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& before, const Occasion& occasion);
+
 /// What was decided where three or more regions of a group by `indicator` meet.
 struct RegionChoice {
   evaluation::RegionRange group;

@@ -1,0 +1,93 @@
+// The normal directions of the sliding surfaces: what of a motion, or of a state, is removed along them.
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/event_integrator/mode_field.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
+
+namespace saltus::event_integrator {
+
+bool ModeField::solve_normal_equations() {
+  if (sliding_.size() == 1) {
+    residual_[0] /= row_square_;
+    return row_square_ > 0.0;
+  }
+  if (!independent_.empty()) return solve_independent_equations();
+  normal_matrix_.noalias() = rows_ * rows_.transpose();
+  cholesky_.compute(normal_matrix_);
+  if (cholesky_.info() != Eigen::Success) return false;
+  cholesky_.solveInPlace(residual_);
+  return true;
+}
+
+/// Rows that depend on others follow them.
+bool ModeField::solve_independent_equations() {
+  take_rows(rows_, independent_, base_rows_);
+  base_residual_.resize(base_rows_.rows());
+  for (Eigen::Index k = 0; k < base_residual_.size(); ++k) {
+    base_residual_[k] = residual_[independent_[at(k)]];
+  }
+  normal_matrix_.noalias() = base_rows_ * base_rows_.transpose();
+  cholesky_.compute(normal_matrix_);
+  if (cholesky_.info() != Eigen::Success) return false;
+  cholesky_.solveInPlace(base_residual_);
+  residual_.setZero();
+  for (Eigen::Index k = 0; k < base_residual_.size(); ++k) {
+    residual_[independent_[at(k)]] = base_residual_[k];
+  }
+  return true;
+}
+
+void ModeField::remove_normal_part(double* xdot) {
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    residual_[static_cast<Eigen::Index>(row)] = normal_velocity(row, f_[0]);
+  }
+  const bool independent = solve_normal_equations();
+  for (std::size_t i = 0; i < f_[0].size(); ++i) {
+    double correction = 0.0;
+    for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
+      correction += rows_(row, static_cast<Eigen::Index>(i)) * residual_[row];
+    }
+    xdot[i] = independent ? f_[0][i] - correction : not_a_number;
+  }
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    const auto r = static_cast<Eigen::Index>(row);
+    if (const int only = coordinate_[row]; only >= 0 && independent && std::isfinite(xdot[only])) {
+      xdot[only] = rates_[r] == 0.0 ? 0.0 : -rates_[r] / rows_(r, only);
+    }
+  }
+}
+
+bool ModeField::project(double t, double* x) {
+  if (solve_ == SlidingSolve::none) return false;
+  if (solve_ == SlidingSolve::higher_order) return higher_order_->project(t, x);
+  bool changed = false;
+  // Newton converges quadratically from O(tolerance): three steps reach rounding, the fourth proves it.
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    kernel_.functions(t, x, start_alpha_.data(), values_.data());
+    double largest = 0.0;
+    for (std::size_t row = 0; row < sliding_.size(); ++row) {
+      const double psi = values_[at(sliding_[row])];
+      residual_[static_cast<Eigen::Index>(row)] = psi;
+      largest = std::max(largest, std::abs(psi));
+    }
+    if (largest == 0.0 || !std::isfinite(largest)) return changed;
+    gradients(t, x);
+    if (!solve_normal_equations()) return changed;
+    bool moved = false;
+    for (std::size_t i = 0; i < f_[0].size(); ++i) {
+      double correction = 0.0;
+      for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
+        correction += rows_(row, static_cast<Eigen::Index>(i)) * residual_[row];
+      }
+      const double next = x[i] - correction;
+      moved = moved || next != x[i];
+      x[i] = next;
+    }
+    changed = changed || moved;
+    if (!moved) return changed;
+  }
+  return changed;
+}
+
+}  // namespace saltus::event_integrator
