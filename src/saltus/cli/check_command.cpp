@@ -19,7 +19,7 @@
 namespace saltus::cli {
 namespace {
 
-struct Arguments {
+struct CheckArguments {
   std::string model;
   std::vector<std::string> settings;
 };
@@ -219,7 +219,7 @@ std::string description_of(const model::System& system, const std::string& path,
   return text;
 }
 
-ExitCode run(const Arguments& arguments) {
+ExitCode run_check(const CheckArguments& arguments) {
   const auto input = read_input(arguments.model, arguments.settings);
   if (!input) return refuse(input.error());
   const auto system = model::build(input->file.description, input->overrides);
@@ -238,7 +238,7 @@ ExitCode run(const Arguments& arguments) {
 Command add_check(CLI::App& app) {
   auto* command = app.add_subcommand("check", "read a model, classify its switching functions, warn");
   // Shared: the parser fills it after this function has returned, the command reads it.
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CheckArguments>();
   command
       ->add_option("MODEL", arguments->model,
                    "model file, a name of the catalogue (saltus models), or - for standard input")
@@ -248,7 +248,7 @@ Command add_check(CLI::App& app) {
       ->expected(1)
       ->take_all();
   command->footer("Example:\n  saltus check stick-slip");
-  return {"check", [arguments] { return run(*arguments); }};
+  return {"check", [arguments] { return run_check(*arguments); }};
 }
 
 }  // namespace saltus::cli

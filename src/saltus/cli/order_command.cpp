@@ -14,7 +14,7 @@
 namespace saltus::cli {
 namespace {
 
-struct Arguments {
+struct OrderArguments {
   RunArguments run;
   std::optional<std::string> schemes, steps, reformulation;
 };
@@ -32,7 +32,7 @@ Expected<void> read(const char* flag, const std::optional<std::string>& text, Pa
   return {};
 }
 
-Expected<pipeline::OrderOptions> order_options(const Arguments& arguments) {
+Expected<pipeline::OrderOptions> order_options(const OrderArguments& arguments) {
   pipeline::OrderOptions options;
   const auto word = [](const std::string& text) { return Expected<std::string>(text); };
   return read("--schemes", arguments.schemes, pipeline::parse_schemes, options.schemes)
@@ -41,7 +41,7 @@ Expected<pipeline::OrderOptions> order_options(const Arguments& arguments) {
       .map([&] { return options; });
 }
 
-ExitCode run(const Arguments& arguments) {
+ExitCode run_order(const OrderArguments& arguments) {
   const auto what = order_options(arguments);
   if (!what) return refuse(what.error());
   return run_model(arguments.run, [&](const model::System& system, const pipeline::SimulateOptions& options,
@@ -55,7 +55,7 @@ ExitCode run(const Arguments& arguments) {
 Command add_order(CLI::App& app) {
   auto* command = app.add_subcommand("order", "measure how the errors of schemes fall with the step");
   // Shared: the parser fills it after this function has returned, the command reads it.
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<OrderArguments>();
   add_run_options(*command, arguments->run, std::array{until_shortcut}, {".json"},
                   "write the errors, slopes and the reference run; may repeat");
   command
@@ -71,7 +71,7 @@ Command add_order(CLI::App& app) {
       "[simulate.timestepping]. The reference is the method event with its tightest settings.\n"
       "\nExample:\n  saltus order stick-slip --schemes radau_iia:2,gauss_legendre:2 --steps 100,200,400 "
       "--report order.html");
-  return {"order", [arguments] { return run(*arguments); }};
+  return {"order", [arguments] { return run_order(*arguments); }};
 }
 
 }  // namespace saltus::cli

@@ -12,12 +12,12 @@
 namespace saltus::cli {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   std::string result;
   std::string page;
 };
 
-ExitCode run(const Arguments& arguments) {
+ExitCode run_report(const ReportArguments& arguments) {
   const auto page = arguments.page.empty() ? std::filesystem::path(arguments.result).replace_extension(".html").string()
                                            : arguments.page;
   const auto result = io::read_result(arguments.result);
@@ -34,12 +34,12 @@ ExitCode run(const Arguments& arguments) {
 Command add_report(CLI::App& app) {
   auto* command = app.add_subcommand("report", "make the page with pictures of a stored result");
   // Shared: the parser fills it after this function has returned, the command reads it.
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReportArguments>();
   command->add_option("RESULT", arguments->result, "result written by simulate --out RESULT.json")->required();
   command->add_option("--out", arguments->page, "page to write (default: the result's name with .html)")
       ->type_name("FILE.html");
   command->footer("Example:\n  saltus simulate stick-slip --out stick-slip.json && saltus report stick-slip.json");
-  return {"report", [arguments] { return run(*arguments); }};
+  return {"report", [arguments] { return run_report(*arguments); }};
 }
 
 }  // namespace saltus::cli

@@ -11,7 +11,7 @@
 namespace saltus::cli {
 namespace {
 
-constexpr std::array shortcuts{
+constexpr std::array simulate_shortcuts{
     until_shortcut,
     Shortcut{"--method", "simulate.method", "METHOD", "event, fesd, timestepping or smoothed"},
     Shortcut{"--rtol", "simulate.rtol", "R", "relative tolerance"},
@@ -35,7 +35,7 @@ Command add_simulate(CLI::App& app) {
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<RunArguments>();
   arguments->methods = RunMethods::chosen;
-  add_run_options(*command, *arguments, shortcuts, {".json", ".csv"},
+  add_run_options(*command, *arguments, simulate_shortcuts, {".json", ".csv"},
                   "write the result: .json all of it, .csv the trajectory; may repeat");
   command->footer(footer());
   return {"simulate", [arguments] { return run_model(*arguments, pipeline::simulate); }};
