@@ -1,4 +1,5 @@
 // Shipped models whose solutions are not unique, with --branch all: every motion is found, and ends where it should.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -79,10 +80,10 @@ TEST(ShippedBranches, PartWaysAndSlideOrLeave) {
     std::string name;
     std::vector<double> followed;  ///< end state
     double x, y;                   ///< of the motion into x, y < 0
-    std::size_t branches;          ///< modes; staying on both is listed, not followed
+    std::size_t branches;          ///< their last modes
   };
-  for (const Fork& fork : {Fork{"part-ways", {3.5, 1.4}, -1.5, -0.6, 3},
-                           Fork{"slide-or-leave", {0.0, 1 - 1.2 * std::log(1.2)}, -2.625, -0.3, 4}}) {
+  for (const Fork& fork : {Fork{"part-ways", {3.5, 1.4}, -1.5, -0.6, 4},
+                           Fork{"slide-or-leave", {0.0, 1 - 1.2 * std::log(1.2)}, -2.625, -0.3, 5}}) {
     const Simulator model = Simulator::from_catalogue(fork.name);
     auto options = with(model.options(), fine);
     options.event.trajectories = 64;
@@ -97,6 +98,52 @@ TEST(ShippedBranches, PartWaysAndSlideOrLeave) {
     EXPECT_NEAR(other[0], fork.x, 1e-11) << fork.name;
     EXPECT_NEAR(other[1], fork.y, 1e-11) << fork.name;
   }
+}
+
+// The root that has lost its stability stays a motion of Filippov's: a branch that begins like a run in a forced mode.
+TEST(ShippedBranches, StayOnARootThatHasLostItsStability) {
+  for (const char* name : {"part-ways", "slide-or-leave"}) {
+    const Simulator model = Simulator::from_catalogue(name);
+    auto options = with(model.options(), fine);
+    options.event.trajectories = 64;
+    const Result result = model.run(options);
+    EXPECT_EQ(result::not_followed(result), 0U) << name;
+    const auto stays = [&](const Result& branch) {
+      const auto& first = branch.events.at(0);
+      return branch.left_at.value().event == 1 && first.mode_after == result::Mode{0, 0} &&
+             branch.final.mode == *first.mode_after;
+    };
+    const auto branch = std::find_if(result.branches.begin(), result.branches.end(), stays);
+    ASSERT_NE(branch, result.branches.end()) << name;
+    EXPECT_EQ(branch->status.termination, Termination::completed) << branch->status.message;
+    const auto& first = branch->events.front();
+    EXPECT_EQ(first.kind, result::EventKind::start) << name;
+    EXPECT_FALSE(first.mode_before.has_value()) << name;
+    EXPECT_NEAR(first.t, 1.0, 1e-12) << name;
+    EXPECT_EQ(first.alternatives.size(), result.events[1].alternatives.size()) << name;
+    EXPECT_EQ(branch->trajectory.t.front(), first.t) << name;
+    for (const std::size_t i : {0U, 1U}) EXPECT_NEAR(branch->final.x[i], 0.0, 1e-14) << name;
+  }
+}
+
+// The other root on both surfaces lasts until t = 11/6; then x' = (t + 1)/4, y' = -17/10 is one of three ways.
+TEST(ShippedBranches, TheOtherRootOfTheSameMode) {
+  const Simulator model = Simulator::from_catalogue("slide-or-leave");
+  auto options = with(model.options(), fine);
+  options.event.trajectories = 64;
+  const Result result = model.run(options);
+  const auto changes = [](const Result& branch) {
+    return branch.left_at.value().event == 1 && branch.events.at(0).kind == result::EventKind::start &&
+           branch.events.size() == 2;
+  };
+  const auto branch = std::find_if(result.branches.begin(), result.branches.end(), changes);
+  ASSERT_NE(branch, result.branches.end());
+  const double exit = 11.0 / 6.0;
+  const double until = 2.0;
+  EXPECT_NEAR(branch->events[1].t, exit, 1e-11);
+  EXPECT_EQ(branch->final.mode, (std::vector<int>{1, -1}));
+  EXPECT_NEAR(branch->final.x[0], (until * until - exit * exit) / 8.0 + (until - exit) / 4.0, 1e-11);
+  EXPECT_NEAR(branch->final.x[1], -1.7 * (until - exit), 1e-11);
 }
 
 // x' = sign(x) from 0: away to either side, or never.

@@ -144,7 +144,11 @@ bool Run::go_on() {
     return false;
   }
   if (!enter(transition) || !find_undefined_cells()) return false;
-  recorder_.switched(t_, x_, before_, transition);
+  if (!recorder_.switched(t_, x_, before_, transition) && chooses_here(transition)) {
+    // To stay on a root that has lost its stability, or to change to the other one: the branch begins like a run in a
+    // forced mode.
+    recorder_.started(t_, x_, transition, state_.sliding);
+  }
   restart_control();
   h_ = step_memory_.change(state_.mode, t_, h_);
   return true;

@@ -125,6 +125,10 @@ class Run {
   [[nodiscard]] Choice next_choice() const {
     return next_choice_ < options_.choices.size() ? options_.choices[next_choice_] : Choice{-1};
   }
+  /// Whether this is the alternative that the run was asked to go on with last.
+  [[nodiscard]] bool chooses_here(const Transition& transition) const {
+    return next_choice_ > 0 && transition.decision == chosen_ && !transition.alternatives.empty();
+  }
   bool change_mode(const Located& located);
   const ModeState& slid_on_freed(Occasion& occasion);
   CellChange leave_cells(const Located& located);
