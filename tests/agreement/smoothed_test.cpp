@@ -95,6 +95,14 @@ TEST(SmoothedRun, HoldsTheIntersectionOfTwoSurfaces) {
   }
 }
 
+// Laps that tighten until the layers are reached say nothing about the steps behind them: a million was not enough.
+TEST(SmoothedRun, ASpiralThatEndsInItsLayersGoesOnWithTheTolerancesOfTheRun) {
+  const Result result = run_smoothed(Simulator::from_catalogue("slow-spiral"), 1e-4);
+  EXPECT_NEAR(result.final.x[0], 0.0, 1e-4);
+  EXPECT_NEAR(result.final.x[1], 0.0, 1e-4);
+  EXPECT_LT(result.statistics.steps, 20000);
+}
+
 TEST(SmoothedRun, RowsAreWhatTheDefinitionSays) {
   const double epsilon = 1e-4;
   const Result result = run_smoothed(Simulator::from_catalogue("stick-slip"), epsilon);

@@ -149,6 +149,7 @@ class Run {
   void note_tightening_switch(const SurfaceSwitch& change);
   void note_switch_rates();
   void follow_shrinking();
+  void end_shrinking();
   void follow_roots();
   void set_tolerances();
   void accumulate_switches();
@@ -244,6 +245,7 @@ class Run {
   ode::Tolerances tolerances_;       ///< of a step
   ode::Tolerances mode_tolerances_;  ///< of the mode
   double lap_share_ = 1.0;           ///< part of atol while switches tighten
+  double closed_lap_ = 0.0;          ///< the last one that they closed
   double root_share_ = 1.0;          ///< part of both where roots of coupled surfaces are near
   double first_lap_ = 0.0;           ///< duration of the first one that was closed
   LimitsInARow limits_in_a_row_;

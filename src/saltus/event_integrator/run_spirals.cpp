@@ -106,9 +106,19 @@ void Run::follow_shrinking() {
   const auto lap = switch_laps_.closed_lap();
   if (!lap) return;
   if (first_lap_ == 0.0) first_lap_ = *lap;
+  closed_lap_ = *lap;
   const double share = std::clamp(*lap / first_lap_, 1e-6, 1.0);
   lap_share_ = share * share;
   set_tolerances();
+}
+
+/// Without a switch for many laps their sequence has ended before it had a limit, as spirals do in the layers of a
+/// regularisation: what comes has the tolerances of the run.
+void Run::end_shrinking() {
+  constexpr double many = 16.0;
+  if (t_ - series_.last() <= many * closed_lap_) return;
+  switch_laps_.clear();
+  follow_shrinking();
 }
 
 /// The same for one surface, listed, with no jump; `before` is its mode and selection before.

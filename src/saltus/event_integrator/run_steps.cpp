@@ -226,6 +226,7 @@ Run::Step Run::accept(double t_new) {
   // A step that was cut short at a time of a jump says nothing against the one that was proposed.
   if (t_ < options_.until && t_ == jumps_.next_time()) h_ = std::max(h_, h_try_);
   step_memory_.accepted(h_);
+  if (lap_share_ != 1.0) end_shrinking();
   if (!stiff_at_ && stiffness_.looks_stiff(stepper_)) stiff_at_ = t_;
   if (search_.settle(t_, x_.data())) {
     // What a user function turns to from a zero at the start is its first sign, not a change of it.
