@@ -7,6 +7,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/field_split_internal.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
+#include "saltus/evaluation/root_limits_internal.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
@@ -68,6 +69,10 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
   gradients.resize(at(phi.numel()));
 
+  const RootLimits limited = limit_roots(free.f, phi(casadi::Slice(0, n_psi)), symbols(), system.parameter_values);
+  free.f = limited.f;
+  rooted = limited.rooted;
+  continued_roots = limited.continued;
   const std::vector<SX> arguments{t, x, p, alpha};
   compile_field(free, "saltus_field");
   functions = ModelFunction("saltus_functions", arguments, {phi});

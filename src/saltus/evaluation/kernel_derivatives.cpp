@@ -93,6 +93,8 @@ const ode::LinearField* ModelKernel::linear_field(const double* alpha, ode::Line
   return &own;
 }
 
+bool ModelKernel::has_root(int surface) const { return implementation_->rooted[at(surface)]; }
+bool ModelKernel::root_is_continued(int surface) const { return implementation_->continued_roots[at(surface)]; }
 bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[at(function)]; }
 const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[at(function)]; }
 bool ModelKernel::depends(int surface, int alpha) const {

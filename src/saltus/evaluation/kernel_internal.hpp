@@ -59,6 +59,7 @@ struct ModelKernel::Implementation {
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
   JumpFunctions jumps;
   std::vector<bool> affine, time_only;
+  std::vector<bool> rooted, continued_roots;  ///< n_psi
   AffineRowFunctions affine_rows;
   FieldConstants constants;  ///< work space of field()
   std::vector<std::vector<int>> inner;

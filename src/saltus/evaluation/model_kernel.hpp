@@ -174,6 +174,14 @@ class ModelKernel {
   /// Whether the normal component grad psi_i . f + d psi_i/dt depends on alpha_j (structurally).
   [[nodiscard]] bool depends(int surface, int alpha) const;
 
+  /// Whether f has a root of psi_j, or of what is 0 with it, so that its derivative is infinite beside the surface. On
+  /// the surface, to the rounding of psi_j, the root is 0 and so are its derivatives: field() and lie_derivative() are
+  /// those of everything else.
+  [[nodiscard]] bool has_root(int surface) const;
+  /// Whether it is 0 beyond the surface of its region, too: if d psi_j/dt jumps there, from no side that is always 0.
+  /// Otherwise it is NaN.
+  [[nodiscard]] bool root_is_continued(int surface) const;
+
   [[nodiscard]] int cells() const;
   /// The event function of a cell's upper end (argument - end, negative inside); that of the lower one follows it.
   [[nodiscard]] int cell_function(int cell) const;

@@ -68,6 +68,9 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       evaluations_before_(kernel.field_evaluations()),
       series_(options.until - options.from) {
   mode_tolerances_ = tolerances_;
+  for (int j = 0; j < kernel.switching_functions(); ++j) {
+    if (kernel.root_is_continued(j)) continued_roots_.push_back(j);
+  }
   ordinary_ = way == Way::short_where_ordinary && has_ordinary_switches();
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (i >= system.discrete_states.size() || !system.discrete_states[i]) continuous_.push_back(i);
@@ -219,6 +222,7 @@ CompactIntegration Run::to_end() {
       if (spiral_start_) begin_spiral();
       if (rooted_ >= 0) leave_root();
       if (!running_ || t_ >= options_.until) break;
+      undefined_ahead_ = false;
       h_try_ = std::max(h_, 2.0 * smallest_step());
       if (options_.max_step) h_try_ = std::min(h_try_, *options_.max_step);
       while (running_ && attempt() == Step::shortened) {

@@ -44,11 +44,38 @@ void RootedExit::find_replaced(double t, const std::vector<double>& x) {
   noise_ = std::abs(rate * t);
   for (std::size_t i = 0; i < row_.size(); ++i) noise_ += std::abs(row_[i] * x[i]);
   noise_ *= 8.0 * rounding_unit;
+  if (degree_ == 0.0) find_degree(t, x);
+}
+
+/// dpsi/dt at a distance beside x, into the region, less that at x, outwards: how it falls with the root.
+double RootedExit::change_beside(double t, const std::vector<double>& x, double width) {
+  double square = 0.0, farthest = 0.0;
+  for (const double d : row_) square += d * d;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    farthest = std::max(farthest, std::abs(row_[i]) / square / (1.0 + std::abs(x[i])));
+  }
+  const double here = velocity(t, x);
+  std::vector<double> beside = x;
+  for (std::size_t i = 0; i < x.size(); ++i) beside[i] += side_ * width / farthest * row_[i] / square;
+  return side_ * (velocity(t, beside) - here);
+}
+
+/// psi = v^degree, in which the root is linear: of |psi|^q it is 1/q.
+void RootedExit::find_degree(double t, const std::vector<double>& x) {
+  // A hundred times nearer other terms change a hundredth as much.
+  constexpr double width = 0x1p-20, nearer = 0x1p-7;
+  const double wide = change_beside(t, x, width), narrow = change_beside(t, x, nearer * width);
+  const double exponent = std::log(narrow / wide) / std::log(nearer);
+  constexpr double least = 1.0, most = 8.0;
+  degree_ = std::isfinite(exponent) && exponent > 0.0 ? std::clamp(1.0 / exponent, least, most) : 2.0;
+  // Square roots, but for the rest of the field.
+  constexpr double square_root = 0.1;
+  if (std::abs(degree_ - 2.0) < square_root) degree_ = 2.0;
 }
 
 /// The state that belongs to the unknowns.
 bool RootedExit::place(double t, const std::vector<double>& unknowns, std::vector<double>& x) {
-  const double wanted = side_ * unknowns[replaced_] * unknowns[replaced_];
+  const double wanted = side_ * std::pow(unknowns[replaced_], degree_);
   const double kept = x[replaced_];
   x = unknowns;
   x[replaced_] = kept;
@@ -88,7 +115,7 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
     for (std::size_t k = 0; k < n; ++k) {
       const double kept = unknowns[k];
       const double width =
-          k == replaced_ ? kept * std::max(part, std::sqrt(noise_) / kept) : part * (1.0 + std::abs(kept));
+          k == replaced_ ? std::max(part * kept, std::pow(noise_, 1.0 / degree_)) : part * (1.0 + std::abs(kept));
       unknowns[k] = kept + width;
       const double taken = unknowns[k] - kept;
       if (!residual(t, h, unknowns, there)) return false;
@@ -104,7 +131,7 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
     for (std::size_t i = 0; i < n; ++i) {
       double step = change[static_cast<Eigen::Index>(i)];
       const double scale = i == replaced_ ? unknowns[i] : 1.0 + std::abs(unknowns[i]);
-      const double rounding = i == replaced_ ? noise_ / unknowns[i] : 0.0;
+      const double rounding = i == replaced_ ? noise_ * std::pow(unknowns[i], 1.0 - degree_) : 0.0;
       largest = std::max(largest, (std::abs(step) - rounding) / scale);
       // v stays positive: where it goes to zero there is no solution inside.
       if (i == replaced_) step = std::max(step, -0.75 * unknowns[i]);
@@ -132,7 +159,7 @@ bool RootedExit::substeps(double t, const std::vector<double>& x, double h, int 
       farthest = std::max(farthest, std::abs(psi(end, x_)));
     }
     unknowns = x_;
-    unknowns[replaced_] = std::sqrt(farthest);
+    unknowns[replaced_] = std::pow(farthest, 1.0 / degree_);
     if (!(unknowns[replaced_] > 0.0) || !implicit_euler(end, part, unknowns)) return false;
     if (!place(end, unknowns, x_)) return false;
     from_ = x_;
@@ -190,20 +217,9 @@ double RootedExit::velocity(double t, const std::vector<double>& x) {
 
 bool RootedExit::has_root(double t, const std::vector<double>& x) {
   find_replaced(t, x);
-  double square = 0.0, farthest = 0.0;
-  for (const double d : row_) square += d * d;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    farthest = std::max(farthest, std::abs(row_[i]) / square / (1.0 + std::abs(x[i])));
-  }
-  const double here = velocity(t, x);
-  const auto change = [&](double width) {
-    std::vector<double> beside = x;
-    for (std::size_t i = 0; i < x.size(); ++i) beside[i] += side_ * width / farthest * row_[i] / square;
-    return side_ * (velocity(t, beside) - here);
-  };
   // Sixteen times nearer a smooth function changes a sixteenth as much, a square root a fourth, |psi|^(3/4) an eighth.
   constexpr double width = 0x1p-20, nearer = 0x1p-4, smooth = 0x1p-3;
-  const double wide = change(width), narrow = change(nearer * width);
+  const double wide = change_beside(t, x, width), narrow = change_beside(t, x, nearer * width);
   return narrow < 0.0 && narrow < smooth * wide;
 }
 

@@ -14,7 +14,8 @@
 namespace saltus::event_integrator {
 
 /// Steps of implicit Euler, extrapolated, that begin on a surface and go into the region of a mode. The unknowns are
-/// the states, one of them replaced by v > 0 with psi = +-v^2, in which a root of psi is smooth: the equations
+/// the states, one of them replaced by v > 0 with psi = +-v^(1/q), in which |psi|^q is smooth (q is found): the
+/// equations
 ///   x = x_k + h f(t + h, x)
 /// have a regular solution where the solution leaves, and none where it does not.
 /// Owns its work space. Cost: n_x + 1 evaluations of f per iteration, some four of these per substep.
@@ -40,6 +41,8 @@ class RootedExit {
   bool implicit_euler(double t, double h, std::vector<double>& unknowns);
   bool substeps(double t, const std::vector<double>& x, double h, int count, std::vector<double>& unknowns);
   void find_replaced(double t, const std::vector<double>& x);
+  [[nodiscard]] double change_beside(double t, const std::vector<double>& x, double width);
+  void find_degree(double t, const std::vector<double>& x);
 
   const evaluation::ModelKernel& kernel_;
   ModeField field_;
@@ -48,6 +51,7 @@ class RootedExit {
   double side_;
   std::size_t replaced_ = 0;  ///< the state with the largest part in grad psi, which v stands for
   double noise_ = 0.0;        ///< rounding of psi
+  double degree_ = 0.0;       ///< 1/q, once it was looked at: on the surface
   std::vector<double> row_, values_, from_, x_, f_;
 };
 

@@ -5,10 +5,11 @@
 
 namespace saltus::event_integrator {
 
-/// The tolerances of a step: those of the mode, and the parts of them that shrinking laps and near roots leave.
+/// The tolerances of a step: those of the mode, and the parts of them that shrinking laps, near roots of sliding and
+/// roots of switching functions leave.
 void Run::set_tolerances() {
-  tolerances_.rtol = mode_tolerances_.rtol * root_share_;
-  tolerances_.atol = mode_tolerances_.atol * root_share_ * lap_share_;
+  tolerances_.rtol = mode_tolerances_.rtol * root_share_ * rooted_rtol_;
+  tolerances_.atol = mode_tolerances_.atol * root_share_ * lap_share_ * rooted_atol_;
 }
 
 /// Behind a step: tolerances go with det G where that is small. The motion may run into a point (a folded node of the

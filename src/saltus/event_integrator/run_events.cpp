@@ -195,6 +195,7 @@ Run::Step Run::handle(const Located& located) {
   t_ = located.t;
   x_ = located.x;
   static_cast<void>(holding_.project(t_, state_.alpha, x_));
+  settle_on_roots(located);
   // A step may be as long as the mode.
   if (families_.watches() && t_ > t_begin) look_for_families(t_begin);
   // A step that ended exactly here has written the row before the event.

@@ -144,6 +144,8 @@ class Run {
   /// Where x and f are both 0 the step that was proposed says nothing.
   [[nodiscard]] double root_step() const { return std::max(1e-2 * h_scale_, 1e-8 * span()); }
   bool take_side_of_root();
+  void settle_on_roots(const Located& located);
+  void note_time_scale(double h);
   [[nodiscard]] bool keep_their_signs(const std::vector<double>& before, int surface, double t, const double* x);
   void note_tightening_switch();
   void note_tightening_switch(const SurfaceSwitch& change);
@@ -152,6 +154,7 @@ class Run {
   void end_shrinking();
   void follow_roots();
   void set_tolerances();
+  void tighten_beside_roots(double h);
   void accumulate_switches();
   bool follow_dense_laps();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
@@ -242,12 +245,16 @@ class Run {
   ode::Stepper stepper_;
   ode::StepControl control_;
   ode::StiffnessWatch stiffness_;
-  ode::Tolerances tolerances_;       ///< of a step
-  ode::Tolerances mode_tolerances_;  ///< of the mode
-  double lap_share_ = 1.0;           ///< part of atol while switches tighten
-  double closed_lap_ = 0.0;          ///< the last one that they closed
-  double root_share_ = 1.0;          ///< part of both where roots of coupled surfaces are near
-  double first_lap_ = 0.0;           ///< duration of the first one that was closed
+  ode::Tolerances tolerances_;         ///< of a step
+  ode::Tolerances mode_tolerances_;    ///< of the mode
+  double lap_share_ = 1.0;             ///< part of atol while switches tighten
+  double closed_lap_ = 0.0;            ///< the last one that they closed
+  double root_share_ = 1.0;            ///< part of both where roots of coupled surfaces are near
+  std::vector<int> continued_roots_;   ///< surfaces whose regions' fields go on beyond them, less a root
+  std::vector<double> rooted_values_;  ///< of event functions
+  double rooted_atol_ = 1.0;           ///< parts of the tolerances beside these
+  double rooted_rtol_ = 1.0;
+  double first_lap_ = 0.0;  ///< duration of the first one that was closed
   LimitsInARow limits_in_a_row_;
   ode::DenseStep dense_;
   bool dense_is_last_ = false;  ///< dense_ is that of the last attempt
@@ -303,6 +310,7 @@ class Run {
   std::optional<double>
       no_surface_at_;  ///< where surface_within_rounding() has found none, and nothing else has happened
   double root_tried_at_ = -std::numeric_limits<double>::infinity();
+  bool undefined_ahead_ = false;    ///< of the last attempts one was undefined
   std::optional<double> stiff_at_;  ///< where the explicit method first looked out of place
   double h_ = 0.0;                  ///< proposed step
   double h_try_ = 0.0;              ///< step under trial

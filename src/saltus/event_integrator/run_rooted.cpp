@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/event_integrator/held_functions.hpp"
 #include "saltus/event_integrator/rooted_exit.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
 
@@ -17,6 +18,58 @@ bool Run::keep_their_signs(const std::vector<double>& before, int surface, doubl
     if (!(values[i] * before[i] >= 0.0)) return false;
   }
   return true;
+}
+
+/// Beside a surface with a root of psi, psi matters relative to itself: errors of a step are to be less than a part of
+/// what psi is or becomes. h' = -sqrt(h) empties at 2 sqrt(h), which an error of atol in h moves by 1e-5.
+void Run::tighten_beside_roots(double h) {
+  // A thousandth of psi moves that time by 1e-3 sqrt(psi); of what is left at `least` of atol, 1e-18, by 1e-9 at most.
+  constexpr double part = 1e-3, least = 1e-8;
+  const double smallest = 1e-13 / mode_tolerances_.rtol;  // what doubles carry of a state, several hundred times
+  double atol = 1.0, rtol = 1.0;
+  rooted_values_.resize(at(kernel_.event_functions()));
+  kernel_.functions(t_, x_.data(), state_.alpha.data(), rooted_values_.data());
+  for (const int j : continued_roots_) {
+    if (state_.mode[at(j)] == 0) continue;
+    const Rate rate = rate_along_field(j, t_, x_.data(), slope_.data());
+    const double wanted = part * std::max(std::abs(rooted_values_[at(j)]), std::abs(h * rate.value));
+    atol = std::min(atol, std::max(least, wanted / (rate.slope * mode_tolerances_.atol)));
+    rtol = std::min(rtol, std::max(smallest, wanted / (rate.magnitude * mode_tolerances_.rtol)));
+  }
+  if (atol == rooted_atol_ && rtol == rooted_rtol_) return;
+  rooted_atol_ = atol;
+  rooted_rtol_ = rtol;
+  set_tolerances();
+}
+
+/// Onto all surfaces that meet, where f has a root of one of them: what is left of psi when another one is put to zero,
+/// 1e-15, has a root of 3e-8, or none.
+void Run::settle_on_roots(const Located& located) {
+  if (state_.higher || !kernel_.region_groups().empty()) return;
+  std::vector<int> surfaces = state_.sliding;
+  for (const std::size_t i : located.functions) {
+    const auto& function = search_.functions()[i];
+    if (function.kind == FunctionKind::surface) surfaces.push_back(function.index);
+  }
+  const auto rooted = [&](int j) { return kernel_.has_root(j); };
+  if (surfaces.size() < 2 || std::none_of(surfaces.begin(), surfaces.end(), rooted)) return;
+  HeldFunctions held(kernel_);
+  std::vector<HeldFunction> functions;
+  for (const int j : surfaces) functions.push_back({j, 0});
+  held.set(std::move(functions), state_.alpha);
+  held.differentiate(t_, x_.data());
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (!(held.independent_part(i) > 1e-6)) return;
+  }
+  static_cast<void>(held.project(t_, x_.data()));
+}
+
+/// The time scale of what is decided behind a step. Steps that end where a field is undefined say nothing of it: they
+/// go down to the resolution of t. Without surfaces that are slid on beside roots (super-twisting) they are those of
+/// laps that shrink, and say it.
+void Run::note_time_scale(double h) {
+  const bool is_cut = undefined_ahead_ && !continued_roots_.empty();
+  h_scale_ = is_cut ? std::max(h, std::min(h_scale_, t_ - last_event_time_)) : h;
 }
 
 /// A surface that is at zero here, beside which the field has an infinite derivative; -1 if there is none.

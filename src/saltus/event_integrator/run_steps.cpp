@@ -212,7 +212,7 @@ Run::Step Run::accept(double t_new) {
   const double h = t_new - t_;
   std::copy(stepper_.x_new(), stepper_.x_new() + x_.size(), x_.begin());
   t_ = t_new;
-  h_scale_ = h;
+  note_time_scale(h);
   longest_step_ = std::max(longest_step_, h);
   const bool projected = field_.project(t_, x_.data());
   if (holding_.project(t_, state_.alpha, x_) || projected) {
@@ -288,7 +288,9 @@ Run::Step Run::attempt() {
   const double t_new = to_the_limit ? limit : t_ + h_try_;
   const double h = t_new - t_;
   dense_is_last_ = false;
+  if (!continued_roots_.empty()) tighten_beside_roots(h);
   if (field_.attempt(stepper_, t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
+    undefined_ahead_ = true;
     // Not on the way of a long step, which has others to look at.
     if (h <= 1e3 * smallest_step() && no_surface_at_ != t_) {
       if (const auto located = surface_within_rounding()) return handle(*located);
@@ -323,7 +325,7 @@ Run::Step Run::attempt() {
         return shorten(0.5) ? Step::shortened : undefined_step();
       case SearchOutcome::hit: {
         const StepStart start{t_, x_.data(), slope_.data()};
-        h_scale_ = h;
+        note_time_scale(h);
         const Located* located = locator_.locate(start, dense_, hit);
         if (!located || is_repelled(*located)) return shorten(0.5) ? Step::shortened : undefined_step();
         ++result_.statistics.steps;

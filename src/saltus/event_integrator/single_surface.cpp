@@ -110,6 +110,7 @@ bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Tr
   arrival = arrival_from(before.mode[at(j)]);
   int exit = 0;  // to the side whose field ends the sliding
   if (before.mode[at(j)] == 0) {
+    if (surroundings_.kernel.has_root(j)) return false;  // explicit steps do not leave it
     arrival = switching::Arrival::along;
     exit = occasion.exit_above.empty() ? -1 : 1;
     // Located to rounding on this field's tangency: a later derivative says where it goes.
@@ -150,6 +151,7 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeS
                                                                      const Place& place, const Motions& motions,
                                                                      Region side) {
   const auto& kernel = surroundings_.kernel;
+  if (kernel.has_root(surface)) return std::nullopt;  // explicit steps do not leave it
   const double* x = place.x;
   switching::SurfaceSituation situation;
   situation.below.velocity = motions.velocities.below;

@@ -153,7 +153,10 @@ bool Decider::check() {
       transition_.zero_order[at(j)] = 2;
       continue;
     }
-    if (motion.side.drift == switching::Drift::stays && leaves_by_root(j)) {
+    // Along a root psi goes where its regular derivatives say, if these say anything, but like another power of t.
+    const bool stays = motion.side.drift == switching::Drift::stays;
+    const bool tangent_root = s_.kernel.has_root(j) && motion.order != 1 && static_cast<int>(motion.side.drift) == mode;
+    if ((stays || tangent_root) && leaves_by_root(j)) {
       transition_.zero_order[at(j)] = 2;
       continue;
     }
