@@ -276,7 +276,7 @@ class Limiter {
   void limit(casadi_int instruction, const Value& argument, Value& root) {
     if (!has_jumps_) {
       roots_.push_back(instruction);
-      for (const int j : argument.with) result_.rooted[static_cast<std::size_t>(j)] = true;
+      for (const int j : argument.with) result_.rooted[at(j)] = true;
       return;
     }
     constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
@@ -284,7 +284,7 @@ class Limiter {
     const SX terms = SX::mtimes(fabs(SX::jacobian(e, symbols_.x)), fabs(symbols_.x)) +
                      fabs(SX::jacobian(e, symbols_.t) * symbols_.t);
     const bool jumps = std::all_of(argument.with.begin(), argument.with.end(),
-                                   [&](int j) { return result_.continued[static_cast<std::size_t>(j)]; });
+                                   [&](int j) { return result_.continued[at(j)]; });
     const SX clear = (jumps ? e : fabs(e)) > rounding * terms;
     root.expression = SXElem::binary(casadi::OP_IF_ELSE_ZERO, clear.scalar(), root.expression);
   }
