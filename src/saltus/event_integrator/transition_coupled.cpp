@@ -1,6 +1,7 @@
 // Surfaces that influence each other: decision trees for two, the hidden dynamics for more and where no tree decides.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
