@@ -13,7 +13,7 @@ namespace {
 using result::EventKind;
 using result::Termination;
 
-const std::vector<Accuracy> accuracies{standard, implicit, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, fine};
+const std::vector<Accuracy> several_accuracies{standard, implicit, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, fine};
 
 // Stuck up to t = 1, where the force exceeds 0.3; then v = (t - 1)^3, of which the root is t - 1.
 TEST(FrictionRoots, ACubicRootIsLeft) {
@@ -28,7 +28,7 @@ v = "-(0.3 + abs(v)^(1/3))*sign(v) + 0.3 + (t - 1) + 3*(t - 1)^2"
 from = 0.8
 until = 2
 )toml");
-  for (const Accuracy& accuracy : accuracies) {
+  for (const Accuracy& accuracy : several_accuracies) {
     const auto result = simulator.run(with(simulator.options(), accuracy));
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     ASSERT_EQ(result.events.size(), 2U);
@@ -57,7 +57,7 @@ w = "(2 + sqrt(abs(together)))*sign(together) - (0.5 + sqrt(abs(rest)))*sign(res
 [simulate]
 until = 3
 )toml");
-  for (const Accuracy& accuracy : accuracies) {
+  for (const Accuracy& accuracy : several_accuracies) {
     const auto result = simulator.run(with(simulator.options(), accuracy));
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     ASSERT_EQ(result.events.size(), 2U);
@@ -82,7 +82,7 @@ h = "if(h > 0, -sqrt(abs(h)), 1)"
 [simulate]
 until = 3
 )toml");
-  for (const Accuracy& accuracy : accuracies) {
+  for (const Accuracy& accuracy : several_accuracies) {
     const auto result = simulator.run(with(simulator.options(), accuracy));
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     ASSERT_EQ(result.events.size(), 1U);

@@ -20,7 +20,7 @@ namespace {
 using reformulation::Form;
 using reformulation::ReformulationOptions;
 
-std::vector<std::filesystem::path> catalogue() {
+std::vector<std::filesystem::path> model_files() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(SALTUS_SOURCE_DIR "/models")) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
@@ -66,7 +66,7 @@ int compare(const model::System& system, const reformulation::Dcs& dcs, const st
 }
 
 void expect_catalogue(const ReformulationOptions& options, const std::map<std::string, std::string>& refused) {
-  for (const auto& file : catalogue()) {
+  for (const auto& file : model_files()) {
     const std::string name = file.stem();
     const auto system = system_of(file);
     const auto dcs = reformulate(system, options);
