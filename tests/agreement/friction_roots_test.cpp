@@ -13,7 +13,8 @@ namespace {
 using result::EventKind;
 using result::Termination;
 
-const std::vector<Accuracy> several_accuracies{standard, implicit, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, fine};
+const std::vector<Accuracy> several_accuracies{standard, implicit, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10},
+                                               fine};
 
 // Stuck up to t = 1, where the force exceeds 0.3; then v = (t - 1)^3, of which the root is t - 1.
 TEST(FrictionRoots, ACubicRootIsLeft) {
