@@ -13,4 +13,8 @@ template <std::signed_integral Integer>
   return static_cast<std::size_t>(i);
 }
 
+/// The number i that a matrix counts with, of the place i in a container: matrix.row(index(i)); an Eigen::Index.
+/// Not checked.
+[[nodiscard]] constexpr std::ptrdiff_t index(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
+
 }  // namespace saltus
