@@ -82,7 +82,7 @@ constexpr auto products = [] {
 
 /// Adds a coefficient of the nested form, where its product is not 0.
 template <std::size_t k>
-inline void add_product(double coefficient, BernsteinPairs& b) {
+inline void add_pairs_of_product(double coefficient, BernsteinPairs& b) {
   const Pair both{coefficient, coefficient};
   for (std::size_t q = (k + 1) / 4; q <= (event_degree - k / 2) / 2; ++q) b[q] += products[k][q] * both;
 }
@@ -91,7 +91,7 @@ template <std::size_t degree, std::size_t... k>
 inline void add_products(const double* coefficients, std::size_t n, std::size_t i, BernsteinPairs& b,
                          std::index_sequence<k...>) {
   static_assert(degree < products.size());
-  (add_product<k + 1>(coefficients[(k + 1) * n + i], b), ...);
+  (add_pairs_of_product<k + 1>(coefficients[(k + 1) * n + i], b), ...);
 }
 
 template <std::size_t... k>

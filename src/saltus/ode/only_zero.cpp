@@ -10,12 +10,10 @@
 namespace saltus::ode {
 namespace {
 
-constexpr double half_width = 0x1p-42;
-
 /// Value and slope of g side by side.
-class ValueAndSlope {
+class RatioFormAndSlope {
  public:
-  explicit ValueAndSlope(const BernsteinCoefficients& c) : last_(c.back()) {
+  explicit RatioFormAndSlope(const BernsteinCoefficients& c) : last_(c.back()) {
     for (std::size_t i = 0; i < c.size() - 1; ++i) pairs_[i] = Pair{c[i], static_cast<double>(i + 1) * c[i + 1]};
   }
   [[nodiscard]] Pair operator()(double r) const {
@@ -36,13 +34,6 @@ Pair values(const BernsteinCoefficients& c, Pair r) {
   return seventh_degree([&](std::size_t i) { return Pair{c[i], c[i]}; }, r) + c.back() * (fourth * fourth);
 }
 
-/// Where the inverse quadratic through the values at 0, 1/2 and 1 is 0.
-double first_guess(double at_start, double at_middle, double at_end) {
-  const double share = at_start * at_end / ((at_middle - at_start) * (at_middle - at_end));
-  const double rest = at_start * at_middle / ((at_end - at_start) * (at_end - at_middle));
-  return 0.5 * share + rest;
-}
-
 }  // namespace
 
 std::optional<SignChange> only_zero(const BernsteinCoefficients& coefficients) {
@@ -51,13 +42,13 @@ std::optional<SignChange> only_zero(const BernsteinCoefficients& coefficients) {
   const double sum = ((c[0] + c[1]) + (c[2] + c[3])) + ((c[4] + c[5]) + (c[6] + c[7])) + c[8];
   const double middle = sum / 256.0;
   const bool from_start = middle < 0.0;
-  double guess = first_guess(coefficients.front(), middle, coefficients.back());
+  double guess = zero_of_inverse_quadratic(coefficients.front(), middle, coefficients.back());
   const double begin = from_start ? 0.0 : 0.5;
   // Not where values rise between: the middle of the half is as good.
   if (!(guess >= begin && guess <= begin + 0.5)) guess = begin + 0.25;
   if (!from_start) std::reverse(c.begin(), c.end());
   double r = from_start ? guess / (1.0 - guess) : (1.0 - guess) / guess;
-  const ValueAndSlope g(c);
+  const RatioFormAndSlope g(c);
   constexpr int most = 6;
   double correction = 1.0;
   // Of g / (1 + r)^8, the polynomial itself, which is straighter than g. The error behind a correction is about its
@@ -70,14 +61,14 @@ std::optional<SignChange> only_zero(const BernsteinCoefficients& coefficients) {
   }
   // A change of r is at most one of theta.
   if (!(r >= 0.0 && r <= 1.0)) return std::nullopt;
-  const Pair beside = values(c, Pair{r - half_width, r + half_width});
+  const Pair beside = values(c, Pair{r - half_width_of_zero, r + half_width_of_zero});
   const double before = from_start ? beside[0] : beside[1];
   const double behind = from_start ? beside[1] : beside[0];
-  const bool is_between = (before >= 0.0 || (from_start && r <= half_width)) && behind < 0.0;
+  const bool is_between = (before >= 0.0 || (from_start && r <= half_width_of_zero)) && behind < 0.0;
   if (!is_between) return std::nullopt;
   const double share = r / (1.0 + r);
   const double zero = from_start ? share : 1.0 - share;
-  return SignChange{std::max(zero - half_width, 0.0), std::min(zero + half_width, 1.0)};
+  return SignChange{std::max(zero - half_width_of_zero, 0.0), std::min(zero + half_width_of_zero, 1.0)};
 }
 
 }  // namespace saltus::ode

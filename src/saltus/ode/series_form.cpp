@@ -4,6 +4,7 @@
 
 #include "saltus/ode/bernstein_internal.hpp"
 #include "saltus/ode/lanes_internal.hpp"
+#include "saltus/ode/only_zero_internal.hpp"
 #include "saltus/ode/sign_change_internal.hpp"
 
 namespace saltus::ode {
@@ -42,9 +43,9 @@ struct FromTerms {
 };
 
 /// Value and slope side by side, each in two sums.
-class ValueAndSlope {
+class SeriesAndSlope {
  public:
-  explicit ValueAndSlope(const SeriesCoefficients& terms) {
+  explicit SeriesAndSlope(const SeriesCoefficients& terms) {
     for (std::size_t k = 0; k < series_degree; ++k)
       pairs_[k] = Pair{terms[k], static_cast<double>(k + 1) * terms[k + 1]};
     pairs_[series_degree] = Pair{terms[series_degree], 0.0};
@@ -69,15 +70,12 @@ class ValueAndSlope {
 /// the middle; the signs on both sides are checked.
 std::optional<SignChange> FromTerms::only_zero(const SeriesCoefficients& p) const {
   const Sum value = whole(p);
-  const double at_start = p.front(), at_middle = value(0.5), at_end = p.back();
-  const double share = at_start * at_end / ((at_middle - at_start) * (at_middle - at_end));
-  const double rest = at_start * at_middle / ((at_end - at_start) * (at_end - at_middle));
-  double theta = 0.5 * share + rest;
+  const double at_middle = value(0.5);
+  double theta = zero_of_inverse_quadratic(p.front(), at_middle, p.back());
   const double begin = at_middle < 0.0 ? 0.0 : 0.5;
   if (!(theta >= begin && theta <= begin + 0.5)) theta = begin + 0.25;
-  const ValueAndSlope polynomial(terms);
+  const SeriesAndSlope polynomial(terms);
   constexpr int most = 6;
-  constexpr double half_width = 0x1p-42;
   double correction = 1.0;
   // The error behind a correction is about its square.
   for (int step = 0; step < most && std::abs(correction) > 0x1p-25; ++step) {
@@ -86,7 +84,7 @@ std::optional<SignChange> FromTerms::only_zero(const SeriesCoefficients& p) cons
     theta -= correction;
   }
   if (!(theta > 0.0 && theta < 1.0)) return std::nullopt;
-  const SignChange bracket{std::max(theta - half_width, 0.0), std::min(theta + half_width, 1.0)};
+  const SignChange bracket{std::max(theta - half_width_of_zero, 0.0), std::min(theta + half_width_of_zero, 1.0)};
   if (!(value(bracket.lower) >= 0.0 && value(bracket.upper) < 0.0)) return std::nullopt;
   return bracket;
 }
