@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::array<std::string_view, 6> reserved_words{"t", "pi", "and", "or", "not", "otherwise"};
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool may_begin_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
 }  // namespace
 
@@ -28,8 +28,8 @@ bool is_reserved(std::string_view name) {
 }
 
 bool is_identifier(std::string_view name) {
-  return !name.empty() && is_letter(name.front()) &&
-         std::all_of(name.begin(), name.end(), [](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
+  return !name.empty() && may_begin_name(name.front()) &&
+         std::all_of(name.begin(), name.end(), [](char c) { return may_begin_name(c) || (c >= '0' && c <= '9'); });
 }
 
 }  // namespace saltus::expression

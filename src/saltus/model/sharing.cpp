@@ -9,7 +9,7 @@ namespace saltus::model {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr std::uint64_t seed = 0x5a17'0001ULL;
+constexpr std::uint64_t first_state = 0x5a17'0001ULL;
 
 std::uint64_t splitmix(std::uint64_t state) {
   state += 0x9e3779b97f4a7c15ULL;
@@ -21,7 +21,7 @@ std::uint64_t splitmix(std::uint64_t state) {
 }  // namespace
 
 double seeded_draw(std::uint64_t point, std::uint64_t variable) {
-  const std::uint64_t bits = splitmix(splitmix(seed + point) ^ (variable * 0xd1342543de82ef95ULL));
+  const std::uint64_t bits = splitmix(splitmix(first_state + point) ^ (variable * 0xd1342543de82ef95ULL));
   const double unit = static_cast<double>(bits >> 12) * 0x1p-52;  // [0, 1)
   // Magnitudes below a tenth are left out: they would make a point look like a smaller one.
   const double size = 0.1 + 0.9 * unit;

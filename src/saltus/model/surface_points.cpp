@@ -7,11 +7,6 @@
 #include "saltus/model/surface_points_internal.hpp"
 
 namespace saltus::model {
-namespace {
-
-double entry(const std::vector<double>& values, int index) { return values[at(index)]; }
-
-}  // namespace
 
 std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots) {
   std::vector<int> found;

@@ -5,9 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/tape_internal.hpp"
 
 namespace saltus::model {
+
+/// Of a list with an entry for each node, or for each variable.
+[[nodiscard]] inline double entry(const std::vector<double>& values, int index) { return values[saltus::at(index)]; }
 
 /// The variables t, x, u below the roots, also through alphas.
 [[nodiscard]] std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots);

@@ -20,8 +20,6 @@ constexpr std::size_t corner_points = 16;
 /// friction beside strong springs, ten times smaller would come near the accuracy of the points.
 constexpr double jump_tolerance = 1e-9;
 
-double entry(const std::vector<double>& values, int index) { return values[at(index)]; }
-
 /// Three values of a target: for alpha_j = 0, 1/2 and 1.
 using Triple = std::array<double, 3>;
 
@@ -139,12 +137,12 @@ class CornerSearch {
   [[nodiscard]] bool has_others() const { return !others_.empty(); }
 
   /// Empty if no difference is found.
-  [[nodiscard]] Selections corner(Point point, Difference difference, std::uint64_t seed) {
+  [[nodiscard]] Selections corner(Point point, Difference difference, std::uint64_t number) {
     evaluate(tape_, cone_of_signs_, point, values_);
     Selections sides;
     for (const int other : others_) {
       sides[other] = entry(values_.value, other) > 0.5 ? 1.0 : 0.0;
-      at(point, other) = 0.5 + 0.25 * seeded_draw(seed, static_cast<std::uint64_t>(other));
+      at(point, other) = 0.5 + 0.25 * seeded_draw(number, static_cast<std::uint64_t>(other));
     }
     if (!(value(point, difference) > 0.0)) return {};
     for (auto& [other, side] : sides) {

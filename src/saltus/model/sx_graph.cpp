@@ -40,12 +40,12 @@ std::string builder_function_for(int operation) {
 }
 
 /// The guard of a blend: selection != 0 or selection != 1, which only this module writes.
-bool is_guard(const Tape& tape, int node) {
+bool is_blend_guard(const Tape& tape, int node) {
   return tape[node].operation == casadi::OP_NE && tape[node].written == kind_bit(VariableKind::alpha);
 }
 
 bool is_ours(const Tape& tape, int operation, int left, int right) {
-  if (operation == casadi::OP_IF_ELSE_ZERO) return is_guard(tape, left);
+  if (operation == casadi::OP_IF_ELSE_ZERO) return is_blend_guard(tape, left);
   if (operation != casadi::OP_NE) return false;
   return (tape[left].written | tape[right].written) == kind_bit(VariableKind::alpha);
 }
