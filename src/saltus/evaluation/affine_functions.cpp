@@ -17,14 +17,14 @@ namespace {
 
 using casadi::SX;
 
-constexpr int constant = 0;
-constexpr int linear = 1;
-constexpr int other = 2;
+constexpr int constant_degree = 0;
+constexpr int linear_degree = 1;
+constexpr int other_degree = 2;
 
 /// Degree of a result from those of its operands.
 int degree_of(casadi_int operation, const std::vector<int>& operands) {
-  const int first = operands.empty() ? constant : operands.front();
-  const int second = operands.size() < 2 ? constant : operands[1];
+  const int first = operands.empty() ? constant_degree : operands.front();
+  const int second = operands.size() < 2 ? constant_degree : operands[1];
   switch (operation) {
     case casadi::OP_ADD:
     case casadi::OP_SUB:
@@ -33,13 +33,13 @@ int degree_of(casadi_int operation, const std::vector<int>& operands) {
     case casadi::OP_ASSIGN:
       return std::max(first, second);
     case casadi::OP_MUL:
-      return first + second <= linear ? first + second : other;
+      return first + second <= linear_degree ? first + second : other_degree;
     case casadi::OP_DIV:
-      return second == constant ? first : other;
+      return second == constant_degree ? first : other_degree;
     case casadi::OP_IF_ELSE_ZERO:
-      return first == constant ? second : other;
+      return first == constant_degree ? second : other_degree;
     default:
-      return std::max(first, second) == constant ? constant : other;
+      return std::max(first, second) == constant_degree ? constant_degree : other_degree;
   }
 }
 
@@ -50,20 +50,20 @@ std::vector<SX> inputs(const ModelSymbols& symbols) { return {symbols.t, symbols
 std::vector<bool> affine_entries(const SX& expression, const ModelSymbols& symbols, int fixed) {
   std::vector<bool> affine(at(expression.numel()), true);
   const casadi::Function tape("tape", inputs(symbols), {SX::densify(expression)});
-  std::vector<int> degree(tape.sz_w(), constant);
+  std::vector<int> degree(tape.sz_w(), constant_degree);
   for (casadi_int k = 0; k < tape.n_instructions(); ++k) {
     const auto operation = tape.instruction_id(k);
     const auto in = tape.instruction_input(k);
     const auto out = tape.instruction_output(k);
     if (operation == casadi::OP_CONST) {
-      degree[at(out[0])] = constant;
+      degree[at(out[0])] = constant_degree;
     } else if (operation == casadi::OP_INPUT) {
       const bool varies = in[0] == 0 || (in[0] == 1 && in[1] != fixed);
-      degree[at(out[0])] = varies ? linear : constant;
+      degree[at(out[0])] = varies ? linear_degree : constant_degree;
     } else if (operation == casadi::OP_OUTPUT) {
-      affine[at(out[1])] = degree[at(in[0])] != other;
+      affine[at(out[1])] = degree[at(in[0])] != other_degree;
     } else if (operation == casadi::OP_CALL) {
-      for (const auto place : out) degree[at(place)] = other;
+      for (const auto place : out) degree[at(place)] = other_degree;
     } else {
       std::vector<int> operands;
       for (const auto place : in) operands.push_back(degree[at(place)]);

@@ -20,7 +20,7 @@ using casadi::SX;
 using casadi::SXElem;
 
 /// A value of the tape: an expression over (p, alpha), or over (t, x, constants).
-struct Value {
+struct SplitValue {
   SXElem expression = 0.0;
   bool varies = false;
   int constant = -1;  ///< its number, once it is one
@@ -70,8 +70,8 @@ class Splitter {
         break;
     }
     if (in.empty() || in.size() > 2) return false;
-    Value& first = work_[at(in.front())];
-    Value& second = work_[at(in.back())];
+    SplitValue& first = work_[at(in.front())];
+    SplitValue& second = work_[at(in.back())];
     const bool varies = first.varies || second.varies;
     const SXElem a = varies ? operand(first) : first.expression;
     const SXElem b = varies ? operand(second) : second.expression;
@@ -81,7 +81,7 @@ class Splitter {
   }
 
   /// The value as it occurs in the varying part: numbers stay, everything else that does not vary gets a symbol.
-  SXElem operand(Value& value) {
+  SXElem operand(SplitValue& value) {
     if (value.varies || value.expression.is_constant()) return value.expression;
     if (value.constant < 0) {
       value.constant = static_cast<int>(constants_.size());
@@ -93,7 +93,7 @@ class Splitter {
 
   casadi::Function tape_;
   std::vector<SX> inputs_;
-  std::vector<Value> work_;
+  std::vector<SplitValue> work_;
   std::vector<SXElem> constants_, symbols_, results_;
 };
 

@@ -19,9 +19,9 @@ Error cannot_hold(const std::string& why) {
 /// Whether a matrix has no entry that can be other than 0.
 bool vanishes(const SX& matrix) { return SX::sparsify(matrix).nnz() == 0; }
 
-class Hold {
+class HeldMotionSearch {
  public:
-  Hold(const SX& t, const SX& x, const SX& f, const std::vector<HeldGuard>& guards)
+  HeldMotionSearch(const SX& t, const SX& x, const SX& f, const std::vector<HeldGuard>& guards)
       : t_(t), x_(x), f_(f), guards_(guards) {}
 
   [[nodiscard]] Expected<HeldMotion> run() {
@@ -92,7 +92,7 @@ class Hold {
 }  // namespace
 
 Expected<HeldMotion> held_motion(const SX& t, const SX& x, const SX& f, const std::vector<HeldGuard>& guards) {
-  return Hold(t, x, f, guards).run();
+  return HeldMotionSearch(t, x, f, guards).run();
 }
 
 }  // namespace saltus::evaluation

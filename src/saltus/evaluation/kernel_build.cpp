@@ -16,7 +16,7 @@ namespace {
 using casadi::SX;
 
 /// For every row of `expression`, which entries of `variables` it depends on.
-std::vector<std::vector<int>> dependencies(const SX& expression, const SX& variables) {
+std::vector<std::vector<int>> dependencies_of_rows(const SX& expression, const SX& variables) {
   std::vector<std::vector<int>> rows(at(expression.numel()));
   if (expression.numel() == 0 || variables.numel() == 0) return rows;
   const auto sparsity = SX::jacobian_sparsity(SX::densify(expression), variables);
@@ -93,20 +93,20 @@ void ModelKernel::Implementation::find_structure() {
   affine = affine_entries(phi, symbols());
   affine_rows = AffineRowFunctions(phi, symbols(), affine);
   time_only.assign(at(n_phi), true);
-  inner = dependencies(phi, alpha);
-  const auto on_states = dependencies(phi, x);
+  inner = dependencies_of_rows(phi, alpha);
+  const auto on_states = dependencies_of_rows(phi, x);
   const auto is_discrete = [&](int state) { return static_cast<bool>(discrete[at(state)]); };
   for (int j = 0; j < n_phi; ++j) {
     const auto& states = on_states[at(j)];
     time_only[at(j)] = std::all_of(states.begin(), states.end(), is_discrete);
   }
-  if (cells.size() > 0) on_cells = cells.dependencies(dependencies(phi, p));
+  if (cells.size() > 0) on_cells = cells.dependencies(dependencies_of_rows(phi, p));
   free.depends = normal_dependencies(free.f);
 }
 
 std::vector<std::vector<bool>> ModelKernel::Implementation::normal_dependencies(const SX& f) const {
-  const auto on_states = dependencies(phi, x);
-  const auto field_on_alpha = dependencies(f, alpha);
+  const auto on_states = dependencies_of_rows(phi, x);
+  const auto field_on_alpha = dependencies_of_rows(f, alpha);
   std::vector<std::vector<bool>> depends(at(n_psi), std::vector<bool>(at(n_psi), false));
   for (int i = 0; i < n_psi; ++i) {
     for (const int component : on_states[at(i)]) {

@@ -25,7 +25,7 @@ constexpr std::size_t points = 3;
 using Values = std::array<double, points>;
 
 /// A value of the tape: its expression, its numbers at the points, and the functions it is 0 with.
-struct Value {
+struct SampledValue {
   SXElem expression = 0.0;
   Values values{};
   bool zero = false;           ///< the constant 0, which is 0 with all of them
@@ -33,7 +33,7 @@ struct Value {
 };
 
 /// What is 0 with both, as a sum of them is.
-void intersect(const Value& a, const Value& b, Value& result) {
+void intersect(const SampledValue& a, const SampledValue& b, SampledValue& result) {
   if (a.zero || b.zero) {
     result.zero = a.zero && b.zero;
     result.with = a.zero ? b.with : a.with;
@@ -43,7 +43,7 @@ void intersect(const Value& a, const Value& b, Value& result) {
 }
 
 /// What is 0 with either, as their product is.
-void unite(const Value& a, const Value& b, Value& result) {
+void unite(const SampledValue& a, const SampledValue& b, SampledValue& result) {
   result.zero = a.zero || b.zero;
   if (result.zero) return;
   std::set_union(a.with.begin(), a.with.end(), b.with.begin(), b.with.end(), std::back_inserter(result.with));
@@ -59,7 +59,7 @@ bool is_multiple(const Values& a, const Values& b) {
   return true;
 }
 
-bool is_root(casadi_int operation, const Value& exponent) {
+bool is_root(casadi_int operation, const SampledValue& exponent) {
   if (operation == casadi::OP_SQRT) return true;
   if (operation != casadi::OP_POW && operation != casadi::OP_CONSTPOW) return false;
   const double q = exponent.values[0];
@@ -207,7 +207,7 @@ class Limiter {
         return false;
       case casadi::OP_CONST: {
         const double value = tape_.instruction_constant(k);
-        Value constant{SXElem(value), {}, value == 0.0};
+        SampledValue constant{SXElem(value), {}, value == 0.0};
         constant.values.fill(value);
         work_[at(out[0])] = std::move(constant);
         return true;
@@ -223,9 +223,9 @@ class Limiter {
         break;
     }
     if (in.empty() || in.size() > 2) return false;
-    const Value& a = work_[at(in.front())];
-    const Value& b = work_[at(in.back())];
-    Value value;
+    const SampledValue& a = work_[at(in.front())];
+    const SampledValue& b = work_[at(in.back())];
+    SampledValue value;
     value.expression =
         in.size() == 2 ? SXElem::binary(operation, a.expression, b.expression) : SXElem::unary(operation, a.expression);
     for (std::size_t p = 0; p < points; ++p) {
@@ -238,7 +238,7 @@ class Limiter {
     return true;
   }
 
-  void find_zeros(casadi_int operation, const Value& a, const Value& b, Value& value) const {
+  void find_zeros(casadi_int operation, const SampledValue& a, const SampledValue& b, SampledValue& value) const {
     switch (operation) {
       case casadi::OP_ADD:
       case casadi::OP_SUB:
@@ -266,14 +266,14 @@ class Limiter {
     if (value.with.empty() && !value.zero) find_multiples(value);
   }
 
-  void find_multiples(Value& value) const {
+  void find_multiples(SampledValue& value) const {
     for (std::size_t j = 0; j < psi_.size(); ++j) {
       if (is_multiple(value.values, psi_[j])) value.with.push_back(static_cast<int>(j));
     }
   }
 
   /// NOTE: the zero of if_else_zero hides the infinite derivative of the root, in derivatives of f, too.
-  void limit(casadi_int instruction, const Value& argument, Value& root) {
+  void limit(casadi_int instruction, const SampledValue& argument, SampledValue& root) {
     if (!has_jumps_) {
       roots_.push_back(instruction);
       for (const int j : argument.with) result_.rooted[at(j)] = true;
@@ -283,8 +283,8 @@ class Limiter {
     const SX e = argument.expression;
     const SX terms = SX::mtimes(fabs(SX::jacobian(e, symbols_.x)), fabs(symbols_.x)) +
                      fabs(SX::jacobian(e, symbols_.t) * symbols_.t);
-    const bool jumps = std::all_of(argument.with.begin(), argument.with.end(),
-                                   [&](int j) { return result_.continued[at(j)]; });
+    const bool jumps =
+        std::all_of(argument.with.begin(), argument.with.end(), [&](int j) { return result_.continued[at(j)]; });
     const SX clear = (jumps ? e : fabs(e)) > rounding * terms;
     root.expression = SXElem::binary(casadi::OP_IF_ELSE_ZERO, clear.scalar(), root.expression);
   }
@@ -297,7 +297,7 @@ class Limiter {
   std::vector<Values> psi_;
   std::vector<casadi_int> roots_;  ///< instructions, ascending
   bool has_jumps_ = false;         ///< that find_jumps was here
-  std::vector<Value> work_;
+  std::vector<SampledValue> work_;
   std::vector<SXElem> column_;
   RootLimits result_;
 };
