@@ -1,12 +1,12 @@
 #include "saltus/switching/additive_map.hpp"
 
+#include "saltus/switching/field_accuracy.hpp"
+
 namespace saltus::switching {
 namespace {
 
 using Eigen::Index;
 
-/// Fields and gradients are good to twelve digits; what is less than this of its terms is 0.
-constexpr double accuracy = 1e-9;
 constexpr std::size_t longest_stride = 4;
 
 }  // namespace
@@ -34,7 +34,7 @@ std::optional<AdditiveMap> additive_map(std::size_t q, const OfSelections& value
         terms += map.effects.col(static_cast<Index>(i)).cwiseAbs();
       }
       value(alpha, at_corner);
-      if (!((at_corner - sum).cwiseAbs().array() <= accuracy * terms.array()).all()) return std::nullopt;
+      if (!((at_corner - sum).cwiseAbs().array() <= field_accuracy * terms.array()).all()) return std::nullopt;
     }
   }
   return map;

@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Of columns of length 1: they come from gradients and fields, good to 12 digits.
-constexpr double tiny = 1e-9;
+constexpr double no_length = 1e-9;
 
 using Members = std::vector<bool>;
 
@@ -37,7 +37,7 @@ struct Rest {
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(columns.cols()); }
   void note_members() {
     for (std::size_t i = 0; i < count(); ++i) {
-      members[i] = !(columns.col(static_cast<Index>(i)).squaredNorm() > tiny * tiny);
+      members[i] = !(columns.col(static_cast<Index>(i)).squaredNorm() > no_length * no_length);
     }
   }
 };
@@ -90,7 +90,7 @@ std::optional<std::vector<std::vector<Index>>> column_hyperplanes(const MatrixXd
           const auto place = static_cast<std::size_t>(j);
           if (reached[place]) continue;
           left = rest.columns.col(j) - direction * direction.dot(rest.columns.col(j));
-          if (j == i || !(left.squaredNorm() > tiny * tiny)) members[place] = reached[place] = true;
+          if (j == i || !(left.squaredNorm() > no_length * no_length)) members[place] = reached[place] = true;
         }
         if (!known.insert(members).second) continue;
         if (next.size() == most) return std::nullopt;

@@ -1,4 +1,4 @@
-// Sliding on the intersection, both selections leave the square at once.
+// Sliding on the intersection, both selections leave_by_corner the square at once.
 #include "saltus/switching/intersection.hpp"
 #include "saltus/switching/intersection_internal.hpp"
 
@@ -7,13 +7,13 @@ namespace {
 
 /// In canonical form the corner is (+, +). Close to it, with w = u - 1 and the root beyond at w = delta > 0 (both), the
 /// hidden dynamics is w' = G (min(w, 0) - delta), from w = 0 with w' = r = -G delta, the drifts of f^{++}.
-LeafMode leave(const Plane& p, const std::array<Drift, 2>& r, SignTests& signs) {
+LeafMode leave_by_corner(const Plane& p, const std::array<Drift, 2>& r, SignTests& signs) {
   const bool first_out = r[0] == Drift::up;
   const bool second_out = r[1] == Drift::up;
   if (r[0] == Drift::stays || r[1] == Drift::stays) signs.fail("drift of f(++) at the corner");
   if (first_out && second_out) return {Leaf::K1, {1, 1}};
   if (!first_out) {
-    signs.fail("drift of f(++) at the corner");  // exchange makes the first one leave, or neither does
+    signs.fail("drift of f(++) at the corner");  // exchange makes the first one leave_by_corner, or neither does
     return {Leaf::none, {0, 0}};
   }
   // w_1 > 0 > w_2 from now on: w_2' = r_2 + G22 w_2.
@@ -39,7 +39,7 @@ PlaneDecision decide_exit_corner(const PlaneTable& table, PlaneMode corner) {
     std::swap(drifts[0], drifts[1]);
   }
   SignTests signs;
-  const LeafMode found = leave(symmetry.apply(Plane(table)), drifts, signs);
+  const LeafMode found = leave_by_corner(symmetry.apply(Plane(table)), drifts, signs);
   const PlaneMode mode = symmetry.apply_inverse(found.mode);
   PlaneDecision decision = conclude(table, found.leaf, mode, signs, admissible_modes(table));
   if (found.leaf == Leaf::K2) decision.chosen = continuation(table, mode);

@@ -21,7 +21,7 @@ struct Touching {
 
 /// In canonical form: both curves have positive slope (H_1 < 0, H_2 < 0), g_2 = 0 lies above g_1 = 0.
 /// NOTE: the printed signs of the first and the impossible case are exchanged (d_2 g_1 > 0, d_1 g_2 < 0 is "both up").
-LeafMode leave(const Plane& p, const Touching& touching, SignTests& signs) {
+LeafMode leave_by_fold(const Plane& p, const Touching& touching, SignTests& signs) {
   const auto [s1, s2] = p.scale;
   const bool first_up = signs.positive(touching.up[0], s1, "G12 at the double root");
   const bool second_up = signs.positive(touching.up[1], s2, "G22 at the double root");
@@ -67,7 +67,7 @@ PlaneDecision decide_exit_fold(const PlaneTable& table) {
   signs.positive(touching.curvature[0] - touching.curvature[1],
                  std::max(std::abs(touching.curvature[0]), std::abs(touching.curvature[1])),
                  "difference of the curvatures of g1 = 0 and g2 = 0");
-  const LeafMode found = leave(canonical, touching, signs);
+  const LeafMode found = leave_by_fold(canonical, touching, signs);
   return conclude(table, found.leaf, symmetry->apply_inverse(found.mode), signs, admissible);
 }
 

@@ -14,7 +14,7 @@ struct Loss {
 };
 
 /// In canonical form: G11 = 0 < G22, G12 > 0, f_1^{--} < 0 < f_1^{-+}: g_1 = A(alpha_1) (alpha_2 - alpha_2*).
-Loss leave(const Plane& p, SignTests& signs) {
+Loss lose_stability(const Plane& p, SignTests& signs) {
   const auto [s1, s2] = p.scale;
   const double f1_mm = p.f1(-1, -1);
   const double f1_mp = p.f1(-1, 1);
@@ -71,7 +71,7 @@ PlaneDecision decide_exit_unstable(const PlaneTable& table) {
   const auto [s1, s2] = canonical.scale;
   signs.positive(image.sliding_jacobian[1][1], s2, "G22 at the sliding root");
   signs.positive(image.sliding_jacobian[0][1], s1, "G12 at the sliding root");
-  const Loss loss = leave(canonical, signs);
+  const Loss loss = lose_stability(canonical, signs);
   const PlaneModes admissible = admissible_modes(table, plane, roots);
   if (loss.leaf == Leaf::C9_1) return spirals(table, signs, admissible);
   PlaneDecision decision = conclude(table, loss.leaf, symmetry->apply_inverse(loss.mode), signs, admissible);

@@ -9,12 +9,10 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/switching/field_accuracy.hpp"
 
 namespace saltus::switching {
 namespace {
-
-/// Relative size below which a difference of projected fields counts as rounding.
-constexpr double rounding = 1e-12;
 
 /// The table with some selections fixed: weights of the two values of every bit, or free.
 class RestrictedTable {
@@ -48,7 +46,7 @@ class RestrictedTable {
       sum.velocity += weight * side.velocity;
       magnitude += weight * std::abs(side.velocity);
     }
-    if (std::abs(sum.velocity) <= rounding * magnitude) return sum;  // interpolated tangency: stays
+    if (std::abs(sum.velocity) <= field_rounding * magnitude) return sum;  // interpolated tangency: stays
     sum.drift = sum.velocity > 0.0 ? Drift::up : Drift::down;
     return sum;
   }
@@ -86,7 +84,7 @@ std::optional<Drift> definite_drift(const CornerTable& table, const RestrictedTa
 }
 
 bool same_side(const Side& a, const Side& b, double scale) {
-  return a.drift == b.drift && std::abs(a.velocity - b.velocity) <= rounding * scale;
+  return a.drift == b.drift && std::abs(a.velocity - b.velocity) <= field_rounding * scale;
 }
 
 double largest_velocity(const CornerTable& table, int surface) {

@@ -9,14 +9,12 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/switching/field_accuracy.hpp"
 #include "saltus/switching/hidden_face_internal.hpp"
 #include "saltus/switching/hidden_trajectory_internal.hpp"
 
 namespace saltus::switching {
 namespace {
-
-/// Relative size below which a difference of projected fields counts as rounding.
-constexpr double rounding = 1e-12;
 
 /// A point without special position: differences of a multi-affine function there vanish only if it does not depend on
 /// the selection.
@@ -39,7 +37,7 @@ std::vector<std::vector<int>> groups_of(int surfaces, ProjectedField g) {
     alpha[at(p)] = before;
     for (int j = 0; j < surfaces; ++j) {
       const double size = std::max(std::abs(here[at(j)]), std::abs(there[at(j)]));
-      if (std::abs(there[at(j)] - here[at(j)]) <= rounding * size || group[at(j)] == group[at(p)]) continue;
+      if (std::abs(there[at(j)] - here[at(j)]) <= field_rounding * size || group[at(j)] == group[at(p)]) continue;
       const int joined = std::min(group[at(j)], group[at(p)]);
       const int old = std::max(group[at(j)], group[at(p)]);
       std::replace(group.begin(), group.end(), old, joined);

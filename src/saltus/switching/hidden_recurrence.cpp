@@ -1,20 +1,19 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "saltus/switching/hidden_recurrence_internal.hpp"
+#include "saltus/switching/hidden_trajectory_internal.hpp"
 
 namespace saltus::switching {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double close = 1e-6;         ///< a thousand times the integration's tolerance
-constexpr double rounding = 1e-12;     ///< of closed forms, some laps long
-constexpr double shrinking = 0.9;      ///< a factor per lap that truncation errors do not imitate
-constexpr double affine_match = 1e-6;  ///< to which two factors of an affine return map agree
-constexpr double large = 1e6;          ///< times the cube: what happens inside it no longer matters
-constexpr double growing = 1.001;      ///< per lap, at large amplitudes
-constexpr double neutral = 1e-7;       ///< factors closer to 1 are not told from it
+constexpr double close = 1e-6;              ///< a thousand times the integration's tolerance
+constexpr double rounding_of_laps = 1e-12;  ///< of closed forms, some laps long
+constexpr double shrinking = 0.9;           ///< a factor per lap that truncation errors do not imitate
+constexpr double affine_match = 1e-6;       ///< to which two factors of an affine return map agree
+constexpr double large = 1e6;               ///< times the cube: what happens inside it no longer matters
+constexpr double growing = 1.001;           ///< per lap, at large amplitudes
+constexpr double neutral = 1e-7;            ///< factors closer to 1 are not told from it
 /// Of the durations of successive laps of a cycle. What slides along one surface before it enters the square comes in
 /// at one point, closer and closer from lap to lap, although its laps grow (by a third and more, or they spiral in or
 /// out more slowly and are told by their factors).
@@ -76,7 +75,7 @@ Lap Recurrence::compare(std::size_t now_number, std::size_t before_number, std::
   // The section was passed twice before, and only closed-form zones were visited during the laps in between.
   const bool affine = now.compared[lag] > 2 && std::abs(ratio - ratio_before) <= affine_match * ratio &&
                       last_interior_ < before.count - 2 * (now.count - before.count);
-  if (now.compared[lag] > 1 && std::max(distance, before.distance[lag]) <= rounding * size) {
+  if (now.compared[lag] > 1 && std::max(distance, before.distance[lag]) <= rounding_of_laps * size) {
     lap.kind = Lap::Kind::cycle;
     lap.remaining = distance;
   } else if (now.compared[lag] > 2 && now.amplitude > before.amplitude &&

@@ -12,9 +12,9 @@ namespace saltus::switching {
 namespace {
 
 /// Relative to the largest velocity of a surface: below this a velocity is rounding.
-constexpr double rounding = 1e-13;
+constexpr double rounding_of_velocity = 1e-13;
 /// Of selections: nearer to its bound a root is on it.
-constexpr double edge = 1e-12;
+constexpr double at_bound = 1e-12;
 
 }  // namespace
 
@@ -53,7 +53,7 @@ HiddenTrajectory::Rest HiddenTrajectory::look_for_rest() {
   const auto& free = face_.free();
   const std::size_t n = free.size();
   bool resting = true;
-  for (const int j : free) resting = resting && std::abs(v_[at(j)]) <= rounding * face_.speed(j);
+  for (const int j : free) resting = resting && std::abs(v_[at(j)]) <= rounding_of_velocity * face_.speed(j);
   face_.derivatives(u_.data(), v_.data(), derivatives_.data());
   jacobian_here_.resize(n * n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -69,8 +69,8 @@ HiddenTrajectory::Rest HiddenTrajectory::look_for_rest() {
   bool at_edge = false;
   for (const int j : free) {
     double& selection = root_[at(j)];
-    inside = inside && -edge < selection && selection < 1.0 + edge;
-    at_edge = at_edge || !(edge < selection && selection < 1.0 - edge);
+    inside = inside && -at_bound < selection && selection < 1.0 + at_bound;
+    at_edge = at_edge || !(at_bound < selection && selection < 1.0 - at_bound);
     if (inside) selection = std::clamp(selection, 0.0, 1.0);
   }
   if (!inside) {
@@ -99,7 +99,7 @@ HiddenTrajectory::Rest HiddenTrajectory::look_for_rest() {
       influence += std::abs(derivatives_[at(j) * n + p] * (root_[at(free[p])] - u_[at(free[p])]));
     }
     const double outwards = z * point_velocity_[at(j)];
-    const double certain = std::max(10.0 * influence, rounding * face_.speed(j));
+    const double certain = std::max(10.0 * influence, rounding_of_velocity * face_.speed(j));
     if (outwards > certain) continue;
     if (distance > 1e-11) return Rest::none;
     if (outwards >= -certain) continue;  // marginal, which settle() says

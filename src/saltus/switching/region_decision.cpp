@@ -13,7 +13,7 @@ namespace {
 
 /// d psi' / du of the hidden dynamics u_i = psi_i / eps, psi_i = g_r - g_i, i in I but its first, r: G (diag theta -
 /// theta theta^T).
-bool returns(const RegionRates& rates, const RegionSet& set) {
+bool set_attracts(const RegionRates& rates, const RegionSet& set) {
   const std::size_t m = set.active.size() - 1;
   if (m == 0) return true;
   const auto r = at(set.active[0]);
@@ -79,7 +79,7 @@ std::vector<RegionSet> admissible_region_sets(const RegionRates& rates, double t
     }
     RegionSet set;
     if (!solve_region_set(rates, active, set) || !(set.margin >= -tolerance)) continue;
-    set.attracts = returns(rates, set);
+    set.attracts = set_attracts(rates, set);
     found.push_back(std::move(set));
   }
   return found;

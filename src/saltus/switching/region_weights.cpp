@@ -9,13 +9,12 @@
 
 #include <Eigen/LU>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/matrix_stability.hpp"
 #include "saltus/switching/newton_steps_internal.hpp"
 
 namespace saltus::switching {
 namespace {
-
-Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 /// p^e for e = 0 or e >= 1, continued to p < 0: as a polynomial where it is one, else by 0.
 double power(double p, double e) {
@@ -27,8 +26,8 @@ double power(double p, double e) {
 
 double power_slope(double p, double e) { return e == 0.0 ? 0.0 : e == 1.0 ? 1.0 : e * power(p, e - 1.0); }
 
-/// Facets that have a vertex in common, with independent normals: as many as there are.
-constexpr double independent = 1e-6;
+/// Facets that have a vertex in common, with independent_normals normals: as many as there are.
+constexpr double independent_normals = 1e-6;
 
 }  // namespace
 
@@ -58,38 +57,38 @@ void RegionWeights::choose_chart(const double* theta) {
       if ((facets[f] >> i & 1U) == 0) excess_[f] += theta[i];
     }
   }
-  std::iota(order_.begin(), order_.begin() + at(facets.size()), std::size_t{0});
+  std::iota(order_.begin(), order_.begin() + index(facets.size()), std::size_t{0});
   // NOTE: std::stable_sort allocates.
-  std::sort(order_.begin(), order_.begin() + at(facets.size()),
+  std::sort(order_.begin(), order_.begin() + index(facets.size()),
             [&](std::size_t a, std::size_t b) { return excess_[a] != excess_[b] ? excess_[a] < excess_[b] : a < b; });
   chart_.clear();
   RegionBits common = (RegionBits{1} << n) - 1;
-  Small basis(at(m), at(m));  // orthonormal, of the normals so far
+  Small basis(index(m), index(m));  // orthonormal, of the normals so far
   for (std::size_t k = 0; k < facets.size() && chart_.size() < m; ++k) {
     const std::size_t f = order_[k];
     if ((common & facets[f]) == 0) continue;
     // NOTE: g++ 12 with -O3 takes one initialised by the row for uninitialised where its norm is taken.
-    SmallVector normal = SmallVector::Zero(at(m));
-    normal = polytope_.normals().row(at(f)).transpose();
-    const double length = polytope_.normals().row(at(f)).norm();
-    for (std::size_t l = 0; l < chart_.size(); ++l) normal -= basis.col(at(l)).dot(normal) * basis.col(at(l));
-    if (!(normal.norm() > independent * length)) continue;
-    basis.col(at(chart_.size())) = normal.normalized();
+    SmallVector normal = SmallVector::Zero(index(m));
+    normal = polytope_.normals().row(index(f)).transpose();
+    const double length = polytope_.normals().row(index(f)).norm();
+    for (std::size_t l = 0; l < chart_.size(); ++l) normal -= basis.col(index(l)).dot(normal) * basis.col(index(l));
+    if (!(normal.norm() > independent_normals * length)) continue;
+    basis.col(index(chart_.size())) = normal.normalized();
     common &= facets[f];
     chart_.push_back(f);
   }
-  exponents_.resize(n, at(chart_.size()));
+  exponents_.resize(n, index(chart_.size()));
   for (std::size_t k = 0; k < chart_.size(); ++k) {
-    exponents_.col(at(k)) = polytope_.heights().row(at(chart_[k])).transpose();
+    exponents_.col(index(k)) = polytope_.heights().row(index(chart_[k])).transpose();
   }
 }
 
 /// p from the largest weights that determine it.
 void RegionWeights::place_start(const double* theta) {
-  const auto m = at(chart_.size());
+  const auto m = index(chart_.size());
   const auto n = static_cast<std::size_t>(polytope_.regions());
-  std::iota(order_.begin(), order_.begin() + at(n), std::size_t{0});
-  std::sort(order_.begin(), order_.begin() + at(n),
+  std::iota(order_.begin(), order_.begin() + index(n), std::size_t{0});
+  std::sort(order_.begin(), order_.begin() + index(n),
             [&](std::size_t a, std::size_t b) { return theta[a] != theta[b] ? theta[a] > theta[b] : a < b; });
   constexpr double least = 1e-300;
   const auto logarithm = [&](std::size_t i) { return std::log(std::max(theta[i], least)); };
@@ -100,10 +99,10 @@ void RegionWeights::place_start(const double* theta) {
   const std::size_t first = order_[0];
   for (std::size_t k = 1; k < n && rows < m; ++k) {
     const std::size_t i = order_[k];
-    SmallVector row = (exponents_.row(at(i)) - exponents_.row(at(first))).transpose();
+    SmallVector row = (exponents_.row(index(i)) - exponents_.row(index(first))).transpose();
     SmallVector rest = row;
     for (Eigen::Index l = 0; l < rows; ++l) rest -= basis.col(l).dot(rest) * basis.col(l);
-    if (!(rest.norm() > independent * row.norm())) continue;
+    if (!(rest.norm() > independent_normals * row.norm())) continue;
     basis.col(rows) = rest.normalized();
     matrix.row(rows) = row.transpose();
     right[rows++] = logarithm(i) - logarithm(first);
@@ -167,7 +166,7 @@ void RegionWeights::finish(const Eigen::MatrixXd& rates, double* theta) {
   Small normals(jacobian_.rows(), jacobian_.cols());
   for (Eigen::Index k = 0; k < jacobian_.rows(); ++k) {
     size *= jacobian_.row(k).norm();
-    normals.row(k) = polytope_.normals().row(at(chart_[static_cast<std::size_t>(k)]));
+    normals.row(k) = polytope_.normals().row(index(chart_[static_cast<std::size_t>(k)]));
   }
   const double orientation = normals.determinant() > 0.0 ? 1.0 : -1.0;
   determinant_ = size > 0.0 ? orientation * jacobian_.determinant() / size : 0.0;
@@ -193,7 +192,7 @@ double RegionWeights::stability() const {
   if (m < 2 || (m > 2 && !is_box_)) return 1.0;
   Small normals(m, m);
   for (Eigen::Index k = 0; k < m; ++k)
-    normals.row(k) = polytope_.normals().row(at(chart_[static_cast<std::size_t>(k)]));
+    normals.row(k) = polytope_.normals().row(index(chart_[static_cast<std::size_t>(k)]));
   Small dynamics = normals * jacobian_;
   if (!is_box_) {
     // By nu . v. The determinant, which is 0 at exits, too, is that of the equations.

@@ -65,7 +65,8 @@ bool weights_at(const Pencil& pencil, double alpha, VectorXd& weights) {
   return weights.allFinite();
 }
 
-double margin_of(const RegionsOnSurface& point, const Sizes& sizes, const VectorXd& weights, const RegionSlide& slide) {
+double margin_of_slide(const RegionsOnSurface& point, const Sizes& sizes, const VectorXd& weights,
+                       const RegionSlide& slide) {
   const auto& active = slide.regions.active;
   double margin = std::min(slide.alpha, 1.0 - slide.alpha);
   if (active.size() > 1) margin = std::min(margin, weights.head(weights.size() - 1).minCoeff());
@@ -83,7 +84,7 @@ double margin_of(const RegionsOnSurface& point, const Sizes& sizes, const Vector
 }
 
 /// d (psi_i', psi') / d (u, w) with theta_i ~ exp(u_i), alpha = 1 / (1 + exp(-w)), over the sizes.
-bool returns(const Pencil& pencil, const RegionSlide& slide) {
+bool slide_attracts(const Pencil& pencil, const RegionSlide& slide) {
   const auto k = static_cast<Index>(slide.regions.active.size());
   const Eigen::Map<const VectorXd> theta(slide.regions.weights.data(), k);
   const MatrixXd mixed = (1.0 - slide.alpha) * pencil.below + slide.alpha * pencil.above;
@@ -127,8 +128,8 @@ std::vector<RegionSlide> slides_of(const RegionsOnSurface& point, const std::vec
     if (!weights_at(pencil, slide.alpha, weights)) continue;
     slide.regions.active = active;
     slide.regions.weights.assign(weights.data(), weights.data() + active.size());
-    slide.regions.margin = margin_of(point, sizes, weights, slide);
-    slide.regions.attracts = returns(pencil, slide);
+    slide.regions.margin = margin_of_slide(point, sizes, weights, slide);
+    slide.regions.attracts = slide_attracts(pencil, slide);
     found.push_back(std::move(slide));
   }
   return found;

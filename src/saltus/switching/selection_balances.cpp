@@ -4,20 +4,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "saltus/base/at.hpp"
+#include "saltus/switching/field_accuracy.hpp"
+
 namespace saltus::switching {
-namespace {
-
-/// Gradients and fields are good to twelve digits.
-constexpr double accuracy = 1e-9;
-
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
-}  // namespace
 
 Balances balances_of(const Eigen::MatrixXd& effects, const Eigen::MatrixXd& terms) {
   const auto r = static_cast<std::size_t>(effects.rows()), q = static_cast<std::size_t>(effects.cols());
   const auto acts = [&](std::size_t k, std::size_t i) {
-    return std::abs(effects(index(k), index(i))) > accuracy * terms(index(k), index(i));
+    return std::abs(effects(index(k), index(i))) > field_accuracy * terms(index(k), index(i));
   };
   Balances balances;
   std::vector<std::size_t> group(r);

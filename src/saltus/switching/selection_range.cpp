@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Below this, relative to what it is the sum of, d . B_i is 0: B comes from gradients and fields, good to 12 digits.
-constexpr double tiny = 1e-10;
+constexpr double no_part = 1e-10;
 
 /// The direction normal to some columns, of length 1; false unless it is one.
 bool normal_to(const MatrixXd& effects, const std::vector<Index>& columns, VectorXd& normal) {
@@ -76,7 +76,7 @@ bool SelectionRange::set(const MatrixXd& effects) {
     double sum = 0.0;
     for (Index i = 0; i < q; ++i) {
       const double part = normal.dot(scaled.col(i));
-      const bool on = std::abs(part) <= tiny * scaled.col(i).norm();
+      const bool on = std::abs(part) <= no_part * scaled.col(i).norm();
       facets.sign.push_back(static_cast<std::int8_t>(on ? 0 : part > 0.0 ? 1 : -1));
       if (!on) sum += std::abs(part);
     }

@@ -8,52 +8,51 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "saltus/base/at.hpp"
 #include "saltus/switching/matrix_stability.hpp"
 #include "saltus/switching/region_weights.hpp"
 
 namespace saltus::switching {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-
-Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
+using Eigen::MatrixXd;
 
 /// A face as a polytope of its own, in differences from its first region along a basis of them.
 struct Face {
   std::vector<int> active;
   RegionPolytope polytope;
-  Matrix rates;  ///< of the coordinates along the basis, for the regions of the face
+  MatrixXd rates;  ///< of the coordinates along the basis, for the regions of the face
 };
 
 /// Part of a difference that the ones before do not span, relative to it, below which it depends on them.
-constexpr double independent = 1e-6;
+constexpr double independent_difference = 1e-6;
 
 std::optional<Face> face_of(const RegionTie& tie, const std::vector<int>& active) {
-  const Matrix& points = tie.polytope.points();
-  const auto count = at(active.size());
-  Matrix differences(count, points.cols());
+  const MatrixXd& points = tie.polytope.points();
+  const auto count = index(active.size());
+  MatrixXd differences(count, points.cols());
   for (Eigen::Index k = 0; k < count; ++k) {
     differences.row(k) = points.row(active[static_cast<std::size_t>(k)]) - points.row(active[0]);
   }
   // The largest remainder first, so that coordinates are of the order of one.
-  Matrix rest = differences;
+  MatrixXd rest = differences;
   std::vector<Eigen::Index> basis;
   const double size = differences.rowwise().norm().maxCoeff();
   while (basis.size() < static_cast<std::size_t>(std::min(points.cols(), count - 1))) {
     Eigen::Index best = 0;
-    if (!(rest.rowwise().norm().maxCoeff(&best) > independent * size)) break;
+    if (!(rest.rowwise().norm().maxCoeff(&best) > independent_difference * size)) break;
     const Eigen::RowVectorXd direction = rest.row(best).normalized();
     rest -= (rest * direction.transpose()) * direction;
     basis.push_back(best);
   }
   std::sort(basis.begin(), basis.end());
-  Matrix spanning(at(basis.size()), points.cols());
-  for (std::size_t k = 0; k < basis.size(); ++k) spanning.row(at(k)) = differences.row(basis[k]);
-  Matrix coordinates(count, at(basis.size()));
+  MatrixXd spanning(index(basis.size()), points.cols());
+  for (std::size_t k = 0; k < basis.size(); ++k) spanning.row(index(k)) = differences.row(basis[k]);
+  MatrixXd coordinates(count, index(basis.size()));
   if (!basis.empty()) {
     coordinates = (spanning * spanning.transpose()).ldlt().solve(spanning * differences.transpose()).transpose();
   }
-  Matrix rates(at(basis.size()), count);
+  MatrixXd rates(index(basis.size()), count);
   for (Eigen::Index k = 0; k < count; ++k) {
     rates.col(k) = spanning * tie.rates.col(active[static_cast<std::size_t>(k)]);
   }
@@ -63,7 +62,7 @@ std::optional<Face> face_of(const RegionTie& tie, const std::vector<int>& active
 }
 
 /// The smallest of what is to be positive: weights off the facets of the face, and how fast the others fall behind.
-double margin_of(const RegionTie& tie, const RegionWeights& weights, const RegionSet& set) {
+double margin_of_tie(const RegionTie& tie, const RegionWeights& weights, const RegionSet& set) {
   double margin = std::numeric_limits<double>::infinity();
   for (std::size_t f = 0; f < weights.polytope().facets().size(); ++f) margin = std::min(margin, weights.excess(f));
   Eigen::VectorXd velocity = Eigen::VectorXd::Zero(tie.rates.rows());
@@ -82,16 +81,16 @@ bool solve_on(const RegionTie& tie, const Face& face, RegionWeights& weights, co
   set.active = face.active;
   set.weights = near;
   if (!weights.solve(face.rates, set.weights.data())) return false;
-  set.margin = margin_of(tie, weights, set);
+  set.margin = margin_of_tie(tie, weights, set);
   return !std::isnan(set.margin);
 }
 
 /// Whether the weights return to those of the set where they follow the indicators.
-bool returns(const Face& face, const RegionSet& set) {
+bool face_attracts(const Face& face, const RegionSet& set) {
   const auto m = face.rates.rows();
   if (m == 0) return true;
-  const Eigen::Map<const Eigen::VectorXd> theta(set.weights.data(), at(set.weights.size()));
-  const Matrix dynamics = weight_dynamics(face.polytope.points(), face.rates, theta);
+  const Eigen::Map<const Eigen::VectorXd> theta(set.weights.data(), index(set.weights.size()));
+  const MatrixXd dynamics = weight_dynamics(face.polytope.points(), face.rates, theta);
   std::vector<double> entries;
   for (Eigen::Index row = 0; row < m; ++row) {
     for (Eigen::Index column = 0; column < m; ++column) entries.push_back(dynamics(row, column));
@@ -101,7 +100,7 @@ bool returns(const Face& face, const RegionSet& set) {
 
 /// Weights to start from: the centre, and near each region and the side opposite of it.
 std::vector<std::vector<double>> starts(const RegionPolytope& polytope) {
-  const Matrix centred = polytope.points().rowwise() - polytope.points().colwise().mean();
+  const MatrixXd centred = polytope.points().rowwise() - polytope.points().colwise().mean();
   const double size = centred.rowwise().squaredNorm().maxCoeff();
   std::vector<std::vector<double>> found;
   const auto add = [&](const Eigen::VectorXd& exponents) {
@@ -153,7 +152,7 @@ std::vector<RegionSet> admissible_region_faces(const RegionTie& tie, double tole
     for (const auto& start : starts(face->polytope)) {
       RegionSet set;
       if (!solve_on(tie, *face, weights, start, set) || !(set.margin >= -tolerance) || is_known(found, set)) continue;
-      set.attracts = returns(*face, set);
+      set.attracts = face_attracts(*face, set);
       found.push_back(std::move(set));
     }
   }
@@ -166,7 +165,7 @@ bool can_be_held(const RegionTie& tie) {
   if (n <= m) return false;
   std::vector<bool> taken(static_cast<std::size_t>(n), false);
   std::fill(taken.begin(), taken.begin() + m + 1, true);
-  Matrix equations(m + 1, m + 1);
+  MatrixXd equations(m + 1, m + 1);
   const Eigen::VectorXd sum_is_one = Eigen::VectorXd::Unit(m + 1, m);
   do {
     Eigen::Index column = 0;
@@ -185,20 +184,20 @@ bool can_be_held(const RegionTie& tie) {
 bool motion_depends_on_weights(const RegionTie& tie, const RegionSet& set, const Eigen::MatrixXd& fields) {
   const auto face = face_of(tie, set.active);
   if (!face) return false;
-  const auto count = at(set.active.size());
-  Matrix equations(face->rates.rows() + 1, count);
+  const auto count = index(set.active.size());
+  MatrixXd equations(face->rates.rows() + 1, count);
   equations.topRows(face->rates.rows()) = face->rates;
   equations.bottomRows(1).setOnes();
   const double size = face->rates.size() > 0 ? face->rates.cwiseAbs().maxCoeff() : 0.0;
   if (size > 0.0) equations.topRows(face->rates.rows()) /= size;
-  Eigen::FullPivLU<Matrix> factors(equations);
+  Eigen::FullPivLU<MatrixXd> factors(equations);
   factors.setThreshold(1e-12);
   if (factors.dimensionOfKernel() == 0) return false;
-  Matrix own(fields.rows(), count);
+  MatrixXd own(fields.rows(), count);
   for (Eigen::Index k = 0; k < count; ++k) own.col(k) = fields.col(set.active[static_cast<std::size_t>(k)]);
   // Weights are between 0 and 1: what their changes move, against what the fields do, state by state.
-  const Matrix kernel = factors.kernel();
-  const Matrix motion = own * kernel;
+  const MatrixXd kernel = factors.kernel();
+  const MatrixXd motion = own * kernel;
   const double change = kernel.cwiseAbs().maxCoeff();
   for (Eigen::Index row = 0; row < own.rows(); ++row) {
     if (motion.row(row).cwiseAbs().maxCoeff() > 1e-9 * change * own.row(row).cwiseAbs().maxCoeff()) return true;
