@@ -10,6 +10,7 @@
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
 #include "saltus/switching/additive_map.hpp"
+#include "saltus/switching/field_accuracy.hpp"
 #include "saltus/switching/independent_rows.hpp"
 
 namespace saltus::event_integrator {
@@ -17,12 +18,8 @@ namespace {
 
 using Eigen::Index;
 
-/// Gradients and fields are good to twelve digits; what is less than this of its terms is 0.
-constexpr double accuracy = 1e-9;
 /// Selections whose corners are numbered by bits.
-constexpr std::size_t most_surfaces = 60;
-
-Index index(std::size_t i) { return static_cast<Index>(i); }
+constexpr std::size_t most_numbered_surfaces = 60;
 
 class DependentSearch {
  public:
@@ -80,7 +77,7 @@ class DependentSearch {
         double rate = 0.0, size = 0.0;
         s_.kernel.gradient(j, t_, x.data(), alpha_.data(), row.data(), &rate);
         for (std::size_t i = 0; i < x.size(); ++i) size += std::abs(row[i]) * (1.0 + std::abs(x[i]));
-        if (!(std::abs(values[at(j)]) <= accuracy * size)) return reject("they part again");
+        if (!(std::abs(values[at(j)]) <= switching::field_accuracy * size)) return reject("they part again");
         const Eigen::Map<const Eigen::VectorXd> gradient(row.data(), index(row.size()));
         const Eigen::VectorXd shares = spanned.solve(gradient);
         const double rest = (functions_.rows().transpose() * shares - gradient).cwiseAbs().maxCoeff();
@@ -134,7 +131,7 @@ class DependentSearch {
     field.enter(set_, sliding_, alpha_);
     field.evaluate(t_, x_.data());
     for (const auto& range : field.ranges()) {
-      const double rounding = accuracy * range.terms;
+      const double rounding = switching::field_accuracy * range.terms;
       if (range.min <= rounding && range.max >= -rounding) continue;
       static_cast<void>(reject("no selection holds the surfaces at zero"));
       return std::nullopt;
@@ -174,7 +171,7 @@ bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces)
 std::optional<HigherOrderSet> find_dependent_set(const Surroundings& surroundings, const ModeState& state, double t,
                                                  std::vector<double>& x, std::string& problem) {
   problem.clear();
-  if (state.sliding.size() < 2 || state.sliding.size() > most_surfaces) return std::nullopt;
+  if (state.sliding.size() < 2 || state.sliding.size() > most_numbered_surfaces) return std::nullopt;
   if (!are_plain_surfaces(surroundings, state.sliding)) return std::nullopt;
   DependentSearch search(surroundings, state, t, x);
   auto found = search.run();

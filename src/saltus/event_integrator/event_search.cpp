@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/event_integrator/cells.hpp"
 #include "saltus/event_integrator/event_search_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int deepest = 10;  // a step is cut into at most 2^10 pieces before it is shortened instead
 
 /// cos(pi degree (n - k) / n) of the last two degrees.
@@ -146,11 +146,11 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
     const double magnitude = by_form ? std::abs(forms_.factor(i) * x[forms_.state(i)]) : magnitude_[j];
     const double slope = by_form ? std::abs(forms_.factor(i)) : slope_[j];
     // A handful of roundings of terms as large as the magnitude.
-    noise_[i] = 8.0 * epsilon * magnitude;
+    noise_[i] = 8.0 * rounding_unit * magnitude;
     accuracy_[i] = 0.1 * (tolerances_.atol * slope + tolerances_.rtol * magnitude);
   } else if (function.kind == FunctionKind::release) {
     const double size = std::abs(pressure_[at(function.row)]);
-    noise_[i] = 32.0 * epsilon * size;
+    noise_[i] = 32.0 * rounding_unit * size;
     accuracy_[i] = 0.1 * tolerances_.rtol * size;
   } else {
     const auto& exit = exits_[at(function.row)];
@@ -158,11 +158,11 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
     const bool is_side = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
     // Loss and stability of coupled surfaces are relative to their terms.
     const double size = is_side ? std::abs(exit.below) + std::abs(exit.above) : coupled ? 1.0 : std::abs(exit.loss);
-    noise_[i] = 32.0 * epsilon * size;
+    noise_[i] = 32.0 * rounding_unit * size;
     // Near a two-fold point both fields vanish, but not the terms they are the sum of.
     const bool by_sides = coupled || field_.solve() == SlidingSolve::higher_order;
     if (field_.solve() == SlidingSolve::decoupled || (by_sides && is_side)) {
-      noise_[i] = std::max(noise_[i], 8.0 * epsilon * field_.normal_terms(at(function.row)));
+      noise_[i] = std::max(noise_[i], 8.0 * rounding_unit * field_.normal_terms(at(function.row)));
     }
     accuracy_[i] = 0.1 * tolerances_.rtol * size;
   }
@@ -353,7 +353,7 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
 EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::size_t i) const {
   const auto& function = functions_[i];
   // The form has other roundings than the function, whose own terms may be smaller.
-  const double rounding = std::max(noise_[i], 8.0 * epsilon * forms_.terms(i, bounds_));
+  const double rounding = std::max(noise_[i], 8.0 * rounding_unit * forms_.terms(i, bounds_));
   if (function.sign != 0) {
     auto along = forms_.nested_along(i, step);
     along.c[0] -= function.offset;
@@ -373,7 +373,7 @@ EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::si
     size = std::max(size, std::abs(b));
   }
   if (std::isnan(none)) return not_finite(function, coefficients.front());
-  const double noise = std::max(rounding, 8.0 * epsilon * size);
+  const double noise = std::max(rounding, 8.0 * rounding_unit * size);
   const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise) : function.sign;
   if (sign == 0) return {};
   const auto change = ode::first_sign_change(coefficients, sign, function.zero_order, noise);
@@ -411,8 +411,8 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
       return {false, {}};
     }
   }
-  double noise = std::max(noise_[i], 8.0 * epsilon * size);
-  if (forms_.has(i)) noise = std::max(noise, 8.0 * epsilon * forms_.terms(i, bounds_));
+  double noise = std::max(noise_[i], 8.0 * rounding_unit * size);
+  if (forms_.has(i)) noise = std::max(noise, 8.0 * rounding_unit * forms_.terms(i, bounds_));
   const auto change = ode::first_sign_change(coefficients, sign, from == 0.0 ? function.zero_order : 0, noise);
   if (!change) return {};
   const double local = 0.5 * (change->lower + change->upper);

@@ -15,8 +15,6 @@ using Eigen::Index;
 /// Width of central differences, a power of two relative to 1 + |x|: truncation and rounding are both about 1e-11.
 double width_at(double x) { return std::ldexp(std::exp2(std::ceil(std::log2(std::abs(x) + 1.0))), -17); }
 
-Index index(std::size_t i) { return static_cast<Index>(i); }
-
 }  // namespace
 
 HeldFunctions::HeldFunctions(const evaluation::ModelKernel& kernel)

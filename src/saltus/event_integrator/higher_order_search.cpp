@@ -19,7 +19,7 @@ constexpr int highest_order = 3;
 /// Surfaces whose 2^m corners are looked at.
 constexpr std::size_t most_surfaces = 8;
 /// Velocities are good to about ten digits where gradients are differences.
-constexpr double accuracy = 1e-9;
+constexpr double velocity_accuracy = 1e-9;
 
 /// Grows a set function by function.
 class SetSearch {
@@ -103,7 +103,7 @@ class SetSearch {
       for (std::size_t corner = 0; corner < velocity.size(); ++corner) {
         change = std::max(change, std::abs(velocity[corner ^ (std::size_t{1} << row)] - velocity[corner]));
       }
-      if (!(change <= accuracy * terms)) rows.push_back(row);
+      if (!(change <= velocity_accuracy * terms)) rows.push_back(row);
     }
     return rows;
   }
@@ -192,7 +192,7 @@ class SetSearch {
     static_cast<void>(field.project(t_, x_.data()));
     field.evaluate(t_, x_.data());
     for (const auto& range : field.ranges()) {
-      const double rounding = accuracy * range.terms;
+      const double rounding = velocity_accuracy * range.terms;
       if (!(range.max - range.min > rounding)) return refuse("no selection moves a derivative of the surfaces");
       if (!(range.min <= rounding && range.max >= -rounding)) return refuse("no selection holds the surfaces at zero");
     }
@@ -209,7 +209,7 @@ class SetSearch {
         const auto& there = fields_[corner ^ (std::size_t{1} << row)];
         for (std::size_t i = 0; i < here.size(); ++i) {
           const double size = std::max(std::abs(here[i]), std::abs(there[i]));
-          if (!(std::abs(here[i] - there[i]) <= accuracy * size)) return false;
+          if (!(std::abs(here[i] - there[i]) <= velocity_accuracy * size)) return false;
         }
       }
     }

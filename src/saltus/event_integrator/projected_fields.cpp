@@ -11,13 +11,8 @@
 namespace saltus::event_integrator {
 namespace {
 
-constexpr double epsilon = rounding_unit;
 /// Derivatives looked at before psi is said to stay 0.
-constexpr int highest_order = 5;
-
-bool contains(const std::vector<int>& sorted_or_short, int value) {
-  return std::find(sorted_or_short.begin(), sorted_or_short.end(), value) != sorted_or_short.end();
-}
+constexpr int most_derivatives = 5;
 
 Motion along_velocity(double velocity) {
   return {{velocity, velocity > 0.0 ? switching::Drift::up : switching::Drift::down}, 1};
@@ -31,7 +26,7 @@ ProjectedFields::ProjectedFields(const evaluation::ModelKernel& kernel, const Oc
   const std::vector<double> alpha(at(kernel.switching_functions()), 0.5);
   kernel.scales(occasion.t, occasion.x, alpha.data(), noise_.data(), slope_.data());
   // A handful of roundings of terms as large as the magnitude.
-  for (double& value : noise_) value = std::isfinite(value) ? 8.0 * epsilon * value : 0.0;
+  for (double& value : noise_) value = std::isfinite(value) ? 8.0 * rounding_unit * value : 0.0;
 }
 
 std::vector<double> ProjectedFields::corner_alpha(const std::vector<double>& base, const std::vector<int>& group,
@@ -67,7 +62,8 @@ std::vector<double> ProjectedFields::point_beside(const std::vector<double>& alp
     for (const double d : row) square += d * d;
     if (!(square > 0.0) || !std::isfinite(square)) continue;
     // Just enough to be on the right side after rounding.
-    const double distance = 4.0 * std::max({noise_[at(j)], epsilon * slope_[at(j)] * largest, 1e-30 * slope_[at(j)]});
+    const double distance =
+        4.0 * std::max({noise_[at(j)], rounding_unit * slope_[at(j)] * largest, 1e-30 * slope_[at(j)]});
     const double side = alpha[at(j)] == 1.0 ? 1.0 : alpha[at(j)] == 0.0 ? -1.0 : 0.0;
     const double step = side * distance - values[at(j)];
     if (!std::isfinite(step)) continue;
@@ -109,7 +105,7 @@ Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, do
   const double tau = occasion_.time_scale;
   const double threshold = std::max(noise_[at(surface)], std::abs(velocity) * tau);
   double weight = tau;  // tau^k / k!
-  for (int order = 2; order <= highest_order; ++order) {
+  for (int order = 2; order <= most_derivatives; ++order) {
     weight *= tau / order;
     const double derivative = kernel_.lie_derivative(surface, order, occasion_.t, occasion_.x, alpha.data());
     if (std::abs(derivative) * weight > threshold) {

@@ -13,7 +13,7 @@ namespace saltus::event_integrator {
 namespace {
 
 /// Rates of guards, and with them the held fields, are good to ten digits; what is less than this of its terms is 0.
-constexpr double accuracy = 1e-9;
+constexpr double rate_accuracy = 1e-9;
 
 class RestingSearch {
  public:
@@ -52,7 +52,7 @@ class RestingSearch {
       s_.kernel.functions(point.t, point.x.data(), alpha_.data(), values.data());
       s_.kernel.scales(point.t, point.x.data(), alpha_.data(), magnitude.data(), slope.data());
       // The points are displaced by 1e-3, the first one is where the guards are to rounding.
-      return std::abs(values[at(j)]) <= accuracy * (magnitude[at(j)] + slope[at(j)]);
+      return std::abs(values[at(j)]) <= rate_accuracy * (magnitude[at(j)] + slope[at(j)]);
     });
   }
 
@@ -70,8 +70,8 @@ class RestingSearch {
       for (std::size_t i = 0; i < below.size(); ++i) {
         const double terms =
             std::max({std::abs(below[i]), std::abs(above[i]), std::abs(free_below[i]), std::abs(free_above[i])});
-        if (!(std::abs(above[i] - below[i]) <= accuracy * terms)) return false;
-        acts = acts || std::abs(free_above[i] - free_below[i]) > accuracy * terms;
+        if (!(std::abs(above[i] - below[i]) <= rate_accuracy * terms)) return false;
+        acts = acts || std::abs(free_above[i] - free_below[i]) > rate_accuracy * terms;
       }
     }
     return acts;
@@ -95,7 +95,7 @@ class RestingSearch {
     int pressed = 0;
     for (std::size_t k = 0; k < below.size(); ++k) {
       const double own = above[k] - below[k];
-      if (!(std::abs(own) > accuracy * std::max(std::abs(above[k]), std::abs(below[k])))) continue;
+      if (!(std::abs(own) > rate_accuracy * std::max(std::abs(above[k]), std::abs(below[k])))) continue;
       change = own;
       ++pressed;
     }
@@ -123,7 +123,7 @@ class RestingSearch {
     for (std::size_t i = 0; i < found_.surfaces.size(); ++i) alpha[at(found_.surfaces[i])] = found_.alpha[i];
     const auto all = pressures(alpha);
     for (std::size_t k = 0; k < sum.size(); ++k) {
-      if (!(std::abs(all[k] - sum[k]) <= accuracy * terms[k])) {
+      if (!(std::abs(all[k] - sum[k]) <= rate_accuracy * terms[k])) {
         return refuse(found_.surfaces.front(), "and others multiply each other in what presses on a guard at rest");
       }
     }

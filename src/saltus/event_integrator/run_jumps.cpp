@@ -16,10 +16,6 @@ using result::Termination;
 /// Executions at one time before the run stops (rule 5).
 constexpr std::size_t most_rounds = 10000;
 
-bool contains(const std::vector<int>& values, int value) {
-  return std::find(values.begin(), values.end(), value) != values.end();
-}
-
 }  // namespace
 
 std::string Run::jump_names(const std::vector<int>& jumps) const {

@@ -13,10 +13,6 @@ namespace {
 
 using result::Termination;
 
-bool contains(const std::vector<int>& values, int value) {
-  return std::find(values.begin(), values.end(), value) != values.end();
-}
-
 }  // namespace
 
 /// The surfaces that the held guards keep at zero; false if these cannot be followed, with the status set.

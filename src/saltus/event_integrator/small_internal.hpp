@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
 
 namespace saltus::event_integrator {
-
-/// Relative spacing of doubles.
-inline constexpr double rounding_unit = std::numeric_limits<double>::epsilon();
 
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -21,6 +19,10 @@ inline bool is_finite(const std::vector<double>& values) {
   double none = 0.0;  // NaN if a value is not finite: without a way out of the loop
   for (const double value : values) none += 0.0 * value;
   return none == 0.0;
+}
+
+inline bool contains(const std::vector<int>& values, int value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
 }
 
 /// What state k is moved by to look near by, `step` of its size or so: neighbours by different weights, of signs by

@@ -125,7 +125,7 @@ Transition undecided(const Surroundings& s, const ModeState& before, const Occas
 }
 
 /// Whether surfaces that were not all slid on before are at zero here, and their gradients depend on each other.
-bool meet_dependent(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+bool dependent_are_met(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
   // Two are dependent only where they touch, and those that were slid on before are not.
   if (occasion.at_zero.size() < 3) return false;
   const auto surfaces = acting_surfaces(s, state, occasion);
@@ -145,7 +145,7 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
   }
   std::string problem;
-  if (meet_dependent(surroundings, exact, occasion)) {
+  if (dependent_are_met(surroundings, exact, occasion)) {
     if (auto decided = decide_dependent(surroundings, exact, occasion, problem)) return std::move(*decided);
     // The corners of more are not enumerated.
     constexpr std::size_t most_enumerated = 10;

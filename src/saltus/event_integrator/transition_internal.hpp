@@ -22,9 +22,9 @@
 
 namespace saltus::event_integrator {
 
-inline bool contains(const std::vector<int>& values, int value) {
-  return std::find(values.begin(), values.end(), value) != values.end();
-}
+/// Weights, rates and velocities below this fraction of their scale are looked at a little later along the motion. It
+/// only has to be well above what an event is located to.
+inline constexpr double marginal_part = 1e-7;
 
 /// "a, b"
 std::string names(const model::System& system, const std::vector<int>& surfaces);

@@ -11,9 +11,6 @@
 namespace saltus::event_integrator {
 namespace {
 
-/// As for regions alone: weights, rates and velocities below this fraction are looked at a little later.
-constexpr double marginal = 1e-7;
-
 /// Regions that go on together, and the mode of the surface.
 struct Continuation {
   switching::RegionSet set;
@@ -30,8 +27,8 @@ class OnSurface {
   std::vector<Continuation> run() {
     const auto here = point_at(occasion_.t, occasion_.x);
     for (const int side : {-1, 1}) leave(here, side);
-    for (auto& slide : switching::admissible_region_slides(here, marginal)) {
-      if (slide.regions.margin > marginal || goes_on(slide)) {
+    for (auto& slide : switching::admissible_region_slides(here, marginal_part)) {
+      if (slide.regions.margin > marginal_part || goes_on(slide)) {
         found_.push_back({std::move(slide.regions), {surface_, 0, slide.alpha}});
       }
     }
@@ -90,10 +87,10 @@ class OnSurface {
     const auto& velocities = side > 0 ? here.velocity_above : here.velocity_below;
     double scale = 0.0;
     for (const double v : velocities) scale = std::max(scale, std::abs(v));
-    for (auto& set : switching::admissible_region_sets(side > 0 ? here.above : here.below, marginal)) {
+    for (auto& set : switching::admissible_region_sets(side > 0 ? here.above : here.below, marginal_part)) {
       double velocity = side * velocity_of(velocities, set);
-      if (!(velocity >= -marginal * scale)) continue;
-      if (set.margin <= marginal || velocity <= marginal * scale) {
+      if (!(velocity >= -marginal_part * scale)) continue;
+      if (set.margin <= marginal_part || velocity <= marginal_part * scale) {
         const auto x = ahead(set, alpha);
         const auto later = point_at(occasion_.t + time(), x.data());
         switching::RegionSet own;

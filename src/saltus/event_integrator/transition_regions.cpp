@@ -9,10 +9,6 @@
 namespace saltus::event_integrator {
 namespace {
 
-/// Weights and rates below this fraction of their scale are looked at a little later along the motion. It only has to
-/// be well above what an event is located to.
-constexpr double marginal = 1e-7;
-
 std::vector<ActiveRegion> active_of(const std::vector<int>& candidates, const switching::RegionSet& set) {
   std::vector<ActiveRegion> active;
   for (std::size_t k = 0; k < set.active.size(); ++k) {
@@ -83,14 +79,14 @@ bool Decider::solve_set(const MeetingRegions& meeting, double t, const double* x
 }
 
 std::vector<switching::RegionSet> Decider::sets_that_go_on(const MeetingRegions& meeting) {
-  auto admissible =
-      meeting.basis
-          ? switching::admissible_region_faces(tie_at(meeting, occasion_.t, occasion_.x), marginal)
-          : switching::admissible_region_sets(region_rates(meeting.candidates, occasion_.t, occasion_.x), marginal);
+  auto admissible = meeting.basis
+                        ? switching::admissible_region_faces(tie_at(meeting, occasion_.t, occasion_.x), marginal_part)
+                        : switching::admissible_region_sets(region_rates(meeting.candidates, occasion_.t, occasion_.x),
+                                                            marginal_part);
   std::vector<switching::RegionSet> sets;
   for (auto& set : admissible) {
     if (meeting.basis && (is_lost(meeting, set) || !stays_tied(meeting, set))) continue;
-    if (set.margin > marginal || goes_on(meeting, set)) sets.push_back(std::move(set));
+    if (set.margin > marginal_part || goes_on(meeting, set)) sets.push_back(std::move(set));
   }
   switching::merge_same_motions(sets);
   return sets;
