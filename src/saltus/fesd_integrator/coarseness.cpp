@@ -6,7 +6,7 @@
 namespace saltus::fesd_integrator {
 namespace {
 
-constexpr double rounding = 1e-12;  // of a component that is zero but for those of the others
+constexpr double rounding_of_others = 1e-12;  // of a component that is zero but for those of the others
 
 }  // namespace
 
@@ -14,7 +14,7 @@ double Coarseness::share(const Element& element, const std::vector<double>& erro
   if (!limit_) return 0.0;
   double worst = 0.0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!(errors[i] > rounding * element.size)) continue;
+    if (!(errors[i] > rounding_of_others * element.size)) continue;
     const double before = largest_.empty() ? 0.0 : largest_[i];
     const double largest = std::max({before, std::abs(element.x[i]), std::abs(element.end[i])});
     worst = std::max(worst, errors[i] / (*limit_ * element.h / span_ * largest));
@@ -31,7 +31,7 @@ void Coarseness::note(const Element& element, const std::vector<double>& errors)
   }
   for (std::size_t i = 0; i < n_x; ++i) {
     largest_[i] = std::max(largest_[i], std::abs(element.end[i]));
-    if (!(errors[i] > rounding * element.size)) continue;
+    if (!(errors[i] > rounding_of_others * element.size)) continue;
     sum_[i] += errors[i];
     if (!(errors[i] > error_[i])) continue;
     error_[i] = errors[i];

@@ -16,7 +16,7 @@ namespace {
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 using Eigen::Index;
 
-constexpr int most_iterations = 40;
+constexpr int most_newton_steps = 40;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
   double before = std::numeric_limits<double>::infinity();
   Matrix matrix = Matrix::its_own;
   for (int iteration = 0;; ++iteration) {
-    if (iteration == most_iterations) return Outcome::not_converged;
+    if (iteration == most_newton_steps) return Outcome::not_converged;
     const auto change = equations.step(held, matrix, element);
     if (!change) return Outcome::not_finite;
     // Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are

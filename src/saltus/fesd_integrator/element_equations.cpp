@@ -14,7 +14,7 @@ using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
 using Eigen::Index;
 
 /// Of Newton's method that puts an end onto the surfaces.
-constexpr int most_iterations = 40;
+constexpr int most_steps_onto_surfaces = 40;
 
 }  // namespace
 
@@ -213,7 +213,7 @@ bool ElementEquations::project(double t, const double* held, Element& element) {
   const double* selections = element.stage_selections.data() + (n_s_ - 1) * n_psi_;
   Vector x_1(element.end.data(), n_x_);
   double before = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < most_steps_onto_surfaces; ++iteration) {
     kernel_.evaluate(t + element.h, element.end.data(), selections, held, here);
     if (iteration == 0) find_directions(n_s_, here);
     const auto along = directions_.middleCols(n_s_ * n_psi_, count);

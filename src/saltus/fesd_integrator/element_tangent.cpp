@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
-using ConstMatrix = Eigen::Map<const MatrixXd>;
+using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
 /// Rows of the surfaces that slide, from rows of all indicators.

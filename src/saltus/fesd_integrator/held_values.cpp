@@ -5,14 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/ode/bernstein.hpp"
 
 namespace saltus::fesd_integrator {
-namespace {
-
-constexpr double rounding = std::numeric_limits<double>::epsilon();
-
-}  // namespace
 
 HeldValues::HeldValues(const discretization::PointFunctions& functions, const std::vector<HeldFact>& facts)
     : functions_(functions),
@@ -30,7 +26,7 @@ void HeldValues::update_arguments(double t, const double* x) {
 HeldValues::Change HeldValues::set_behind(double t, double reach, const double* x) {
   if (facts_.empty()) return Change::none;
   next_ = values_;
-  const double behind = t + std::max(1e-9 * reach, 4.0 * rounding * std::abs(t));
+  const double behind = t + std::max(1e-9 * reach, 4.0 * rounding_unit * std::abs(t));
   for (std::size_t k = 0; k < facts_.size(); ++k) {
     update_arguments(behind, x);  // each depends on those before it
     const double argument = arguments_[k];
@@ -80,7 +76,7 @@ double HeldValues::next_change(double t, double end, const double* x) {
           largest = std::max({largest, std::abs(values[i]), std::abs(arguments_[k])});
         }
         if (!std::isfinite(largest)) continue;  // the end of an unbounded cell
-        const double noise = 8.0 * rounding * largest;
+        const double noise = 8.0 * rounding_unit * largest;
         const auto polynomial = ode::to_bernstein(values);
         const int zero_order = std::abs(values.front()) <= noise ? 1 : 0;
         const auto change = ode::first_sign_change(polynomial, 1, zero_order, noise);
@@ -94,7 +90,7 @@ double HeldValues::next_change(double t, double end, const double* x) {
       }
     }
   }
-  return end - first <= 4.0 * rounding * std::max(std::abs(end), std::abs(t)) ? end : first;
+  return end - first <= 4.0 * rounding_unit * std::max(std::abs(end), std::abs(t)) ? end : first;
 }
 
 }  // namespace saltus::fesd_integrator

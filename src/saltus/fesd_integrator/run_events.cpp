@@ -6,15 +6,15 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/fesd_integrator/run_internal.hpp"
 #include "saltus/ode/bernstein.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
 
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 /// Of an element in which an event function is too fast for one interpolant: 2^10 parts resolve a thousand zeros.
-constexpr int most_halvings = 10;
+constexpr int most_halvings_for_zeros = 10;
 
 }  // namespace
 
@@ -53,7 +53,7 @@ std::optional<Run::EventZero> Run::first_event_zero(const Element& element, cons
       largest = std::max(largest, std::abs(values[i]));
     }
     if (!std::isfinite(largest)) continue;
-    const double noise = 16.0 * rounding * std::max(largest, element.size);
+    const double noise = 16.0 * rounding_unit * std::max(largest, element.size);
     const auto coefficients = ode::to_bernstein(values);
     double error = 0.0;
     for (std::size_t i = 0; i < ode::check_nodes().size(); ++i) {
@@ -158,7 +158,7 @@ bool Run::record_user_events(const Element& element, const std::vector<double>& 
   double from = 0.0;
   constexpr int most_per_element = 1000;
   for (int count = 0; count < most_per_element && from < 1.0; ++count) {
-    const auto zero = first_event_zero(element, left, {from, 1.0, most_halvings, true});
+    const auto zero = first_event_zero(element, left, {from, 1.0, most_halvings_for_zeros, true});
     if (!zero) break;
     event_state(element, left, zero->theta);
     std::vector<double> x = between_x_, at = between_selections_;
@@ -180,7 +180,7 @@ void Run::fire_events_here() {
     return fire(user_events_.update(t_, x_.data(), selections_.data(), held_.data(), crossed), t_, x_, selections_);
   };
   if (take(std::nullopt)) return;
-  const double noise = 16.0 * rounding * size_;
+  const double noise = 16.0 * rounding_unit * size_;
   for (std::size_t k = 0; k < user_events_.functions(); ++k) {
     const bool reached = user_events_.reaches_zero(k, noise) && !user_events_.crosses_at(k, t_);
     if (reached && user_events_.sign(k) != 0 && take(k)) return;

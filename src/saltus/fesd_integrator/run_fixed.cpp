@@ -11,7 +11,7 @@ namespace saltus::fesd_integrator {
 namespace {
 
 /// Of an element whose stages have no active sets that were found: across several switches there need not be any.
-constexpr int most_halvings = 10;
+constexpr int most_halvings_of_element = 10;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void Run::advance_fixed(double end) {
 
 void Run::advance_fixed_element(const FixedSpan& span) {
   // In units of the smallest part.
-  constexpr long whole = 1L << most_halvings;
+  constexpr long whole = 1L << most_halvings_of_element;
   long done = 0, part = whole;
   while (done < whole && !stopped()) {
     const double fraction = static_cast<double>(part) / static_cast<double>(whole);

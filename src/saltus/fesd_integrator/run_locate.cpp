@@ -4,14 +4,10 @@
 #include <limits>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/fesd_integrator/run_internal.hpp"
 
 namespace saltus::fesd_integrator {
-namespace {
-
-constexpr double rounding = std::numeric_limits<double>::epsilon();
-
-}  // namespace
 
 std::optional<double> Run::locate(int count, double guess, const Violation& violation, double longest, TimeWarp warp) {
   // Secant steps from the root of the interpolant, inside the bracket (lower: the condition holds; upper: it does not).
@@ -46,11 +42,11 @@ std::optional<double> Run::locate(int count, double guess, const Violation& viol
     if (failed) return std::nullopt;
     const double value = watch_.end_value(set_, violation.condition), noise = watch_.noise(violation.condition);
     if (!std::isfinite(value)) return std::nullopt;
-    if (upper - lower <= 4.0 * rounding * h) return h;
+    if (upper - lower <= 4.0 * rounding_unit * h) return h;
     if (std::abs(value) <= 0.25 * noise) {
       // Roundings of components much smaller than the largest are smaller than this noise, and divided by a small slope
       // it is a time.
-      const bool resolved = std::abs(value) * count <= 2.0 * rounding * (t_ + count * h) * std::abs(slope);
+      const bool resolved = std::abs(value) * count <= 2.0 * rounding_unit * (t_ + count * h) * std::abs(slope);
       const bool stalls = polished > 0 && std::abs(value) > 0.5 * std::abs(value_before) && value * value_before > 0.0;
       if (resolved || stalls || polished == most_polishing_steps) return h;
       ++polished;

@@ -13,7 +13,7 @@ namespace saltus::fesd_integrator {
 namespace {
 
 /// A step without a solution is halved at most so often: each try costs hundreds of iterations.
-constexpr int most_halvings = 10;
+constexpr int most_halvings_of_step = 10;
 /// Where active sets have failed there is seldom a solution at all.
 constexpr int most_halvings_of_fallback = 2;
 
@@ -121,7 +121,9 @@ void Run::fall_back(double end, result::Termination termination, std::string mes
   previous_.reset();
 }
 
-void Run::advance_by_problem(StepProblem& problem, double end) { advance_by_problem(problem, end, most_halvings); }
+void Run::advance_by_problem(StepProblem& problem, double end) {
+  advance_by_problem(problem, end, most_halvings_of_step);
+}
 
 void Run::advance_by_problem(StepProblem& problem, double end, int halvings_allowed) {
   double limit = end;

@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/fesd_integrator/run_internal.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
 
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 /// A simulation step is divided at most so often; then the elements are below any time scale of the model.
 constexpr double shortest = 1e-12;
 /// Elements that may jump over a switch are compared with parts of them, down to this power of 1/2.
@@ -32,7 +32,7 @@ void Run::follow_laps() {
   const auto next = kernel_.root_exponents().empty() ? std::nullopt : laps_.next_switch();
   lap_part_ = next ? *next * options_.elements / elements_per_switch : 0.0;
   // Laps this short are those of roundings, and elements at the roundings of t would get nowhere.
-  constexpr double shortest_followed = 1e-10, roundings = 64.0 * rounding;
+  constexpr double shortest_followed = 1e-10, roundings = 64.0 * rounding_unit;
   if (lap_part_ <= std::max(shortest_followed * nominal_, options_.elements * roundings * std::abs(t_)))
     lap_part_ = 0.0;
 }

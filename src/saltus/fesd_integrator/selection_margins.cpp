@@ -12,10 +12,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using ConstMatrix = Eigen::Map<const MatrixXd>;
-using ConstVector = Eigen::Map<const VectorXd>;
-
-Index index(std::size_t i) { return static_cast<Index>(i); }
+using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/transition.hpp"
 #include "saltus/switching/additive_map.hpp"
+#include "saltus/switching/field_accuracy.hpp"
 #include "saltus/switching/independent_rows.hpp"
 #include "saltus/switching/selection_complementarity.hpp"
 
@@ -17,11 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-Index index(std::size_t i) { return static_cast<Index>(i); }
-
-/// Gradients and fields are good to twelve digits; what is less than this of its terms is 0.
-constexpr double accuracy = 1e-9;
 
 /// The functions at zero at a point, taken for zero: d psi / dt of all members from f.
 struct Gradients {
@@ -81,7 +77,7 @@ bool Transition::find_dependent(const Decision& decision, const std::vector<int>
   for (const int j : group.members) terms += jumps.col(j).cwiseAbs();
   std::vector<int> acting, followers;
   for (const int j : group.members) {
-    const bool acts = (jumps.col(j).cwiseAbs().array() > accuracy * terms.array()).any();
+    const bool acts = (jumps.col(j).cwiseAbs().array() > switching::field_accuracy * terms.array()).any();
     (acts ? acting : followers).push_back(j);
   }
   const auto own = gradients_of(values, acting);
@@ -98,8 +94,8 @@ bool Transition::find_dependent(const Decision& decision, const std::vector<int>
     if (!map || !map->constant.allFinite() || !map->effects.allFinite()) return false;
     kernel_.evaluate(t, x.data(), selections.data(), decision.held, values);
     const auto gradients = gradients_of(values, acting);
-    const auto solution = switching::solve_complementarity(gradients.rows * map->effects,
-                                                           gradients.rows * map->constant + gradients.rates, accuracy);
+    const auto solution = switching::solve_complementarity(
+        gradients.rows * map->effects, gradients.rows * map->constant + gradients.rates, switching::field_accuracy);
     const VectorXd moves = map->constant + map->effects * solution.lambda;
     motion.assign(moves.data(), moves.data() + moves.size());
     const auto follow = gradients_of(values, followers);
@@ -112,7 +108,7 @@ bool Transition::find_dependent(const Decision& decision, const std::vector<int>
       const auto k = std::find(followers.begin(), followers.end(), j) - followers.begin();
       const double velocity = follow.rows.row(k) * moves + follow.rates[k];
       const double size = follow.rows.row(k).cwiseAbs() * moves.cwiseAbs() + std::abs(follow.rates[k]);
-      const bool goes = std::abs(velocity) > accuracy * size;
+      const bool goes = std::abs(velocity) > switching::field_accuracy * size;
       pattern.push_back(goes ? (velocity > 0.0 ? 1 : -1) : side_before(j) < 0 ? -1 : 1);
     }
     if (group.patterns.empty()) group.decided = solution.unique_velocity;
