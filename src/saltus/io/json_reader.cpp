@@ -46,7 +46,7 @@ void read_intersection(JsonReader& reader, const Json& json, const std::string& 
   reader.read_member(json, path, "alpha_after", intersection.alpha_after);
 }
 
-result::Event read_event(JsonReader& reader, const Json& json, const std::string& path) {
+result::Event read_recorded_event(JsonReader& reader, const Json& json, const std::string& path) {
   result::Event event;
   reader.read_member(json, path, "t", event.t);
   reader.read_word(json, path, "kind", result::event_kind_named, "kind of event", event.kind);
@@ -71,8 +71,9 @@ result::Event read_event(JsonReader& reader, const Json& json, const std::string
   return event;
 }
 
-void read_events(JsonReader& reader, const Json& json, const std::string& path, std::vector<result::Event>& events) {
-  read_list(reader, json, path, events, read_event);
+void read_recorded_events(JsonReader& reader, const Json& json, const std::string& path,
+                          std::vector<result::Event>& events) {
+  read_list(reader, json, path, events, read_recorded_event);
 }
 
 void read_trajectory(JsonReader& reader, const Json& json, const std::string& path, result::Trajectory& trajectory) {
@@ -134,7 +135,7 @@ void read_final(JsonReader& reader, const Json& json, const std::string& path, r
   reader.read_if_there(json, path, "theta", final.theta);
 }
 
-void read_options(JsonReader& reader, const Json& json, const std::string& path, result::OptionRecord& options) {
+void read_option_record(JsonReader& reader, const Json& json, const std::string& path, result::OptionRecord& options) {
   if (!json.is_object()) {
     reader.mismatch(path, "an object", json);
     return;
@@ -223,7 +224,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
     read_list(reader, json["region_groups"], path + "/region_groups", result.region_groups, read_region_group);
   }
   read_part(reader, json, path, "final", read_final, result.final);
-  read_part(reader, json, path, "events", read_events, result.events);
+  read_part(reader, json, path, "events", read_recorded_events, result.events);
   read_part(reader, json, path, "trajectory", read_trajectory, result.trajectory);
   if (json.is_object() && json.contains("u")) reader.read_member(json, path, "u", result.interval_controls);
   // Results of versions before surfaces were recorded have none.
@@ -231,7 +232,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
     read_part(reader, json, path, "surfaces", read_surfaces, result.surfaces);
   }
   read_part(reader, json, path, "statistics", read_statistics, result.statistics);
-  read_part(reader, json, path, "options", read_options, result.options);
+  read_part(reader, json, path, "options", read_option_record, result.options);
   if (json.is_object() && json.contains("sensitivities")) {
     read_part(reader, json, path, "sensitivities", read_sensitivities, result.sensitivities);
   }
@@ -255,7 +256,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   return result;
 }
 
-Error syntax_error(const std::string& text, const std::string& file, std::size_t byte) {
+Error json_syntax_error(const std::string& text, const std::string& file, std::size_t byte) {
   const auto before = std::string_view(text).substr(0, byte > 0 ? byte - 1 : 0);
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
   const auto line_start = before.rfind('\n') + 1;  // npos + 1 is 0: the first line
@@ -273,9 +274,9 @@ Expected<result::Result> parse_result(const std::string& text, const std::string
   try {
     json = Json::parse(text);
   } catch (const Json::parse_error& failure) {
-    return tl::unexpected(syntax_error(text, file, failure.byte));
+    return tl::unexpected(json_syntax_error(text, file, failure.byte));
   } catch (const Json::exception&) {  // a number beyond the range of a double
-    return tl::unexpected(syntax_error(text, file, 1));
+    return tl::unexpected(json_syntax_error(text, file, 1));
   }
   JsonReader reader(file);
   result::Result result;

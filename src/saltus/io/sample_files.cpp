@@ -37,7 +37,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   return fields;
 }
 
-std::optional<double> number_in(std::string_view field) {
+std::optional<double> number_of_field(std::string_view field) {
   if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);
   double value = 0.0;
   const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
@@ -73,8 +73,8 @@ class ColumnReader {
   void row(const std::vector<std::string_view>& fields) {
     const bool begins = !width_;
     if (begins) width_ = fields.size();
-    if (begins && !number_in(fields.front()) &&
-        std::none_of(fields.begin(), fields.end(), [](auto field) { return number_in(field).has_value(); })) {
+    if (begins && !number_of_field(fields.front()) &&
+        std::none_of(fields.begin(), fields.end(), [](auto field) { return number_of_field(field).has_value(); })) {
       header(fields);
       return;
     }
@@ -106,7 +106,7 @@ class ColumnReader {
   }
 
   std::optional<double> value(std::string_view field) {
-    auto number = number_in(field);
+    auto number = number_of_field(field);
     if (!number) {
       constexpr std::size_t shown = 40;
       fail(fmt::format("expected a number, found '{}'", field.substr(0, shown)),

@@ -32,7 +32,7 @@ std::optional<Number> whole_text_as(std::string_view text) {
   return number;
 }
 
-std::optional<double> number_in(std::string_view text) {
+std::optional<double> constant_in(std::string_view text) {
   if (const auto number = whole_text_as<double>(text)) return number;
   const auto tree = expression::parse(text, {});
   return tree ? constant_value(**tree) : std::nullopt;
@@ -44,7 +44,7 @@ std::optional<std::vector<double>> list_in(std::string_view text) {
   std::vector<double> list;
   while (!text.empty()) {
     const auto comma = std::min(text.find(','), text.size());
-    const auto number = number_in(trimmed(text.substr(0, comma)));
+    const auto number = constant_in(trimmed(text.substr(0, comma)));
     if (!number) return std::nullopt;
     list.push_back(*number);
     text.remove_prefix(std::min(comma + 1, text.size()));
@@ -58,7 +58,7 @@ OptionValue option_value(std::string_view text) {
   text = trimmed(text);
   if (text == "true" || text == "false") return text == "true";
   if (const auto integer = whole_text_as<std::int64_t>(text)) return *integer;
-  if (const auto number = number_in(text)) return *number;
+  if (const auto number = constant_in(text)) return *number;
   if (auto list = list_in(text)) return std::move(*list);
   return std::string(text);
 }

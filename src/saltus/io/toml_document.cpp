@@ -173,7 +173,7 @@ std::optional<Slip> usual_slip(std::string_view line, std::size_t column, std::s
   return std::nullopt;
 }
 
-Error syntax_error(const SourceText& source, const toml::parse_error& failure) {
+Error toml_syntax_error(const SourceText& source, const toml::parse_error& failure) {
   const auto& position = failure.source().begin;
   if (auto slip = usual_slip(source.line(position.line), position.column, failure.description())) {
     return {ErrorCode::parse_failure, std::move(slip->message), std::move(slip->remedy), source.location(position), {}};
@@ -210,7 +210,7 @@ Expected<TomlTable> parse_toml(std::string_view text, const std::string& file) {
   try {
     return converted(source, toml::parse(text, file), 0);
   } catch (const toml::parse_error& failure) {
-    return tl::unexpected(syntax_error(source, failure));
+    return tl::unexpected(toml_syntax_error(source, failure));
   }
 }
 

@@ -28,7 +28,7 @@ std::optional<std::vector<double>> numbers(TomlReader& reader, const TomlArray& 
   return list;
 }
 
-std::optional<OptionValue> option_value(TomlReader& reader, std::string_view key, const TomlValue& value) {
+std::optional<OptionValue> read_option_value(TomlReader& reader, std::string_view key, const TomlValue& value) {
   // Built in place: moving a variant into the optional makes g++ 12 with sanitizers warn of what it never reads.
   std::optional<OptionValue> result;
   if (const auto* truth = std::get_if<bool>(&value.value)) {
@@ -70,7 +70,7 @@ void read_option(TomlReader& reader, const std::string& key, const TomlEntry& en
     reader.wrong_type(fmt::format("the table [simulate.{}]", key), entry.value);
     return;
   }
-  const auto value = option_value(reader, key, entry.value);
+  const auto value = read_option_value(reader, key, entry.value);
   if (!value) return;
   auto options = pipeline::with_value(model.simulate, key, *value);
   if (options) {

@@ -15,18 +15,18 @@ namespace saltus::pipeline {
 namespace {
 
 // Access to a member, for reading and writing alike: the only place that names it.
-constexpr auto until = [](auto& o) -> auto& { return o.until; };
-constexpr auto from = [](auto& o) -> auto& { return o.from; };
-constexpr auto method = [](auto& o) -> auto& { return o.method; };
-constexpr auto rtol = [](auto& o) -> auto& { return o.rtol; };
-constexpr auto atol = [](auto& o) -> auto& { return o.atol; };
-constexpr auto native = [](auto& o) -> auto& { return o.native; };
-constexpr auto max_steps = [](auto& o) -> auto& { return o.max_steps; };
-constexpr auto members = [](auto& o) -> auto& { return o.event.members; };
-constexpr auto max_events = [](auto& o) -> auto& { return o.max_events; };
-constexpr auto integrator = [](auto& o) -> auto& { return o.event.integrator; };
-constexpr auto epsilon = [](auto& o) -> auto& { return o.smoothed.epsilon; };
-constexpr auto selection = [](auto& o) -> auto& { return o.event.selection; };
+constexpr auto until_of = [](auto& o) -> auto& { return o.until; };
+constexpr auto from_of = [](auto& o) -> auto& { return o.from; };
+constexpr auto method_of = [](auto& o) -> auto& { return o.method; };
+constexpr auto rtol_of = [](auto& o) -> auto& { return o.rtol; };
+constexpr auto atol_of = [](auto& o) -> auto& { return o.atol; };
+constexpr auto native_of = [](auto& o) -> auto& { return o.native; };
+constexpr auto max_steps_of = [](auto& o) -> auto& { return o.max_steps; };
+constexpr auto members_of = [](auto& o) -> auto& { return o.event.members; };
+constexpr auto max_events_of = [](auto& o) -> auto& { return o.max_events; };
+constexpr auto integrator_of = [](auto& o) -> auto& { return o.event.integrator; };
+constexpr auto epsilon_of = [](auto& o) -> auto& { return o.smoothed.epsilon; };
+constexpr auto selection_of = [](auto& o) -> auto& { return o.event.selection; };
 
 void record_until(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
   if (options.until) record.emplace_back(key, *options.until);
@@ -179,16 +179,16 @@ Expected<void> set_members(SimulateOptions& options, std::string_view, const Opt
 
 constexpr std::array fields{
     OptionField{"until", "a finite number > `from`", "End of the simulation; there is no default.",
-                set_number<until, Range::finite>, record_until},
-    OptionField{"from", "a finite number", "Start of the simulation.", set_number<from, Range::finite>,
-                record_number<from>},
+                set_number<until_of, Range::finite>, record_until},
+    OptionField{"from", "a finite number", "Start of the simulation.", set_number<from_of, Range::finite>,
+                record_number<from_of>},
     OptionField{"method", "event, smoothed, fesd, timestepping",
                 "Event-driven; regularised; finite elements with switch detection; the same without it.",
-                set_choice<method, methods>, record_choice<method, methods>},
+                set_choice<method_of, methods>, record_choice<method_of, methods>},
     OptionField{"rtol", "a finite number > 0", "Relative error tolerance of a step, per component of the state.",
-                set_number<rtol, Range::positive>, record_number<rtol>},
+                set_number<rtol_of, Range::positive>, record_number<rtol_of>},
     OptionField{"atol", "a finite number >= 0", "Absolute error tolerance of a step, in the units of the states.",
-                set_number<atol, Range::not_negative>, record_number<atol>},
+                set_number<atol_of, Range::not_negative>, record_number<atol_of>},
     OptionField{"output", "steps", "Rows of the trajectory: every accepted step.", set_output_word,
                 record_output<EveryStep>},
     OptionField{"output.every", "a finite number > 0", "Instead: a row every so often, counted from `from`.",
@@ -199,23 +199,23 @@ constexpr std::array fields{
                 set_output_times, record_output<AtTimes>},
     OptionField{"native", "auto, on, off",
                 "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler.",
-                set_choice<native, natives>, record_choice<native, natives>},
+                set_choice<native_of, natives>, record_choice<native_of, natives>},
     OptionField{"max_steps", "a whole number >= 1",
                 "Stop with iteration_limit after so many steps (fesd: elements, and divided simulation steps).",
-                set_count<max_steps>, record_count<max_steps>},
+                set_count<max_steps_of>, record_count<max_steps_of>},
     OptionField{"max_events", "a whole number >= 1", "Stop with iteration_limit after so many events.",
-                set_count<max_events>, record_count<max_events>},
+                set_count<max_events_of>, record_count<max_events_of>},
     OptionField{"initial_mode.*", "-1, 0, 1",
                 "Force the side of a switching function at the start (0: slide on it), or a mode by `indicator`.",
                 set_initial_mode, record_initial_mode},
     OptionField{
         "event.integrator", "dopri5, dop853, radau5, taylor",
         "Runge-Kutta of order 5, of order 8, of order 5 for stiff models; Taylor series where modes are affine.",
-        set_choice<integrator, integrators>, record_choice<integrator, integrators>},
+        set_choice<integrator_of, integrators>, record_choice<integrator_of, integrators>},
     OptionField{"event.max_step", "none, or a number > 0", "Longest step.", set_max_step, record_max_step},
     OptionField{"event.selection", "active_dominant, passive_dominant, scaled, report",
-                "Which motion, where that depends on how surfaces are scaled.", set_choice<selection, selections>,
-                record_choice<selection, selections>},
+                "Which motion, where that depends on how surfaces are scaled.", set_choice<selection_of, selections>,
+                record_choice<selection_of, selections>},
     OptionField{"event.scaling.*", "a finite number > 0", "Scale of a surface for selection = \"scaled\".", set_scaling,
                 record_scaling},
     OptionField{
@@ -224,10 +224,10 @@ constexpr std::array fields{
         set_branches, record_branches},
     OptionField{"event.members", "a whole number >= 0",
                 "Of every family of motions (departures at later times, spirals), with branches: followed so many.",
-                set_members, record_count<members>},
+                set_members, record_count<members_of>},
     OptionField{"smoothed.epsilon", "a finite number > 0",
                 "Half width of the layer around every surface, in the units of its switching function.",
-                set_number<epsilon, Range::positive>, record_number<epsilon>},
+                set_number<epsilon_of, Range::positive>, record_number<epsilon_of>},
 };
 
 /// More rows than this do not fit into a result that anybody reads.

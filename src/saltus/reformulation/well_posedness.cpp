@@ -42,7 +42,7 @@ SX unlifted(const Dcs& dcs) {
 namespace {
 
 /// Of each surface: alpha, and whether it is 0 and the solution slides on it.
-struct Sides {
+struct SurfaceStates {
   std::vector<double> alpha;
   std::vector<bool> slides;
 };
@@ -57,9 +57,9 @@ struct WellPosedness::Parts {
   casadi::Function held_arguments, surfaces, gradients;
 
   [[nodiscard]] std::vector<double> held_at(const SolutionPoint& point) const;
-  [[nodiscard]] Sides sides_at(const SolutionPoint& point, const std::vector<double>& held) const;
-  [[nodiscard]] std::vector<int> undetermined(const DcsPart& part, const SolutionPoint& point, const Sides& sides,
-                                              std::vector<double>& selection) const;
+  [[nodiscard]] SurfaceStates sides_at(const SolutionPoint& point, const std::vector<double>& held) const;
+  [[nodiscard]] std::vector<int> undetermined(const DcsPart& part, const SolutionPoint& point,
+                                              const SurfaceStates& sides, std::vector<double>& selection) const;
 };
 
 WellPosedness::WellPosedness(const Dcs& dcs, const model::System& system)
@@ -98,13 +98,13 @@ std::vector<double> WellPosedness::Parts::held_at(const SolutionPoint& point) co
   return held;
 }
 
-Sides WellPosedness::Parts::sides_at(const SolutionPoint& point, const std::vector<double>& held) const {
+SurfaceStates WellPosedness::Parts::sides_at(const SolutionPoint& point, const std::vector<double>& held) const {
   const auto values = surfaces(std::vector<DM>{point.t, point.x, point.u, parameters, held});
   const auto psi = std::vector<double>(DM::densify(values[0]));
   const Eigen::MatrixXd gradient = matrix(values[1]);
   const double size =
       Eigen::Map<const Eigen::VectorXd>(point.x.data(), static_cast<Eigen::Index>(point.x.size())).norm();
-  Sides sides;
+  SurfaceStates sides;
   for (std::size_t j = 0; j < psi.size(); ++j) {
     const Surface& surface = dcs.surfaces[j];
     const double steepness = gradient.row(static_cast<Eigen::Index>(j)).norm();
@@ -157,8 +157,8 @@ Eigen::MatrixXd system_of(const Unknowns& unknowns, const Eigen::MatrixXd& indic
 }  // namespace
 
 /// The selections of a part that are not determined by the signs of psi, and the values of all.
-std::vector<int> WellPosedness::Parts::undetermined(const DcsPart& part, const SolutionPoint& point, const Sides& sides,
-                                                    std::vector<double>& selection) const {
+std::vector<int> WellPosedness::Parts::undetermined(const DcsPart& part, const SolutionPoint& point,
+                                                    const SurfaceStates& sides, std::vector<double>& selection) const {
   std::vector<int> active;
   for (int i = 0; i < part.count; ++i) {
     bool is_active = true;
@@ -190,7 +190,7 @@ std::vector<int> WellPosedness::Parts::undetermined(const DcsPart& part, const S
 ActiveSetRank WellPosedness::rank_at(const SolutionPoint& point) const {
   const Parts& p = *parts_;
   const auto held = p.held_at(point);
-  const Sides sides = p.sides_at(point, held);
+  const SurfaceStates sides = p.sides_at(point, held);
   ActiveSetRank result;
   for (std::size_t j = 0; j < sides.slides.size(); ++j) {
     if (sides.slides[j]) result.surfaces.push_back(static_cast<int>(j));
