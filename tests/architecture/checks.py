@@ -170,6 +170,49 @@ def check_citations(root, _table):
     return complaints
 
 
+OPENS_UNNAMED = "namespace {"
+CLOSES_UNNAMED = "}  // namespace"
+TYPE = re.compile(r"(?:struct|class|enum class|enum|union)\s+(\w+)")
+ALIAS = re.compile(r"(?:using|namespace)\s+(\w+)\s*=\s*(.*);")
+VALUE_OR_FUNCTION = re.compile(r"(?!using\b|static_assert\b|concept\b)[^=({]*?(?<!::)\b(\w+)\s*[=({;\[]")
+
+
+def unnamed_declarations(lines):
+    """(line number, name, meaning) of what unnamed namespaces declare, formatted as clang-format does it: at the margin.
+    The meaning of an alias is what it stands for, that of anything else None: two of them differ."""
+    inside = in_text = False
+    for number, line in enumerate(lines, 1):
+        if in_text or 'R"(' in line:
+            in_text = ')"' not in line
+            continue
+        if line in (OPENS_UNNAMED, CLOSES_UNNAMED):
+            inside = line == OPENS_UNNAMED
+            continue
+        line = re.sub(r"^template\s*<.*>\s*(?=\w)", "", line)
+        if not inside or not re.match(r"[A-Za-z_]", line) or line.startswith("template"):
+            continue
+        alias = ALIAS.match(line)
+        match = alias or TYPE.match(line) or VALUE_OR_FUNCTION.match(line)
+        if match and not match.group(1).isupper():  # TEST(...), and macros of ours
+            yield number, match.group(1), alias.group(2) if alias else None
+
+
+def check_names_of_sources(root, _table):
+    """(f) sources of a folder may be compiled as one: none gives another thing a name of its unnamed namespace that one
+    beside it has given already; neither functions with other arguments, which would take part in its calls."""
+    complaints = []
+    taken = {}
+    for path in all_files(root):
+        module = module_of(path, root)
+        if module is None or path.suffix != ".cpp":
+            continue
+        for number, name, meaning in unnamed_declarations(lines_of(path)):
+            first, its_meaning = taken.setdefault((module, name), (path, meaning))
+            if first != path and (meaning is None or meaning != its_meaning):
+                complaints.append(f"{path.relative_to(root)}:{number}: {name} is the name of another thing in {first.name}")
+    return complaints
+
+
 ALL_CHECKS = {
     "include_directions": check_include_directions,
     "third_party": check_third_party,
@@ -177,4 +220,5 @@ ALL_CHECKS = {
     "file_length": check_file_length,
     "forbidden_words": check_forbidden_words,
     "citations": check_citations,
+    "names_of_sources": check_names_of_sources,
 }

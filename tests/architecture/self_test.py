@@ -152,6 +152,33 @@ class SelfTest(unittest.TestCase):
         changes = {"docs/references.bib": "", "src/saltus/ode/a.cpp": "int b = a[x2024];  // a[i], [0, 1], [max]\n"}
         self.assertEqual(self.complaints("citations", changes), [])
 
+    def unnamed(self, text):
+        return "namespace saltus::ode {\nnamespace {\n\n" + text + "\n\n}  // namespace\n}  // namespace saltus::ode\n"
+
+    def test_names_that_two_sources_of_a_folder_give(self):
+        for one, other in (
+            ("constexpr double tiny = 1e-9;", "constexpr double tiny = 1e-9;"),
+            ("struct Value {\n  int a;\n};", "class Value;"),
+            ("using Matrix = A;", "using Matrix = B;"),
+            ("bool is_it(int a) { return a > 0; }", "template <class T>\nbool is_it(const T& a, int b) {\n}"),
+            ("int first(int a);", "template <int n> int first(int a) {\n}"),
+            ("const std::array<int, 2> pair{1, 2};", "std::pair<int, int> pair(int a,\n                         int b) {\n}"),
+        ):
+            changes = {"src/saltus/ode/a.cpp": self.unnamed(one), "src/saltus/ode/b.cpp": self.unnamed(other)}
+            self.assert_complains("names_of_sources", changes, "b.cpp:", "a.cpp")
+            apart = {"src/saltus/ode/a.cpp": self.unnamed(one), "src/saltus/io/b.cpp": self.unnamed(other)}
+            self.assertEqual(self.complaints("names_of_sources", apart), [])
+
+    def test_names_that_mean_the_same_or_are_not_of_the_folder(self):
+        for text in (
+            "using Rows = std::vector<double>;",
+            "namespace fs = std::filesystem;",
+            "using Eigen::Index;",
+            "void Other::leave() {\n  int leave = 0;\n}",
+        ):
+            changes = {"src/saltus/ode/a.cpp": self.unnamed(text), "src/saltus/ode/b.cpp": self.unnamed(text)}
+            self.assertEqual(self.complaints("names_of_sources", changes), [], text)
+
 
 if __name__ == "__main__":
     unittest.main()
