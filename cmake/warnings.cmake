@@ -3,6 +3,10 @@ add_library(saltus_warnings INTERFACE)
 if(SALTUS_DEVELOPER)
   target_compile_options(saltus_warnings INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor -Werror)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # In the place of the sanitizer's check of alignment (preset sanitize).
+    target_compile_options(saltus_warnings INTERFACE -Wcast-align=strict)
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # g++ 12 with -O3 takes "text" + std::string for overlapping copies (GCC bug 105651, fixed in 13).
     target_compile_options(saltus_warnings INTERFACE -Wno-restrict)
