@@ -42,8 +42,9 @@ class Holding {
   void release_all();
   /// Puts x on g = 0, dg/dt = 0; returns whether it changed.
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
-  /// Whether what the jump sets has an influence on dg/dt.
-  [[nodiscard]] bool can_rest(const evaluation::Hold& hold, double t, const std::vector<double>& alpha,
+  /// Whether the jump of a guard at zero can keep it there: what it sets has an influence on dg/dt, and stops or turns
+  /// around a motion inward. One that lets it go on (the foot of a rocking block) does not push.
+  [[nodiscard]] bool can_rest(const HeldGuard& guard, double t, const std::vector<double>& alpha,
                               const std::vector<double>& x);
   /// The largest |dg/dt| at a point, and there behind the jumps of the guards at rest: an impact at rest changes
   /// nothing.
@@ -55,6 +56,8 @@ class Holding {
  private:
   double find_rate_row(const evaluation::Hold& hold, const std::vector<int>& states, double t,
                        const std::vector<double>& alpha, std::vector<double>& x);
+  [[nodiscard]] bool lets_go_on(const HeldGuard& guard, double square, double t, const std::vector<double>& alpha,
+                                std::vector<double> point) const;
   bool is_independent(const HeldGuard& guard, double t, const std::vector<double>& alpha, std::vector<double>& x);
   [[nodiscard]] std::vector<evaluation::Hold> holds() const;
   [[nodiscard]] std::optional<std::string> set(double t, const std::vector<double>& alpha, std::vector<double>& x);

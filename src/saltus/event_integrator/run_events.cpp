@@ -216,6 +216,7 @@ Run::Step Run::handle(const Located& located) {
     same.zero_order.assign(state_.mode.size(), 0);
     static_cast<void>(enter(same));
   }
+  if (running_ && !jumps_.none() && state_.mode != before_.mode) leave_guards(landing);
   if (running_) fire_user_events(x_, before_);
   if (running_ && !jumps_.none()) {
     // Conditions may depend on selections, too.

@@ -174,11 +174,13 @@ class Run {
   bool decide_behind_jumps(Landing& landing);
   bool hold_resting(Landing& landing);
   bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
+  bool free_passing(Landing& landing);
   bool find_resting(RestingSurfaces& resting);
   std::vector<int> surfaces_keeping(int function);
   RestingGuards pressed_guards(Landing& landing);
   std::vector<HeldGuard> guards_kept_by_sliding(Landing& landing, const RestingGuards& others);
   void give_directions(Landing& landing);
+  void leave_guards(Landing& landing);
   [[nodiscard]] Landing& landing_here();
   [[nodiscard]] Landing& landing_at(const Located& located);
   void find_values();
@@ -188,6 +190,7 @@ class Run {
   void read_user_signs(const Landing& landing);
   [[nodiscard]] double size_at(int function);
   [[nodiscard]] Motion motion_of(int function, Landing& landing);
+  [[nodiscard]] Occasion at_this_time() const;
   [[nodiscard]] Motion find_motion(int function, const Landing& landing);
   [[nodiscard]] Rate rate_along_field(int function, double t, const double* x, const double* slope);
   bool release(const Located& located);

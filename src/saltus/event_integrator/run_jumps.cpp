@@ -188,7 +188,17 @@ Motion Run::motion_of(int function, Landing& landing) {
   return *known;
 }
 
+Occasion Run::at_this_time() const {
+  Occasion occasion;
+  occasion.t = t_;
+  occasion.x = x_.data();
+  occasion.time_scale = h_scale_;
+  return occasion;
+}
+
 Motion Run::find_motion(int function, const Landing& landing) {
+  // The derivatives along fixed selections are not those of a motion that slides.
+  if (!surfaces_keeping(function).empty()) return {};
   // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
   // than sign_tolerance / 1000 of them.
   constexpr double cancelled = 1e-3;
@@ -202,10 +212,7 @@ Motion Run::find_motion(int function, const Landing& landing) {
     return {{0.0, bend > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
   }
   if (const auto motion = ProjectedFields::motion_by_velocity(rate.value, scale)) return *motion;
-  Occasion occasion;
-  occasion.t = t_;
-  occasion.x = x_.data();
-  occasion.time_scale = h_scale_;
+  const Occasion occasion = at_this_time();
   const ProjectedFields fields(kernel_, occasion);
   return fields.motion(state_.alpha, function, rate.value, scale);
 }
@@ -222,6 +229,9 @@ void Run::give_directions(Landing& landing) {
     if (!vanish[user] || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
     const Motion motion = motion_of(function, landing);
     signs[user] = static_cast<int>(motion.side.drift);
+    // What is left of a rate that was held at 0, and of its derivative where holding ends, is rounding.
+    const int ahead = motion.order > 1 ? side_ahead(surroundings_, state_, at_this_time(), x_, function) : 0;
+    if (ahead != 0) signs[user] = ahead;
     orders[user] = std::clamp(motion.order, 1, 2);  // as many as the search divides out
     // A jump that leaves it here leaves it this sign.
     if (!contains(landing.zeros, function)) landing.zeros.push_back(function);

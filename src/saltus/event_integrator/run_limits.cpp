@@ -121,8 +121,7 @@ void Run::follow_limit(const SeriesLimit& limit) {
          fmt::format("the jumps {} accumulate at t = {:.17g}, but their guards cannot be at rest at 0 together",
                      jump_names(jumps), t_));
   }
-  if (!running_) return accumulated();
-  if (!decide_behind_jumps(landing)) return accumulated();
+  if (!running_ || !free_passing(landing) || !decide_behind_jumps(landing)) return accumulated();
   give_directions(landing);
   accumulated();
   go_on_from_limit();

@@ -60,7 +60,7 @@ std::vector<HeldGuard> Run::guards_kept_by_sliding(Landing& landing, const Resti
       const int inward = jumps_.trigger_sign(jump, g, jump_point(), static_cast<int>(motion.side.drift));
       if (motion.order == 1 || inward == 0) continue;
       const auto own = surfaces_keeping(function);
-      if (own.empty() || !holding_.can_rest({jump, function}, t_, state_.alpha, x_)) continue;
+      if (own.empty() || !holding_.can_rest({{jump, function}, inward}, t_, state_.alpha, x_)) continue;
       kept.push_back({{jump, function}, inward});
       surfaces.insert(surfaces.end(), own.begin(), own.end());
     }
@@ -100,8 +100,8 @@ Run::RestingGuards Run::pressed_guards(Landing& landing) {
       const int drift = static_cast<int>(motion.side.drift);
       const int inward = jumps_.trigger_sign(jump, g, jump_point(), drift);
       if (motion.order < 2 || inward == 0 || drift != inward) continue;
-      auto& list = holding_.can_rest({jump, function}, t_, state_.alpha, x_) ? guards.held : guards.loose;
-      list.push_back({{jump, function}, inward});
+      const HeldGuard guard{{jump, function}, inward};
+      (holding_.can_rest(guard, t_, state_.alpha, x_) ? guards.held : guards.loose).push_back(guard);
     }
   }
   return guards;
@@ -143,6 +143,45 @@ bool Run::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Land
   search_.set_held(holding_.guards(), holding_.followers());
   read_user_signs(landing);
   return true;
+}
+
+/// Guards at a limit whose jumps let a motion go on: the state is at rest on them, and what slides, if anything, keeps
+/// it there. false if the others cannot be held, with the status set.
+bool Run::free_passing(Landing& landing) {
+  auto guards = holding_.resting();
+  const auto passed =
+      std::erase_if(guards, [&](const HeldGuard& guard) { return !holding_.can_rest(guard, t_, state_.alpha, x_); });
+  if (passed == 0) return true;
+  RestingSurfaces resting;
+  if (!find_resting(resting)) return false;
+  landing.zeros.insert(landing.zeros.end(), resting.surfaces.begin(), resting.surfaces.end());
+  return hold(std::move(guards), {}, landing);
+}
+
+/// Guards that were kept at zero by what slid, and are left in the mode that was entered here: they get the sign to
+/// which they go, at this time and not where it is seen first.
+void Run::leave_guards(Landing& landing) {
+  auto signs = search_.user_signs();
+  auto vanish = search_.user_zeros();
+  std::vector<int> orders(signs.size(), 1);
+  bool any = false;
+  for (int jump = 0; jump < static_cast<int>(surroundings_.system.jumps.size()); ++jump) {
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      const auto user = at(function - kernel_.switching_functions());
+      if (signs[user] != 0 || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
+      const int side = side_ahead(surroundings_, state_, at_this_time(), x_, function);
+      if (side == 0) continue;
+      if (!contains(landing.zeros, function)) landing.zeros.push_back(function);
+      signs[user] = side;
+      vanish[user] = true;
+      orders[user] = 2;  // at least: its rate was held at 0
+      any = true;
+    }
+  }
+  if (!any) return;
+  search_.set_user_signs(signs, vanish, orders);
+  search_.enter(state_, transition_.zero_order, t_, x_.data());
 }
 
 /// Whether in the cells that were entered the guards at rest keep other surfaces at zero than before: friction on a

@@ -107,6 +107,11 @@ void begin_transition(const ModeState& before, const Occasion& occasion, std::si
 [[nodiscard]] Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced,
                                            const Occasion& occasion);
 
+/// The side of an event function that is zero at `start` to which the motion of a mode goes from there, by Runge-Kutta
+/// steps over a hundredth of the time scale; 0 where they do not agree.
+[[nodiscard]] int side_ahead(const Surroundings& surroundings, const ModeState& state, const Occasion& occasion,
+                             const std::vector<double>& start, int function);
+
 /// What to say where sliding has run into a point at which both fields are tangent to the surface (two-fold), so that
 /// its selection has no limit, or at which the gradient of the surface vanishes; nullopt if there is none near by.
 [[nodiscard]] std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state,

@@ -141,6 +141,36 @@ Transition leave_balances(const Surroundings& s, const ModeState& before, const 
   return failed(occasion, before, s, problem);
 }
 
+/// Where a set can be held at this moment only, to the accuracy of its balances, and not a little later: it is left. A
+/// jump where sliding ends leaves the state there. nullopt if it is held, or no field leads away.
+std::optional<Transition> leave_at_once(const Surroundings& s, const ModeState& held, const Occasion& occasion,
+                                        const std::vector<double>& x) {
+  HigherOrderField field(s.kernel);
+  field.enter(*held.higher, held.sliding, held.alpha);
+  field.evaluate(occasion.t, x.data());
+  const auto now = field.ranges();
+  const double h = 1e-2 * occasion.time_scale;
+  std::vector<double> ahead = x;
+  for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * field.motion()[i];
+  field.evaluate(occasion.t + h, ahead.data());
+  const auto& later = field.ranges();
+  // That of the search, which takes such a set as one that is held.
+  constexpr double accuracy = 1e-9;
+  Occasion ends = occasion;
+  ends.exit_below.clear();
+  ends.exit_above.clear();
+  for (std::size_t k = 0; k < now.size() && k < later.size(); ++k) {
+    const double rounding = accuracy * now[k].terms;
+    const int surface = held.sliding[now[k].row];
+    if (now[k].max <= rounding && later[k].max < -rounding) ends.exit_below.push_back(surface);
+    if (now[k].min >= -rounding && later[k].min > rounding) ends.exit_above.push_back(surface);
+  }
+  if (ends.exit_below.empty() && ends.exit_above.empty()) return std::nullopt;
+  auto left = leave_balances(s, held, ends, x);
+  if (left.termination != result::Termination::completed) return std::nullopt;
+  return left;
+}
+
 /// Surfaces are met whose gradients depend on those of the others.
 Transition meet_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
   std::string problem;
@@ -171,34 +201,6 @@ Transition meet(const Surroundings& s, const ModeState& before, const Occasion& 
 }
 
 }  // namespace
-
-bool leads_into_its_region(const Surroundings& s, const ModeState& state, const Occasion& occasion,
-                           const std::vector<double>& start, const std::vector<int>& surfaces) {
-  ModeField field(s.kernel, s.affine_in_alpha);
-  field.enter(state);
-  const std::size_t n = start.size();
-  std::vector<double> x = start, trial(n), k1(n), k2(n), k3(n), k4(n), psi(at(s.kernel.event_functions()));
-  constexpr int steps = 4;
-  const double h = 1e-2 * occasion.time_scale / steps;
-  double t = occasion.t;
-  const auto stage = [&](double part, const std::vector<double>& slope, std::vector<double>& result) {
-    for (std::size_t i = 0; i < n; ++i) trial[i] = x[i] + part * h * slope[i];
-    field(t + part * h, trial.data(), result.data());
-  };
-  for (int step = 0; step < steps; ++step) {
-    field(t, x.data(), k1.data());
-    stage(0.5, k1, k2);
-    stage(0.5, k2, k3);
-    stage(1.0, k3, k4);
-    for (std::size_t i = 0; i < n; ++i) x[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
-    t += h;
-    s.kernel.functions(t, x.data(), state.alpha.data(), psi.data());
-    for (const int j : surfaces) {
-      if (!(psi[at(j)] * state.mode[at(j)] > 0.0)) return false;
-    }
-  }
-  return true;
-}
 
 Transition transition_to(ModeState state) {
   Transition transition;
@@ -247,6 +249,7 @@ std::optional<Transition> hold_with_higher_order(const Surroundings& s, const Mo
   std::string problem;
   auto transition = hold(s, std::move(state), occasion, x, problem);
   if (!transition || !transition->state.higher) return std::nullopt;
+  if (auto left = leave_at_once(s, transition->state, occasion, x)) return left;
   note_regions(s, occasion, x, *transition);
   return transition;
 }

@@ -1,0 +1,62 @@
+// Where the motion of a mode goes from a point at which no derivative decides: by short steps along its own field.
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "saltus/event_integrator/transition_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// The event functions at four points over a hundredth of the time scale, by Runge-Kutta steps, as long as `look`
+/// returns true; whether it always did.
+template <class Look>
+bool follow_shortly(const Surroundings& s, const ModeState& state, const Occasion& occasion,
+                    const std::vector<double>& start, const Look& look) {
+  ModeField field(s.kernel, s.affine_in_alpha);
+  field.enter(state);
+  const std::size_t n = start.size();
+  std::vector<double> x = start, trial(n), k1(n), k2(n), k3(n), k4(n), psi(at(s.kernel.event_functions()));
+  constexpr int steps = 4;
+  const double h = 1e-2 * occasion.time_scale / steps;
+  double t = occasion.t;
+  const auto stage = [&](double part, const std::vector<double>& slope, std::vector<double>& result) {
+    for (std::size_t i = 0; i < n; ++i) trial[i] = x[i] + part * h * slope[i];
+    field(t + part * h, trial.data(), result.data());
+  };
+  for (int step = 0; step < steps; ++step) {
+    field(t, x.data(), k1.data());
+    stage(0.5, k1, k2);
+    stage(0.5, k2, k3);
+    stage(1.0, k3, k4);
+    for (std::size_t i = 0; i < n; ++i) x[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+    t += h;
+    s.kernel.functions(t, x.data(), state.alpha.data(), psi.data());
+    if (!look(psi)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool leads_into_its_region(const Surroundings& s, const ModeState& state, const Occasion& occasion,
+                           const std::vector<double>& start, const std::vector<int>& surfaces) {
+  return follow_shortly(s, state, occasion, start, [&](const std::vector<double>& psi) {
+    return std::all_of(surfaces.begin(), surfaces.end(),
+                       [&](int j) { return psi[at(j)] * state.mode[at(j)] > 0.0; });
+  });
+}
+
+int side_ahead(const Surroundings& s, const ModeState& state, const Occasion& occasion,
+               const std::vector<double>& start, int function) {
+  int side = 0;
+  const bool one_side = follow_shortly(s, state, occasion, start, [&](const std::vector<double>& psi) {
+    const double value = psi[at(function)];
+    const int here = value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+    if (side == 0) side = here;
+    return here != 0 && here == side;
+  });
+  return one_side ? side : 0;
+}
+
+}  // namespace saltus::event_integrator
