@@ -101,8 +101,11 @@ std::optional<Motion> ProjectedFields::motion_by_velocity(double velocity, doubl
 }
 
 Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const {
-  if (const auto motion = motion_by_velocity(velocity, scale)) return *motion;
   const double tau = occasion_.time_scale;
+  // Where all fields are nearly tangent the scale says nothing: what a velocity moves psi by has to be more than
+  // rounding.
+  const bool moves = std::abs(velocity) * tau > noise_[at(surface)];
+  if (const auto motion = motion_by_velocity(velocity, scale); motion && moves) return *motion;
   const double threshold = std::max(noise_[at(surface)], std::abs(velocity) * tau);
   double weight = tau;  // tau^k / k!
   for (int order = 2; order <= most_derivatives; ++order) {

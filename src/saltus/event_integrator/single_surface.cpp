@@ -92,6 +92,16 @@ double SingleSurface::along_row(const std::vector<double>& f, double rate) const
   return velocity;
 }
 
+/// Whether both velocities, whose gradient is in row_, move psi by less than its rounding over the time scale: that
+/// decides nothing.
+bool SingleSurface::moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
+                                                const Occasion& occasion) const {
+  double terms = 0.0;
+  for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * occasion.x[i]);
+  const double fastest = std::max(std::abs(situation.below.velocity), std::abs(situation.above.velocity));
+  return fastest * occasion.time_scale <= 8.0 * rounding_unit * terms;
+}
+
 bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Transition& transition,
                            const std::vector<double>* slope) {
   if (!applies(before, occasion)) return false;
@@ -106,7 +116,7 @@ bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Tr
   const int known = slope != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
   below.velocity = known < 0 ? velocity(occasion.t, occasion.x, j, alpha_, *slope) : velocity(occasion, j, 0.0);
   above.velocity = known > 0 ? velocity(occasion.t, occasion.x, j, alpha_, *slope) : velocity(occasion, j, 1.0);
-  if (!find_drifts(situation)) return false;
+  if (!find_drifts(situation) || moves_no_more_than_rounding(situation, occasion)) return false;
   arrival = arrival_from(before.mode[at(j)]);
   int exit = 0;  // to the side whose field ends the sliding
   if (before.mode[at(j)] == 0) {
@@ -162,6 +172,8 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeS
   double terms = std::abs(rate * place.t);
   for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * x[i]);
   const double noise = 8.0 * rounding_unit * terms;
+  const double fastest = std::max(std::abs(situation.below.velocity), std::abs(situation.above.velocity));
+  if (!(fastest * place.time_scale > noise)) return std::nullopt;
   // What ProjectedFields::motion looks at first, and clear of what makes it look further.
   const double bend = motions.bend ? *motions.bend : kernel.lie_derivative(surface, 2, place.t, x, before.alpha.data());
   const double moved = std::abs(bend) * 0.5 * place.time_scale * place.time_scale;

@@ -60,6 +60,8 @@ class SingleSurface {
                                                                       Region side);
 
  private:
+  [[nodiscard]] bool moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
+                                                 const Occasion& occasion) const;
   [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
   [[nodiscard]] double along_row(const std::vector<double>& f, double rate) const;
   double velocity(const Occasion& occasion, int surface, double selection);
