@@ -61,6 +61,19 @@ double ModelKernel::lie_derivative(int function, int order, double t, const doub
   return value;
 }
 
+void ModelKernel::lie_gradient(int function, int order, double t, const double* x, const double* alpha, double* row,
+                               double* rate) const {
+  SALTUS_ASSERT(0 <= function && function < event_functions() && order >= 1);
+  auto& self = *implementation_;
+  auto& compiled = self.motion->lie_gradients[{function, order}];
+  if (compiled.is_null()) {
+    const SX derivative = self.lie_expression(function, order);
+    compiled = ModelFunction("lie_gradient", {self.t, self.x, self.p, self.alpha},
+                             {SX::jacobian(derivative, self.x), SX::jacobian(derivative, self.t)});
+  }
+  compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
+}
+
 bool ModelKernel::is_affine(int function) const { return implementation_->affine[at(function)]; }
 void ModelKernel::affine_rows(const double* alpha, AffineRows& rows) const {
   implementation_->affine_rows.fill(implementation_->parameters.data(), alpha, rows);

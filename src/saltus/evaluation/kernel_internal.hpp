@@ -38,6 +38,7 @@ struct Motion {
   ModelFunction pressure;            ///< of the holds; null without
   std::vector<std::vector<bool>> depends;
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
+  std::map<std::pair<int, int>, ModelFunction> lie_gradients;
   std::map<std::pair<int, int>, casadi::SX> lie_expressions;
   std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
   std::optional<LinearFieldFunction> linear;                  ///< once it was asked for

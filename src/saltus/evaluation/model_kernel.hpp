@@ -132,6 +132,9 @@ class ModelKernel {
   void gradient(int function, double t, const double* x, const double* alpha, double* row, double* rate) const;
   /// L^order phi_j along f(., alpha) with alpha held, e.g. order 1: grad phi . f + d phi/dt. order >= 1.
   [[nodiscard]] double lie_derivative(int function, int order, double t, const double* x, const double* alpha) const;
+  /// Its gradient (n_x) and derivative with respect to t.
+  void lie_gradient(int function, int order, double t, const double* x, const double* alpha, double* row,
+                    double* rate) const;
   void outputs(double t, const double* x, const double* alpha, double* values) const;
   /// u(t) during the simulation.
   void inputs(double t, const double* alpha, double* values) const;

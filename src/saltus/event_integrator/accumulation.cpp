@@ -139,6 +139,7 @@ bool EventSeries::is_far_from_limit(std::size_t period, double drowning) const {
   if (!(last > std::max(16.0 * resolution, drowning))) return false;
   const double before = back(period).t - back(2 * period).t;
   if (!(last < before)) return true;
+  if (last * (last / before) <= drowning) return false;
   const auto laps = static_cast<std::size_t>(std::min(std::ceil(before / (before - last)), double{most_laps})) + 2;
   const double others = back(period).t - back(std::min(laps * period, entries_.size() - 1)).t;
   // With twice what they are compared with the roundings of the ratio do not matter.
@@ -160,18 +161,26 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double drow
     const double left = now.of[0] * fast / (1.0 - fast);
     return SeriesLimit{t + left, extrapolated(period, fast), last_jumps(period), now.of[0], false};
   }
-  if (laps_[period] < fewest_laps * period || now.count < fewest_laps) return std::nullopt;
+  // Of laps that shrink to a tenth each the next one may drown before there were four.
+  const bool is_fast = now.count >= 3 && now.of[0] <= 0.1 * now.of[1] && now.of[1] <= 0.1 * now.of[2] &&
+                       now.of[0] * (now.of[0] / now.of[1]) <= drowning;
+  const bool drowns = is_fast || now.of[0] <= drowning;
+  const std::size_t fewest = is_fast ? fewest_laps - 1 : fewest_laps;
+  // The first of several laps does not count among those that have shrunk.
+  if (laps_[period] < (is_fast ? fewest - 1 : fewest) * period || now.count < fewest) return std::nullopt;
   const double ratio_now = ratio(period, 0);
   if (!(ratio_now < 1.0)) return std::nullopt;
   const double remaining = now.of[0] * ratio_now / (1.0 - ratio_now);
   const double taken = t - start_[period];
-  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && now.of[0] > drowning) return std::nullopt;
+  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && !drowns) return std::nullopt;
   const double ratio_before = ratio(period, 1);
   if (!(ratio_before < 1.0)) return std::nullopt;
   const double remaining_before = now.of[1] * ratio_before / (1.0 - ratio_before);
-  // A fiftieth of what remains is 2e-10 of the time taken.
+  // A fiftieth of what remains is 2e-10 of the time taken. The last of fast laps is to be what those before foretold,
+  // but for the twentieth that rounding may make of it: what remains is known about as well.
+  const double expected = is_fast ? 0.05 * now.of[0] : 0.02 * remaining;
   const double difference = (t + remaining) - (back(period).t + remaining_before);
-  if (std::abs(difference) > 0.02 * remaining + 4.0 * resolution) return std::nullopt;
+  if (std::abs(difference) > expected + 4.0 * resolution) return std::nullopt;
   return SeriesLimit{t + remaining, extrapolated(period, ratio_now), last_jumps(period), now.of[0], false};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "saltus/event_integrator/small_internal.hpp"
@@ -37,6 +38,8 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
   step_.setZero(kernel_.states());
   const auto of_order_zero = std::count_if(functions_.begin(), functions_.end(),
                                            [](const HeldFunction& function) { return function.order == 0; });
+  rooted_ = std::any_of(functions_.begin(), functions_.end(),
+                        [&](const HeldFunction& function) { return kernel_.has_root(function.surface); });
   normals_[0].count = static_cast<Index>(of_order_zero);
   normals_[1].count = m;
   for (auto& normal : normals_) {
@@ -74,6 +77,25 @@ bool HeldFunctions::tangent_direction(std::size_t state, std::size_t lower, std:
   return square > 1e-20;
 }
 
+/// The step in the span of the first gradients by which these functions change by `changes`.
+void HeldFunctions::find_normal_step(std::size_t count, const Eigen::VectorXd& changes,
+                                     std::vector<double>& step) const {
+  std::fill(step.begin(), step.end(), 0.0);
+  for (std::size_t k = 0; k < count; ++k) {
+    double missing = changes[index(k)];
+    for (std::size_t s = 0; s < step.size(); ++s) missing -= rows_(index(k), index(s)) * step[s];
+    const double along = rows_.row(index(k)).dot(basis_.row(index(k)));
+    if (missing == 0.0 || along == 0.0) continue;
+    for (std::size_t s = 0; s < step.size(); ++s) step[s] += missing / along * basis_(index(k), index(s));
+  }
+}
+
+/// Function i at x, displaced along direction_.
+double HeldFunctions::value_along(std::size_t i, double t, const double* x, double width) {
+  for (std::size_t s = 0; s < point_.size(); ++s) point_[s] = x[s] + width * direction_[s];
+  return value(i, t, point_.data());
+}
+
 /// Gradient i, less what the ones before span, normed.
 void HeldFunctions::extend_basis(std::size_t i) {
   basis_.row(index(i)) = rows_.row(index(i));
@@ -96,17 +118,23 @@ void HeldFunctions::differentiate(double t, const double* x) {
       continue;
     }
     const std::size_t lower = below(i);
+    double rate = 0.0;
+    if (rooted_) {
+      kernel_.lie_gradient(functions_[i].surface, functions_[i].order, t, x, alpha_.data(), row_.data(), &rate);
+    }
+    const auto along = [&] { return std::inner_product(row_.begin(), row_.end(), direction_.begin(), 0.0); };
     for (std::size_t k = 0; k < row_.size(); ++k) {
       rows_(r, index(k)) = 0.0;
       if (!tangent_direction(k, lower, direction_)) continue;
       const double width = width_at(x[k]);
-      for (std::size_t s = 0; s < point_.size(); ++s) point_[s] = x[s] + width * direction_[s];
-      const double above = value(i, t, point_.data());
-      for (std::size_t s = 0; s < point_.size(); ++s) point_[s] = x[s] - width * direction_[s];
-      rows_(r, index(k)) = (above - value(i, t, point_.data())) / (2.0 * width);
+      rows_(r, index(k)) =
+          rooted_ ? along() : (value_along(i, t, x, width) - value_along(i, t, x, -width)) / (2.0 * width);
     }
     const double width = width_at(t);
-    rates_[r] = (value(i, t + width, x) - value(i, t - width, x)) / (2.0 * width);
+    find_normal_step(lower, rates_, direction_);
+    for (double& d : direction_) d = -d;
+    rates_[r] = rooted_ ? rate + along()
+                        : (value_along(i, t + width, x, width) - value_along(i, t - width, x, -width)) / (2.0 * width);
     extend_basis(i);
   }
 }

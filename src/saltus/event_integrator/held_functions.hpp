@@ -19,10 +19,11 @@ struct HeldFunction {
 };
 
 /// c_i(t, x) = 0 for a list of such functions, ordered by `order`; those of order >= 1 must not depend on the
-/// selections of the sliding surfaces where the functions before them are zero. Their gradients are taken by central
-/// differences along the set where the functions of lower order vanish, so that a field need not be differentiable
-/// across its surface (the root of super-twisting).
-/// Owns its work space; allocates in set() only. Cost: two evaluations of c_i per state and function of order >= 1.
+/// selections of the sliding surfaces where the functions before them are zero. Their derivatives are taken along the
+/// set where the functions of lower order vanish, in time, too, where that moves, by central differences: a field need
+/// not be differentiable across its surface. Beside roots of psi (super-twisting), which are 0 with all their
+/// derivatives there, by forms: what surfaces are near may have roots, too, which differences are too wide for. Owns
+/// its work space; allocates in set() only. Cost: two evaluations of c_i per state and function of order >= 1.
 class HeldFunctions {
  public:
   explicit HeldFunctions(const evaluation::ModelKernel& kernel);
@@ -52,12 +53,15 @@ class HeldFunctions {
  private:
   [[nodiscard]] std::size_t below(std::size_t i) const;
   [[nodiscard]] bool tangent_direction(std::size_t state, std::size_t lower, std::vector<double>& direction) const;
+  void find_normal_step(std::size_t count, const Eigen::VectorXd& changes, std::vector<double>& step) const;
+  [[nodiscard]] double value_along(std::size_t i, double t, const double* x, double width);
   void extend_basis(std::size_t i);
   bool correct(std::size_t part, double t, double* x);
 
   const evaluation::ModelKernel& kernel_;
   std::vector<HeldFunction> functions_;
   std::vector<double> alpha_, row_, direction_, point_;
+  bool rooted_ = false;  ///< whether f has a root of one of the surfaces' functions
   mutable std::vector<double> values_;
   Eigen::MatrixXd rows_, basis_;  ///< gradients; an orthonormal basis of their span, row by row
   Eigen::VectorXd rates_, parts_, step_;

@@ -128,10 +128,7 @@ class SetSearch {
     if (function.order > 0 && !vanishes(place)) return false;
     // Fields that are tangent here and not near by (a two-fold point) are not held.
     for (const unsigned pattern : {0U, 1U, 2U}) {
-      std::vector<double> nearby;
-      functions_.differentiate(t_, x_.data());
-      const double size = velocities(place, functions_.displaced(t_, x_.data(), 0x1p-10, pattern), nearby);
-      if (rows_in(nearby, size) != rows) return reject("which selections act changes with the place");
+      if (!acts_alike_nearby(place, rows, pattern)) return reject("which selections act changes with the place");
     }
     if (rows.empty()) {
       open_.push_back({function.surface, function.order + 1});
@@ -139,6 +136,19 @@ class SetSearch {
     }
     set_.balances.push_back({{place}, rows});
     return true;
+  }
+
+  /// Whether the same selections change the velocities of a function at a displaced point: on the other side, where the
+  /// fields of these regions are undefined on this one, beyond a surface with a root.
+  bool acts_alike_nearby(std::size_t place, const std::vector<std::size_t>& rows, unsigned pattern) {
+    std::vector<double> nearby;
+    for (const double step : {0x1p-10, -0x1p-10}) {
+      functions_.differentiate(t_, x_.data());
+      const double size = velocities(place, functions_.displaced(t_, x_.data(), step, pattern), nearby);
+      if (rows_in(nearby, size) == rows) return true;
+      if (is_finite(nearby)) return false;
+    }
+    return false;
   }
 
   /// A derivative that the functions of the set fix must be zero where they are, and stay so.

@@ -69,7 +69,11 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       series_(options.until - options.from) {
   mode_tolerances_ = tolerances_;
   for (int j = 0; j < kernel.switching_functions(); ++j) {
-    if (kernel.root_is_continued(j)) continued_roots_.push_back(j);
+    if (kernel.root_is_continued(j)) {
+      continued_roots_.push_back(j);
+    } else if (kernel.has_root(j)) {
+      ending_roots_.push_back(j);
+    }
   }
   ordinary_ = way == Way::short_where_ordinary && has_ordinary_switches();
   for (std::size_t i = 0; i < x_.size(); ++i) {

@@ -104,9 +104,10 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
   Eigen::MatrixXd jacobian(size, size);
   Eigen::VectorXd change(size);
   constexpr int most_iterations = 40;
-  // Differences of this part of v or 1 + |x| are good to eight digits, and so is every iteration; fewer of v where psi
-  // is not much more than its rounding.
-  constexpr double part = 0x1p-26;
+  // Differences of this part of 1 + |x| are good to eight digits. Of v, in which the equations are nearly linear and
+  // which may be little more than rounding of the terms of dpsi/dt, to four, and so is every iteration; to fewer where
+  // psi is not much more than its rounding.
+  constexpr double part = 0x1p-26, part_of_v = 0x1p-13;
   constexpr double converged = 1e-12;
   constexpr double settled = 1e-6;  // from here on corrections that no longer fall are roundings of f
   double before = std::numeric_limits<double>::infinity();
@@ -115,7 +116,7 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
     for (std::size_t k = 0; k < n; ++k) {
       const double kept = unknowns[k];
       const double width =
-          k == replaced_ ? std::max(part * kept, std::pow(noise_, 1.0 / degree_)) : part * (1.0 + std::abs(kept));
+          k == replaced_ ? std::max(part_of_v * kept, std::pow(noise_, 1.0 / degree_)) : part * (1.0 + std::abs(kept));
       unknowns[k] = kept + width;
       const double taken = unknowns[k] - kept;
       if (!residual(t, h, unknowns, there)) return false;

@@ -91,6 +91,7 @@ class Run {
   bool begin();
   Step attempt();
   [[nodiscard]] std::optional<Located> surface_within_rounding();
+  [[nodiscard]] std::optional<Located> rooted_surface_ahead(double until);
   [[nodiscard]] bool is_repelled(const Located& located);
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
@@ -254,6 +255,7 @@ class Run {
   double closed_lap_ = 0.0;            ///< the last one that they closed
   double root_share_ = 1.0;            ///< part of both where roots of coupled surfaces are near
   std::vector<int> continued_roots_;   ///< surfaces whose regions' fields go on beyond them, less a root
+  std::vector<int> ending_roots_;      ///< those whose regions' fields do not
   std::vector<double> rooted_values_;  ///< of event functions
   double rooted_atol_ = 1.0;           ///< parts of the tolerances beside these
   double rooted_rtol_ = 1.0;

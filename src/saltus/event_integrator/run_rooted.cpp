@@ -3,9 +3,11 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/held_functions.hpp"
 #include "saltus/event_integrator/rooted_exit.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
+#include "saltus/switching/independent_rows.hpp"
 
 namespace saltus::event_integrator {
 
@@ -36,16 +38,48 @@ void Run::tighten_beside_roots(double h) {
     atol = std::min(atol, std::max(least, wanted / (rate.slope * mode_tolerances_.atol)));
     rtol = std::min(rtol, std::max(smallest, wanted / (rate.magnitude * mode_tolerances_.rtol)));
   }
+  // In laps that shrink atol does so already. What rtol allows of terms that are larger than psi, as x and t of
+  // x - sin(t) are, has to; psi becomes the rate with which it leaves its surface for a part of the lap.
+  constexpr double lap_part = 0.1;
+  for (const int j : ending_roots_) {
+    if (lap_share_ == 1.0 || state_.mode[at(j)] == 0) continue;
+    const Rate rate = rate_along_field(j, t_, x_.data(), slope_.data());
+    const double wanted =
+        part * std::max(std::abs(rooted_values_[at(j)]), std::max(h, lap_part * closed_lap_) * std::abs(rate.value));
+    rtol = std::min(rtol, std::max(smallest, wanted / (rate.magnitude * mode_tolerances_.rtol)));
+  }
   if (atol == rooted_atol_ && rtol == rooted_rtol_) return;
   rooted_atol_ = atol;
   rooted_rtol_ = rtol;
   set_tolerances();
 }
 
+/// A surface before `until` that psi, of terms far larger than it is, has a few roundings left to: the root of what
+/// rounding makes of these says nothing any more, and steps that stay on this side may change nothing.
+std::optional<Located> Run::rooted_surface_ahead(double until) {
+  constexpr double few = 4.0;
+  auto& values = values_here_;
+  find_functions(t_, x_.data(), values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& function = search_.functions()[i];
+    const bool has_root = function.kind == FunctionKind::surface && kernel_.has_root(function.index) &&
+                          !kernel_.root_is_continued(function.index);
+    if (!has_root || !(std::abs(values[i]) <= few * search_.noise(i))) continue;
+    const Rate rate = rate_along_field(function.index, t_, x_.data(), slope_.data());
+    const double left = -values[i] / rate.value;
+    if (!(left > 0.0) || !(function.sign * rate.value < 0.0) || t_ + left >= until) continue;
+    Located located{t_ + left, x_, {i}, {function.sign}};
+    for (std::size_t k = 0; k < x_.size(); ++k) located.x[k] += left * slope_[k];
+    move_onto(kernel_, state_, function.index, located.t, located.x);
+    return located;
+  }
+  return std::nullopt;
+}
+
 /// Onto all surfaces that meet, where f has a root of one of them: what is left of psi when another one is put to zero,
 /// 1e-15, has a root of 3e-8, or none.
 void Run::settle_on_roots(const Located& located) {
-  if (state_.higher || !kernel_.region_groups().empty()) return;
+  if (!kernel_.region_groups().empty()) return;
   std::vector<int> surfaces = state_.sliding;
   for (const std::size_t i : located.functions) {
     const auto& function = search_.functions()[i];
@@ -55,11 +89,19 @@ void Run::settle_on_roots(const Located& located) {
   if (surfaces.size() < 2 || std::none_of(surfaces.begin(), surfaces.end(), rooted)) return;
   HeldFunctions held(kernel_);
   std::vector<HeldFunction> functions;
+  std::vector<double> alpha = state_.alpha;
   for (const int j : surfaces) functions.push_back({j, 0});
-  held.set(std::move(functions), state_.alpha);
+  if (state_.higher) {
+    for (const int j : state_.sliding) alpha[at(j)] = 0.5;
+    for (const HeldFunction& function : state_.higher->functions) {
+      if (function.order > 0) functions.push_back(function);
+    }
+  }
+  const std::size_t count = functions.size();
+  held.set(std::move(functions), std::move(alpha));
   held.differentiate(t_, x_.data());
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    if (!(held.independent_part(i) > 1e-6)) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(held.independent_part(i) > switching::dependent_part)) return;
   }
   static_cast<void>(held.project(t_, x_.data()));
 }

@@ -98,7 +98,7 @@ void Run::follow_shrinking() {
   if (switch_laps_.empty()) {
     first_lap_ = 0.0;
     if (lap_share_ != 1.0) {
-      lap_share_ = 1.0;
+      lap_share_ = rooted_atol_ = rooted_rtol_ = 1.0;
       set_tolerances();
     }
     return;

@@ -288,9 +288,12 @@ Run::Step Run::attempt() {
   const double t_new = to_the_limit ? limit : t_ + h_try_;
   const double h = t_new - t_;
   dense_is_last_ = false;
-  if (!continued_roots_.empty()) tighten_beside_roots(h);
+  if (!continued_roots_.empty() || (lap_share_ != 1.0 && !ending_roots_.empty())) tighten_beside_roots(h);
   if (field_.attempt(stepper_, t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
     undefined_ahead_ = true;
+    if (!ending_roots_.empty()) {
+      if (const auto located = rooted_surface_ahead(t_new)) return handle(*located);
+    }
     // Not on the way of a long step, which has others to look at.
     if (h <= 1e3 * smallest_step() && no_surface_at_ != t_) {
       if (const auto located = surface_within_rounding()) return handle(*located);
