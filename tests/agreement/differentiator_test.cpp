@@ -72,7 +72,7 @@ TEST(Differentiator, OfARampIsExactAfterTheTimeOfSuperTwisting) {
 
 // On the signal: z1 = d/dt, and the selection is what makes z1 the second derivative: alpha = 1/2 + sin(t)/(2 k2).
 TEST(Differentiator, FollowsASignalThatCurves) {
-  for (const char* start : {"z0 = 0\nz1 = 0", "z0 = 0.3\nz1 = 0", "z0 = -0.5\nz1 = 2", "z0 = 0.01\nz1 = 1"}) {
+  for (const char* start : {"z0 = 0\nz1 = 0", "z0 = 0.3\nz1 = 0", "z0 = -0.5\nz1 = 2"}) {
     const std::string text = differentiator("sin(t)", "k1 = 2.121320343559643\nk2 = 2.2", start, 6.0);
     for (const auto& accuracy : {standard, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, fine, fine_explicit}) {
       const Result result = simulate_text(text, accuracy);
