@@ -77,16 +77,16 @@ bool HeldFunctions::tangent_direction(std::size_t state, std::size_t lower, std:
   return square > 1e-20;
 }
 
-/// The step in the span of the first gradients by which these functions change by `changes`.
-void HeldFunctions::find_normal_step(std::size_t count, const Eigen::VectorXd& changes,
-                                     std::vector<double>& step) const {
-  std::fill(step.begin(), step.end(), 0.0);
-  for (std::size_t k = 0; k < count; ++k) {
-    double missing = changes[index(k)];
-    for (std::size_t s = 0; s < step.size(); ++s) missing -= rows_(index(k), index(s)) * step[s];
+/// How a point moves, into direction_, that stays where the first `lower` functions vanish as time passes: in the span
+/// of their gradients.
+void HeldFunctions::find_drift(std::size_t lower) {
+  std::fill(direction_.begin(), direction_.end(), 0.0);
+  for (std::size_t k = 0; k < lower; ++k) {
+    double missing = -rates_[index(k)];
+    for (std::size_t s = 0; s < direction_.size(); ++s) missing -= rows_(index(k), index(s)) * direction_[s];
     const double along = rows_.row(index(k)).dot(basis_.row(index(k)));
     if (missing == 0.0 || along == 0.0) continue;
-    for (std::size_t s = 0; s < step.size(); ++s) step[s] += missing / along * basis_(index(k), index(s));
+    for (std::size_t s = 0; s < direction_.size(); ++s) direction_[s] += missing / along * basis_(index(k), index(s));
   }
 }
 
@@ -131,8 +131,7 @@ void HeldFunctions::differentiate(double t, const double* x) {
           rooted_ ? along() : (value_along(i, t, x, width) - value_along(i, t, x, -width)) / (2.0 * width);
     }
     const double width = width_at(t);
-    find_normal_step(lower, rates_, direction_);
-    for (double& d : direction_) d = -d;
+    find_drift(lower);
     rates_[r] = rooted_ ? rate + along()
                         : (value_along(i, t + width, x, width) - value_along(i, t - width, x, -width)) / (2.0 * width);
     extend_basis(i);

@@ -53,7 +53,7 @@ class HeldFunctions {
  private:
   [[nodiscard]] std::size_t below(std::size_t i) const;
   [[nodiscard]] bool tangent_direction(std::size_t state, std::size_t lower, std::vector<double>& direction) const;
-  void find_normal_step(std::size_t count, const Eigen::VectorXd& changes, std::vector<double>& step) const;
+  void find_drift(std::size_t lower);
   [[nodiscard]] double value_along(std::size_t i, double t, const double* x, double width);
   void extend_basis(std::size_t i);
   bool correct(std::size_t part, double t, double* x);

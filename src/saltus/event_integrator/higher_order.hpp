@@ -21,6 +21,9 @@ struct Surroundings;
 /// several that share selections (rows of the sliding set). Into several functions selections enter additively.
 using switching::Balance;
 
+/// Velocities of held functions are good to about ten digits where their gradients are differences.
+inline constexpr double velocity_accuracy = 1e-9;
+
 /// Where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and the
 /// balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones. The
 /// motion is the field at any selections in the cube that fulfil the balances, which is one and the same for all of

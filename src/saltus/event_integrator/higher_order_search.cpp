@@ -18,8 +18,6 @@ namespace {
 constexpr int highest_order = 3;
 /// Surfaces whose 2^m corners are looked at.
 constexpr std::size_t most_surfaces = 8;
-/// Velocities are good to about ten digits where gradients are differences.
-constexpr double velocity_accuracy = 1e-9;
 
 /// Grows a set function by function.
 class SetSearch {

@@ -62,8 +62,7 @@ std::optional<Located> Run::rooted_surface_ahead(double until) {
   find_functions(t_, x_.data(), values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& function = search_.functions()[i];
-    const bool has_root = function.kind == FunctionKind::surface && kernel_.has_root(function.index) &&
-                          !kernel_.root_is_continued(function.index);
+    const bool has_root = function.kind == FunctionKind::surface && contains(ending_roots_, function.index);
     if (!has_root || !(std::abs(values[i]) <= few * search_.noise(i))) continue;
     const Rate rate = rate_along_field(function.index, t_, x_.data(), slope_.data());
     const double left = -values[i] / rate.value;

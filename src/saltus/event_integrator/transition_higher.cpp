@@ -154,13 +154,11 @@ std::optional<Transition> leave_at_once(const Surroundings& s, const ModeState& 
   for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * field.motion()[i];
   field.evaluate(occasion.t + h, ahead.data());
   const auto& later = field.ranges();
-  // That of the search, which takes such a set as one that is held.
-  constexpr double accuracy = 1e-9;
   Occasion ends = occasion;
   ends.exit_below.clear();
   ends.exit_above.clear();
   for (std::size_t k = 0; k < now.size() && k < later.size(); ++k) {
-    const double rounding = accuracy * now[k].terms;
+    const double rounding = velocity_accuracy * now[k].terms;
     const int surface = held.sliding[now[k].row];
     if (now[k].max <= rounding && later[k].max < -rounding) ends.exit_below.push_back(surface);
     if (now[k].min >= -rounding && later[k].min > rounding) ends.exit_above.push_back(surface);
