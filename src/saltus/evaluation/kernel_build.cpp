@@ -38,7 +38,8 @@ ModelKernel::Implementation::Implementation(const model::System& system)
       p(system.p),
       alpha(system.alpha),
       parameters(system.parameter_values),
-      n_psi(static_cast<int>(system.switching.size())) {
+      n_psi(static_cast<int>(system.switching.size())),
+      fixed_parameters(parameters.size()) {
   input = SX::densify(system.input);
   const auto with_inputs = [&](const SX& expression) {
     return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, input);

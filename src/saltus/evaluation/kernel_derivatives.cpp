@@ -6,6 +6,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
+#include "saltus/evaluation/root_limits_internal.hpp"
 
 namespace saltus::evaluation {
 namespace {
@@ -13,6 +14,27 @@ namespace {
 using casadi::SX;
 
 }  // namespace
+
+int ModelKernel::with_limited_roots(int function) const {
+  SALTUS_ASSERT(0 <= function && function < event_functions());
+  auto& self = *implementation_;
+  const auto [known, is_new] = self.rootless_numbers.try_emplace(function, 0);
+  if (is_new) {
+    const std::vector<double> fixed(self.parameters.begin(),
+                                    self.parameters.begin() + static_cast<std::ptrdiff_t>(self.fixed_parameters));
+    const SX psi = self.phi(casadi::Slice(0, self.n_psi));
+    auto limited = limit_roots(self.phi_row(function), psi, self.symbols(), fixed);
+    self.rootless.push_back(std::move(limited.f));
+    self.roots_inside.push_back(std::move(limited.rooted));
+    known->second = -static_cast<int>(self.rootless.size());
+  }
+  return known->second;
+}
+
+bool ModelKernel::has_root_inside(int function, int surface) const {
+  const auto number = at(-1 - with_limited_roots(function));
+  return implementation_->roots_inside[number][at(surface)];
+}
 
 SX ModelKernel::Implementation::lie_expression(int j, int order) {
   if (order == 0) return phi_row(j);
@@ -49,7 +71,7 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
 }
 
 double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {
-  SALTUS_ASSERT(0 <= function && function < event_functions() && order >= 1);
+  SALTUS_ASSERT(function < 0 ? order >= 0 : function < event_functions() && order >= 1);
   auto& self = *implementation_;
   auto& compiled = self.motion->lie_derivatives[{function, order}];
   if (compiled.is_null()) {
@@ -63,7 +85,7 @@ double ModelKernel::lie_derivative(int function, int order, double t, const doub
 
 void ModelKernel::lie_gradient(int function, int order, double t, const double* x, const double* alpha, double* row,
                                double* rate) const {
-  SALTUS_ASSERT(0 <= function && function < event_functions() && order >= 1);
+  SALTUS_ASSERT(function < 0 ? order >= 0 : function < event_functions() && order >= 1);
   auto& self = *implementation_;
   auto& compiled = self.motion->lie_gradients[{function, order}];
   if (compiled.is_null()) {

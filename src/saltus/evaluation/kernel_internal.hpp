@@ -64,7 +64,11 @@ struct ModelKernel::Implementation {
   AffineRowFunctions affine_rows;
   FieldConstants constants;  ///< work space of field()
   std::vector<std::vector<int>> inner;
-  std::vector<Gradient> gradients;  ///< one per event function, compiled when first asked for
+  std::vector<Gradient> gradients;              ///< one per event function, compiled when first asked for
+  std::vector<casadi::SX> rootless;             ///< event functions with limited roots
+  std::vector<std::vector<bool>> roots_inside;  ///< of these, by switching function
+  std::map<int, int> rootless_numbers;          ///< of these, by event function
+  std::size_t fixed_parameters = 0;             ///< the first of `parameters`: never changed
   Motion free;
   std::vector<HeldGuard> jump_guards;  ///< by event function, from first_jump_guard on
   int first_jump_guard = 0;
@@ -75,7 +79,8 @@ struct ModelKernel::Implementation {
   NativeFunctions native;  ///< the functions that every step needs
 
   explicit Implementation(const model::System& system);
-  casadi::SX phi_row(int j) const { return phi(j); }
+  /// Of an event function or, by a negative number, one with limited roots.
+  casadi::SX phi_row(int j) const { return j < 0 ? rootless[at(-1 - j)] : casadi::SX(phi(j)); }
   ModelSymbols symbols() const { return {t, x, p, alpha}; }
   casadi::SX lie_expression(int j, int order);
   void compile_field(Motion& target, const std::string& name) const;

@@ -130,6 +130,12 @@ class ModelKernel {
   void scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const;
   /// Gradient row d phi_j / d x (n_x) and d phi_j / d t.
   void gradient(int function, double t, const double* x, const double* alpha, double* row, double* rate) const;
+  /// The number, for lie_derivative() and lie_gradient() only (of order 0, too), of phi_j with its roots of what is 0
+  /// with a switching function 0 there, to rounding: where x is held at 0, with selections of 1/2, and beside it,
+  /// v + sqrt(abs(x))*sign(x) is v. Cost: an expression, once.
+  [[nodiscard]] int with_limited_roots(int function) const;
+  /// Whether phi_function has a root of psi_surface, or of what is 0 with it. Cost: that of with_limited_roots().
+  [[nodiscard]] bool has_root_inside(int function, int surface) const;
   /// L^order phi_j along f(., alpha) with alpha held, e.g. order 1: grad phi . f + d phi/dt. order >= 1.
   [[nodiscard]] double lie_derivative(int function, int order, double t, const double* x, const double* alpha) const;
   /// Its gradient (n_x) and derivative with respect to t.

@@ -53,6 +53,39 @@ TEST(RootLimits, AreZeroWithinTheRoundingOfTheSurface) {
   }
 }
 
+// y + sqrt(|x|) sign(x) with x held at 0, beside it, too: y. With the selections of a region it is as it was.
+TEST(RootLimits, OfFunctionsThatHoldSignsAreZeroWhereTheseAreHeld) {
+  Builder b("nested");
+  const SX x = b.state("x", {1});
+  const SX y = b.state("y", {1});
+  const SX psi = y + sqrt(b.abs(x)) * b.sign(x);
+  b.dynamics("x", y);
+  b.dynamics("y", -2 * b.sign(psi));
+  auto kernel = ModelKernel::compile(*b.build());
+  ASSERT_TRUE(kernel.has_value());
+  const int nested = kernel->inner(0).empty() ? 1 : 0;
+  const int inside = kernel->inner(nested).front();
+  EXPECT_TRUE(kernel->has_root_inside(nested, inside));
+  EXPECT_FALSE(kernel->has_root_inside(nested, nested));
+  const int form = kernel->with_limited_roots(nested);
+  EXPECT_EQ(form, kernel->with_limited_roots(nested));
+  std::vector<double> alpha{0.5, 0.5};
+  double row[2], rate = 1.0;
+  for (const double off : {0.0, 1e-30, -1e-9, 0.3}) {
+    const double point[] = {off, 0.7};
+    EXPECT_EQ(kernel->lie_derivative(form, 0, 0.0, point, alpha.data()), 0.7);
+    kernel->lie_gradient(form, 0, 0.0, point, alpha.data(), row, &rate);
+    EXPECT_EQ(row[0], 0.0);
+    EXPECT_EQ(row[1], 1.0);
+    EXPECT_EQ(rate, 0.0);
+  }
+  const double point[] = {0.25, 0.7};
+  alpha[static_cast<std::size_t>(inside)] = 1.0;
+  EXPECT_EQ(kernel->lie_derivative(form, 0, 0.0, point, alpha.data()), 1.2);
+  // x' = y: the first derivative along the field, at selections of 1/2 for the outer one.
+  EXPECT_NEAR(kernel->lie_derivative(form, 1, 0.0, point, alpha.data()), 0.7, 1e-15);
+}
+
 TEST(RootLimits, LeaveTheRegionsAsTheyAre) {
   const ModelKernel kernel = kernel_of(roots[0]);
   for (const double off : {1e-10, 1e-3, 0.5}) {
