@@ -40,6 +40,7 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
                                            [](const HeldFunction& function) { return function.order == 0; });
   rooted_ = std::any_of(functions_.begin(), functions_.end(),
                         [&](const HeldFunction& function) { return kernel_.has_root(function.surface); });
+  find_forms();
   normals_[0].count = static_cast<Index>(of_order_zero);
   normals_[1].count = m;
   for (auto& normal : normals_) {
@@ -50,9 +51,21 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
   }
 }
 
+void HeldFunctions::find_forms() {
+  forms_.clear();
+  for (const HeldFunction& function : functions_) {
+    const auto is_inside = [&](const HeldFunction& other) {
+      const auto& inner = kernel_.inner(function.surface);
+      return other.order == 0 && std::find(inner.begin(), inner.end(), other.surface) != inner.end();
+    };
+    const bool around = std::any_of(functions_.begin(), functions_.end(), is_inside);
+    forms_.push_back(around ? kernel_.with_limited_roots(function.surface) : function.surface);
+  }
+}
+
 double HeldFunctions::value(std::size_t i, double t, const double* x) const {
   const auto [surface, order] = functions_[i];
-  if (order > 0) return kernel_.lie_derivative(surface, order, t, x, alpha_.data());
+  if (order > 0 || forms_[i] < 0) return kernel_.lie_derivative(forms_[i], order, t, x, alpha_.data());
   kernel_.functions(t, x, alpha_.data(), values_.data());
   return values_[at(surface)];
 }
@@ -112,27 +125,30 @@ void HeldFunctions::differentiate(double t, const double* x) {
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const auto r = index(i);
     if (functions_[i].order == 0) {
-      kernel_.gradient(functions_[i].surface, t, x, alpha_.data(), row_.data(), &rates_[r]);
+      if (forms_[i] < 0) {
+        kernel_.lie_gradient(forms_[i], 0, t, x, alpha_.data(), row_.data(), &rates_[r]);
+      } else {
+        kernel_.gradient(functions_[i].surface, t, x, alpha_.data(), row_.data(), &rates_[r]);
+      }
       for (std::size_t k = 0; k < row_.size(); ++k) rows_(r, index(k)) = row_[k];
       extend_basis(i);
       continue;
     }
     const std::size_t lower = below(i);
+    const bool by_form = is_by_form(i);
     double rate = 0.0;
-    if (rooted_) {
-      kernel_.lie_gradient(functions_[i].surface, functions_[i].order, t, x, alpha_.data(), row_.data(), &rate);
-    }
+    if (by_form) kernel_.lie_gradient(forms_[i], functions_[i].order, t, x, alpha_.data(), row_.data(), &rate);
     const auto along = [&] { return std::inner_product(row_.begin(), row_.end(), direction_.begin(), 0.0); };
     for (std::size_t k = 0; k < row_.size(); ++k) {
       rows_(r, index(k)) = 0.0;
       if (!tangent_direction(k, lower, direction_)) continue;
       const double width = width_at(x[k]);
       rows_(r, index(k)) =
-          rooted_ ? along() : (value_along(i, t, x, width) - value_along(i, t, x, -width)) / (2.0 * width);
+          by_form ? along() : (value_along(i, t, x, width) - value_along(i, t, x, -width)) / (2.0 * width);
     }
     const double width = width_at(t);
     find_drift(lower);
-    rates_[r] = rooted_ ? rate + along()
+    rates_[r] = by_form ? rate + along()
                         : (value_along(i, t + width, x, width) - value_along(i, t - width, x, -width)) / (2.0 * width);
     extend_basis(i);
   }

@@ -24,6 +24,8 @@ struct HeldFunction {
 /// not be differentiable across its surface. Beside roots of psi (super-twisting), which are 0 with all their
 /// derivatives there, by forms: what surfaces are near may have roots, too, which differences are too wide for. Owns
 /// its work space; allocates in set() only. Cost: two evaluations of c_i per state and function of order >= 1.
+/// Of functions that hold the selections of others in the list what is left where these are 0 counts, with selections
+/// of 1/2 and without roots: v + sqrt(abs(x))*sign(x) and x are held as v and x.
 class HeldFunctions {
  public:
   explicit HeldFunctions(const evaluation::ModelKernel& kernel);
@@ -51,6 +53,8 @@ class HeldFunctions {
   [[nodiscard]] std::vector<double> displaced(double t, const double* x, double step, unsigned pattern);
 
  private:
+  void find_forms();
+  [[nodiscard]] bool is_by_form(std::size_t i) const { return rooted_ || forms_[i] < 0; }
   [[nodiscard]] std::size_t below(std::size_t i) const;
   [[nodiscard]] bool tangent_direction(std::size_t state, std::size_t lower, std::vector<double>& direction) const;
   void find_drift(std::size_t lower);
@@ -61,7 +65,8 @@ class HeldFunctions {
   const evaluation::ModelKernel& kernel_;
   std::vector<HeldFunction> functions_;
   std::vector<double> alpha_, row_, direction_, point_;
-  bool rooted_ = false;  ///< whether f has a root of one of the surfaces' functions
+  std::vector<int> forms_;  ///< numbers of the kernel: negative where roots are limited
+  bool rooted_ = false;     ///< whether f has a root of one of the surfaces' functions
   mutable std::vector<double> values_;
   Eigen::MatrixXd rows_, basis_;  ///< gradients; an orthonormal basis of their span, row by row
   Eigen::VectorXd rates_, parts_, step_;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/higher_order.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/event_integrator/transition_internal.hpp"
@@ -24,6 +25,7 @@ class SetSearch {
  public:
   SetSearch(const Surroundings& s, const ModeState& state, double t, std::vector<double>& x, double resolved)
       : s_(s),
+        state_(state),
         sliding_(state.sliding),
         t_(t),
         x_(x),
@@ -64,6 +66,7 @@ class SetSearch {
     surfaces_.set(set_.functions, alpha_);
     functions_.set(set_.functions, alpha_);
     static_cast<void>(functions_.project(t_, x_.data()));
+    if (!nested_are_continuous()) return false;
     functions_.differentiate(t_, x_.data());
     for (std::size_t i = 0; i < sliding_.size(); ++i) {
       if (!(functions_.independent_part(i) > switching::dependent_part))
@@ -74,6 +77,26 @@ class SetSearch {
     fields_ = corners_;
     return std::all_of(fields_.begin(), fields_.end(), [](const auto& f) { return is_finite(f); }) ||
            reject("a field is not finite on the surfaces");
+  }
+
+  /// Whether functions around others have the same value, 0, in all regions that meet here, but for roots of rounding.
+  bool nested_are_continuous() {
+    for (const int j : sliding_) {
+      const auto inner = sliding_inside(s_.kernel, state_, j);
+      if (inner.empty()) continue;
+      const int form = s_.kernel.with_limited_roots(j);
+      std::vector<double> row(x_.size());
+      for (const auto& alpha : corners_at(state_, inner)) {
+        double rate = 0.0;
+        const double psi = s_.kernel.lie_derivative(form, 0, t_, x_.data(), alpha.data());
+        s_.kernel.lie_gradient(form, 0, t_, x_.data(), alpha.data(), row.data(), &rate);
+        double terms = std::abs(rate * t_);
+        for (std::size_t i = 0; i < row.size(); ++i) terms += std::abs(row[i] * x_[i]);
+        // Four digits above rounding, as for other functions that hold signs: a jump is something of size.
+        if (!(std::abs(psi) <= 1e5 * rounding_unit * terms)) return reject("a nested switching function that jumps");
+      }
+    }
+    return true;
   }
 
   /// The velocities of function i of the set at all corners; the largest size of their terms.
@@ -225,6 +248,7 @@ class SetSearch {
   }
 
   const Surroundings& s_;
+  const ModeState& state_;
   const std::vector<int>& sliding_;
   double t_;
   std::vector<double>& x_;
@@ -239,25 +263,36 @@ class SetSearch {
   std::string problem_;
 };
 
+/// What of the surfaces cannot be held: kinks that no other one of them holds the sign of, and those inside functions
+/// that are not held.
+std::string find_obstacle(const Surroundings& s, const ModeState& state) {
+  const auto& kernel = s.kernel;
+  std::vector<int> inside;
+  for (int j = 0; j < kernel.switching_functions(); ++j) {
+    const auto held = sliding_inside(kernel, state, j);
+    if (held.empty()) continue;
+    if (!contains(state.sliding, j)) return "a nested switching function";
+    inside.insert(inside.end(), held.begin(), held.end());
+  }
+  for (const int j : state.sliding) {
+    const auto role = s.system.switching[at(j)].role;
+    const bool is_held_kink = role == model::SwitchingRole::kink && contains(inside, j);
+    if (role != model::SwitchingRole::listed && !is_held_kink) return "a kink";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<HigherOrderSet> find_higher_order_set(const Surroundings& surroundings, const ModeState& state, double t,
                                                     std::vector<double>& x, double resolved, std::string& problem) {
-  const auto& kernel = surroundings.kernel;
-  const auto refuse = [&](const char* why) {
-    problem = why;
+  const auto refuse = [&](std::string why) {
+    problem = std::move(why);
     return std::nullopt;
   };
   if (state.sliding.empty() || state.sliding.size() > most_surfaces) return refuse("too many surfaces");
   if (!surroundings.affine_in_alpha) return refuse("selections do not enter affinely");
-  for (int j = 0; j < kernel.switching_functions(); ++j) {
-    const bool slides = contains(state.sliding, j);
-    if (slides && surroundings.system.switching[at(j)].role != model::SwitchingRole::listed) return refuse("a kink");
-    if (slides && !kernel.inner(j).empty()) return refuse("a nested switching function");
-    for (const int inner : kernel.inner(j)) {
-      if (contains(state.sliding, inner)) return refuse("a nested switching function");
-    }
-  }
+  if (const auto why = find_obstacle(surroundings, state); !why.empty()) return refuse(why);
   SetSearch search(surroundings, state, t, x, resolved);
   auto found = search.run();
   if (!found) problem = search.take_problem();

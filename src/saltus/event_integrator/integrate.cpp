@@ -107,6 +107,7 @@ bool Run::enter(const Transition& transition) {
     mode_tolerances_ = within_layers(kernel_, options_.layers, wanted, state_, t_, x_.data());
   }
   root_share_ = 1.0;
+  watch_nested_roots();
   set_tolerances();
   field_.enter(state_);
   stepper_.restart();

@@ -155,6 +155,13 @@ void ModeField::slide_on_one(double t, const double* x, double* xdot) {
   }
   double normal = rates_[0];
   for (std::size_t i = 0; i < n; ++i) normal += row[i] * xdot[i];
+  if (has_root_inside_) {
+    // Towards the zero of that root motions vanish that are differences of terms of the size of the jump: what rounding
+    // of the selection has left of psi' is taken from the states that it moves.
+    const double factor = normal / (exits_[0].above - exits_[0].below);
+    for (std::size_t i = 0; i < n; ++i) xdot[i] -= (f_[1][i] - f_[0][i]) * factor;
+    return;
+  }
   const double factor = row_square_ > 0.0 ? normal / row_square_ : not_a_number;
   for (std::size_t i = 0; i < n; ++i) xdot[i] -= row[i] * factor;
 }

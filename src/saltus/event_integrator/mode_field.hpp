@@ -196,6 +196,7 @@ class ModeField {
   std::array<ExitRow, 8> exit_rows_;  ///< the last ones
   std::size_t next_exit_row_ = 0;
   int single_ = -1;                                 ///< the surface that rows and groups are of, if it is one
+  bool has_root_inside_ = false;                    ///< of that one: of a function whose sign it holds
   std::vector<bool> constant_row_;                  ///< gradient known once and for all in this mode
   std::vector<int> coordinate_;                     ///< the only nonzero column of a row, or -1
   evaluation::SlidingConstants sliding_constants_;  ///< of one surface with a constant gradient

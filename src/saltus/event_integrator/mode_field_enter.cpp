@@ -1,4 +1,5 @@
 // Where modes begin: in general, and the short ways from one region to its neighbour.
+#include <algorithm>
 #include <utility>
 
 #include "saltus/base/contracts.hpp"
@@ -37,6 +38,9 @@ void ModeField::enter(const ModeState& state) {
   }
   single_ = is_single() ? sliding_.front() : -1;
   if (sliding_.size() != 1) return;
+  const int slid = sliding_.front();
+  const auto& inner = kernel_.inner(slid);
+  has_root_inside_ = std::any_of(inner.begin(), inner.end(), [&](int i) { return kernel_.has_root_inside(slid, i); });
   between_.clear();
   for (std::size_t corner = 0; corner < 2; ++corner) {
     corner_[corner] = state.corner_alpha[corner];

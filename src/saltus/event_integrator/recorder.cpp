@@ -189,6 +189,21 @@ void Recorder::note_changed_regions(const ModeState& before, const ModeState& af
   }
 }
 
+/// Surfaces that are slid on before and after, while a kink inside them begins or ends to be held with them.
+void Recorder::note_held_kinks(const ModeState& before, const ModeState& after) {
+  for (const std::size_t i : changed_) {
+    if (!system_.switching[i].is_kink() || (before.mode[i] == 0) == (after.mode[i] == 0)) continue;
+    for (std::size_t j = 0; j < before.mode.size(); ++j) {
+      if (before.mode[j] != 0 || after.mode[j] != 0 ||
+          !contains(kernel_.inner(static_cast<int>(j)), static_cast<int>(i)))
+        continue;
+      for (const std::size_t column : listed_columns_[j]) {
+        if (std::find(columns_.begin(), columns_.end(), column) == columns_.end()) columns_.push_back(column);
+      }
+    }
+  }
+}
+
 bool Recorder::switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition) {
   const std::size_t number_before = number(before);
   const std::size_t number_after = number(transition.state);
@@ -205,8 +220,11 @@ bool Recorder::switched(double t, const std::vector<double>& x, const ModeState&
     }
   }
   note_changed_regions(before, transition.state);
+  const bool switches = !columns_.empty();
+  note_held_kinks(before, transition.state);
   if (columns_.empty()) return false;
-  auto& event = begin(t, result::kind_of_switch(listed_before_, listed_after_));
+  auto& event =
+      begin(t, switches ? result::kind_of_switch(listed_before_, listed_after_) : result::EventKind::change_sliding);
   std::sort(columns_.begin(), columns_.end());
   for (const std::size_t column : columns_) add_surface(event, column);
   set_states(event, x, x);

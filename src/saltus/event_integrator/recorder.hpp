@@ -107,6 +107,7 @@ class Recorder {
   }
   Recording::Range reason_of(const SurfaceSwitch& change);
   void note_changed_regions(const ModeState& before, const ModeState& after);
+  void note_held_kinks(const ModeState& before, const ModeState& after);
   void add_reason(Recording::Event& event, std::string_view reason);
   void add_transition(Recording::Event& event, const Transition& transition);
   void add_transition(Recording::Event& event, const Transition& transition, std::size_t mode_after);

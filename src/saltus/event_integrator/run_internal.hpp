@@ -84,6 +84,15 @@ class Run {
     Transition transition;
   };
 
+  /// A function g inside ones that are slid on, which have a root of it: where |g / g'| was last seen to have halved.
+  struct Nearing {
+    int function = 0;
+    std::vector<int> around;
+    double t = 0.0;
+    double ratio = std::numeric_limits<double>::infinity();
+    double end = std::numeric_limits<double>::quiet_NaN();  ///< where g is 0, by what was seen until then
+  };
+
   struct RestingGuards {
     std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
   };
@@ -146,6 +155,13 @@ class Run {
   [[nodiscard]] double root_step() const { return std::max(1e-2 * h_scale_, 1e-8 * span()); }
   bool take_side_of_root();
   void settle_on_roots(const Located& located);
+  void watch_nested_roots();
+  void tighten_beside_nested_roots(double& atol, double& rtol);
+  [[nodiscard]] std::optional<Located> nested_roots_ahead();
+  [[nodiscard]] std::optional<double> end_of_nearing(Nearing& nearing);
+  [[nodiscard]] std::optional<Located> at_nested_roots(double end, const std::vector<std::size_t>& reached);
+  Step arrive_at_nested_roots(const Located& located);
+  void leave_nested_root();
   void note_time_scale(double h);
   [[nodiscard]] bool keep_their_signs(const std::vector<double>& before, int surface, double t, const double* x);
   void note_tightening_switch();
@@ -256,6 +272,10 @@ class Run {
   double root_share_ = 1.0;            ///< part of both where roots of coupled surfaces are near
   std::vector<int> continued_roots_;   ///< surfaces whose regions' fields go on beyond them, less a root
   std::vector<int> ending_roots_;      ///< those whose regions' fields do not
+  std::vector<Nearing> nearing_;       ///< of the mode
+  double nearing_since_ = 0.0;         ///< its begin
+  std::vector<double> nearing_slope_;  ///< a step before
+  double nearing_step_ = 0.0;          ///< that step
   std::vector<double> rooted_values_;  ///< of event functions
   double rooted_atol_ = 1.0;           ///< parts of the tolerances beside these
   double rooted_rtol_ = 1.0;

@@ -48,6 +48,7 @@ void Run::tighten_beside_roots(double h) {
         part * std::max(std::abs(rooted_values_[at(j)]), std::max(h, lap_part * closed_lap_) * std::abs(rate.value));
     rtol = std::min(rtol, std::max(smallest, wanted / (rate.magnitude * mode_tolerances_.rtol)));
   }
+  tighten_beside_nested_roots(atol, rtol);
   if (atol == rooted_atol_ && rtol == rooted_rtol_) return;
   rooted_atol_ = atol;
   rooted_rtol_ = rtol;
@@ -146,6 +147,7 @@ bool Run::take_side_of_root() {
 
 void Run::leave_root() {
   const int surface = std::exchange(rooted_, -1);
+  if (!kernel_.has_root(surface)) return leave_nested_root();
   RootedExit exit(kernel_, surroundings_.affine_in_alpha, state_, surface);
   const double begin = t_;
   const double limit = std::min({options_.until, jumps_.next_time(), next_departure()});

@@ -210,6 +210,10 @@ Run::Step Run::accept(double t_new) {
   ++result_.statistics.steps;
   rows_until(t_new);
   const double h = t_new - t_;
+  if (!nearing_.empty()) {
+    nearing_slope_ = slope_;
+    nearing_step_ = h;
+  }
   std::copy(stepper_.x_new(), stepper_.x_new() + x_.size(), x_.begin());
   t_ = t_new;
   note_time_scale(h);
@@ -245,7 +249,11 @@ Run::Step Run::accept(double t_new) {
   if (options_.output.rows == OutputTimes::Rows::at_steps || requested || t_ >= options_.until) row(t_, x_);
   if (families_.watches()) look_for_families(t_ - h);
   if (t_ == next_choice().departure()) return leave_later();
-  return jumps_.next_time() <= t_ ? jump_in_time() : Step::taken;
+  if (jumps_.next_time() <= t_) return jump_in_time();
+  if (!nearing_.empty() && t_ < options_.until) {
+    if (const auto located = nested_roots_ahead()) return arrive_at_nested_roots(*located);
+  }
+  return Step::taken;
 }
 
 /// h |f - dx/dt| of the dense output in the middle of the last attempt, in units of the local tolerance; 0 where that
@@ -288,7 +296,9 @@ Run::Step Run::attempt() {
   const double t_new = to_the_limit ? limit : t_ + h_try_;
   const double h = t_new - t_;
   dense_is_last_ = false;
-  if (!continued_roots_.empty() || (lap_share_ != 1.0 && !ending_roots_.empty())) tighten_beside_roots(h);
+  if (!continued_roots_.empty() || !nearing_.empty() || (lap_share_ != 1.0 && !ending_roots_.empty())) {
+    tighten_beside_roots(h);
+  }
   if (field_.attempt(stepper_, t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {
     undefined_ahead_ = true;
     if (!ending_roots_.empty()) {

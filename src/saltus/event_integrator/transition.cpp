@@ -139,6 +139,7 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   if (before.higher && !occasion.start) return decide_from_higher_order(surroundings, before, occasion);
   const ReferenceScope references(surroundings.kernel, before);
   const ModeState exact = with_exact_selections(before);
+  if (auto rests = rest_where_nested_meet(surroundings, exact, occasion)) return std::move(*rests);
   if (auto crossed = cross_with_jump(surroundings, exact, occasion)) return std::move(*crossed);
   if (occasion.limit) {
     // Rounding of the limit decides what the fields do there one by one.
@@ -162,6 +163,7 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   if (transition.termination == result::Termination::outside_class ||
       transition.termination == result::Termination::no_admissible_mode) {
     if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
+    if (auto left = leave_where_nested_meet(surroundings, exact, occasion)) return std::move(*left);
   }
   if (transition.termination == result::Termination::no_admissible_mode) {
     if (auto other = borderline_mode(surroundings, exact, occasion, transition.state)) return std::move(*other);

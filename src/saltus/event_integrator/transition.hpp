@@ -66,7 +66,7 @@ struct Transition {
   /// from.
   std::vector<std::vector<GivenMode>> other_choices;
   std::optional<SpiralStart> beyond_spiral;  ///< the mode is the first region of a spiral: where to go on
-  int rooted = -1;  ///< surface beside which the mode's field has an infinite derivative: left by RootedExit
+  int rooted = -1;  ///< surface beside which the mode's field, or its own function, has an infinite derivative
   std::vector<Transition> alternatives;  ///< to the other admissible modes; these have no alternatives of their own
   long decision = -1;                    ///< its number in the run, of those with alternatives
   std::string reason;

@@ -59,6 +59,9 @@ bool leaves_derivative(const ModeState& before) {
   return std::any_of(functions.begin(), functions.end(), [](const HeldFunction& f) { return f.order > 0; });
 }
 
+/// Whether surfaces are held whose gradients depend on each other: fewer functions than surfaces.
+bool is_dependent(const ModeState& before) { return before.higher->functions.size() < before.sliding.size(); }
+
 Transition failed(const Occasion& occasion, const ModeState& before, const Surroundings& s, const std::string& why) {
   Transition transition;
   transition.state = before;
@@ -97,8 +100,8 @@ std::optional<Transition> leave(const Surroundings& s, const ModeState& before, 
   if (leaving.surfaces.size() < before.sliding.size()) {
     set_to_corner(state, leaving.surfaces, leaving.corner);
     std::vector<double> point = x;
-    left = leaves_derivative(before) ? hold(s, state, occasion, point, problem)
-                                     : hold_dependent(s, state, occasion, point, problem);
+    left = is_dependent(before) ? hold_dependent(s, state, occasion, point, problem)
+                                : hold(s, state, occasion, point, problem);
     if (left && !leads_into_its_region(s, left->state, occasion, point, leaving.surfaces)) left.reset();
     if (left) {
       for (const int j : leaving.surfaces) left->zero_order[at(j)] = 2;
@@ -110,6 +113,48 @@ std::optional<Transition> leave(const Surroundings& s, const ModeState& before, 
     left->reason = fmt::format("{}: no selection holds {} any more", names(s.system, leaving.surfaces),
                                leaves_derivative(before) ? "a derivative at 0" : "them");
   return left;
+}
+
+/// One of the surfaces whose function has a root of another one; -1 if there is none.
+int surface_around_root(const Surroundings& s, const std::vector<int>& surfaces) {
+  for (const int j : surfaces) {
+    const auto& inner = s.kernel.inner(j);
+    const auto has_root_of = [&](int i) { return contains(inner, i) && s.kernel.has_root_inside(j, i); };
+    if (std::any_of(surfaces.begin(), surfaces.end(), has_root_of)) return j;
+  }
+  return -1;
+}
+
+/// Whether functions are at zero together with others inside them.
+bool nested_meet(const Surroundings& s, const Occasion& occasion) {
+  return std::any_of(occasion.at_zero.begin(), occasion.at_zero.end(), [&](int j) {
+    const auto& inner = s.kernel.inner(j);
+    return std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(occasion.at_zero, i); });
+  });
+}
+
+/// The same where surfaces inside those that are left, or around them, are left with them: to the sides that the field
+/// leads to.
+std::optional<Transition> leave_with_nested(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                                            const std::vector<double>& x, const Leaving& leaving,
+                                            std::string& problem) {
+  const auto nested = [&](int i, int j) { return contains(s.kernel.inner(i), j) || contains(s.kernel.inner(j), i); };
+  Leaving all = leaving;
+  for (std::size_t k = 0; k < all.surfaces.size(); ++k) {
+    for (const int j : before.sliding) {
+      if (!contains(all.surfaces, j) && nested(all.surfaces[k], j)) all.surfaces.push_back(j);
+    }
+  }
+  const std::size_t others = all.surfaces.size() - leaving.surfaces.size();
+  if (others == 0 || (std::size_t{1} << others) > most_regions) return std::nullopt;
+  for (std::size_t sides = 0; sides < std::size_t{1} << others; ++sides) {
+    all.corner = leaving.corner | sides << leaving.surfaces.size();
+    auto left = leave(s, before, occasion, x, all, problem);
+    if (!left) continue;
+    if (left->rooted < 0) left->rooted = surface_around_root(s, all.surfaces);
+    return left;
+  }
+  return std::nullopt;
 }
 
 /// Leaves through the corners of balances that can no longer be held; the others are held on. Where several directions
@@ -137,6 +182,7 @@ Transition leave_balances(const Surroundings& s, const ModeState& before, const 
   std::string problem = "its fields do not lead away from it";
   for (const Leaving& leaving : candidates) {
     if (auto left = leave(s, before, occasion, x, leaving, problem)) return std::move(*left);
+    if (auto left = leave_with_nested(s, before, occasion, x, leaving, problem)) return std::move(*left);
   }
   return failed(occasion, before, s, problem);
 }
@@ -176,6 +222,31 @@ Transition meet_dependent(const Surroundings& s, const ModeState& before, const 
   return failed(occasion, before, s, "others are met, and " + problem);
 }
 
+/// A surface is crossed behind which no selections hold the set any more.
+std::optional<Transition> cross_and_leave(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                                          const std::vector<double>& x, int surface) {
+  ModeState behind = before;
+  const int mode = before.mode[at(surface)];
+  set_surface(behind, surface, -mode, mode > 0 ? 0.0 : 1.0);
+  HigherOrderField field(s.kernel);
+  field.enter(*behind.higher, behind.sliding, behind.alpha);
+  field.evaluate(occasion.t, x.data());
+  Occasion ends = occasion;
+  ends.exit_below.clear();
+  ends.exit_above.clear();
+  for (const auto& range : field.ranges()) {
+    const double rounding = velocity_accuracy * range.terms;
+    if (range.max < -rounding) ends.exit_below.push_back(behind.sliding[range.row]);
+    if (range.min > rounding) ends.exit_above.push_back(behind.sliding[range.row]);
+  }
+  if (ends.exit_below.empty() && ends.exit_above.empty()) return std::nullopt;
+  auto left = leave_balances(s, behind, ends, x);
+  if (left.termination != result::Termination::completed) return std::nullopt;
+  if (!leads_into_its_region(s, left.state, occasion, x, {surface})) return std::nullopt;
+  left.zero_order[at(surface)] = 1;
+  return left;
+}
+
 /// Another surface is met: crossed, or slid on as well.
 Transition meet(const Surroundings& s, const ModeState& before, const Occasion& occasion, const std::vector<double>& x,
                 int surface) {
@@ -192,6 +263,7 @@ Transition meet(const Surroundings& s, const ModeState& before, const Occasion& 
       return std::move(*crossed);
     }
   }
+  if (auto left = cross_and_leave(s, before, occasion, x, surface)) return std::move(*left);
   set_surface(behind, surface, 0, 0.5);
   point = x;
   if (auto joined = hold(s, behind, occasion, point, problem)) return std::move(*joined);
@@ -252,6 +324,38 @@ std::optional<Transition> hold_with_higher_order(const Surroundings& s, const Mo
   return transition;
 }
 
+std::optional<Transition> rest_where_nested_meet(const Surroundings& s, const ModeState& before,
+                                                 const Occasion& occasion) {
+  if (!nested_meet(s, occasion)) return std::nullopt;
+  return hold_with_higher_order(s, before, occasion);
+}
+
+std::optional<Transition> leave_where_nested_meet(const Surroundings& s, const ModeState& before,
+                                                  const Occasion& occasion) {
+  const auto& surfaces = occasion.at_zero;
+  if (!nested_meet(s, occasion) || (std::size_t{1} << std::min<std::size_t>(surfaces.size(), 8)) > most_regions) {
+    return std::nullopt;
+  }
+  ModeState state = before;
+  state.higher.reset();
+  const std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
+  std::optional<Transition> found;
+  for (std::size_t corner = 0; corner < std::size_t{1} << surfaces.size(); ++corner) {
+    auto left = leave_to(s, state, occasion, x, surfaces, corner);
+    if (!left) continue;
+    if (left->rooted < 0) left->rooted = surface_around_root(s, surfaces);
+    left->reason =
+        fmt::format("{}: no selection holds them; the field of these regions leads away", names(s.system, surfaces));
+    if (found) {
+      found->unique = false;
+      found->alternatives.push_back(std::move(*left));
+    } else {
+      found = std::move(left);
+    }
+  }
+  return found;
+}
+
 Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
   const std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
   std::vector<int> met, exits = occasion.exit_below;
@@ -259,7 +363,7 @@ Transition decide_from_higher_order(const Surroundings& s, const ModeState& befo
   for (const int j : occasion.touched) {
     if (!contains(before.sliding, j)) met.push_back(j);
   }
-  if (!leaves_derivative(before)) {
+  if (is_dependent(before)) {
     // Functions that move nothing are no reason to decide about those that are held.
     const auto acting = acting_surfaces(s, before, occasion);
     const bool acts = std::any_of(met.begin(), met.end(), [&](int j) { return contains(acting, j); });
@@ -275,8 +379,8 @@ Transition decide_from_higher_order(const Surroundings& s, const ModeState& befo
   state.higher.reset();
   std::vector<double> point = x;
   std::string problem;
-  auto held = leaves_derivative(before) ? hold(s, state, occasion, point, problem)
-                                        : hold_dependent(s, state, occasion, point, problem);
+  auto held = is_dependent(before) ? hold_dependent(s, state, occasion, point, problem)
+                                   : hold(s, state, occasion, point, problem);
   return held ? std::move(*held) : failed(occasion, before, s, problem);
 }
 

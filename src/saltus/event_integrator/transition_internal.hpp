@@ -85,6 +85,16 @@ std::vector<int> acting_surfaces(const Surroundings& s, const ModeState& state, 
 std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
                                            std::string& problem);
 
+/// The same where functions meet others inside them that rest: both are at zero, and stay so whatever the selections,
+/// or are held there (the origin of terminal sliding modes, and of time-optimal feedback). Derivatives on one side of
+/// such a point say nothing about what follows. nullopt elsewhere, and where nothing holds them.
+std::optional<Transition> rest_where_nested_meet(const Surroundings& s, const ModeState& before,
+                                                 const Occasion& occasion);
+
+/// Where nothing holds them: the regions that the solution leaves such a point into, if no rule has found one.
+std::optional<Transition> leave_where_nested_meet(const Surroundings& s, const ModeState& before,
+                                                  const Occasion& occasion);
+
 /// The mode behind an event of a state that is held so.
 Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion);
 
