@@ -163,6 +163,40 @@ TEST(TimeOptimal, FeedbackArrivesAfterOneSwitch) {
   }
 }
 
+// The same feedback with a root, of any authority k: the field of one side is tangent to the curve to rounding only.
+TEST(TimeOptimal, FeedbackWithARootGoesAlongItsCurve) {
+  for (const double k : {1.0, 1.3, 0.1}) {
+    for (const auto& [x, v] : {std::pair{1.0, 0.0}, {0.83, -0.4}, {0.3, 0.9}}) {
+      const double peak = std::sqrt(0.5 * v * v + k * x);
+      const double arrival = (v + 2.0 * peak) / k;
+      for (const double side : {1.0, -1.0}) {
+        const std::string force = fmt::format("-{0}*sign(v + sqrt(2*{0}*abs(x))*sign(x))", k);
+        for (const auto& accuracy : accuracies()) {
+          const Result result = completed(double_integrator(side * x, side * v, force, arrival + 1.0), accuracy);
+          ASSERT_EQ(result.events.size(), 2U);
+          EXPECT_EQ(result.events[0].kind, EventKind::enter_sliding);
+          EXPECT_NEAR(result.events[0].t, (v + peak) / k, 1e-12 / k);
+          expect_rest(result, arrival, accuracy.rtol * arrival);
+        }
+      }
+    }
+  }
+}
+
+// A curve that is too steep, x = v^2/4, is crossed: from v = 0 at x to v = 0 at -x/3 in 4 sqrt(x/3). 4/(sqrt(3) - 1) in
+// all; laps are extrapolated.
+TEST(TimeOptimal, CurvesThatAreCrossedSpiralIntoTheOrigin) {
+  for (const std::string force : {"-sign(x+v*abs(v)/4)", "-sign(v+2*sqrt(abs(x))*sign(x))"}) {
+    for (const double x : {1.0, -1.0}) {
+      for (const auto& accuracy : accuracies()) {
+        const Result result = completed(double_integrator(x, 0, force, 8.0), accuracy);
+        EXPECT_EQ(result.events.back().kind, EventKind::accumulation);
+        expect_rest(result, 4.0 / (std::sqrt(3.0) - 1.0), accuracy.rtol);
+      }
+    }
+  }
+}
+
 // With a margin the curve is slid on: v' = b there.
 TEST(TimeOptimal, ACurveWithAMarginIsSlidOn) {
   const double b = 0.6;

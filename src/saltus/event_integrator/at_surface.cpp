@@ -68,6 +68,40 @@ std::vector<std::vector<double>> corners_inside(const evaluation::ModelKernel& k
   return corners_at(state, sliding_inside(kernel, state, function));
 }
 
+bool moves_along(const evaluation::ModelKernel& kernel, const std::vector<double>& alpha, int surface, double t,
+                 const double* x, double scale) {
+  const std::size_t n = at(kernel.states());
+  std::vector<double> f(n), row(n), values(at(kernel.event_functions())), point(x, x + n), trial(n), k2(n), k3(n),
+      k4(n);
+  const auto velocity = [&](int function, double time) {
+    kernel.field(time, point.data(), alpha.data(), f.data());
+    double sum = 0.0;
+    kernel.gradient(function, time, point.data(), alpha.data(), row.data(), &sum);
+    for (std::size_t i = 0; i < n; ++i) sum += row[i] == 0.0 ? 0.0 : row[i] * f[i];
+    return sum;
+  };
+  // Ten digits, as for other signs of velocities, less what the step costs.
+  constexpr double tangent = 1e-9;
+  if (!(std::abs(velocity(surface, t)) <= tangent * scale)) return false;
+  kernel.functions(t, x, alpha.data(), values.data());
+  double time = std::numeric_limits<double>::infinity();
+  for (const int i : kernel.inner(surface)) {
+    const double left = std::abs(values[at(i)] / velocity(i, t));
+    if (left > 0.0) time = std::min(time, left);
+  }
+  if (!std::isfinite(time)) return false;
+  const double h = 1e-2 * time;
+  const auto stage = [&](double part, const std::vector<double>& slope, std::vector<double>& result) {
+    for (std::size_t i = 0; i < n; ++i) trial[i] = point[i] + part * h * slope[i];
+    kernel.field(t + part * h, trial.data(), alpha.data(), result.data());
+  };
+  stage(0.5, f, k2);
+  stage(0.5, k2, k3);
+  stage(1.0, k3, k4);
+  for (std::size_t i = 0; i < n; ++i) point[i] += h / 6.0 * (f[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+  return std::abs(velocity(surface, t + h)) <= tangent * scale;
+}
+
 bool continuous_across(const evaluation::ModelKernel& kernel, const std::vector<std::vector<double>>& corners,
                        int nested, double t, const std::vector<double>& x, double time_scale) {
   std::vector<double> values(at(kernel.event_functions()));

@@ -27,6 +27,14 @@ void move_onto(const evaluation::ModelKernel& kernel, const ModeState& state, in
 /// 2^surfaces, of at most ten of them.
 [[nodiscard]] std::vector<std::vector<double>> corners_at(const ModeState& state, const std::vector<int>& surfaces);
 
+/// Whether the field of one region beside the surface of a function around others is tangent to it here and a little
+/// further along itself: the surface is one of its trajectories there (time-optimal feedback). Looked at over a
+/// hundredth of the time in which those others would vanish; false where none of them moves. Cost: six evaluations.
+/// @param alpha  of that region
+/// @param scale  of velocities of psi_surface: those of the fields of both regions
+[[nodiscard]] bool moves_along(const evaluation::ModelKernel& kernel, const std::vector<double>& alpha, int surface,
+                               double t, const double* x, double scale);
+
 /// The regions that meet at the sliding surfaces inside a function: of the mode where it slides on one only.
 [[nodiscard]] std::vector<std::vector<double>> corners_inside(const evaluation::ModelKernel& kernel,
                                                               const ModeState& state, int function);

@@ -135,7 +135,26 @@ void EventSearch::read_start(double t, const double* x) {
     // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
     // zero of this start.
     if (function.zero_order > 0) function.offset = point_[i];
+    if (is_exit && function.kind != FunctionKind::release) bear_tangency(i, t, x);
   }
+}
+
+/// The exit to a field that goes along the surface is 0 throughout the mode, but for its rounding and the errors of the
+/// dense output, which is not on the surface: it counts from where it is more than these.
+void EventSearch::bear_tangency(std::size_t i, double t, const double* x) {
+  auto& function = functions_[i];
+  const bool is_below = function.kind == FunctionKind::exit_below;
+  if (!nesting_[at(function.index)] || field_.solve() != SlidingSolve::decoupled) return;
+  if (!is_below && function.kind != FunctionKind::exit_above) return;
+  const auto& exit = exits_[at(function.row)];
+  const double scale = std::abs(exit.below) + std::abs(exit.above);
+  std::vector<double> alpha = state_.sliding.size() == 1 ? state_.corner_alpha[is_below ? 0 : 1] : state_.alpha;
+  alpha[at(function.index)] = is_below ? 0.0 : 1.0;
+  if (!moves_along(kernel_, alpha, function.index, t, x, scale)) return;
+  constexpr double errors = 1e4;  // of steps, which are smaller than those of dense outputs
+  const double margin = std::clamp(errors * tolerances_.rtol, 1e-7, 1e-2) * scale;
+  function.zero_order = 0;
+  function.offset = -function.sign * margin;
 }
 
 /// Values of some functions into point_.

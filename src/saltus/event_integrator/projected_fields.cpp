@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/held_functions.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 #include "saltus/switching/independent_rows.hpp"
@@ -106,6 +107,8 @@ Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, do
   // rounding.
   const bool moves = std::abs(velocity) * tau > noise_[at(surface)];
   if (const auto motion = motion_by_velocity(velocity, scale); motion && moves) return *motion;
+  if (!kernel_.inner(surface).empty() && moves_along(kernel_, alpha, surface, occasion_.t, occasion_.x, scale))
+    return {};
   const double threshold = std::max(noise_[at(surface)], std::abs(velocity) * tau);
   double weight = tau;  // tau^k / k!
   for (int order = 2; order <= most_derivatives; ++order) {

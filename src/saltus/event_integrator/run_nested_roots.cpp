@@ -45,7 +45,7 @@ void Run::tighten_beside_nested_roots(double& atol, double& rtol) {
 std::optional<double> Run::end_of_nearing(Nearing& nearing) {
   constexpr double little = 1e-3;  // of the time since the mode began: exits and other events are looked for until then
   constexpr double agree = 0.1;    // of the tolerance of a step, over that time; the error itself is a third of it
-  constexpr double bent = 1.25;    // smaller p are zeros that are crossed
+  constexpr double bent = 1.02;    // of zeros that are crossed p is 1, to `little`
   const double g = rooted_values_[at(nearing.function)];
   const Rate rate = rate_along_field(nearing.function, t_, x_.data(), slope_.data());
   const double ratio = g == 0.0 ? 0.0 : -g / rate.value;

@@ -5,6 +5,7 @@
 
 #include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/continuations.hpp"
+#include "saltus/event_integrator/held_functions.hpp"
 #include "saltus/event_integrator/mode_differences_internal.hpp"
 #include "saltus/event_integrator/regions.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
@@ -47,6 +48,39 @@ void put_on(const evaluation::ModelKernel& kernel, const SeriesLimit& limit, dou
     if (!active[g].empty()) set_active(state, kernel.region_groups()[g], active[g]);
   }
   set_corner_alpha(state);
+}
+
+/// Functions inside those that are put on, which the laps shrink with them: they vanish there, too. Returns whether
+/// there are any.
+/// @param lap_change  of each function: what a lap changes it by
+bool put_on_inner(const evaluation::ModelKernel& kernel, const SeriesLimit& limit,
+                  const std::vector<double>& lap_change, ModeState& state) {
+  std::vector<double> values(at(kernel.event_functions()));
+  kernel.functions(limit.t, limit.x.data(), state.alpha.data(), values.data());
+  const std::vector<int> around = state.sliding;
+  bool any = false;
+  for (const int j : around) {
+    for (const int i : kernel.inner(j)) {
+      constexpr double part = 0.1;  // the limit is far nearer than the last lap
+      if (state.mode[at(i)] == 0 || !(std::abs(values[at(i)]) <= part * lap_change[at(i)])) continue;
+      set_surface(state, i, 0, 0.5);
+      any = true;
+    }
+  }
+  return any;
+}
+
+/// x onto surfaces some of which hold the signs of others.
+void put_onto_nested(const evaluation::ModelKernel& kernel, const ModeState& state, double t, std::vector<double>& x) {
+  std::vector<HeldFunction> functions;
+  std::vector<double> alpha = state.alpha;
+  for (const int j : state.sliding) {
+    functions.push_back({j, 0});
+    alpha[at(j)] = 0.5;
+  }
+  HeldFunctions held(kernel);
+  held.set(std::move(functions), std::move(alpha));
+  static_cast<void>(held.project(t, x.data()));
 }
 
 }  // namespace
@@ -178,7 +212,15 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   put_on(kernel_, limit, h_scale_, on);
   std::vector<double> x = limit.x;
   Occasion occasion;
-  {
+  std::vector<double> lap_change(kernel_.event_functions() > 0 ? at(kernel_.event_functions()) : 0U);
+  for (const int j : on.sliding) {
+    for (const int i : kernel_.inner(j)) {
+      lap_change[at(i)] = limit.lap * std::abs(rate_along_field(i, t_, x_.data(), slope_.data()).value);
+    }
+  }
+  if (put_on_inner(kernel_, limit, lap_change, on)) {
+    put_onto_nested(kernel_, on, limit.t, x);
+  } else {
     const ReferenceScope references(kernel_, on);
     ModeField field(kernel_, surroundings_.affine_in_alpha);
     field.enter(on);
