@@ -58,8 +58,7 @@ TEST(Rocking, ABlockAtRestIsTippedWhenTheGroundAcceleratesEnough) {
   for (const auto& accuracy : {standard, fine, implicit}) {
     for (const double rate : {0.02, -0.02}) {
       const double t_0 = slenderness / std::abs(rate);
-      const Result result =
-          simulated(rocking_block("0", fmt::format("{}*t", rate), t_0 + 2), accuracy);
+      const Result result = simulated(rocking_block("0", fmt::format("{}*t", rate), t_0 + 2), accuracy);
       expect_tipped(result, t_0, rate, accuracy.rtol);
     }
   }
@@ -69,8 +68,7 @@ TEST(Rocking, ABlockThatRocksComesToRestAndIsTipped) {
   for (const auto& accuracy : {standard, fine, implicit}) {
     for (const double rate : {0.02, -0.02}) {
       const double t_0 = slenderness / std::abs(rate);
-      const Result result =
-          simulated(rocking_block("0.05", fmt::format("{}*t", rate), t_0 + 2), accuracy);
+      const Result result = simulated(rocking_block("0.05", fmt::format("{}*t", rate), t_0 + 2), accuracy);
       ASSERT_EQ(limits_of(result).size(), 1U);
       expect_tipped(result, t_0, rate, accuracy.rtol);
     }

@@ -52,6 +52,15 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
   SALTUS_ASSERT(0 <= function && function < event_functions());
   auto& self = *implementation_;
   auto& gradient = self.gradients[at(function)];
+  if (gradient.constant.empty() && is_affine(function) && inner(function).empty()) {  // nothing to differentiate
+    AffineRows rows;
+    affine_rows(alpha, rows);
+    gradient.constant.assign(at(self.x.numel()) + 1, 0.0);
+    for (std::size_t k = rows.start[at(function)]; k < rows.start[at(function) + 1]; ++k) {
+      gradient.constant[rows.column[k]] = rows.coefficient[k];
+    }
+    gradient.constant.back() = rows.rate[at(function)];
+  }
   if (!gradient.constant.empty()) {
     std::copy(gradient.constant.begin(), gradient.constant.end() - 1, row);
     *rate = gradient.constant.back();
@@ -64,10 +73,6 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
   }
   gradient.function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
                     std::array<double*, 2>{row, rate});
-  if (is_affine(function) && inner(function).empty()) {
-    gradient.constant.assign(row, row + self.x.numel());
-    gradient.constant.push_back(*rate);
-  }
 }
 
 double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {

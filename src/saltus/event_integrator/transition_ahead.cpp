@@ -42,8 +42,7 @@ bool follow_shortly(const Surroundings& s, const ModeState& state, const Occasio
 bool leads_into_its_region(const Surroundings& s, const ModeState& state, const Occasion& occasion,
                            const std::vector<double>& start, const std::vector<int>& surfaces) {
   return follow_shortly(s, state, occasion, start, [&](const std::vector<double>& psi) {
-    return std::all_of(surfaces.begin(), surfaces.end(),
-                       [&](int j) { return psi[at(j)] * state.mode[at(j)] > 0.0; });
+    return std::all_of(surfaces.begin(), surfaces.end(), [&](int j) { return psi[at(j)] * state.mode[at(j)] > 0.0; });
   });
 }
 
