@@ -197,17 +197,23 @@ double floor_of_events(const evaluation::ModelKernel& kernel, const model::Syste
 }
 
 struct Summary {
-  std::vector<double> in_steps, floors;
+  std::vector<double> in_steps, in_bare_steps, floors;
+
+  static void print(std::vector<double>& steps, const char* which) {
+    std::sort(steps.begin(), steps.end());
+    const auto below = std::count_if(steps.begin(), steps.end(), [](double number) { return number < 5.0; });
+    std::printf("%s median %.2f steps, from %.1f to %.1f, in %td of %zu models less than 5; ", which,
+                steps[steps.size() / 2], steps.front(), steps.back(), below, steps.size());
+  }
 
   void print(const char* method) {
     if (in_steps.empty()) return;
-    std::sort(in_steps.begin(), in_steps.end());
+    std::printf("- %s:", method);
+    print(in_steps, "");
+    print(in_bare_steps, "bare");
     std::erase_if(floors, [](double floor) { return std::isnan(floor); });
     std::sort(floors.begin(), floors.end());
-    const auto below = std::count_if(in_steps.begin(), in_steps.end(), [](double steps) { return steps < 5.0; });
-    std::printf("- %s: median %.1f steps, from %.1f to %.1f, in %td of %zu models less than 5; of the floor %.1f\n",
-                method, in_steps[in_steps.size() / 2], in_steps.front(), in_steps.back(), below, in_steps.size(),
-                floors.empty() ? std::nan("") : floors[floors.size() / 2]);
+    std::printf("floor %.1f\n", floors.empty() ? std::nan("") : floors[floors.size() / 2]);
   }
 };
 
@@ -227,11 +233,15 @@ int table(const std::filesystem::path& folder) {
   static_cast<void>(getloadavg(&load, 1));
   std::printf(
       "# Events in steps of their own runs\n\n"
-      "Made by `compare_catalogue_events`: rtol 1e-8, native code, load average before %.1f. How to read it: "
+      "Made by `compare_catalogue_events`: rtol 1e-8, native code, load average before %.1f; a row at every step (the "
+      "default), bare: rows at events only. How to read it: "
       "[benchmarks/README.md](../README.md).\n\n",
       load);
-  std::printf("| model | method | events | other steps | step, ns | event, ns | event in steps | floor in steps |\n");
-  std::printf("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+  std::printf(
+      "| model | method | events | other steps | step, ns | event, ns | event in steps | bare step, ns | bare event, "
+      "ns "
+      "| in bare steps | floor in bare steps |\n");
+  std::printf("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (const auto& file : files) {
     const auto read = saltus::io::read_model(file);
     if (!read) continue;
@@ -243,19 +253,22 @@ int table(const std::filesystem::path& folder) {
     options.tolerances = {1e-8, 1e-10};
     options.from = read->simulate.from;
     options.until = read->simulate.until.value_or(1.0);
-    options.output.rows = event_integrator::OutputTimes::Rows::at_times;
     for (std::size_t m = 0; m < 2; ++m) {
       options.method = methods[m].method;
+      options.output.rows = event_integrator::OutputTimes::Rows::at_times;
+      const Cost bare = measure(*kernel, *system, options, clock);
+      options.output.rows = event_integrator::OutputTimes::Rows::at_steps;
       const Cost cost = measure(*kernel, *system, options, clock);
       if (cost.events < fewest_events || cost.steps < fewest_steps || !(cost.step > 0.0)) continue;
       // What is left of spirals are the steps behind their limits, which are others.
       if (cost.steps < static_cast<std::size_t>(cost.events) / 4) continue;
-      const double in_steps = cost.event / cost.step;
-      summaries[m].in_steps.push_back(in_steps);
-      const double floor = floor_of_events(*kernel, *system, options) / cost.step;
+      summaries[m].in_steps.push_back(cost.event / cost.step);
+      summaries[m].in_bare_steps.push_back(bare.event / bare.step);
+      const double floor = floor_of_events(*kernel, *system, options) / bare.step;
       summaries[m].floors.push_back(floor);
-      std::printf("| %s | %s | %ld | %zu | %.0f | %.0f | %.1f | ", file.stem().c_str(), methods[m].name, cost.events,
-                  cost.steps, cost.step, cost.event, in_steps);
+      std::printf("| %s | %s | %ld | %zu | %.0f | %.0f | %.1f | %.0f | %.0f | %.1f | ", file.stem().c_str(),
+                  methods[m].name, cost.events, cost.steps, cost.step, cost.event, cost.event / cost.step, bare.step,
+                  bare.event, bare.event / bare.step);
       std::printf(std::isnan(floor) ? "- |\n" : "%.1f |\n", floor);
       std::fflush(stdout);
     }

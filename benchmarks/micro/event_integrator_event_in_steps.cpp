@@ -45,12 +45,14 @@ struct Measured {
   long steps = 0, events = 0;
 };
 
-Measured run(const evaluation::ModelKernel& kernel, const model::System& system, ode::Method method) {
+using Rows = OutputTimes::Rows;  ///< at steps: the default; at_times: none but at events
+
+Measured run(const evaluation::ModelKernel& kernel, const model::System& system, ode::Method method, Rows rows) {
   IntegrationOptions options;
   options.method = method;
   options.tolerances = {1e-8, 1e-10};
   options.until = 1000.0;
-  options.output.rows = OutputTimes::Rows::at_times;
+  options.output.rows = rows;
   const std::clock_t begin = std::clock();  // of the processor: other work on the machine does not count
   const CompactIntegration result = integrate_compact(kernel, system, options);
   const std::clock_t end = std::clock();
@@ -63,7 +65,8 @@ Measured run(const evaluation::ModelKernel& kernel, const model::System& system,
 /// without: what the run with events takes longer, its shorter steps before and behind events included.
 /// `decision_in_steps`: the same without the steps that it takes more, that is searching, locating, deciding, recording
 /// and restarting.
-void compare(benchmark::State& state, const model::System& with, const model::System& without, ode::Method method) {
+void compare(benchmark::State& state, const model::System& with, const model::System& without, ode::Method method,
+             Rows rows) {
   auto kernel = evaluation::ModelKernel::compile(with, evaluation::NativeCode::on);
   auto plain = evaluation::ModelKernel::compile(without, evaluation::NativeCode::on);
   if (!kernel || !plain) {
@@ -72,8 +75,8 @@ void compare(benchmark::State& state, const model::System& with, const model::Sy
   }
   Measured events, steps;
   for (auto _ : state) {
-    const Measured one = run(*kernel, with, method);
-    const Measured other = run(*plain, without, method);
+    const Measured one = run(*kernel, with, method, rows);
+    const Measured other = run(*plain, without, method, rows);
     events = {events.seconds + one.seconds, events.steps + one.steps, events.events + one.events};
     steps = {steps.seconds + other.seconds, steps.steps + other.steps, steps.events + other.events};
   }
@@ -92,19 +95,24 @@ void compare(benchmark::State& state, const model::System& with, const model::Sy
   state.counters["decision_in_steps"] = decision / step;
 }
 
-void codimension_one(benchmark::State& state, ode::Method method) {
-  compare(state, crossings(0.0), crossings(2.0), method);
+void codimension_one(benchmark::State& state, ode::Method method, Rows rows) {
+  compare(state, crossings(0.0), crossings(2.0), method, rows);
 }
-BENCHMARK_CAPTURE(codimension_one, dopri5, ode::Method::dopri5)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(codimension_one, dop853, ode::Method::dop853)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(codimension_one, taylor, ode::Method::taylor)->Unit(benchmark::kMicrosecond);
 
-void codimension_two(benchmark::State& state, ode::Method method) {
-  compare(state, intersections(0.0), intersections(5.0), method);
+void codimension_two(benchmark::State& state, ode::Method method, Rows rows) {
+  compare(state, intersections(0.0), intersections(5.0), method, rows);
 }
-BENCHMARK_CAPTURE(codimension_two, dopri5, ode::Method::dopri5)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(codimension_two, dop853, ode::Method::dop853)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(codimension_two, taylor, ode::Method::taylor)->Unit(benchmark::kMicrosecond);
+
+#define SALTUS_EVENT_IN_STEPS(where, method)                                                            \
+  BENCHMARK_CAPTURE(where, method, ode::Method::method, Rows::at_steps)->Unit(benchmark::kMicrosecond); \
+  BENCHMARK_CAPTURE(where, method##_bare, ode::Method::method, Rows::at_times)->Unit(benchmark::kMicrosecond)
+
+SALTUS_EVENT_IN_STEPS(codimension_one, dopri5);
+SALTUS_EVENT_IN_STEPS(codimension_one, dop853);
+SALTUS_EVENT_IN_STEPS(codimension_one, taylor);
+SALTUS_EVENT_IN_STEPS(codimension_two, dopri5);
+SALTUS_EVENT_IN_STEPS(codimension_two, dop853);
+SALTUS_EVENT_IN_STEPS(codimension_two, taylor);
 
 }  // namespace
 }  // namespace saltus::event_integrator
