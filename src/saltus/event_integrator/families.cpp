@@ -82,11 +82,27 @@ void Families::find_groups() {
   }
 }
 
-/// Families whose surfaces are no longer slid on, or no longer in the company that they were.
-void Families::close_those_that_ended(double t) {
+bool Families::is_on(const ModeState& state) const {
+  // Roots that are compared are those of one point: they differ by their rounding, or by much more.
+  constexpr double same = 1e-6;
+  const auto has_root = [&](const Group& group) {
+    std::vector<double> alpha;
+    for (const int j : group.surfaces) alpha.push_back(state.alpha[at(j)]);
+    return distance(alpha, group.alpha) <= same;
+  };
+  return state.mode == state_.mode && std::all_of(groups_.begin(), groups_.end(), has_root);
+}
+
+/// Families whose surfaces are no longer slid on, or no longer in the company that they were; behind a change of the
+/// root, those that led to the other one.
+void Families::close_those_that_ended(double t, Root root) {
   std::erase_if(open_, [&](const Open& family) {
     bool goes_on = true;
     for (const auto& given : family.given) goes_on = goes_on && state_.mode[at(given.surface)] == 0;
+    if (root == Root::other) {
+      const auto slides = [](const GivenMode& given) { return given.mode == 0; };
+      goes_on = goes_on && !std::all_of(family.given.begin(), family.given.end(), slides);
+    }
     if (goes_on && family.given.size() == 1) goes_on = is_alone(family.given.front().surface);
     if (goes_on && family.given.size() > 1) {
       goes_on = std::any_of(groups_.begin(), groups_.end(),
@@ -98,11 +114,12 @@ void Families::close_those_that_ended(double t) {
 }
 
 void Families::enter(const Point& point, const ModeState& state, std::size_t event, std::optional<bool> unique) {
+  const Root root = state.mode == state_.mode ? Root::other : Root::any;
   state_ = state;
   event_ = event;
   if (state.higher || !s_.affine_in_alpha) state_.sliding.clear();
   find_groups();
-  close_those_that_ended(point.t);
+  close_those_that_ended(point.t, root);
   if (unique != true) watch_singles(point);
   look(point, point.t, [](double, double*) {});
 }

@@ -35,7 +35,8 @@ class Families {
 
   explicit Families(const Surroundings& surroundings);
 
-  /// A mode that begins at the last event; `unique` says that no single surface of it can repel.
+  /// A mode, or another root of it, that begins at the last event; `unique` says that no single surface of it can
+  /// repel.
   void enter(const Point& point, const ModeState& state, std::size_t event, std::optional<bool> unique);
   /// Whether the mode of the last enter() has to be looked at step by step.
   [[nodiscard]] bool watches() const { return !groups_.empty(); }
@@ -50,12 +51,14 @@ class Families {
 
   [[nodiscard]] std::size_t count() const { return recorded_.size(); }
   [[nodiscard]] const std::vector<Open>& open() const { return open_; }
-  [[nodiscard]] const std::vector<int>& mode() const { return state_.mode; }
+  /// Whether this is the mode that is watched, with the root that is slid on.
+  [[nodiscard]] bool is_on(const ModeState& state) const;
   /// In the order of their numbers.
   [[nodiscard]] std::vector<Recording::Family> take() { return std::move(recorded_); }
 
  private:
   using Modes = std::vector<switching::GroupMode>;
+  enum class Root { any, other };  ///< that a mode begins with: of a new mode, or the other one of the same mode
   /// Surfaces that influence each other, ascending, and no others.
   struct Group {
     std::vector<int> surfaces;
@@ -66,7 +69,7 @@ class Families {
   [[nodiscard]] bool is_watched(int surface) const;
   [[nodiscard]] bool is_alone(int surface) const;
   void find_groups();
-  void close_those_that_ended(double t);
+  void close_those_that_ended(double t, Root root);
   void add(const Point& point, std::vector<GivenMode> given, double from);
   void watch_singles(const Point& point);
   void watch(const Point& point, Group& group, double t_begin, FunctionRef<void(double t, double* x)> state_at);

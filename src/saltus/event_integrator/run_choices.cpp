@@ -85,7 +85,7 @@ void Run::watch_for_families() {
   const bool may_repel = !state_.sliding.empty() && recorder_.last_unique() != true;
   const bool coupled = field_.solve() == SlidingSolve::coupled;
   if (families_.idle() && !may_repel && !coupled) return;
-  if (!families_.idle() && state_.mode == families_.mode()) return;
+  if (!families_.idle() && families_.is_on(state_)) return;
   families_.enter({t_, x_.data(), h_scale_}, state_, static_cast<std::size_t>(recorder_.events() - 1),
                   recorder_.last_unique());
 }

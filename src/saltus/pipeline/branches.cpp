@@ -20,9 +20,7 @@ void find_members(const Followed& trajectory, const Path& path, std::size_t numb
                   std::deque<Waiting>& waiting) {
   for (std::size_t f = 0; f < trajectory.result.families.size(); ++f) {
     const auto& family = trajectory.result.families[f];
-    // To the other root of the same mode: nothing that an event would show.
     const bool spiral = family.kind == result::FamilyKind::spiral;
-    if (!spiral && trajectory.result.events[family.event].mode_after == family.to.mode) continue;
     for (long i = 1; i <= members; ++i) {
       const double part = static_cast<double>(i) / static_cast<double>(members + 1);
       event_integrator::Choice choice{trajectory.family_numbers[f]};

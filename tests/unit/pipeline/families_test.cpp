@@ -195,8 +195,25 @@ TEST(Families, OfTwoSurfacesBeginAndEndWhereAModeIsAdmissible) {
   EXPECT_EQ(other_root->from, begin);
   EXPECT_NEAR(other_root->until, -0.25, 1e-9);
   EXPECT_NEAR(other_root->to.alpha[0], 0.5 * (1 - 0.25 / 0.65), 1e-12);
-  EXPECT_TRUE(members_of(staying, {0, 0}).empty());
   EXPECT_EQ(staying.families.size(), 5U);
+  // Its members change to it, and leave where it ends, to one of two sides.
+  const auto members = members_of(staying, {0, 0});
+  ASSERT_EQ(members.size(), 1U);
+  const Result& member = *members[0];
+  EXPECT_NEAR(member.left_at->member->parameter, 0.5 * (begin - 0.25), 1e-9);
+  ASSERT_EQ(member.events.size(), 2U);
+  EXPECT_EQ(member.events[0].kind, result::EventKind::start);
+  EXPECT_EQ(member.events[0].mode_after, (Mode{0, 0}));
+  EXPECT_NEAR(member.events[1].t, -0.25, 1e-9);
+  EXPECT_EQ(member.events[1].mode_after, (Mode{-1, -1}));
+  const double time = end + 0.25;
+  expect_end(member, {-(std::pow(end - 1, 2) - std::pow(1.25, 2)) / 8 - 0.5 * time, -0.3 * time});
+  // What it may be left into: the first root is the other one now.
+  const Family* first_root = family_to(member, {0, 0});
+  ASSERT_NE(first_root, nullptr);
+  EXPECT_EQ(first_root->from, member.left_at->member->parameter);
+  EXPECT_NEAR(first_root->until, -0.25, 1e-9);
+  EXPECT_GT(std::abs(first_root->to.alpha[0] - other_root->to.alpha[0]), 1e-3);
 }
 
 // The same with a third surface that is slid on whatever the other two do, with sign(z) = sign(x)/4.
