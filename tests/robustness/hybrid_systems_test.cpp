@@ -41,9 +41,18 @@ TEST(HybridSystems, OnesThatFailedOnceAreSolvedOrRefused) {
   }
 }
 
-/// Regions of one indicator (908, 11810), and six that some weights hold together at a point, but not their own.
+/// Seven regions at a point of space, of which six hold all states: the sign of the seventh indicator is a rounding of
+/// theirs.
+TEST(RegionSystems, OnesThatFailedOnceAreSolved) {
+  const Tally tally = run_region_campaign(10198, 1);
+  for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
+  EXPECT_EQ(tally.completed, 1);
+}
+
+/// Regions of one indicator (908, 11810; 95882 meets a third one there), and six that some weights hold together at a
+/// point, but not their own.
 TEST(RegionSystems, OnesThatFailedOnceAreRefused) {
-  for (const std::uint64_t seed : {908U, 1491U, 11810U}) {
+  for (const std::uint64_t seed : {908U, 1491U, 11810U, 95882U}) {
     const Tally tally = run_region_campaign(seed, 1);
     for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
     EXPECT_EQ(tally.outside_class, 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -37,6 +38,9 @@ struct EventFunction {
   int sign = 1;  ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
   int zero_order = 0;   ///< of the zero at the start of the next step (left behind by an event), 0 = none
   double offset = 0.0;  ///< value left at that zero by rounding; subtracted until the function has moved away
+
+  /// Whether a value, less the offset, is far enough from that zero not to be mistaken for it.
+  [[nodiscard]] bool has_left(double value) const { return sign * value > 2.0 * std::abs(offset); }
 };
 
 /// A sign change along a step of length h: function, place and slope to start the correction with.
@@ -147,6 +151,7 @@ class EventSearch {
   void start_at(double t);
   [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
   void enter_nested(const ModeState& state, const std::vector<int>& zero_order);
+  void load_rows();
   void set_forms(const double* x);
   void sort_functions();
   void rescale(double t, const double* x, const std::vector<std::size_t>& which) {

@@ -6,6 +6,7 @@
 #include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/event_search_internal.hpp"
 #include "saltus/event_integrator/mode_differences_internal.hpp"
+#include "saltus/event_integrator/region_ties.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -174,7 +175,11 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   state_ = state;
   functions_.clear();
   const int n_psi = kernel_.switching_functions();
+  load_rows();
+  const auto constant =
+      kernel_.region_groups().empty() ? std::vector<bool>() : constant_beside_held(kernel_, state, rows_);
   for (int j = 0; j < n_psi; ++j) {
+    if (!constant.empty() && constant[at(j)]) continue;
     if (state.mode[at(j)] == 0 || (nesting_[at(j)] && !sliding_inside(kernel_, state, j).empty())) continue;
     of_surface_[at(j)] = functions_.size();
     functions_.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
@@ -274,13 +279,17 @@ void EventSearch::enter_cells() {
   }
 }
 
-/// The affine functions of the mode as forms. Selections of a mode are constants, so a function that holds some is
+/// The functions that are affine in the mode. Selections of a mode are constants, so a function that holds some is
 /// affine if it is for each value of theirs.
-void EventSearch::set_forms(const double* x) {
+void EventSearch::load_rows() {
   if (rows_.start.empty() || any_nesting_ || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
     kernel_.affine_rows(state_.alpha.data(), rows_);
     forms_.load(rows_);
   }
+}
+
+/// These as forms.
+void EventSearch::set_forms(const double* x) {
   for (auto& corner : corners_) kernel_.affine_rows(corner.alpha.data(), corner.rows);
   forms_.reset(functions_.size());
   curved_.clear();
@@ -360,8 +369,7 @@ bool EventSearch::settle(double t, const double* x) {
     auto& function = functions_[i];
     function.zero_order = 0;
     unknown = unknown || function.sign == 0;
-    // Far enough behind the start that what was left there cannot be mistaken for a new zero.
-    if (function.offset != 0.0 && function.sign * point_[i] > 2.0 * std::abs(function.offset)) function.offset = 0.0;
+    if (function.offset != 0.0 && function.has_left(point_[i])) function.offset = 0.0;
     if (function.offset != 0.0 || function.sign == 0) {
       special_[kept++] = i;
     } else if (forms_.has(i)) {

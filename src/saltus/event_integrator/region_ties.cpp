@@ -1,8 +1,10 @@
 #include "saltus/event_integrator/region_ties.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 
 #include "saltus/base/at.hpp"
 #include "saltus/switching/independent_rows.hpp"
@@ -66,6 +68,48 @@ double remainder(const RegionBasis& basis, const MatrixXd& rows) {
     if (length > 0.0) largest = std::max(largest, rest.row(i).norm() / length);
   }
   return largest;
+}
+
+namespace {
+
+/// The coefficients of an affine function and its rate in t; false if it is none.
+bool affine_row(const evaluation::AffineRows& rows, int function, Eigen::MatrixXd& matrix, Index place) {
+  const auto j = at(function);
+  matrix.row(place).setZero();
+  matrix(place, matrix.cols() - 1) = rows.rate[j];
+  for (std::size_t k = rows.start[j]; k < rows.start[j + 1]; ++k) {
+    matrix(place, static_cast<Index>(rows.column[k])) = rows.coefficient[k];
+  }
+  return std::isfinite(rows.offset[j]) && matrix.row(place).allFinite();
+}
+
+}  // namespace
+
+std::vector<bool> constant_beside_held(const evaluation::ModelKernel& kernel, const ModeState& state,
+                                       const evaluation::AffineRows& rows) {
+  std::vector<bool> constant;
+  if (state.sliding.empty()) return constant;
+  const Index columns = kernel.states() + 1;
+  MatrixXd held(static_cast<Index>(state.sliding.size()), columns), row(1, columns);
+  Index count = 0;
+  for (const int j : state.sliding) count += kernel.inner(j).empty() && affine_row(rows, j, held, count) ? 1 : 0;
+  if (count == 0) return constant;
+  held.conservativeResize(count, Eigen::NoChange);
+  const RegionBasis basis = basis_of(held);
+  const MatrixXd spanning = rows_of(basis, held);
+  // The rows of a basis are independent to a millionth, so that coefficients of 16 digits leave ten of a combination.
+  constexpr double rounding = 1e-10;
+  for (const auto& group : kernel.region_groups()) {
+    for (int j = group.first; j < group.first + group.count; ++j) {
+      if (state.mode[at(j)] != -1 || !kernel.inner(j).empty() || !affine_row(rows, j, row, 0)) continue;
+      const double length = row.norm();
+      const Eigen::VectorXd part = spanning.transpose().colPivHouseholderQr().solve(row.transpose());
+      if (!((row - part.transpose() * spanning).norm() <= rounding * length)) continue;
+      constant.resize(state.mode.size(), false);
+      constant[at(j)] = true;
+    }
+  }
+  return constant;
 }
 
 }  // namespace saltus::event_integrator

@@ -6,6 +6,9 @@
 
 #include <Eigen/Core>
 
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/mode_state.hpp"
+
 namespace saltus::event_integrator {
 
 /// Some rows, into a matrix that is used again. NOTE: an indexed view copies its indices, which allocates.
@@ -34,5 +37,14 @@ using RegionCoordinates = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 
 
 /// The largest part of a row that the basis does not span, relative to the row.
 [[nodiscard]] double remainder(const RegionBasis& basis, const Eigen::MatrixXd& rows);
+
+/// Regions of groups that are not active, but whose psi is a combination of those that are held, of the same functions
+/// of (t, x): psi_i = sum_k c_k psi_k + const. While these are held it is constant, and its sign, where that constant
+/// is 0, a rounding: nothing to watch.
+/// @param rows  psi of all functions, NaN where one is not affine
+/// @return by switching function; empty if there is none
+/// Cost: that of the rows as a dense matrix, in modes that hold regions only.
+[[nodiscard]] std::vector<bool> constant_beside_held(const evaluation::ModelKernel& kernel, const ModeState& state,
+                                                     const evaluation::AffineRows& rows);
 
 }  // namespace saltus::event_integrator

@@ -105,6 +105,7 @@ std::optional<std::pair<int, int>> same_indicators(const ModelKernel& kernel, co
       if (same_group(kernel, tied[a], tied[b])) same.emplace_back(tied[a], tied[b]);
     }
   }
+  if (same.empty()) return std::nullopt;
   const auto n = at(kernel.event_functions());
   std::vector<double> values(n), magnitude(n), slope(n);
   for (const unsigned pattern : {0U, 1U, 2U}) {

@@ -168,16 +168,18 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
   if (transition.termination == result::Termination::no_admissible_mode) {
     if (auto other = borderline_mode(surroundings, exact, occasion, transition.state)) return std::move(*other);
   }
-  if (transition.termination != result::Termination::completed) {
-    if (const auto same = same_indicators(surroundings.kernel, exact, occasion)) {
-      transition.termination = result::Termination::outside_class;
-      transition.message = fmt::format(
-          "the regions '{}' and '{}' have the same indicator, and both are active at t = {}: nothing says which of "
-          "them "
-          "the solution is in; make one region of them",
-          surroundings.system.switching[at(same->first)].name, surroundings.system.switching[at(same->second)].name,
-          occasion.t);
-    }
+  // Also where weights that soft minima leave open have been found for them: what keeps their difference at 0, a
+  // gradient of roundings, does not last.
+  const auto same = same_indicators(surroundings.kernel, exact, occasion);
+  const bool decided = transition.termination == result::Termination::completed;
+  if (same &&
+      (!decided || (transition.state.mode[at(same->first)] == 0 && transition.state.mode[at(same->second)] == 0))) {
+    transition.termination = result::Termination::outside_class;
+    transition.message = fmt::format(
+        "the regions '{}' and '{}' have the same indicator, and both are active at t = {}: nothing says which of them "
+        "the solution is in; make one region of them",
+        surroundings.system.switching[at(same->first)].name, surroundings.system.switching[at(same->second)].name,
+        occasion.t);
   }
   if (transition.termination != result::Termination::completed && !problem.empty()) {
     return undecided(surroundings, exact, occasion, problem);
