@@ -239,7 +239,7 @@ class Run {
   }
   /// For the steps of the mode behind an event. While switches tighten no step is like one before.
   void restart_control() {
-    longest_step_ = 0.0;
+    longest_step_ = last_step_ = 0.0;
     if (switch_laps_.empty()) {
       control_.restart();
     } else {
@@ -250,6 +250,7 @@ class Run {
   /// Of the last attempt: discrete states take no part in it.
   [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }
   double defect();
+  [[nodiscard]] bool leaps() const;
   double confirmed_error();
   [[nodiscard]] std::string where() const;
 
@@ -341,6 +342,7 @@ class Run {
   double h_try_ = 0.0;              ///< step under trial
   double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
   double longest_step_ = 0.0;       ///< behind the last switch
+  double last_step_ = 0.0;          ///< the last one behind the last switch; 0 = none
   std::size_t next_output_ = 0;
   bool jumped_ = false;  ///< at the event in hand
   Families families_;

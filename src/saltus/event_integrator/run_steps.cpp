@@ -218,6 +218,7 @@ Run::Step Run::accept(double t_new) {
   t_ = t_new;
   note_time_scale(h);
   longest_step_ = std::max(longest_step_, h);
+  last_step_ = h;
   const bool projected = field_.project(t_, x_.data());
   if (holding_.project(t_, state_.alpha, x_) || projected) {
     field_(t_, x_.data(), slope_.data());
@@ -275,6 +276,13 @@ double Run::defect() {
   return largest;
 }
 
+/// Whether the last attempt is far longer than the step before it in its mode. The estimate of that one must have been
+/// far below the tolerance: one that passes through zero there may do so again.
+bool Run::leaps() const {
+  constexpr double far = 2.0;
+  return last_step_ > 0.0 && stepper_.length() > far * last_step_;
+}
+
 /// The error norm of the last attempt. The first step of a new mode has the length that was right for another field, or
 /// a fifth of it, and so on: of very many such lengths, far too long ones, some have an estimate that passes through
 /// zero. So it is looked at twice. Of 33 000 steps of random systems that were long enough for their estimate to matter
@@ -284,7 +292,7 @@ double Run::confirmed_error() {
   const double error = error_norm();
   // The dense output of the other ones is the method; all terms of a series that are neglected follow from the last.
   const bool has_estimate = stepper_.method() != ode::Method::radau5 && stepper_.method() != ode::Method::taylor;
-  if (!(error <= 1.0) || !has_estimate || !step_memory_.is_guess()) return error;
+  if (!(error <= 1.0) || !has_estimate || !(step_memory_.is_guess() || leaps())) return error;
   constexpr double believed = 100.0;
   return std::max(error, defect() / believed);
 }
