@@ -46,12 +46,18 @@ void Locator::sharpen() {
   if (flat_) search_.rescale(start_.t + trial_.h, trial_.x.data());
 }
 
+/// Values of the candidates.
+void Locator::evaluate(double t, const double* x, std::vector<double>& values) {
+  search_.evaluate(t, x, search_.candidates(), values);
+  values[place_] += left_;
+}
+
 bool Locator::take(double h) {
   if (h <= time_resolution()) {
     // The event is where the step starts: time cannot resolve the difference.
     trial_.h = 0.0;
     trial_.x.assign(start_.x, start_.x + n_);
-    search_.evaluate(start_.t, start_.x, search_.candidates(), trial_.values);
+    evaluate(start_.t, start_.x, trial_.values);
     return is_finite_at(trial_);
   }
   trial_.h = h;
@@ -64,7 +70,7 @@ bool Locator::take(double h) {
   } else {
     std::copy_n(stepper_.slope_new(), n_, slope_.begin());
   }
-  search_.evaluate(start_.t + h, trial_.x.data(), search_.candidates(), trial_.values);
+  evaluate(start_.t + h, trial_.x.data(), trial_.values);
   return is_finite_at(trial_);
 }
 
@@ -79,7 +85,7 @@ bool Locator::move(double dt) {
   }
   moved_.h = trial_.h + dt;
   field_.project(t, moved_.x.data());
-  search_.evaluate(t, moved_.x.data(), search_.candidates(), moved_.values);
+  evaluate(t, moved_.x.data(), moved_.values);
   return is_finite_at(moved_) && is_finite(moved_.x);
 }
 
@@ -110,6 +116,14 @@ void Locator::set_hit(const Hit& hit) {
   const auto& candidates = search_.candidates();
   place_ = static_cast<std::size_t>(std::lower_bound(candidates.begin(), candidates.end(), hit.function) -
                                     candidates.begin());
+  // What rounding has left of the function where the step starts is no part of a zero far behind: a row of laps of one
+  // step each would hand it on, and add what is left of every event.
+  left_ = 0.0;
+  const EventFunction& function = search_.functions()[hit.function];
+  if (function.offset == 0.0) return;
+  dense_->evaluate(0.5 * hit.theta, x_.data());
+  evaluate(start_.t + 0.5 * hit.theta * dense_->h, x_.data(), earlier_);
+  if (function.has_left(earlier_[place_])) left_ = function.offset;
 }
 
 /// Newton for the function of `hit`; the last trial is the result.
@@ -170,7 +184,7 @@ bool Locator::correct(const Hit& hit) {
 double Locator::look_back() {
   const double back = 1e-3 * trial_.h;
   dense_->evaluate((trial_.h - back) / dense_->h, x_.data());
-  search_.evaluate(start_.t + trial_.h - back, x_.data(), search_.candidates(), earlier_);
+  evaluate(start_.t + trial_.h - back, x_.data(), earlier_);
   return back;
 }
 

@@ -53,6 +53,7 @@ class Locator {
     std::vector<double> values;
   };
   void sharpen();
+  void evaluate(double t, const double* x, std::vector<double>& values);
   bool take(double h);
   bool correct(const Hit& hit);
   bool finish(double slope);
@@ -81,6 +82,7 @@ class Locator {
   bool touches_ = false;   ///< the function of the hit is far from zero where the trial ends: it only touches zero
   bool flat_ = false;      ///< a multiple zero
   std::size_t place_ = 0;  ///< of its function among the candidates
+  double left_ = 0.0;      ///< its offset, where it has moved away from the zero at the start
   Trial trial_, moved_;
   std::vector<double> slope_, slope_ahead_;  ///< f at the end of the trial, and just ahead of it
   std::vector<double> x_, earlier_;

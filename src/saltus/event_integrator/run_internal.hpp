@@ -219,7 +219,9 @@ class Run {
   void start_step();
   bool too_many_events();
   [[nodiscard]] double mean_interval(long first, long count) const;
-  [[nodiscard]] std::optional<double> shrinking_exponent() const;
+  [[nodiscard]] double last_interval(long count) const;
+  [[nodiscard]] long resolved_events(double farthest, double rounding) const;
+  [[nodiscard]] std::optional<double> shrinking_exponent(long n) const;
   [[nodiscard]] bool has_one_rate(int surface);
   [[nodiscard]] std::string shrinking_laps();
   void accumulates();

@@ -7,18 +7,37 @@
 #include "saltus/event_integrator/run_internal.hpp"
 
 namespace saltus::event_integrator {
+namespace {
+
+/// Of fewer events no power can be told.
+constexpr long fewest_shrinking = 64;
+
+}  // namespace
 
 /// Mean distance of the events number first to first + count.
 double Run::mean_interval(long first, long count) const {
   return (recorder_.event_time(first + count) - recorder_.event_time(first)) / static_cast<double>(count);
 }
 
-/// The exponent p if the events of the run so far follow each other like k^-p, k their number; nullopt if they do not,
+/// Mean distance of the last eighth of the first `count` events.
+double Run::last_interval(long count) const { return mean_interval(count - 1 - (count - 1) / 8, (count - 1) / 8); }
+
+/// How many of the events of the run so far are in laps of which more is resolved than what changes from one to the
+/// next. Between two zeros psi gets about as far as its rate times a quarter of their distance T, and a rounding less
+/// or more of it makes the next lap longer or shorter by as large a part; of laps like k^-p only p/k of one is missing
+/// in the next. The rate, and with it how far psi gets, goes with T: T^2.
+long Run::resolved_events(double farthest, double rounding) const {
+  long count = recorder_.events();
+  const double last = last_interval(count);
+  const auto part = [&](long k) { return std::pow(last_interval(k) / last, 2) * farthest; };
+  while (count >= fewest_shrinking && part(count) < static_cast<double>(count) * rounding) count -= count / 8;
+  return count;
+}
+
+/// The exponent p if the first n events of the run follow each other like k^-p, k their number; nullopt if they do not,
 /// or are too few to tell.
-std::optional<double> Run::shrinking_exponent() const {
-  const long n = recorder_.events();
-  constexpr long fewest = 64;
-  if (n < fewest) return std::nullopt;
+std::optional<double> Run::shrinking_exponent(long n) const {
+  if (n < fewest_shrinking) return std::nullopt;
   // Means over eighths, each twice as far from the start as the one before: whole laps and others alike. Their middles
   // are (first + half an eighth), so that p follows from two of them.
   const long eighth = (n - 1) / 8;
@@ -53,25 +72,31 @@ bool Run::has_one_rate(int surface) {
 
 /// What max_events has ended, where that is a sequence that shrinks like a power of its number; empty elsewhere.
 std::string Run::shrinking_laps() {
-  const auto exponent = shrinking_exponent();
-  if (!exponent) return {};
-  const long events = recorder_.events();
-  const double interval = mean_interval(events - 1 - (events - 1) / 8, (events - 1) / 8);
+  long events = recorder_.events();
+  if (events < fewest_shrinking) return {};
   constexpr long longest_lap = 8;
   std::string names;
+  double farthest = 0.0, rounding = 0.0;
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     const auto& function = surroundings_.system.switching[at(j)];
     if (function.role != model::SwitchingRole::listed || state_.mode[at(j)] == 0) continue;
     if (!recorder_.switched_lately(j, longest_lap) || !has_one_rate(j)) continue;
     names += (names.empty() ? "'" : "', '") + function.name;
+    const Rate rate = rate_along_field(j, t_, x_.data(), slope_.data());
+    farthest = std::max(farthest, 0.25 * std::abs(rate.value) * last_interval(events));
+    rounding = std::max(rounding, rounding_unit * rate.magnitude);
   }
   if (names.empty()) return {};
   names += "'";
+  events = resolved_events(farthest, rounding);
+  const auto exponent = shrinking_exponent(events);
+  if (!exponent) return {};
   // The sum of what follows like k^-p.
-  const std::string limit = *exponent > 1.1
-                                ? fmt::format("they have a limit at about t = {:.3g}",
-                                              t_ + interval * static_cast<double>(events) / (*exponent - 1.0))
-                                : std::string("they have no limit, and their number grows without bound");
+  const std::string limit =
+      *exponent > 1.1 ? fmt::format("they have a limit at about t = {:.3g}",
+                                    recorder_.event_time(events - 1) +
+                                        last_interval(events) * static_cast<double>(events) / (*exponent - 1.0))
+                      : std::string("they have no limit, and their number grows without bound");
   return fmt::format(
       "laps of {} shrink like the power -{:.2g} of their number (relative degree 2: the derivative of the function is "
       "the "
