@@ -51,17 +51,18 @@ TEST(Differentiator, OfARampIsExactAfterTheTimeOfSuperTwisting) {
   const double limit = (1 + r) / (1.1 * (1 - r));
   // psi is known to the rounding of its terms, r: laps shorter than some hundred sqrt(r) are over, and the rest is
   // extrapolated. Steps of dopri5 are less accurate beside the root.
-  const double rounded = 2e-6, loose = 2e-5;
-  for (const double level : {3.0, -50.0}) {
+  const double rounded = 2e-6, loose = 4e-6;
+  for (const double level : {0.0, 3.0, -50.0}) {
     const std::string start = fmt::format("z0 = {}\nz1 = -1", level);
     const std::string text = differentiator(fmt::format("{} - 2*t", level), "k1 = 1.5\nk2 = 1.1", start, 3.0);
-    for (const auto& accuracy : {fine, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, standard, fine_explicit}) {
+    for (const auto& accuracy :
+         {fine, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, standard, fine_explicit, implicit}) {
       const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << level << ' ' << result.status.message;
       const bool is_dop853 = accuracy.integrator == pipeline::Integrator::dop853;
       ASSERT_NE(accumulation(result), nullptr);
       EXPECT_NEAR(accumulation(result)->t, limit, is_dop853 ? rounded : loose) << level;
-      EXPECT_LE(result.events.size(), 24U) << level;
+      EXPECT_LE(result.events.size(), 12U) << level;
       EXPECT_EQ(result.final.mode, (std::vector<int>{0}));
       EXPECT_NEAR(result.final.x[0], level - 6.0, 1e-13 * (1.0 + std::abs(level)));
       EXPECT_NEAR(result.final.x[1], -2.0, 1e-14);
@@ -72,9 +73,13 @@ TEST(Differentiator, OfARampIsExactAfterTheTimeOfSuperTwisting) {
 
 // On the signal: z1 = d/dt, and the selection is what makes z1 the second derivative: alpha = 1/2 + sin(t)/(2 k2).
 TEST(Differentiator, FollowsASignalThatCurves) {
-  for (const char* start : {"z0 = 0\nz1 = 0", "z0 = 0.3\nz1 = 0", "z0 = -0.5\nz1 = 2"}) {
+  // From (0.01, 1) few laps are left before the limit; with radau5 from (0.93771, -2.36334) stages that begin at the
+  // state are beyond the surface, which moves.
+  for (const char* start : {"z0 = 0\nz1 = 0", "z0 = 0.3\nz1 = 0", "z0 = -0.5\nz1 = 2", "z0 = 0.01\nz1 = 1",
+                            "z0 = 0.93771\nz1 = -2.36334"}) {
     const std::string text = differentiator("sin(t)", "k1 = 2.121320343559643\nk2 = 2.2", start, 6.0);
-    for (const auto& accuracy : {standard, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, fine, fine_explicit}) {
+    for (const auto& accuracy :
+         {standard, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, fine, fine_explicit, implicit}) {
       const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << start << result.status.message;
       ASSERT_NE(accumulation(result), nullptr);

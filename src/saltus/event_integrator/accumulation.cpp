@@ -177,8 +177,8 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double drow
   if (!(ratio_before < 1.0)) return std::nullopt;
   const double remaining_before = now.of[1] * ratio_before / (1.0 - ratio_before);
   // A fiftieth of what remains is 2e-10 of the time taken. The last of fast laps is to be what those before foretold,
-  // but for the twentieth that rounding may make of it: what remains is known about as well.
-  const double expected = is_fast ? 0.05 * now.of[0] : 0.02 * remaining;
+  // but for the quarter that rounding may make of it: the next one, a tenth as long, would be nothing else.
+  const double expected = is_fast ? 0.25 * now.of[0] : 0.02 * remaining;
   const double difference = (t + remaining) - (back(period).t + remaining_before);
   if (std::abs(difference) > expected + 4.0 * resolution) return std::nullopt;
   return SeriesLimit{t + remaining, extrapolated(period, ratio_now), last_jumps(period), now.of[0], false};

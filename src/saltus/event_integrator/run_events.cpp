@@ -129,6 +129,8 @@ bool Run::change_mode(const Located& located) {
 bool Run::go_on() {
   Transition& transition = transition_;
   if (transition.termination != Termination::completed) {
+    drowned_ = drowned_here();
+    if (drowned_) return false;
     // Where switches accumulate the fields may have no limit: that is the reason then.
     const bool at_limit = transition.termination != Termination::outside_class && series_.shrinks(t_);
     if (at_limit) {
@@ -254,6 +256,7 @@ Run::Step Run::depart(const Arrival& arrival) {
       accumulate_switches();
     }
     accumulate_jumps();
+    if (drowned_) go_on_from_drowned();
   }
   if (recorder_.events() > arrival.events && running_) watch_for_families();
   return running_ ? Step::taken : Step::failed;

@@ -173,6 +173,8 @@ class Run {
   void set_tolerances();
   void tighten_beside_roots(double h);
   void accumulate_switches();
+  [[nodiscard]] std::optional<SeriesLimit> drowned_here() const;
+  void go_on_from_drowned();
   bool follow_dense_laps();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
   bool limits_repeat(double t);
@@ -284,6 +286,7 @@ class Run {
   double rooted_rtol_ = 1.0;
   double first_lap_ = 0.0;  ///< duration of the first one that was closed
   LimitsInARow limits_in_a_row_;
+  std::optional<SeriesLimit> drowned_;  ///< the limit that the switch in hand is
   ode::DenseStep dense_;
   bool dense_is_last_ = false;  ///< dense_ is that of the last attempt
   Cells cells_;

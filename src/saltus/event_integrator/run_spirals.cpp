@@ -131,7 +131,7 @@ void Run::note_switch_rates() {
 void Run::follow_shrinking() {
   if (switch_laps_.empty()) {
     first_lap_ = 0.0;
-    if (lap_share_ != 1.0) {
+    if (lap_share_ != 1.0 || !ending_roots_.empty()) {
       lap_share_ = rooted_atol_ = rooted_rtol_ = 1.0;
       set_tolerances();
     }
@@ -179,6 +179,27 @@ void Run::accumulate_switches() {
   const bool repeats = limits_repeat(limit->t);
   switch_laps_.clear();
   if (repeats || !follow_spiral(*limit, Behind::any)) accumulates();
+}
+
+/// The switch in hand cannot be decided, in a lap beside a root that drowns in the rounding of psi, as do the rates of
+/// the fields there: laps have their limit where they are. nullopt where it is none of such laps.
+std::optional<SeriesLimit> Run::drowned_here() const {
+  if (switch_laps_.empty() || occasion_.touched.size() != 1) return std::nullopt;
+  const int surface = occasion_.touched.front();
+  if (!contains(ending_roots_, surface)) return std::nullopt;
+  const double lap = t_ - last_event_time_;
+  const double shortest =
+      std::max(shortest_switch_lap_[at(label_of(surface, -1))], shortest_switch_lap_[at(label_of(surface, 1))]);
+  if (!(lap <= shortest)) return std::nullopt;
+  return SeriesLimit{t_, x_, {label_of(surface, before_.mode[at(surface)])}, lap, false};
+}
+
+/// Goes on from the limit that an undecided switch has turned out to be.
+void Run::go_on_from_drowned() {
+  const SeriesLimit limit = *std::exchange(drowned_, std::nullopt);
+  switch_laps_.clear();
+  follow_shrinking();
+  if (!follow_spiral(limit, Behind::any)) fail(transition_.termination, std::move(transition_.message));
 }
 
 /// Laps that hardly shrink are too many for their time before as little of it remains as a limit is asked for usually.

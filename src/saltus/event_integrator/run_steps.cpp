@@ -304,7 +304,7 @@ Run::Step Run::attempt() {
   const double t_new = to_the_limit ? limit : t_ + h_try_;
   const double h = t_new - t_;
   dense_is_last_ = false;
-  if (!continued_roots_.empty() || !nearing_.empty() || (lap_share_ != 1.0 && !ending_roots_.empty())) {
+  if (!continued_roots_.empty() || !nearing_.empty() || (!switch_laps_.empty() && !ending_roots_.empty())) {
     tighten_beside_roots(h);
   }
   if (field_.attempt(stepper_, t_, x_.data(), slope_.data(), h, tolerances_) == ode::Attempt::undefined) {

@@ -92,13 +92,21 @@ Radau5::Outcome Radau5::solve(const RadauTrial& trial) {
   if (!jacobian_known_ && !differentiate(trial)) return Outcome::undefined;
   factorize(trial.h);
   start_values(trial.h);
-  const Outcome first = iterate(trial);
-  if (first == Outcome::converged || (jacobian_here_ && !has_previous_)) return first;
-  // What came from earlier steps did not help: once more without it.
-  if (!jacobian_here_ && !differentiate(trial)) return Outcome::undefined;
-  factorize(trial.h);
-  z_.setZero();
-  w_.setZero();
+  Outcome outcome = iterate(trial);
+  if (outcome != Outcome::converged && (has_previous_ || !jacobian_here_)) {
+    // What came from earlier steps did not help: once more without it.
+    if (!jacobian_here_ && !differentiate(trial)) return Outcome::undefined;
+    factorize(trial.h);
+    z_.setZero();
+    w_.setZero();
+    outcome = iterate(trial);
+  }
+  if (outcome != Outcome::undefined) return outcome;
+  // The domain of f may move with t, and a state that stays behind be outside of it.
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    z_.col(j) = Tableau::c[at(j)] * trial.h * Eigen::Map<const Vector>(trial.slope, n_);
+  }
+  transform_start();
   return iterate(trial);
 }
 
@@ -116,6 +124,10 @@ void Radau5::start_values(double h) {
     const double s = 1.0 + beyond;
     z_.col(j) = beyond * (p.col(0) - s * (p.col(1) + s * p.col(2)));
   }
+  transform_start();
+}
+
+void Radau5::transform_start() {
   for (Eigen::Index j = 0; j < 3; ++j) {
     const auto& row = Tableau::t_inverse[at(j)];
     w_.col(j) = row[0] * z_.col(0) + row[1] * z_.col(1) + row[2] * z_.col(2);

@@ -48,6 +48,7 @@ class Radau5 {
   void begin(const RadauTrial& trial);
   Outcome solve(const RadauTrial& trial);
   void start_values(double h);
+  void transform_start();
   void factorize(double h);
   Outcome iterate(const RadauTrial& trial);
   bool stage_slopes(const RadauTrial& trial);

@@ -89,6 +89,17 @@ TEST(Radau5, last_slope_belongs_to_the_new_point) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(stepper.slope_new()[i], expected[i]);
 }
 
+// x >= t, and x = 2 t: where stages begin at x(t) they are outside.
+TEST(Radau5, a_domain_that_moves_with_time_is_not_left) {
+  const auto field = [](double t, const double* x, double* f) { f[0] = x[0] < t ? std::nan("") : 2.0; };
+  const double x = 0.0, slope = 2.0;
+  Stepper stepper(Method::radau5, 1);
+  for (const double h : {0.5, 1e-9}) {
+    ASSERT_EQ(stepper.attempt(field, 0.0, &x, &slope, h, {}), Attempt::finite) << h;
+    EXPECT_NEAR(stepper.x_new()[0], 2.0 * h, 4 * epsilon * h);
+  }
+}
+
 // x' = -L (x - cos t) - sin t: x = cos t is reached at once and followed, whatever L.
 TEST(Radau5, stiff_linear_problem_takes_steps_of_the_smooth_solution) {
   int steps[2];
