@@ -108,6 +108,8 @@ TEST(TerminalSliding, ADisturbanceDoesNotMoveTheArrival) {
         completed(double_integrator(1, 0, "0.3*sin(3*t)-2*sign(v+sqrt(abs(x))*sign(x))", 6.0), accuracy);
     expect_rest(result, arrival, 10.0 * accuracy.rtol * arrival);
     EXPECT_NEAR(result.final.alpha[0], 0.5 + 0.3 * std::sin(18.0) / 4.0, 1e-12);
+    // v' = 1/2 on the curve up to the origin; the last step lies up to 1.5e-3 before it, and 0.9/4 is the rate.
+    EXPECT_NEAR(result.events.back().alpha_before.value().at(0), 0.5 + (0.3 * std::sin(3.0 * arrival) - 0.5) / 4.0, 5e-4);
   }
 }
 

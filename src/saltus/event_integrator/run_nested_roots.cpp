@@ -152,6 +152,9 @@ Run::Step Run::arrive_at_nested_roots(const Located& located) {
     }
     row_inside(t);
   }
+  // Selections are 0/0 at the end: those of the last step are theirs to what changes over this way.
+  field_(t_, x_.data(), row_slope_.data());
+  if (is_finite(field_.alpha())) state_.alpha = field_.alpha();
   // The last steps may have been short because of rounding.
   h_scale_ = std::max({h_scale_, located.t - t_, 1e-3 * (t_ - nearing_since_)});
   return handle(located);
