@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "firings.hpp"
 #include "hybrid_systems.hpp"
 #include "states.hpp"
 
@@ -178,14 +179,11 @@ std::string follow(const Stretch& stretch, double t, double t_next, const State&
   return "fixed steps do not converge";
 }
 
-/// The resets that an event says it has executed, one after the other, from the state before it. `highest`: of the
-/// states since jumps began at this time. What becomes true on the way is executed, also where another jump has undone
-/// it by then.
-std::string jumps_of(const Hybrid& hybrid, const Event& event, State& highest) {
+/// The resets that an event says it has executed, one after the other, from the state before it.
+std::string jumps_of(const Hybrid& hybrid, const Event& event, Firings& firings) {
   State x = event.x;
   const double near = 1e-9 * size_of(x);
   const Stretch none(hybrid, std::vector<int>(hybrid.laws.size()), x, x);
-  for (std::size_t i = 0; i < x.size(); ++i) highest[i] = std::max(highest[i], x[i]);
   for (const auto& full_name : event.surfaces) {
     const auto digit = full_name.find_first_of("0123456789");
     const std::string kind = full_name.substr(0, digit);
@@ -201,11 +199,9 @@ std::string jumps_of(const Hybrid& hybrid, const Event& event, State& highest) {
       x[wall.velocity] = rests ? 0.0 : behind;
     } else if (kind == "threshold") {
       const Threshold& threshold = hybrid.thresholds[k];
-      if (!(highest[threshold.state] >= threshold.value - near)) return "fires below the threshold";
-      for (std::size_t i = 0; i < threshold.reset.size(); ++i) {
-        x[i] += threshold.reset[i];
-        highest[i] = i == threshold.state ? x[i] : std::max(highest[i], x[i]);
-      }
+      if (auto problem = firings.fire(k); !problem.empty()) return problem;
+      for (std::size_t i = 0; i < threshold.reset.size(); ++i) x[i] += threshold.reset[i];
+      firings.see(x);
     } else {
       const Relay& relay = hybrid.relays[k];
       const double beyond = kind == "high" ? none.y(k, x) - relay.high : relay.low - none.y(k, x);
@@ -253,13 +249,16 @@ std::string complaint(const Hybrid& hybrid, const Result& result, double rtol) {
   }
   if (result.switching_functions.size() != hybrid.laws.size()) return "not one column for each law";
   const auto& rows = result.trajectory;
-  State highest;
+  Firings firings(hybrid);
   double jumps_at = -1.0;
-  for (const Event& event : result.events) {
+  for (std::size_t i = 0; i < result.events.size(); ++i) {
+    const Event& event = result.events[i];
     if (event.kind != EventKind::jump) continue;
-    if (event.t != jumps_at) highest = event.x;
+    if (event.t != jumps_at) firings.begin(event.x);
     jumps_at = event.t;
-    const auto problem = jumps_of(hybrid, event, highest);
+    auto problem = jumps_of(hybrid, event, firings);
+    const bool last = i + 1 == result.events.size() || result.events[i + 1].t != event.t;
+    if (problem.empty() && last) problem = firings.end();
     if (!problem.empty()) {
       return fmt::format("the event at t = {:.17g} ({}): {}", event.t, fmt::join(event.surfaces, ", "), problem);
     }

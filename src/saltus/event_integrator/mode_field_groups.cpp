@@ -211,7 +211,8 @@ void ModeField::evaluate_groups(double t, const double* x) {
   kernel_.field(t, x, alpha_.data(), f_[0].data());
 }
 
-/// Two surfaces: the root with det G > 0 in closed form. Behind evaluate_groups()'s first corner.
+/// Two surfaces: the root with det G > 0 in closed form; its exits are the zeros of that form, which are exact. Behind
+/// evaluate_groups()'s first corner.
 void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows) {
   switching::PairCorners g;
   for (std::size_t k = 0; k < 2; ++k) g[0][k] = exits_[rows[k]].below;
@@ -224,8 +225,9 @@ void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::
   auto& kind = kind_[rows[0]];
   if (!kind) kind = kind_of_mode(g, start_alpha_[at(sliding_[rows[0]])], start_alpha_[at(sliding_[rows[1]])]);
   const auto root = switching::bilinear_root(g, *kind);
+  const auto selections = switching::balanced_selections(g, root);
   for (std::size_t k = 0; k < 2; ++k) {
-    alpha_[at(sliding_[rows[k]])] = root.alpha[k];
+    alpha_[at(sliding_[rows[k]])] = selections[k];
     exits_[rows[k]] = {root.alpha[k], root.from_one[k], 0.0, 0.0};
     condition_[rows[k]] = root.condition[k];
   }

@@ -131,6 +131,10 @@ bool Run::go_on() {
   if (transition.termination != Termination::completed) {
     drowned_ = drowned_here();
     if (drowned_) return false;
+    if (auto lost = lost_selections(surroundings_, before_, t_, x_.data())) {
+      fail(Termination::outside_class, std::move(*lost));
+      return false;
+    }
     // Where switches accumulate the fields may have no limit: that is the reason then.
     const bool at_limit = transition.termination != Termination::outside_class && series_.shrinks(t_);
     if (at_limit) {

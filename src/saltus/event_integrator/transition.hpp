@@ -112,8 +112,14 @@ void begin_transition(const ModeState& before, const Occasion& occasion, std::si
 [[nodiscard]] int side_ahead(const Surroundings& surroundings, const ModeState& state, const Occasion& occasion,
                              const std::vector<double>& start, int function);
 
-/// What to say where sliding has run into a point at which both fields are tangent to the surface (two-fold), so that
-/// its selection has no limit, or at which the gradient of the surface vanishes; nullopt if there is none near by.
+/// What to say where sliding on several surfaces that influence each other has run into a point at which its equations
+/// are singular to half of the digits, so that its selections, and the motion, are roundings; nullopt if it has not.
+[[nodiscard]] std::optional<std::string> lost_selections(const Surroundings& surroundings, const ModeState& state,
+                                                         double t, const double* x);
+
+/// What to say where sliding has lost its selections, or has run into a point at which both fields are tangent to the
+/// surface (two-fold), so that its selection has no limit, or at which the gradient of the surface vanishes; nullopt if
+/// there is none near by.
 [[nodiscard]] std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state,
                                                           double t, const double* x);
 

@@ -251,8 +251,24 @@ double Decider::velocity_ahead(ModeField& field, const std::vector<double>& xdot
   return velocity;
 }
 
+std::optional<std::string> lost_selections(const Surroundings& surroundings, const ModeState& state, double t,
+                                           const double* x) {
+  if (state.sliding.size() < 2 || state.higher) return std::nullopt;
+  ModeField field(surroundings.kernel, surroundings.affine_in_alpha);
+  field.enter(state);
+  // Selections are known to 1e-16 over this.
+  constexpr double parallel = 1e-8;
+  if (!(field.root_distance(t, x) < parallel)) return std::nullopt;
+  return fmt::format(
+      "the selections of sliding on {} have no limit at t = {:.17g}: det G, of the derivatives of the velocities of "
+      "these functions with respect to them, vanishes there (the fields that hold the solution are parallel, or two "
+      "roots meet), so that they do not determine what follows; end the simulation before, or perturb a parameter",
+      names(surroundings.system, state.sliding), t);
+}
+
 std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state, double t,
                                             const double* x) {
+  if (auto lost = lost_selections(surroundings, state, t, x)) return lost;
   Occasion occasion;
   occasion.t = t;
   occasion.x = x;

@@ -1,6 +1,8 @@
 #include "saltus/switching/bilinear_root.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace saltus::switching {
 namespace {
@@ -66,6 +68,30 @@ BilinearRoot bilinear_root(const PairCorners& g, RootKind kind) {
   // The Fischer-Burmeister function: its zeros are the corner { min = 0 }, away from (0, 0) it is smooth.
   root.stability = std::hypot(g11, g22) - (g11 + g22);
   return root;
+}
+
+std::array<double, 2> balanced_selections(const PairCorners& g, const BilinearRoot& root) {
+  // Four roundings of 1e-16 in either numerator, condition times as many in alpha: 1e-10 for a condition of 2.5e5.
+  constexpr double well_conditioned = 2.5e5;
+  if (!(std::max(root.condition[0], root.condition[1]) > well_conditioned && root.discriminant > 0.0))
+    return root.alpha;
+  const double sizes[] = {size(g, 0), size(g, 1)};
+  const auto mixed = [&](std::size_t j) { return (g[3][j] - g[2][j]) - (g[1][j] - g[0][j]); };
+  const auto length = [&](std::size_t j) { return std::hypot(root.G[j][0], root.G[j][1]) / sizes[j]; };
+  const std::size_t j = length(1) > length(0) ? 1 : 0;
+  auto [a, b] = root.alpha;
+  // Errors are below 1/10 or no selections are left: 1e-2, 1e-4, ..., by Newton's method, to 1e-16.
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    const double rest = (1.0 - b) * ((1.0 - a) * g[0][j] + a * g[1][j]) + b * ((1.0 - a) * g[2][j] + a * g[3][j]);
+    const double by_a = (g[1][j] - g[0][j]) + mixed(j) * b;
+    const double by_b = (g[2][j] - g[0][j]) + mixed(j) * a;
+    const double factor = rest / (by_a * by_a + by_b * by_b);
+    if (!std::isfinite(factor)) return root.alpha;
+    a -= factor * by_a;
+    b -= factor * by_b;
+    if (!(std::abs(rest) > 4.0 * std::numeric_limits<double>::epsilon() * sizes[j])) break;
+  }
+  return {a, b};
 }
 
 }  // namespace saltus::switching

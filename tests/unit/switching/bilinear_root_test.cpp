@@ -59,6 +59,39 @@ TEST(BilinearRoot, StabilityHasTheSignOfCondition412) {
   EXPECT_GT(unstable, 1000);
 }
 
+// Three velocities on a line through the origin but for 1e-4 to 1e-13, the fourth between two of them: G has rank one
+// but for that, and what rounding leaves of the selections (which shows in g) is 1e-16 over it.
+TEST(BilinearRoot, SelectionsLeaveNothingOfTheFieldsHoweverSmallTheDeterminantIs) {
+  std::mt19937_64 generator(4);
+  std::uniform_real_distribution<double> uniform(0.1, 1.0);
+  int ill_conditioned = 0;
+  for (int k = 0; k < 60000; ++k) {
+    const double width = std::pow(10.0, -4.0 - 9.0 * k / 60000.0);
+    const double across = uniform(generator), along = uniform(generator);
+    PairCorners g;
+    const auto velocity = [&](double way, double beside) {
+      return std::array<double, 2>{way * along - width * beside * across, way * across + width * beside * along};
+    };
+    g[0] = velocity(-uniform(generator), uniform(generator));
+    g[1] = velocity(uniform(generator), uniform(generator));
+    g[2] = velocity(uniform(generator) - 0.5, -uniform(generator));
+    g[3] = velocity(uniform(generator) - 0.5, -uniform(generator));
+    const BilinearRoot root = bilinear_root(g, RootKind::rising);
+    if (!(root.discriminant > 0.0)) continue;
+    if (std::min(root.alpha[0], root.alpha[1]) < 0.0 || std::max(root.from_one[0], root.from_one[1]) > 0.0) continue;
+    const auto alpha = balanced_selections(g, root);
+    const double condition = std::max(root.condition[0], root.condition[1]);
+    if (condition > 1e7) ++ill_conditioned;
+    for (std::size_t j = 0; j < 2; ++j) {
+      // Three products and sums of terms up to 1.2; 1e-10 where they are not balanced.
+      EXPECT_LE(std::abs(g_at(g, j, alpha[0], alpha[1])), condition > 2.5e5 ? 2e-15 : 1e-10) << k;
+      // The errors of both selections, four roundings of 2.2e-16 each.
+      EXPECT_NEAR(alpha[j], root.alpha[j], 2e-15 * condition) << k;
+    }
+  }
+  EXPECT_GT(ill_conditioned, 1000);
+}
+
 // On the edge alpha_1 = 0 both components are affine in alpha_2 with a common zero: 3 (1 - b) - 1 b and 1.5 (1 - b) -
 // 0.5 b.
 TEST(BilinearRoot, ABoundIsReachedExactlyAndApproachedWithoutCancellation) {
