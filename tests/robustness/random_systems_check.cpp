@@ -10,6 +10,7 @@
 
 #include "random_systems_field.hpp"
 #include "states.hpp"
+#include "unresolved_events.hpp"
 
 namespace saltus::robustness {
 namespace {
@@ -301,7 +302,7 @@ std::string repetition(const std::vector<Event>& events, std::size_t i) {
   return "";
 }
 
-std::string events_of(const Result& result, const std::vector<bool>& listed) {
+std::string events_of(const RandomSystem& system, const Result& result, const std::vector<bool>& listed) {
   const auto& events = result.events;
   std::vector<std::optional<std::size_t>> last(listed.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -320,7 +321,7 @@ std::string events_of(const Result& result, const std::vector<bool>& listed) {
       }
       if (from == to) continue;
       if (last[j] && event.t - events[*last[j]].t < 1e-9 && !in_accumulation(result, event.t, j) &&
-          !shrinks_from_lap_to_lap(events, *last[j], i)) {
+          !shrinks_from_lap_to_lap(events, *last[j], i) && !is_unresolved(system, listed, result, *last[j], i)) {
         const bool back = *events[*last[j]].mode_before == *event.mode_after;
         return fmt::format("s{} changes {} at t = {}", j, back ? "there and back" : "twice", event.t);
       }
@@ -419,7 +420,7 @@ std::string complaint(const RandomSystem& system, const std::vector<bool>& liste
   if (result.status.termination == Termination::completed && result.trajectory.t.back() != result.final.t) {
     return "the last row is not the end";
   }
-  if (auto problem = events_of(result, listed); !problem.empty()) return problem;
+  if (auto problem = events_of(system, result, listed); !problem.empty()) return problem;
   return trajectory_of(system, listed, result, rtol);
 }
 
