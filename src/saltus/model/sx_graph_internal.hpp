@@ -50,7 +50,8 @@ class SxGraph {
 
   /// A node's number for an expression that was made here.
   [[nodiscard]] int node(const SXElem& expression);
-  [[nodiscard]] const SXElem& expression(int node) const { return expressions_[at(node)]; }
+  /// A copy: what is made with it may add nodes, which moves those that are there.
+  [[nodiscard]] SXElem expression(int node) const { return expressions_[at(node)]; }
 
   /// The expression with some alphas (by node) fixed.
   [[nodiscard]] SXElem with_alphas(int node, const std::map<int, double>& fixed);
