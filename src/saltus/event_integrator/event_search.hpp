@@ -74,6 +74,9 @@ class EventSearch {
   /// The same where one surface was crossed since, with no sliding before and behind; only while crosses(). Cost: O(1),
   /// and the thresholds of the same state.
   void cross(std::size_t surface, const ModeState& state, double t, const double* x);
+  /// The same where one surface was crossed since while the solution slides on others. Returns false where the mode has
+  /// to be entered afresh.
+  [[nodiscard]] bool pass(std::size_t surface, const ModeState& state, double t, const double* x);
   /// Whether crossings change signs of surfaces only.
   [[nodiscard]] bool crosses() const { return flips_ && state_.sliding.empty() && held_.empty(); }
   /// Whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
@@ -174,6 +177,7 @@ class EventSearch {
   [[nodiscard]] bool has_same_functions(const ModeState& state) const;
   void renew(const std::vector<int>& zero_order, double t, const double* x);
   bool flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
+  void begin_flipped(const ModeState& state, double t, const double* x);
   void read_start(double t, const double* x);
   void read_values(double t, const double* x, const std::vector<std::size_t>& which);
   void sort(std::size_t i);

@@ -93,6 +93,24 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
     entry = of_surface_[j];
     turn(j, state, zero_order[j]);
   }
+  begin_flipped(state, t, x);
+  return true;
+}
+
+bool EventSearch::pass(std::size_t surface, const ModeState& state, double t, const double* x) {
+  start_at(t);
+  if (!flips_ || state.sliding != state_.sliding || !held_.empty() || !followers_.empty()) return false;
+  if (!turn_exits(t, x)) return false;
+  forget_specials();
+  turn(surface, state, 1);
+  inspected_.assign(1, of_surface_[surface]);
+  begin_flipped(state, t, x);
+  return true;
+}
+
+/// What is left to do when the surfaces of `inspected_` have been turned: exits have other fields, and user functions are
+/// read anew.
+void EventSearch::begin_flipped(const ModeState& state, double t, const double* x) {
   for (std::size_t row = 0; row < state.sliding.size(); ++row) {
     const int arriving = arriving_sign(exits_[row]);
     const auto j = at(state.sliding[row]);
@@ -114,7 +132,6 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
   read_start(t, x);
   special_.clear();
   for (const std::size_t i : inspected_) sort(i);
-  return true;
 }
 
 /// Values of the functions that are looked at where a mode starts, and what follows for those at zero.

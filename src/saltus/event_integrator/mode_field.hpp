@@ -65,9 +65,9 @@ class ModeField {
   void slide_from_region(std::size_t surface, double selection, Region side, const evaluation::FieldConstants& other);
   /// From the only surface that is slid on to one of its sides:
   void leave_to(Region side);
-  /// Along the only surface that is slid on across another one, with the selections `alpha` of the mode behind;
-  /// `constants_of` gives those of the region that belongs to selections, valid until it is called again.
-  void pass(std::size_t surface, const std::vector<double>& alpha,
+  /// Along the only surface that is slid on, whose selection is `selection` behind, across another one, where that is
+  /// `alpha`; `constants_of` gives those of the region that belongs to selections, valid until it is called again.
+  void pass(std::size_t surface, double alpha, double selection,
             FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of);
   /// Of the last evaluation, while one surface is slid on: normal components of the fields of both sides.
   [[nodiscard]] const ExitValues& sides() const { return exits_.front(); }

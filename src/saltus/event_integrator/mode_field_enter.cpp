@@ -102,14 +102,14 @@ void ModeField::leave_to(Region side) {
   solve_ = SlidingSolve::none;
 }
 
-void ModeField::pass(std::size_t surface, const std::vector<double>& alpha,
+void ModeField::pass(std::size_t surface, double alpha, double selection,
                      FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of) {
   linear_motion_.forget();
   const auto slid = at(sliding_.front());
-  start_alpha_[surface] = alpha_[surface] = alpha[surface];
-  start_alpha_[slid] = alpha_[slid] = alpha[slid];
+  start_alpha_[surface] = alpha_[surface] = alpha;
+  start_alpha_[slid] = alpha_[slid] = selection;
   for (std::size_t corner = 0; corner < 2; ++corner) {
-    corner_[corner][surface] = alpha[surface];
+    corner_[corner][surface] = alpha;
     constants_[corner] = constants_of(corner_[corner]);
   }
   refer_to_constants();

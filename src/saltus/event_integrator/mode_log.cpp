@@ -61,6 +61,18 @@ std::size_t ModeLog::append_change(std::size_t function, int mode, double alpha)
   return ends_.size() - 1;
 }
 
+std::size_t ModeLog::append_changes(const std::array<Selected, 2>& selected) {
+  SALTUS_ASSERT(!ends_.empty());
+  for (const auto& [function, mode, alpha] : selected) {
+    SALTUS_ASSERT(function < last_mode_.size());
+    changes_.push_back({function, last_mode_[function], mode, alpha});
+    last_mode_[function] = mode;
+    last_alpha_[function] = alpha;
+  }
+  ends_.push_back(changes_.size());
+  return ends_.size() - 1;
+}
+
 void ModeLog::append_changed(std::vector<std::size_t>& functions) const {
   if (ends_.size() < 2) return;
   for (std::size_t k = ends_[ends_.size() - 2]; k < ends_.back(); ++k) {

@@ -1,6 +1,7 @@
 // The modes of a run, one after the other, as what changes from each to the next.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +18,14 @@ class ModeLog {
   /// Appends the last mode with one function changed, unless that is no change, bit for bit. Cost: O(1).
   /// @return its number
   std::size_t append_change(std::size_t function, int mode, double alpha);
+  /// What one function is in a mode.
+  struct Selected {
+    std::size_t function = 0;
+    int mode = 0;
+    double alpha = 0.0;
+  };
+  /// The same with two functions changed, at least one of them in its bits.
+  std::size_t append_changes(const std::array<Selected, 2>& selected);
   /// Room for so many modes that each differ in one function from the one before.
   void reserve(std::size_t modes) {
     changes_.reserve(modes);

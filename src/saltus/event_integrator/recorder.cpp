@@ -240,8 +240,16 @@ void Recorder::switched(double t, const std::vector<double>& x, const SurfaceSwi
   auto& event = begin(t, kind_of(change));
   for (const std::size_t column : columns) add_surface(event, column);
   set_states(event, x, x);
-  event.mode = recording_.modes.append_change(j, change.before, change.alpha_before);
-  event.mode_after = recording_.modes.append_change(j, change.after, change.alpha_after);
+  if (const auto* slid = change.slid) {
+    const auto k = at(slid->surface);
+    event.mode = recording_.modes.append_change(k, 0, slid->alpha_before);
+    event.mode_after = recording_.modes.append_changes({{{j, change.after, change.alpha_after}, {k, 0, slid->alpha_after}}});
+    event.meeting = recording_.meetings.size();
+    recording_.meetings.push_back(slid->meeting);
+  } else {
+    event.mode = recording_.modes.append_change(j, change.before, change.alpha_before);
+    event.mode_after = recording_.modes.append_change(j, change.after, change.alpha_after);
+  }
   event.reason = reason_of(change);
 }
 
@@ -249,12 +257,17 @@ void Recorder::switched(double t, const std::vector<double>& x, const SurfaceSwi
 Recording::Range Recorder::reason_of(const SurfaceSwitch& change) {
   auto& known = known_reasons_[(3 * at(change.surface) + at(change.after + 1)) % known_reasons_.size()];
   const bool same_reason = known.reason.data() == change.reason.data() && known.reason.size() == change.reason.size();
-  if (known.surface == change.surface && same_reason) return known.place;
+  const int slid = change.slid != nullptr ? change.slid->surface : -1;
+  if (known.surface == change.surface && known.slid == slid && same_reason) return known.place;
   auto& text = recording_.text;
-  known = {change.surface, change.reason, {text.size(), text.size()}};
-  text += system_.switching[at(change.surface)].name;
-  text += ": ";
-  text += change.reason;
+  known = {change.surface, slid, change.reason, {text.size(), text.size()}};
+  if (change.slid != nullptr) {
+    append_meeting(system_, change.slid->meeting.surfaces, change.slid->leaf, change.reason, text);
+  } else {
+    text += system_.switching[at(change.surface)].name;
+    text += ": ";
+    text += change.reason;
+  }
   known.place.end = text.size();
   return known.place;
 }

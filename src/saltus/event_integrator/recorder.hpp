@@ -26,12 +26,21 @@ struct Passage {
   const ModeState& after;
 };
 
-/// A switch of one surface that changes nothing else.
+/// The surface that is slid on before and behind a switch of another one; the two influence each other.
+struct SlidAcross {
+  int surface = 0;
+  double alpha_before = 0.0, alpha_after = 0.0;
+  switching::Leaf leaf = switching::Leaf::none;
+  Meeting meeting;
+};
+
+/// A switch of one surface that changes nothing else, but for the selection of what is slid on across it.
 struct SurfaceSwitch {
   int surface = 0;
   int before = 0, after = 0;  ///< modes
   double alpha_before = 0.0, alpha_after = 0.0;
   std::string_view reason;  ///< a literal
+  const SlidAcross* slid = nullptr;
 };
 
 /// One execution of a jump.
@@ -52,7 +61,7 @@ class Recorder {
   /// A switch, if a listed switching function changes its mode; returns whether it did.
   bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
   /// The same for the one surface that changes; it is listed, and the last mode recorded is the one before but for its
-  /// own selection. Cost: O(1).
+  /// own selection, or that of what is slid on across it. Cost: O(1).
   void switched(double t, const std::vector<double>& x, const SurfaceSwitch& change);
   /// Whether a surface is listed.
   [[nodiscard]] bool lists(int surface) const { return !listed_columns_[at(surface)].empty(); }
@@ -121,6 +130,7 @@ class Recorder {
   /// Of the last switches of some surfaces, one after another: where its words stand in the recording.
   struct KnownReason {
     int surface = -1;
+    int slid = -1;  ///< on which it goes on sliding
     std::string_view reason;
     Recording::Range place;
   };

@@ -81,17 +81,23 @@ bool Run::pass(const Located& located, int surface) {
   const double selection = field_.alpha()[at(slid)];
   if (!is_finite(slope_) || !std::isfinite(selection)) return false;
   state_.alpha[at(slid)] = selection;
+  look_at_both(located, slid, surface);
+  if (const auto alpha = surface_pair_.across(state_, occasion_)) return pass_across(located, surface, *alpha);
   before_ = state_;
-  if (!decide_passing(located, slid, surface)) return false;
+  if (!single_surface_.decide(before_, occasion_, transition_) &&
+      !surface_pair_.decide(before_, occasion_, transition_)) {
+    return false;
+  }
   const auto& next = transition_.state;
   // The usual way: the solution goes on sliding across it.
   const bool across = next.mode[at(slid)] == 0 && next.mode[j] == -before_.mode[j];
   x_ = located.x;
   if (across) {
     const std::size_t mark = step_memory_.mark_with(j, next.mode[j]);
-    field_.pass(j, next.alpha, [&](const std::vector<double>& alpha) -> const evaluation::FieldConstants& {
-      return field_memory_.of(alpha, mark);
-    });
+    field_.pass(j, next.alpha[j], next.alpha[at(slid)],
+                [&](const std::vector<double>& alpha) -> const evaluation::FieldConstants& {
+                  return field_memory_.of(alpha, mark);
+                });
   } else {
     field_.enter(next);
   }
@@ -126,8 +132,34 @@ bool Run::pass(const Located& located, int surface) {
   return true;
 }
 
-/// The transition behind; false where neither of the quick decisions knows it.
-bool Run::decide_passing(const Located& located, int slid, int reached) {
+/// The same where the two surfaces influence each other and the solution goes on sliding across the one that it
+/// reaches, with these selections, in the order of the occasion.
+bool Run::pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha) {
+  const auto j = at(surface);
+  const int slid = state_.sliding.front();
+  const std::size_t place = occasion_.at_zero[0] == surface ? 0 : 1;
+  const SlidAcross across{slid, state_.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
+                          surface_pair_.meeting(state_, occasion_)};
+  const SurfaceSwitch change{surface,      state_.mode[j], -state_.mode[j],
+                             state_.alpha[j], alpha[place], switching::reason_of_passage(), &across};
+  const std::size_t mark = step_memory_.mark_with(j, change.after);
+  std::copy(located.x.begin(), located.x.end(), x_.begin());
+  field_.pass(j, change.alpha_after, across.alpha_after,
+              [&](const std::vector<double>& selections) -> const evaluation::FieldConstants& {
+                return field_memory_.of(selections, mark);
+              });
+  field_.project(located.t, x_.data());
+  field_(located.t, x_.data(), slope_.data());
+  if (!is_finite(slope_)) {
+    field_.enter(state_);
+    return false;
+  }
+  go_on_behind(located, change);
+  return true;
+}
+
+/// Fills the occasion.
+void Run::look_at_both(const Located& located, int slid, int reached) {
   occasion_.t = located.t;
   occasion_.x = located.x.data();
   occasion_.time_scale = h_scale_;
@@ -136,8 +168,6 @@ bool Run::decide_passing(const Located& located, int slid, int reached) {
   for (auto* none : {&occasion_.exit_below, &occasion_.exit_above, &occasion_.coalesced, &occasion_.destabilised}) {
     none->clear();
   }
-  return single_surface_.decide(before_, occasion_, transition_) ||
-         surface_pair_.decide(before_, occasion_, transition_);
 }
 
 /// What follows a switch that was recorded and entered.
@@ -180,23 +210,33 @@ void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
   recorder_.switched(t_, x_, change);
   recorder_.row_before_last_event(located.x, state_.alpha);
   set_surface(state_, change.surface, change.after, change.alpha_after);
+  if (change.slid != nullptr) state_.alpha[at(change.slid->surface)] = change.slid->alpha_after;
   stepper_.restart();
   stiffness_.reset();
-  if (change.before != 0 && change.after != 0) {
-    search_.cross(j, state_, t_, x_.data());
-  } else {
-    set_corner_alpha(state_);
-    zero_order_.assign(state_.mode.size(), 0);
-    zero_order_[j] = change.after == 0 ? 0 : 2;
-    search_.enter_again(state_, zero_order_, t_, x_.data());
-  }
-  recorder_.row_behind_last_event(x_, change.after == 0 ? field_.alpha() : state_.alpha, j);
+  begin_search(change);
+  const bool slides = change.after == 0 || change.slid != nullptr;
+  recorder_.row_behind_last_event(x_, slides ? field_.alpha() : state_.alpha,
+                                  change.slid != nullptr ? at(change.slid->surface) : j);
   series_.note(t_, j, change.before);
   h_ = step_memory_.change(state_.mode, j, t_, h_);
   end_switch();
   if (too_many_events()) return;
   note_tightening_switch(change);
   accumulate_switches();
+  if (change.slid != nullptr && running_) watch_for_families();
+}
+
+/// The functions of the mode behind.
+void Run::begin_search(const SurfaceSwitch& change) {
+  const auto j = at(change.surface);
+  const bool crosses = change.before != 0 && change.after != 0;
+  if (crosses && change.slid == nullptr) return search_.cross(j, state_, t_, x_.data());
+  set_corner_alpha(state_);
+  if (crosses && search_.pass(j, state_, t_, x_.data())) return;
+  zero_order_.assign(state_.mode.size(), 0);
+  zero_order_[j] = crosses ? 1 : change.after == 0 ? 0 : 2;
+  if (crosses) return search_.enter(state_, zero_order_, t_, x_.data());
+  search_.enter_again(state_, zero_order_, t_, x_.data());
 }
 
 }  // namespace saltus::event_integrator

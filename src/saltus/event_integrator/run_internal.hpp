@@ -114,10 +114,12 @@ class Run {
   bool switch_shortly(const Located& located);
   bool meet(const Located& located, int surface);
   bool pass(const Located& located, int surface);
-  bool decide_passing(const Located& located, int slid, int reached);
+  bool pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha);
+  void look_at_both(const Located& located, int slid, int reached);
   void end_switch();
   bool leave(const Located& located, const EventFunction& exit);
   void go_on_behind(const Located& located, const SurfaceSwitch& change);
+  void begin_search(const SurfaceSwitch& change);
   Arrival arrive(RowBefore row);
   Step depart(const Arrival& arrival);
   void choose(Transition& transition);

@@ -163,6 +163,7 @@ void Run::note_tightening_switch(const SurfaceSwitch& change) {
   if (!switch_laps_.shrinks()) return;
   before_ = state_;
   set_surface(before_, change.surface, change.before, change.alpha_before);
+  if (change.slid != nullptr) before_.alpha[at(change.slid->surface)] = change.slid->alpha_before;
   note_switch_rates();
 }
 

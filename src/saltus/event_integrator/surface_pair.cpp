@@ -134,6 +134,18 @@ bool SurfacePair::slides_on_both(const Occasion& occasion, ModeState& state) {
   return true;
 }
 
+std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before, const Occasion& occasion) {
+  if (before.sliding.size() != 1 || !applies(before, occasion)) return std::nullopt;
+  alpha_ = before.alpha;
+  if (!find_normals(occasion) || !find_table(occasion)) return std::nullopt;
+  const auto& pair = occasion.at_zero;
+  const auto behind = switching::pass_across(switching::plane_table(velocities_),
+                                             {before.mode[at(pair[0])], before.mode[at(pair[1])]});
+  // All four fields are clear of both surfaces, so is what lies between them.
+  if (!behind) return std::nullopt;
+  return behind->alpha;
+}
+
 bool SurfacePair::decide(const ModeState& before, const Occasion& occasion, Transition& transition) {
   if (!applies(before, occasion)) return false;
   alpha_ = before.alpha;
@@ -157,19 +169,21 @@ bool SurfacePair::decide(const ModeState& before, const Occasion& occasion, Tran
   return true;
 }
 
-void SurfacePair::describe(const ModeState& before, const Occasion& occasion, const PlaneDecision& decision,
-                           Transition& transition) const {
-  auto& meeting = transition.meeting.emplace();
+Meeting SurfacePair::meeting(const ModeState& before, const Occasion& occasion) const {
+  Meeting meeting;
   auto& alpha = meeting.alpha.emplace();
   for (std::size_t k = 0; k < 2; ++k) {
-    const int surface = occasion.at_zero[k];
-    meeting.surfaces[k] = surface;
-    alpha[k] = std::clamp(before.alpha[at(surface)], 0.0, 1.0);
-    transition.reason += k == 0 ? "" : ", ";
-    transition.reason += surroundings_.system.switching[at(surface)].name;
+    meeting.surfaces[k] = occasion.at_zero[k];
+    alpha[k] = std::clamp(before.alpha[at(occasion.at_zero[k])], 0.0, 1.0);
   }
   meeting.velocities = velocities_;
-  append_leaf(decision, transition.reason);
+  return meeting;
+}
+
+void SurfacePair::describe(const ModeState& before, const Occasion& occasion, const PlaneDecision& decision,
+                           Transition& transition) const {
+  transition.meeting = meeting(before, occasion);
+  append_meeting(surroundings_.system, transition.meeting->surfaces, decision.leaf, decision.reason, transition.reason);
 }
 
 }  // namespace saltus::event_integrator

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "saltus/event_integrator/field_memory.hpp"
@@ -27,6 +28,12 @@ class SurfacePair {
   /// Fills `transition`, whose storage is used again.
   /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
   [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition);
+  /// The same where the solution goes on sliding on one surface across the other (switching::pass_across()), with their
+  /// selections behind, in the order of the occasion; nullopt where it does not, or not as clearly. Cost: four
+  /// evaluations of f.
+  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before, const Occasion& occasion);
+  /// What the last decision was made from.
+  [[nodiscard]] Meeting meeting(const ModeState& before, const Occasion& occasion) const;
 
  private:
   [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;

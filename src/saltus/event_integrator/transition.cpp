@@ -21,12 +21,20 @@ void append_reason(const model::System& system, int surface, const switching::Su
   reason += decision.reason;
 }
 
-void append_leaf(const switching::PlaneDecision& decision, std::string& reason) {
+void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason) {
   reason += ": ";
-  reason += decision.reason;
+  reason += why;
   reason += " (";
-  reason += switching::name(decision.leaf);
+  reason += switching::name(leaf);
   reason += ")";
+}
+
+void append_meeting(const model::System& system, const std::array<int, 2>& surfaces, switching::Leaf leaf,
+                    std::string_view why, std::string& reason) {
+  reason += system.switching[at(surfaces[0])].name;
+  reason += ", ";
+  reason += system.switching[at(surfaces[1])].name;
+  append_leaf(leaf, why, reason);
 }
 
 void begin_transition(const ModeState& before, const Occasion& occasion, std::size_t states, Transition& transition) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -86,8 +87,11 @@ struct Surroundings {
 void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
                    const ModeState& before, const Occasion& occasion, std::string& reason);
 
-/// Behind the names of two surfaces: what a tree decided about them.
-void append_leaf(const switching::PlaneDecision& decision, std::string& reason);
+/// Behind the names of two surfaces: what a tree decided about them, and why.
+void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason);
+/// The same with their names.
+void append_meeting(const model::System& system, const std::array<int, 2>& surfaces, switching::Leaf leaf,
+                    std::string_view why, std::string& reason);
 
 /// Makes of `transition`, whose storage is used again, the only one there is, with the mode as it was before: what is
 /// decided without detours starts from it.

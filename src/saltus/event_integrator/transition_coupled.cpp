@@ -164,7 +164,7 @@ bool Decider::accept(const std::vector<int>& group, const PlaneDecision& decisio
   note_others(group, decision.others);
   if (decision.ambiguous || decision.spirals_out) transition_.unique = false;
   group_reasons_.push_back(names(s_.system, group));
-  append_leaf(decision, group_reasons_.back());
+  append_leaf(decision.leaf, decision.reason, group_reasons_.back());
   return true;
 }
 

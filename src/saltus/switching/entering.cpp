@@ -70,10 +70,11 @@ Entry enter(const Plane& p, const IntersectionRoots& roots, SignTests& signs) {
   return {Leaf::E12, {0, 0}, PlaneMode{0, 1}, passes};
 }
 
-/// The usual passage: on both sides of the surface reached the other one attracts, and all four fields lead across.
-/// Then g_2 has one sign in the square and no root: of the two reflections of the surface slid on that with H_1 > 0
-/// ends in E3, and no other mode is admissible. nullopt where that is not the case, or not clear of any rounding.
-std::optional<PlaneDecision> pass_across(const PlaneTable& table, PlaneMode incoming) {
+}  // namespace
+
+// g_2 has one sign in the square and no root: of the two reflections of the surface slid on that with H_1 > 0 ends in
+// E3, and no other mode is admissible.
+std::optional<PlaneContinuation> pass_across(const PlaneTable& table, PlaneMode incoming) {
   const std::size_t slid = incoming[0] == 0 ? 0 : 1;
   const std::size_t reached = 1 - slid;
   if (incoming[slid] != 0 || incoming[reached] == 0) return std::nullopt;
@@ -96,21 +97,25 @@ std::optional<PlaneDecision> pass_across(const PlaneTable& table, PlaneMode inco
   }
   const double h = f1[behind].velocity * f1[across].velocity - f1[across | behind].velocity * f1[0].velocity;
   if (!(std::abs(h) > clear * s1 * s1)) return std::nullopt;
-  PlaneDecision decision;
-  decision.leaf = Leaf::E3;
-  decision.reason = reason(Leaf::E3);
+  PlaneContinuation behind_it;
   const std::size_t far = incoming[reached] < 0 ? behind : 0;
-  decision.chosen.mode[reached] = -incoming[reached];
-  decision.chosen.alpha[slid] = sliding_alpha(f1[far].velocity, f1[far | across].velocity);
-  decision.chosen.alpha[reached] = incoming[reached] < 0 ? 1.0 : 0.0;
-  decision.chosen.attracts = true;
-  return decision;
+  behind_it.mode[reached] = -incoming[reached];
+  behind_it.alpha[slid] = sliding_alpha(f1[far].velocity, f1[far | across].velocity);
+  behind_it.alpha[reached] = incoming[reached] < 0 ? 1.0 : 0.0;
+  behind_it.attracts = true;
+  return behind_it;
 }
 
-}  // namespace
+std::string_view reason_of_passage() { return reason(Leaf::E3); }
 
 PlaneDecision decide_entering(const PlaneTable& table, PlaneMode incoming, SelectionPolicy policy) {
-  if (auto passage = pass_across(table, incoming)) return *std::move(passage);
+  if (const auto passage = pass_across(table, incoming)) {
+    PlaneDecision decision;
+    decision.leaf = Leaf::E3;
+    decision.reason = reason_of_passage();
+    decision.chosen = *passage;
+    return decision;
+  }
   const Plane plane(table);
   const auto symmetry = find_symmetry([&](const PlaneSymmetry& s) {
     if (s.apply(incoming) != PlaneMode{0, -1}) return false;

@@ -17,6 +17,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 #include "saltus/switching/admissible_modes.hpp"
@@ -64,6 +65,14 @@ struct PlaneDecision {
 
   [[nodiscard]] bool unique() const { return others.size() == 0 && !spirals_out; }
 };
+
+/// The usual passage of a solution that slides on one surface across the other: on both sides the first one attracts,
+/// and all four fields lead across. The mode behind is the only one, leaf E3 of decide_entering(), whose answer this
+/// is; nullopt where it is not so, or not clear of any rounding. Cost: O(1), the tree is not gone through.
+/// @param incoming  0 for the surface that is slid on, the side it comes from for the other
+[[nodiscard]] std::optional<PlaneContinuation> pass_across(const PlaneTable& table, PlaneMode incoming);
+/// Why: of static duration.
+[[nodiscard]] std::string_view reason_of_passage();
 
 /// Sliding on one surface arrives at the other (Figs. 5 and 6; Theorems 6.1, 6.2 of [guglielmi2022]).
 /// @param incoming  0 for the surface that is slid on, the side it comes from for the other
