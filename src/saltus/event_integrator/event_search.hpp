@@ -74,8 +74,8 @@ class EventSearch {
   /// The same where one surface was crossed since, with no sliding before and behind; only while crosses(). Cost: O(1),
   /// and the thresholds of the same state.
   void cross(std::size_t surface, const ModeState& state, double t, const double* x);
-  /// The same where one surface was crossed since while the solution slides on others. Returns false where the mode has
-  /// to be entered afresh.
+  /// The same where one surface was crossed since while the solution slides on one other, behind an evaluation of the
+  /// field here. Returns false where the mode has to be entered afresh.
   [[nodiscard]] bool pass(std::size_t surface, const ModeState& state, double t, const double* x);
   /// Whether crossings change signs of surfaces only.
   [[nodiscard]] bool crosses() const { return flips_ && state_.sliding.empty() && held_.empty(); }
@@ -171,7 +171,7 @@ class EventSearch {
   void evaluate_parts(double t, const double* x, const Parts& parts);
   [[nodiscard]] double value(std::size_t i, const double* x) const;
   [[nodiscard]] std::size_t exit_function(std::size_t row) const { return first_exit_ + 2 * row; }
-  bool turn_exits(double t, const double* x);
+  bool turn_exits(const double* x);
   void forget_specials();
   void turn(std::size_t surface, const ModeState& state, int zero_order);
   [[nodiscard]] bool has_same_functions(const ModeState& state) const;
@@ -235,7 +235,6 @@ class EventSearch {
   AffineForms forms_;
   std::vector<bool> nesting_;    ///< functions of the kernel that hold selections
   evaluation::AffineRows rows_;  ///< at the selections of the mode
-  evaluation::AffineRow row_;
   std::vector<std::size_t> special_;  ///< functions with an unknown sign, or a zero at the start of the next step
   std::vector<std::size_t> curved_;   ///< functions without an affine form
   Parts curved_parts_;

@@ -27,16 +27,14 @@ void EventSearch::start_at(double t) {
   zeros_at_ = t;
 }
 
-/// Behind a crossing while sliding: the exits, whose fields are others now. Returns false where the mode has to be
+/// Behind a crossing while sliding: the forms of the exits, whose fields are others now. Returns false where the mode has to be
 /// entered afresh.
-bool EventSearch::turn_exits(double t, const double* x) {
-  if (state_.sliding.empty()) return true;
-  field_.exits(t, x, exits_.data());
+bool EventSearch::turn_exits(const double* x) {
   for (std::size_t row = 0; row < state_.sliding.size(); ++row) {
     for (const auto& [i, side] :
          {std::pair{exit_function(row), Region::below}, {exit_function(row) + 1, Region::above}}) {
-      const bool is_affine = field_.exit_row(row, side, x, row_);
-      if (is_affine != forms_.has(i) || (is_affine && !forms_.replace(i, row_))) return false;
+      const auto* form = field_.exit_row(row, side, x);
+      if ((form != nullptr) != forms_.has(i) || (form != nullptr && !forms_.replace(i, *form))) return false;
     }
   }
   return true;
@@ -83,7 +81,9 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
     crosses = crosses && state.mode[j] != 0 && state_.mode[j] != 0;
     inspected_.push_back(j);
   });
-  if (!crosses || !turn_exits(t, x)) return false;
+  if (!crosses) return false;
+  if (!state_.sliding.empty()) field_.exits(t, x, exits_.data());
+  if (!turn_exits(x)) return false;
   for_each_nonzero(zero_order, [&](std::size_t j) {
     if (state.mode[j] == state_.mode[j]) inspected_.push_back(j);
   });
@@ -100,7 +100,8 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
 bool EventSearch::pass(std::size_t surface, const ModeState& state, double t, const double* x) {
   start_at(t);
   if (!flips_ || state.sliding != state_.sliding || !held_.empty() || !followers_.empty()) return false;
-  if (!turn_exits(t, x)) return false;
+  exits_.assign(1, field_.sides());
+  if (!turn_exits(x)) return false;
   forget_specials();
   turn(surface, state, 1);
   inspected_.assign(1, of_surface_[surface]);
@@ -326,7 +327,7 @@ void EventSearch::set_forms(const double* x) {
       case FunctionKind::exit_below:
       case FunctionKind::exit_above: {
         const auto side = function.kind == FunctionKind::exit_below ? Region::below : Region::above;
-        if (field_.exit_row(at(function.row), side, x, row_)) forms_.set(i, row_);
+        if (const auto* form = field_.exit_row(at(function.row), side, x)) forms_.set(i, *form);
         break;
       }
       case FunctionKind::loss:

@@ -90,12 +90,13 @@ double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f)
   return sum;
 }
 
-bool ModeField::exit_row(std::size_t row, Region region, const double* x, evaluation::AffineRow& form) {
-  if (solve_ != SlidingSolve::decoupled || !constant_row_[row]) return false;
-  const double selection = region == Region::below ? 0.0 : 1.0;
-  trial_ = start_alpha_;
-  for (const int j : sliding_) trial_[at(j)] = 0.0;
-  trial_[at(sliding_[row])] = selection;
+const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region, const double* x) {
+  if (solve_ != SlidingSolve::decoupled || !constant_row_[row]) return nullptr;
+  if (sliding_.size() > 1) {
+    trial_ = start_alpha_;
+    for (const int j : sliding_) trial_[at(j)] = 0.0;
+    trial_[at(sliding_[row])] = region == Region::below ? 0.0 : 1.0;
+  }
   const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : trial_;
   evaluation::FixedState fixed;
   if (const int only = coordinate_[row]; only >= 0 && rates_[static_cast<Eigen::Index>(row)] == 0.0) {
@@ -103,24 +104,23 @@ bool ModeField::exit_row(std::size_t row, Region region, const double* x, evalua
   }
   // What cells and references change is not in the key.
   if (sliding_.size() > 1 || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
-    return kernel_.lie_row(sliding_[row], fixed, alpha.data(), form);
+    return kernel_.lie_row(sliding_[row], fixed, alpha.data(), exit_form_) ? &exit_form_ : nullptr;
   }
   const void* motion = constants_[0].use->motion;
   for (const auto& known : exit_rows_) {
     if (known.motion == motion && known.surface == sliding_[row] && known.fixed.component == fixed.component &&
         known.fixed.value == fixed.value && known.alpha == alpha) {
-      form = known.form;
-      return true;
+      return &known.form;
     }
   }
-  if (!kernel_.lie_row(sliding_[row], fixed, alpha.data(), form)) return false;
+  if (!kernel_.lie_row(sliding_[row], fixed, alpha.data(), exit_form_)) return nullptr;
   auto& oldest = exit_rows_[next_exit_row_++ % exit_rows_.size()];
   oldest.motion = motion;
   oldest.surface = sliding_[row];
   oldest.fixed = fixed;
   oldest.alpha = alpha;
-  oldest.form = form;
-  return true;
+  oldest.form = exit_form_;
+  return &oldest.form;
 }
 
 double ModeField::normal_terms(std::size_t row) const {

@@ -71,6 +71,8 @@ class ModeField {
             FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of);
   /// Of the last evaluation, while one surface is slid on: normal components of the fields of both sides.
   [[nodiscard]] const ExitValues& sides() const { return exits_.front(); }
+  /// The fields themselves.
+  [[nodiscard]] const std::vector<double>& field_of(Region side) const { return f_[side == Region::below ? 0 : 1]; }
   /// While one surface is slid on, f affine in its selection: the field of a side.
   void of_side(Region side, double t, const double* x, double* xdot) const {
     kernel_.prepared_field(t, x, constants_[side == Region::below ? 0 : 1], xdot);
@@ -97,7 +99,7 @@ class ModeField {
   void exits(double t, const double* x, ExitValues* values);
   /// Behind exits(): one of the exit functions of a surface as a row, if it is affine in t and in all states but the
   /// one that sliding keeps constant; x is any point of the mode.
-  [[nodiscard]] bool exit_row(std::size_t row, Region region, const double* x, evaluation::AffineRow& form);
+  [[nodiscard]] const evaluation::AffineRow* exit_row(std::size_t row, Region region, const double* x);
   /// Behind exits(): size of the terms whose sum an exit function of a sliding surface is, which bounds its rounding.
   [[nodiscard]] double normal_terms(std::size_t row) const;
   /// Smallest |det G| of the groups of coupled surfaces, relative to the size of g: how far their roots are from
@@ -195,6 +197,7 @@ class ModeField {
   };
   std::array<ExitRow, 8> exit_rows_;  ///< the last ones
   std::size_t next_exit_row_ = 0;
+  evaluation::AffineRow exit_form_;                 ///< of a row that is not kept
   int single_ = -1;                                 ///< the surface that rows and groups are of, if it is one
   bool has_root_inside_ = false;                    ///< of that one: of a function whose sign it holds
   std::vector<bool> constant_row_;                  ///< gradient known once and for all in this mode

@@ -82,7 +82,7 @@ bool Run::pass(const Located& located, int surface) {
   if (!is_finite(slope_) || !std::isfinite(selection)) return false;
   state_.alpha[at(slid)] = selection;
   look_at_both(located, slid, surface);
-  if (const auto alpha = surface_pair_.across(state_, occasion_)) return pass_across(located, surface, *alpha);
+  if (const auto alpha = surface_pair_.across(state_, occasion_, field_)) return pass_across(located, surface, *alpha);
   before_ = state_;
   if (!single_surface_.decide(before_, occasion_, transition_) &&
       !surface_pair_.decide(before_, occasion_, transition_)) {

@@ -51,26 +51,31 @@ bool SurfacePair::applies(const ModeState& before, const Occasion& occasion) con
 }
 
 bool SurfacePair::find_normals(const Occasion& occasion) {
+  const auto& kernel = surroundings_.kernel;
+  const std::array<int, 2> pair{occasion.at_zero[0], occasion.at_zero[1]};
+  if (pair == constant_rows_) return true;
+  constant_rows_ = {-1, -1};
   for (std::size_t k = 0; k < 2; ++k) {
-    surroundings_.kernel.gradient(occasion.at_zero[k], occasion.t, occasion.x, alpha_.data(), rows_[k].data(),
+    kernel.gradient(occasion.at_zero[k], occasion.t, occasion.x, alpha_.data(), rows_[k].data(),
                                   &rates_[k]);
     if (!is_finite(rows_[k]) || !(product(rows_[k], rows_[k]) > 0.0)) return false;
   }
+  if (kernel.is_affine(pair[0]) && kernel.is_affine(pair[1])) constant_rows_ = pair;  // nothing is nested around them
   return true;
 }
 
-/// Normal components of the field in f_; false if it is not finite.
-bool SurfacePair::project(std::array<double, 2>& velocities) const {
-  if (!is_finite(f_)) return false;
+/// Normal components of a field; false if it is not finite.
+bool SurfacePair::project(const std::vector<double>& f, std::array<double, 2>& velocities) const {
+  if (!is_finite(f)) return false;
   for (std::size_t k = 0; k < 2; ++k) {
     velocities[k] = rates_[k];
-    for (std::size_t i = 0; i < f_.size(); ++i) velocities[k] += rows_[k][i] == 0.0 ? 0.0 : rows_[k][i] * f_[i];
+    for (std::size_t i = 0; i < f.size(); ++i) velocities[k] += rows_[k][i] == 0.0 ? 0.0 : rows_[k][i] * f[i];
   }
   return true;
 }
 
 /// Whether all of the four fields are clear of both surfaces.
-bool SurfacePair::find_table(const Occasion& occasion) {
+bool SurfacePair::find_table(const Occasion& occasion, const KnownFields& known) {
   scales_ = {0.0, 0.0};
   const auto& kernel = surroundings_.kernel;
   // Constants of fields hold those of cells.
@@ -78,13 +83,15 @@ bool SurfacePair::find_table(const Occasion& occasion) {
   const std::size_t pair = at(occasion.at_zero[0]) * alpha_.size() + at(occasion.at_zero[1]);
   for (std::size_t corner = 0; corner < 4; ++corner) {
     for (std::size_t k = 0; k < 2; ++k) alpha_[at(occasion.at_zero[k])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
-    if (same_constants) {
-      kernel.prepared_field(occasion.t, occasion.x, corners_.of(alpha_, 4 * pair + corner), f_.data());
-    } else {
-      kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
+    if (known[corner] == nullptr) {
+      if (same_constants) {
+        kernel.prepared_field(occasion.t, occasion.x, corners_.of(alpha_, 4 * pair + corner), f_.data());
+      } else {
+        kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
+      }
     }
     std::array<double, 2> velocities{};
-    if (!project(velocities)) return false;
+    if (!project(known[corner] != nullptr ? *known[corner] : f_, velocities)) return false;
     for (std::size_t k = 0; k < 2; ++k) {
       velocities_[k][corner] = velocities[k];
       scales_[k] = std::max(scales_[k], std::abs(velocities[k]));
@@ -109,7 +116,7 @@ bool SurfacePair::moves_there(const Occasion& occasion, ModeState& state) {
   }
   surroundings_.kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
   std::array<double, 2> velocities{};
-  if (!project(velocities)) return false;
+  if (!project(f_, velocities)) return false;
   for (std::size_t k = 0; k < 2; ++k) {
     const int mode = state.mode[at(occasion.at_zero[k])];
     if (mode != 0 && !(mode * velocities[k] > sign_tolerance * scales_[k])) return false;
@@ -134,11 +141,17 @@ bool SurfacePair::slides_on_both(const Occasion& occasion, ModeState& state) {
   return true;
 }
 
-std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before, const Occasion& occasion) {
+std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before, const Occasion& occasion,
+                                                         const ModeField& field) {
   if (before.sliding.size() != 1 || !applies(before, occasion)) return std::nullopt;
   alpha_ = before.alpha;
-  if (!find_normals(occasion) || !find_table(occasion)) return std::nullopt;
   const auto& pair = occasion.at_zero;
+  const std::size_t slid = before.mode[at(pair[0])] == 0 ? 0 : 1;
+  const std::size_t here = before.mode[at(pair[1 - slid])] > 0 ? std::size_t{1} << (1 - slid) : 0;
+  KnownFields known{};
+  known[here] = &field.field_of(Region::below);
+  known[here | std::size_t{1} << slid] = &field.field_of(Region::above);
+  if (!find_normals(occasion) || !find_table(occasion, known)) return std::nullopt;
   const auto behind = switching::pass_across(switching::plane_table(velocities_),
                                              {before.mode[at(pair[0])], before.mode[at(pair[1])]});
   // All four fields are clear of both surfaces, so is what lies between them.
@@ -149,7 +162,7 @@ std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before
 bool SurfacePair::decide(const ModeState& before, const Occasion& occasion, Transition& transition) {
   if (!applies(before, occasion)) return false;
   alpha_ = before.alpha;
-  if (!find_normals(occasion) || !find_table(occasion)) return false;
+  if (!find_normals(occasion) || !find_table(occasion, {})) return false;
   const auto& pair = occasion.at_zero;
   const auto table = switching::plane_table(velocities_);
   const PlaneMode incoming{before.mode[at(pair[0])], before.mode[at(pair[1])]};

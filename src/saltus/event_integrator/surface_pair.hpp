@@ -29,17 +29,21 @@ class SurfacePair {
   /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
   [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition);
   /// The same where the solution goes on sliding on one surface across the other (switching::pass_across()), with their
-  /// selections behind, in the order of the occasion; nullopt where it does not, or not as clearly. Cost: four
-  /// evaluations of f.
-  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before, const Occasion& occasion);
+  /// selections behind, in the order of the occasion; nullopt where it does not, or not as clearly.
+  /// @param field  of the mode before, behind an evaluation at the point of the occasion
+  /// Cost: two evaluations of f.
+  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before, const Occasion& occasion,
+                                                            const ModeField& field);
   /// What the last decision was made from.
   [[nodiscard]] Meeting meeting(const ModeState& before, const Occasion& occasion) const;
 
  private:
   [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
   bool find_normals(const Occasion& occasion);
-  [[nodiscard]] bool project(std::array<double, 2>& velocities) const;
-  bool find_table(const Occasion& occasion);
+  [[nodiscard]] bool project(const std::vector<double>& f, std::array<double, 2>& velocities) const;
+  /// Of the four corners, n_x each; nullptr where they are not known.
+  using KnownFields = std::array<const std::vector<double>*, 4>;
+  bool find_table(const Occasion& occasion, const KnownFields& known);
   bool moves_there(const Occasion& occasion, ModeState& state);
   bool slides_on_both(const Occasion& occasion, ModeState& state);
   void describe(const ModeState& before, const Occasion& occasion, const switching::PlaneDecision& decision,
@@ -51,6 +55,7 @@ class SurfacePair {
   std::vector<double> f_;        ///< n_x
   std::vector<double> rows_[2];  ///< gradients of the two surfaces
   std::array<double, 2> rates_{};
+  std::array<int, 2> constant_rows_{-1, -1};  ///< the surfaces of these, if they are the same everywhere
   std::array<double, 2> scales_{};  ///< largest normal components
   std::array<std::array<double, 4>, 2> velocities_{};
   FieldMemory corners_;  ///< of the four regions that meet
