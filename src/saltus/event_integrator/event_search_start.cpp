@@ -154,7 +154,7 @@ void EventSearch::read_start(double t, const double* x) {
     // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
     // zero of this start.
     if (function.zero_order > 0) function.offset = point_[i];
-    if (is_exit && function.kind != FunctionKind::release) bear_tangency(i, t, x);
+    if (any_nesting_ && is_exit && function.kind != FunctionKind::release) bear_tangency(i, t, x);
   }
 }
 

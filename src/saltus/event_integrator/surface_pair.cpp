@@ -59,6 +59,10 @@ bool SurfacePair::find_normals(const Occasion& occasion) {
     kernel.gradient(occasion.at_zero[k], occasion.t, occasion.x, alpha_.data(), rows_[k].data(),
                                   &rates_[k]);
     if (!is_finite(rows_[k]) || !(product(rows_[k], rows_[k]) > 0.0)) return false;
+    columns_[k].clear();
+    for (std::size_t i = 0; i < rows_[k].size(); ++i) {
+      if (rows_[k][i] != 0.0) columns_[k].push_back(i);
+    }
   }
   if (kernel.is_affine(pair[0]) && kernel.is_affine(pair[1])) constant_rows_ = pair;  // nothing is nested around them
   return true;
@@ -69,7 +73,7 @@ bool SurfacePair::project(const std::vector<double>& f, std::array<double, 2>& v
   if (!is_finite(f)) return false;
   for (std::size_t k = 0; k < 2; ++k) {
     velocities[k] = rates_[k];
-    for (std::size_t i = 0; i < f.size(); ++i) velocities[k] += rows_[k][i] == 0.0 ? 0.0 : rows_[k][i] * f[i];
+    for (const std::size_t i : columns_[k]) velocities[k] += rows_[k][i] * f[i];
   }
   return true;
 }
