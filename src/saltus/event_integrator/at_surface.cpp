@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/ode/classical_step.hpp"
 
 namespace saltus::event_integrator {
 
@@ -71,8 +72,7 @@ std::vector<std::vector<double>> corners_inside(const evaluation::ModelKernel& k
 bool moves_along(const evaluation::ModelKernel& kernel, const std::vector<double>& alpha, int surface, double t,
                  const double* x, double scale) {
   const std::size_t n = at(kernel.states());
-  std::vector<double> f(n), row(n), values(at(kernel.event_functions())), point(x, x + n), trial(n), k2(n), k3(n),
-      k4(n);
+  std::vector<double> f(n), row(n), values(at(kernel.event_functions())), point(x, x + n);
   const auto velocity = [&](int function, double time) {
     kernel.field(time, point.data(), alpha.data(), f.data());
     double sum = 0.0;
@@ -91,14 +91,10 @@ bool moves_along(const evaluation::ModelKernel& kernel, const std::vector<double
   }
   if (!std::isfinite(time)) return false;
   const double h = 1e-2 * time;
-  const auto stage = [&](double part, const std::vector<double>& slope, std::vector<double>& result) {
-    for (std::size_t i = 0; i < n; ++i) trial[i] = point[i] + part * h * slope[i];
-    kernel.field(t + part * h, trial.data(), alpha.data(), result.data());
+  const auto along = [&](double at_time, const double* here, double* slope) {
+    kernel.field(at_time, here, alpha.data(), slope);
   };
-  stage(0.5, f, k2);
-  stage(0.5, k2, k3);
-  stage(1.0, k3, k4);
-  for (std::size_t i = 0; i < n; ++i) point[i] += h / 6.0 * (f[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+  ode::ClassicalStep(n).take(along, t, h, point);
   return std::abs(velocity(surface, t + h)) <= tangent * scale;
 }
 

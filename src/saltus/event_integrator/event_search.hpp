@@ -233,8 +233,8 @@ class EventSearch {
   StepBounds bounds_;
   bool bounds_known_ = false;  ///< may_vanish() has found those of the dense output
   AffineForms forms_;
-  std::vector<bool> nesting_;    ///< functions of the kernel that hold selections
-  evaluation::AffineRows rows_;  ///< at the selections of the mode
+  std::vector<bool> nesting_;         ///< functions of the kernel that hold selections
+  evaluation::AffineRows rows_;       ///< at the selections of the mode
   std::vector<std::size_t> special_;  ///< functions with an unknown sign, or a zero at the start of the next step
   std::vector<std::size_t> curved_;   ///< functions without an affine form
   Parts curved_parts_;

@@ -27,8 +27,8 @@ void EventSearch::start_at(double t) {
   zeros_at_ = t;
 }
 
-/// Behind a crossing while sliding: the forms of the exits, whose fields are others now. Returns false where the mode has to be
-/// entered afresh.
+/// Behind a crossing while sliding: the forms of the exits, whose fields are others now. Returns false where the mode
+/// has to be entered afresh.
 bool EventSearch::turn_exits(const double* x) {
   for (std::size_t row = 0; row < state_.sliding.size(); ++row) {
     for (const auto& [i, side] :
@@ -109,8 +109,8 @@ bool EventSearch::pass(std::size_t surface, const ModeState& state, double t, co
   return true;
 }
 
-/// What is left to do when the surfaces of `inspected_` have been turned: exits have other fields, and user functions are
-/// read anew.
+/// What is left to do when the surfaces of `inspected_` have been turned: exits have other fields, and user functions
+/// are read anew.
 void EventSearch::begin_flipped(const ModeState& state, double t, const double* x) {
   for (std::size_t row = 0; row < state.sliding.size(); ++row) {
     const int arriving = arriving_sign(exits_[row]);

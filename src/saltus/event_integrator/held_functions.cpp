@@ -55,8 +55,7 @@ void HeldFunctions::find_forms() {
   forms_.clear();
   for (const HeldFunction& function : functions_) {
     const auto is_inside = [&](const HeldFunction& other) {
-      const auto& inner = kernel_.inner(function.surface);
-      return other.order == 0 && std::find(inner.begin(), inner.end(), other.surface) != inner.end();
+      return other.order == 0 && contains(kernel_.inner(function.surface), other.surface);
     };
     const bool around = std::any_of(functions_.begin(), functions_.end(), is_inside);
     forms_.push_back(around ? kernel_.with_limited_roots(function.surface) : function.surface);

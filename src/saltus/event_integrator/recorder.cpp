@@ -243,7 +243,8 @@ void Recorder::switched(double t, const std::vector<double>& x, const SurfaceSwi
   if (const auto* slid = change.slid) {
     const auto k = at(slid->surface);
     event.mode = recording_.modes.append_change(k, 0, slid->alpha_before);
-    event.mode_after = recording_.modes.append_changes({{{j, change.after, change.alpha_after}, {k, 0, slid->alpha_after}}});
+    event.mode_after =
+        recording_.modes.append_changes({{{j, change.after, change.alpha_after}, {k, 0, slid->alpha_after}}});
     event.meeting = recording_.meetings.size();
     recording_.meetings.push_back(slid->meeting);
   } else {

@@ -140,8 +140,8 @@ bool Run::pass_across(const Located& located, int surface, const switching::Plan
   const std::size_t place = occasion_.at_zero[0] == surface ? 0 : 1;
   const SlidAcross across{slid, state_.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
                           surface_pair_.meeting(state_, occasion_)};
-  const SurfaceSwitch change{surface,      state_.mode[j], -state_.mode[j],
-                             state_.alpha[j], alpha[place], switching::reason_of_passage(), &across};
+  const SurfaceSwitch change{
+      surface, state_.mode[j], -state_.mode[j], state_.alpha[j], alpha[place], switching::reason_of_passage(), &across};
   const std::size_t mark = step_memory_.mark_with(j, change.after);
   std::copy(located.x.begin(), located.x.end(), x_.begin());
   field_.pass(j, change.alpha_after, across.alpha_after,

@@ -234,7 +234,7 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   put_on(kernel_, limit, h_scale_, on);
   std::vector<double> x = limit.x;
   Occasion occasion;
-  std::vector<double> lap_change(kernel_.event_functions() > 0 ? at(kernel_.event_functions()) : 0U);
+  std::vector<double> lap_change(at(kernel_.event_functions()));
   for (const int j : on.sliding) {
     for (const int i : kernel_.inner(j)) {
       lap_change[at(i)] = limit.lap * std::abs(rate_along_field(i, t_, x_.data(), slope_.data()).value);

@@ -56,8 +56,7 @@ bool SurfacePair::find_normals(const Occasion& occasion) {
   if (pair == constant_rows_) return true;
   constant_rows_ = {-1, -1};
   for (std::size_t k = 0; k < 2; ++k) {
-    kernel.gradient(occasion.at_zero[k], occasion.t, occasion.x, alpha_.data(), rows_[k].data(),
-                                  &rates_[k]);
+    kernel.gradient(occasion.at_zero[k], occasion.t, occasion.x, alpha_.data(), rows_[k].data(), &rates_[k]);
     if (!is_finite(rows_[k]) || !(product(rows_[k], rows_[k]) > 0.0)) return false;
     columns_[k].clear();
     for (std::size_t i = 0; i < rows_[k].size(); ++i) {
@@ -156,8 +155,8 @@ std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before
   known[here] = &field.field_of(Region::below);
   known[here | std::size_t{1} << slid] = &field.field_of(Region::above);
   if (!find_normals(occasion) || !find_table(occasion, known)) return std::nullopt;
-  const auto behind = switching::pass_across(switching::plane_table(velocities_),
-                                             {before.mode[at(pair[0])], before.mode[at(pair[1])]});
+  const auto behind =
+      switching::pass_across(switching::plane_table(velocities_), {before.mode[at(pair[0])], before.mode[at(pair[1])]});
   // All four fields are clear of both surfaces, so is what lies between them.
   if (!behind) return std::nullopt;
   return behind->alpha;

@@ -50,14 +50,14 @@ class SurfacePair {
                 Transition& transition) const;
 
   const Surroundings& surroundings_;
-  bool any_ = false;             ///< the system may have such meetings
-  std::vector<double> alpha_;    ///< n_psi
-  std::vector<double> f_;        ///< n_x
-  std::vector<double> rows_[2];  ///< gradients of the two surfaces
+  bool any_ = false;                     ///< the system may have such meetings
+  std::vector<double> alpha_;            ///< n_psi
+  std::vector<double> f_;                ///< n_x
+  std::vector<double> rows_[2];          ///< gradients of the two surfaces
   std::vector<std::size_t> columns_[2];  ///< nonzero ones of these
   std::array<double, 2> rates_{};
   std::array<int, 2> constant_rows_{-1, -1};  ///< the surfaces of these, if they are the same everywhere
-  std::array<double, 2> scales_{};  ///< largest normal components
+  std::array<double, 2> scales_{};            ///< largest normal components
   std::array<std::array<double, 4>, 2> velocities_{};
   FieldMemory corners_;  ///< of the four regions that meet
   ModeField field_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "saltus/event_integrator/transition_internal.hpp"
+#include "saltus/ode/classical_step.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -15,21 +16,14 @@ bool follow_shortly(const Surroundings& s, const ModeState& state, const Occasio
                     const std::vector<double>& start, const Look& look) {
   ModeField field(s.kernel, s.affine_in_alpha);
   field.enter(state);
-  const std::size_t n = start.size();
-  std::vector<double> x = start, trial(n), k1(n), k2(n), k3(n), k4(n), psi(at(s.kernel.event_functions()));
+  std::vector<double> x = start, psi(at(s.kernel.event_functions()));
+  ode::ClassicalStep classical(start.size());
   constexpr int steps = 4;
   const double h = 1e-2 * occasion.time_scale / steps;
   double t = occasion.t;
-  const auto stage = [&](double part, const std::vector<double>& slope, std::vector<double>& result) {
-    for (std::size_t i = 0; i < n; ++i) trial[i] = x[i] + part * h * slope[i];
-    field(t + part * h, trial.data(), result.data());
-  };
+  const auto along = [&](double time, const double* point, double* slope) { field(time, point, slope); };
   for (int step = 0; step < steps; ++step) {
-    field(t, x.data(), k1.data());
-    stage(0.5, k1, k2);
-    stage(0.5, k2, k3);
-    stage(1.0, k3, k4);
-    for (std::size_t i = 0; i < n; ++i) x[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+    classical.take(along, t, h, x);
     t += h;
     s.kernel.functions(t, x.data(), state.alpha.data(), psi.data());
     if (!look(psi)) return false;

@@ -69,6 +69,24 @@ TEST(ModeLog, KnowsWhichModesChangedLast) {
   EXPECT_EQ(changed, (std::vector<std::size_t>{0, 2}));
 }
 
+TEST(ModeLog, TakesChangesOfFunctionsOneOrTwoAtATime) {
+  ModeLog log;
+  log.append({1, 0, -1}, {1.0, 0.5, 0.0});
+  EXPECT_EQ(log.append_change(1, 0, 0.75), 1U);
+  EXPECT_EQ(log.append_change(1, 0, 0.75), 1U) << "no change";
+  EXPECT_EQ(log.append_changes({{{2, 1, 1.0}, {1, 0, 0.25}}}), 2U);
+  std::vector<std::size_t> changed;
+  log.append_changed(changed);
+  EXPECT_EQ(changed, (std::vector<std::size_t>{2}));
+  ModeLog::Reader reader(log);
+  reader.seek(2);
+  EXPECT_EQ(reader.mode(), (std::vector<int>{1, 0, 1}));
+  EXPECT_EQ(reader.alpha(), (std::vector<double>{1.0, 0.25, 1.0}));
+  reader.seek(1);
+  EXPECT_EQ(reader.mode(), (std::vector<int>{1, 0, -1}));
+  EXPECT_EQ(reader.alpha(), (std::vector<double>{1.0, 0.75, 0.0}));
+}
+
 TEST(ModeLog, WorksWithoutSurfaces) {
   ModeLog log;
   EXPECT_EQ(log.append({}, {}), 0U);

@@ -94,6 +94,45 @@ TEST(SurfacePair, DecidesLikeTheGeneralDecision) {
   EXPECT_GT(other, 100);
 }
 
+TEST(SurfacePair, SlidesAcrossWithTheSelectionsOfTheGeneralDecision) {
+  std::mt19937 random(20261123);
+  int crossed = 0, other = 0;
+  std::vector<double> slope(origin.size());
+  for (int k = 0; k < 800; ++k) {
+    const auto system = random_meeting(random);
+    const auto kernel = evaluation::ModelKernel::compile(system);
+    ASSERT_TRUE(kernel.has_value());
+    const Surroundings surroundings{*kernel, system, true, {}, {}};
+    SurfacePair pair(surroundings);
+    ModeField field(*kernel, true);
+    for (const std::array<int, 2> mode : {std::array{0, -1}, {0, 1}, {-1, 0}, {1, 0}}) {
+      const ModeState before = state_of(mode);
+      const auto occasion = meeting_from(before);
+      field.enter(before);
+      field(occasion.t, occasion.x, slope.data());
+      const auto alpha = pair.across(before, occasion, field);
+      const Transition general = decide_mode(surroundings, before, occasion);
+      if (!alpha) {
+        ++other;
+        continue;
+      }
+      ++crossed;
+      EXPECT_EQ(general.termination, result::Termination::completed);
+      EXPECT_EQ(general.unique, true);
+      EXPECT_EQ(general.state.mode, (std::vector<int>{-mode[0], -mode[1]}));
+      EXPECT_EQ(general.state.alpha, (std::vector<double>{(*alpha)[0], (*alpha)[1]}));
+      ASSERT_TRUE(general.meeting.has_value());
+      const Meeting meeting = pair.meeting(before, occasion);
+      EXPECT_EQ(meeting.surfaces, general.meeting->surfaces);
+      EXPECT_EQ(meeting.velocities, general.meeting->velocities);
+      EXPECT_EQ(meeting.alpha, general.meeting->alpha);
+    }
+  }
+  // Few random tables lead across in all four regions.
+  EXPECT_GT(crossed, 10);
+  EXPECT_GT(other, 100);
+}
+
 TEST(SurfacePair, LeavesWhatIsNotSimpleToTheGeneralDecision) {
   std::mt19937 random(20240712);
   const auto decides = [&](auto&& change) {
