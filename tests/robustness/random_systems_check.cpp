@@ -26,6 +26,7 @@ class ModeCheck {
 
   /// A row of the result: on its surfaces to rounding, with the selections of its own field.
   [[nodiscard]] std::string row(double t, const State& x, const State& alpha) const {
+    if (has_null(alpha)) return undetermined(t, x);
     const FieldValue value = field_(t, x, alpha);
     const bool at_kink = slides_at_kink(t, x, alpha);
     for (std::size_t j = 0; j < mode_.size(); ++j) {
@@ -73,6 +74,27 @@ class ModeCheck {
   }
 
  private:
+  [[nodiscard]] bool has_null(const State& alpha) const {
+    const auto& sliding = field_.sliding();
+    return sliding.size() > 1 &&
+           std::any_of(sliding.begin(), sliding.end(), [&](std::size_t j) { return std::isnan(alpha[j]); });
+  }
+
+  /// Selections are null: some balance the fields, and these are not the only ones (G is singular). Stretches of such
+  /// rows are not followed.
+  [[nodiscard]] std::string undetermined(double t, const State& x) const {
+    const State found = field_(t, x, State(mode_.size(), 0.5)).alpha;
+    const FieldValue value = field_(t, x, found);
+    if (!(value.imbalance <= 1e-9))
+      return fmt::format("null selections where {} is left of the fields", value.imbalance);
+    if (!(value.pivot <= 1e-9)) return fmt::format("null selections that are determined (pivot {})", value.pivot);
+    for (const auto j : field_.sliding()) {
+      if (!(std::abs(value.psi[j]) <= 1e-12 * size_of(x))) return fmt::format("slides on s{} with {}", j, value.psi[j]);
+      if (!(found[j] >= -1e-9 && found[j] <= 1.0 + 1e-9)) return fmt::format("null selection {} of s{}", found[j], j);
+    }
+    return inequalities(x, value, 1e-12);
+  }
+
   struct Path {
     State end;
     std::string problem;  ///< an inequality that fails on the way
