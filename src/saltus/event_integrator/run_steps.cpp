@@ -8,6 +8,7 @@
 #include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
 #include "saltus/event_integrator/undefined.hpp"
+#include "saltus/event_integrator/without_limit.hpp"
 
 namespace saltus::event_integrator {
 
@@ -67,9 +68,10 @@ bool Run::shorten(double factor) {
   return false;
 }
 
-/// Whether the steps got short because the sliding selection has no limit here.
+/// Whether the steps got short because the sliding selection, or the right-hand side itself, has no limit here.
 bool Run::stopped_by_two_fold() {
-  const auto message = two_fold_message(surroundings_, state_, t_, x_.data());
+  auto message = two_fold_message(surroundings_, state_, t_, x_.data());
+  if (!message) message = without_limit(surroundings_, t_, x_, state_.alpha, mode_tolerances_.atol);
   if (message) fail(Termination::outside_class, *message);
   return message.has_value();
 }
