@@ -164,6 +164,8 @@ HiddenTrajectory::Status HiddenTrajectory::cross_corner() {
 
 HiddenTrajectory::Status HiddenTrajectory::cross_strip() {
   const int free = face_.free().front();
+  // NOTE: a step may have ended a rounding beyond an end of the strip, which the component would never reach from there.
+  u_[at(free)] = std::clamp(u_[at(free)], 0.0, 1.0);
   face_.derivatives(u_.data(), v_.data(), derivatives_.data());
   const StripMotion motion{u_[at(free)], v_[at(free)], derivatives_[at(free)]};
   if (motion.v0 == 0.0 && !(motion.rate < 0.0)) {

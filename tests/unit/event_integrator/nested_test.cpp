@@ -66,5 +66,21 @@ TEST(Nested, AFunctionThatJumpsInEveryLapIsNotHeldAtItsLimit) {
   }
 }
 
+TEST(Nested, WhereSurfacesAndAKinkInsideAKinkMeetTheHiddenDynamicsLeavesAll) {
+  // A start on y = 1/2, on x + y = 0 and at a kink of | |y - 1/2 - t/2| - 1|: y' = -1.25 - 1.6 sign(-x - y) or so. The
+  // hidden dynamics leaves all three, the last one from a rounding beyond the end of its strip.
+  Builder b("start at a kink");
+  const SX x = b.state("x", {-0.5});
+  const SX y = b.state("y", {0.5});
+  b.dynamics("x", -0.75 - 1.1429043106330647 * x - 1.0277495677542057 * b.sign(y - 0.5));
+  b.dynamics("y", 0.5 + 0.5 * x - 0.751488787818674 * y - 1.5940262861003238 * b.sign(-x - y) - 0.22182261105549905 -
+                      0.9023489012688066 * b.abs(b.abs(-0.5 + y - 0.5 * b.time()) - 1));
+  const auto result = testing::run_tightly(b, 1);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_LT(result.final.x[1], 0.5);
+  EXPECT_GT(-result.final.x[0] - result.final.x[1], 0.0);
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator
