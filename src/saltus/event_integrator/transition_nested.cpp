@@ -86,7 +86,18 @@ std::optional<Transition> cross_with_jump(const Surroundings& s, const ModeState
     }
   }
   if (!behind) return std::nullopt;
-  return Decider(s, *behind, rest).run_crossing(jumping);
+  Transition crossed = Decider(s, *behind, rest).run_crossing(jumping);
+  // What was slid on together with the function that jumps may be moved by its selection only: it is left then.
+  const bool lost = crossed.termination == result::Termination::evaluation_failed && !behind->sliding.empty();
+  if (lost && before.sliding.size() > behind->sliding.size()) {
+    rest.touched = behind->sliding;
+    Transition left = Decider(s, *behind, rest).run();
+    if (left.termination == result::Termination::completed) {
+      left.reason = crossed.reason + "; " + left.reason;
+      return left;
+    }
+  }
+  return crossed;
 }
 
 std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& before, const Occasion& occasion) {

@@ -66,6 +66,25 @@ TEST(Nested, AFunctionThatJumpsInEveryLapIsNotHeldAtItsLimit) {
   }
 }
 
+TEST(Nested, WhatOnlyAFunctionThatJumpsAwayHasHeldIsLeftWithIt) {
+  // Slides on x + sign(y)/2 = 1/2 and on z = 0, with det G = 1: z' = sign(x + sign(y)/2 - 1/2) - 1/2 feels the first
+  // selection only. y = 1 - t changes its sign at t = 1, behind which x - 1 is -1, and z' = -3/2.
+  Builder b("held by another");
+  const SX x = b.state("x", {0});
+  const SX y = b.state("y", {1});
+  const SX z = b.state("z", {0});
+  const SX jumping = b.sign(x + 0.5 * b.sign(y) - 0.5);
+  const SX held = b.sign(z);
+  b.dynamics("x", -jumping + 0.5 - held);
+  b.dynamics("y", -1);
+  b.dynamics("z", jumping - 0.5);
+  const auto result = testing::run_tightly(b, 1.5);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_EQ(result.events.front().t, 0.0);
+  EXPECT_NEAR(result.events[1].t, 1.0, 1e-12);
+  EXPECT_LT(result.final.x[2], -0.5);
+}
+
 TEST(Nested, WhereSurfacesAndAKinkInsideAKinkMeetTheHiddenDynamicsLeavesAll) {
   // A start on y = 1/2, on x + y = 0 and at a kink of | |y - 1/2 - t/2| - 1|: y' = -1.25 - 1.6 sign(-x - y) or so. The
   // hidden dynamics leaves all three, the last one from a rounding beyond the end of its strip.
