@@ -109,7 +109,8 @@ TEST(TerminalSliding, ADisturbanceDoesNotMoveTheArrival) {
     expect_rest(result, arrival, 10.0 * accuracy.rtol * arrival);
     EXPECT_NEAR(result.final.alpha[0], 0.5 + 0.3 * std::sin(18.0) / 4.0, 1e-12);
     // v' = 1/2 on the curve up to the origin; the last step lies up to 1.5e-3 before it, and 0.9/4 is the rate.
-    EXPECT_NEAR(result.events.back().alpha_before.value().at(0), 0.5 + (0.3 * std::sin(3.0 * arrival) - 0.5) / 4.0, 5e-4);
+    EXPECT_NEAR(result.events.back().alpha_before.value().at(0), 0.5 + (0.3 * std::sin(3.0 * arrival) - 0.5) / 4.0,
+                5e-4);
   }
 }
 
@@ -345,6 +346,42 @@ TEST(TerminalSliding, CopiesDoNotMindEachOther) {
       EXPECT_EQ(result.final.mode, (std::vector<int>{0, 0}));
       EXPECT_EQ(result.final.x, (std::vector<double>{0.0, 0.0, 0.0, 0.0}));
     }
+  }
+}
+
+// Roots flatter at the origin than a square root need motions there far below the rounding of the fields: those of each
+// copy, while the others slide or rest.
+TEST(TerminalSliding, CopiesOfFlatRootsAreAsExact) {
+  const std::string text = R"toml(
+[model]
+name = "m"
+[states]
+x = 1
+v = 0
+y = -0.7
+w = 0.2
+[dynamics]
+x = "v"
+v = "-2*sign(v+abs(x)^0.75*sign(x))"
+y = "w"
+w = "0.1-2*sign(w+0.9*abs(y)^0.75*sign(y))"
+[simulate]
+until = 5
+)toml";
+  const double met = root([](double t) { return -2.0 * t + signed_power(1.0 - t * t, 0.75); }, 0.0, 0.7);
+  const double arrival = met + 4.0 * std::pow(1.0 - met * met, 0.25);
+  const auto y = [](double t) { return -0.7 + 0.2 * t + 1.05 * t * t; };
+  const double other_met = root([&](double t) { return 0.2 + 2.1 * t + 0.9 * signed_power(y(t), 0.75); }, 0.0, 0.4);
+  const double other = other_met + 4.0 / 0.9 * std::pow(-y(other_met), 0.25);
+  for (const auto& accuracy : accuracies()) {
+    const Result result = completed(text, accuracy);
+    ASSERT_EQ(result.events.size(), 4U);
+    EXPECT_NEAR(result.events[2].t, other, 10.0 * accuracy.rtol * other);
+    // Where the first one arrives the second one is (arrival - other)^4/256 away, moves by the cube of that over 64,
+    // and is known to the tolerance of the run.
+    const double speed = std::pow(arrival - other, 3.0) / 64.0;
+    EXPECT_NEAR(result.events[3].t, arrival, 10.0 * accuracy.rtol * arrival + accuracy.atol / speed);
+    EXPECT_EQ(result.final.x, (std::vector<double>{0.0, 0.0, 0.0, 0.0}));
   }
 }
 

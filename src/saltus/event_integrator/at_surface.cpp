@@ -63,6 +63,11 @@ std::vector<std::vector<double>> corners_at(const ModeState& state, const std::v
   return corners;
 }
 
+bool is_around_root(const evaluation::ModelKernel& kernel, int function) {
+  const auto& inner = kernel.inner(function);
+  return std::any_of(inner.begin(), inner.end(), [&](int i) { return kernel.has_root_inside(function, i); });
+}
+
 std::vector<std::vector<double>> corners_inside(const evaluation::ModelKernel& kernel, const ModeState& state,
                                                 int function) {
   if (state.sliding.size() == 1) return {state.corner_alpha[0], state.corner_alpha[1]};

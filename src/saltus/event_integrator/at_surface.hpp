@@ -23,6 +23,9 @@ void move_onto(const evaluation::ModelKernel& kernel, const ModeState& state, in
 [[nodiscard]] std::vector<int> sliding_inside(const evaluation::ModelKernel& kernel, const ModeState& state,
                                               int function);
 
+/// Whether a function is around a root of another one, beside the sign of that one: v + abs(x)^p*sign(x).
+[[nodiscard]] bool is_around_root(const evaluation::ModelKernel& kernel, int function);
+
 /// Selections of the regions that meet at `surfaces`: those of the mode, with each of these at 0 and at 1. Cost:
 /// 2^surfaces, of at most ten of them.
 [[nodiscard]] std::vector<std::vector<double>> corners_at(const ModeState& state, const std::vector<int>& surfaces);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -53,12 +54,14 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
 
 void HeldFunctions::find_forms() {
   forms_.clear();
+  beside_root_.clear();
   for (const HeldFunction& function : functions_) {
     const auto is_inside = [&](const HeldFunction& other) {
       return other.order == 0 && contains(kernel_.inner(function.surface), other.surface);
     };
     const bool around = std::any_of(functions_.begin(), functions_.end(), is_inside);
     forms_.push_back(around ? kernel_.with_limited_roots(function.surface) : function.surface);
+    beside_root_.push_back(!around && function.order == 0 && is_around_root(kernel_, function.surface));
   }
 }
 

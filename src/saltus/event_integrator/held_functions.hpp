@@ -46,6 +46,8 @@ class HeldFunctions {
   [[nodiscard]] double velocity_terms(std::size_t i, const std::vector<double>& f) const;
   /// Behind differentiate(): f less its part normal to the set, for a motion that stays in it.
   void remove_normal_part(std::vector<double>& f);
+  /// Whether psi_i, held itself, is around a root that is not limited.
+  [[nodiscard]] bool is_beside_root(std::size_t i) const { return beside_root_[i]; }
   /// Newton steps onto c = 0; returns whether x changed. Low orders first.
   bool project(double t, double* x);
   /// Behind differentiate(): x moved by about `step` (relative to 1 + |x_i|) along the tangent space, in a direction
@@ -66,7 +68,8 @@ class HeldFunctions {
   std::vector<HeldFunction> functions_;
   std::vector<double> alpha_, row_, direction_, point_;
   std::vector<int> forms_;  ///< numbers of the kernel: negative where roots are limited
-  bool rooted_ = false;     ///< whether f has a root of one of the surfaces' functions
+  std::vector<bool> beside_root_;
+  bool rooted_ = false;  ///< whether f has a root of one of the surfaces' functions
   mutable std::vector<double> values_;
   Eigen::MatrixXd rows_, basis_;  ///< gradients; an orthonormal basis of their span, row by row
   Eigen::VectorXd rates_, parts_, step_;

@@ -93,7 +93,19 @@ bool HigherOrderField::hold_one(std::size_t b, double t, const double* x) {
     alpha_[at(sliding_[balance.rows[i]])] = low + share * (selection(range.highest, i) - low);
   }
   ranges_.push_back(range);
+  if (const std::size_t function = balance.functions.front(); functions_.is_beside_root(function)) {
+    auto& jump = jumps_.emplace_back(Jump{function, range.max - range.min, corners_[range.highest]});
+    for (std::size_t i = 0; i < jump.field.size(); ++i) jump.field[i] -= corners_[range.lowest][i];
+  }
   return determines(balance, range);
+}
+
+/// As ModeField does where nothing is held with higher order.
+void HigherOrderField::balance_beside_roots() {
+  for (const auto& jump : jumps_) {
+    const double factor = functions_.velocity(jump.function, motion_) / jump.velocity;
+    for (std::size_t i = 0; i < motion_.size(); ++i) motion_[i] -= jump.field[i] * factor;
+  }
 }
 
 /// f with the selections of a balance at 0, and what each of them adds to it at 1.
@@ -195,6 +207,7 @@ void HigherOrderField::evaluate(double t, const double* point) {
   const double* x = x_.data();
   functions_.differentiate(t, x);
   ranges_.clear();
+  jumps_.clear();
   too_many_ = false;
   bool determined = true;
   for (std::size_t b = 0; b < set_.balances.size(); ++b) {
@@ -203,6 +216,7 @@ void HigherOrderField::evaluate(double t, const double* point) {
     determined = determined && held;
   }
   kernel_.field(t, x, alpha_.data(), motion_.data());
+  balance_beside_roots();
   functions_.remove_normal_part(motion_);
   if (!determined) std::fill(motion_.begin(), motion_.end(), std::numeric_limits<double>::quiet_NaN());
   // What is recorded lies in the box.

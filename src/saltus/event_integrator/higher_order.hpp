@@ -82,6 +82,7 @@ class HigherOrderField {
   };
 
   bool hold_one(std::size_t b, double t, const double* x);
+  void balance_beside_roots();
   bool hold_several(std::size_t b, double t, const double* x);
   void evaluate(const Balance& balance, BalanceRange& range, double t, const double* x);
   [[nodiscard]] bool determines(const Balance& balance, const BalanceRange& range) const;
@@ -98,6 +99,13 @@ class HigherOrderField {
   std::vector<std::vector<double>> corners_;  ///< f of the balance at hand
   std::vector<double> velocities_;
   std::vector<Coupled> coupled_;  ///< by balance
+  /// What a balance of a function around a root moves, from the corner where it falls most to that where it rises most.
+  struct Jump {
+    std::size_t function = 0;
+    double velocity = 0.0;
+    std::vector<double> field;
+  };
+  std::vector<Jump> jumps_;
   bool too_many_ = false;
 };
 

@@ -155,9 +155,7 @@ void ModeField::slide_on_one(double t, const double* x, double* xdot) {
   }
   double normal = rates_[0];
   for (std::size_t i = 0; i < n; ++i) normal += row[i] * xdot[i];
-  if (has_root_inside_) {
-    // Towards the zero of that root motions vanish that are differences of terms of the size of the jump: what rounding
-    // of the selection has left of psi' is taken from the states that it moves.
+  if (!rooted_rows_.empty()) {  // as in balance_beside_roots()
     const double factor = normal / (exits_[0].above - exits_[0].below);
     for (std::size_t i = 0; i < n; ++i) xdot[i] -= (f_[1][i] - f_[0][i]) * factor;
     return;
@@ -234,6 +232,7 @@ void ModeField::slide(double t, const double* x, double* xdot) {
     std::copy(higher_order_->motion().begin(), higher_order_->motion().end(), xdot);
     return;
   }
+  if (!rooted_rows_.empty() && solve_ == SlidingSolve::decoupled) balance_beside_roots(t, x);
   remove_normal_part(xdot);
 }
 

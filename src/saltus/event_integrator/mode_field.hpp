@@ -130,6 +130,7 @@ class ModeField {
   [[nodiscard]] const ode::LinearField* linear_field();
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
   void resize_rows();
+  void find_rooted_rows();
   void refer_to_constants();
   void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]; not for one affine surface
   void gradients(double t, const double* x);
@@ -153,6 +154,7 @@ class ModeField {
   void weigh_references();
   void evaluate_nonaffine(double t, const double* x);
   double selected_velocity(double t, const double* x, std::size_t row, double selection);
+  void balance_beside_roots(double t, const double* x);
   void remove_normal_part(double* xdot);
   void evaluate_higher_order(double t, const double* x);
   [[nodiscard]] bool solve_normal_equations();
@@ -199,7 +201,8 @@ class ModeField {
   std::size_t next_exit_row_ = 0;
   evaluation::AffineRow exit_form_;                 ///< of a row that is not kept
   int single_ = -1;                                 ///< the surface that rows and groups are of, if it is one
-  bool has_root_inside_ = false;                    ///< of that one: of a function whose sign it holds
+  std::vector<std::size_t> rooted_rows_;            ///< of functions around a root of one whose sign they hold
+  std::vector<double> jump_;                        ///< n_x
   std::vector<bool> constant_row_;                  ///< gradient known once and for all in this mode
   std::vector<int> coordinate_;                     ///< the only nonzero column of a row, or -1
   evaluation::SlidingConstants sliding_constants_;  ///< of one surface with a constant gradient

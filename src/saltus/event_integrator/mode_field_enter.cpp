@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/event_integrator/at_surface.hpp"
 #include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
@@ -37,10 +38,8 @@ void ModeField::enter(const ModeState& state) {
     higher_order_->enter(*state.higher, sliding_, state.alpha);
   }
   single_ = is_single() ? sliding_.front() : -1;
+  find_rooted_rows();
   if (sliding_.size() != 1) return;
-  const int slid = sliding_.front();
-  const auto& inner = kernel_.inner(slid);
-  has_root_inside_ = std::any_of(inner.begin(), inner.end(), [&](int i) { return kernel_.has_root_inside(slid, i); });
   between_.clear();
   for (std::size_t corner = 0; corner < 2; ++corner) {
     corner_[corner] = state.corner_alpha[corner];
@@ -65,6 +64,13 @@ void ModeField::resize_rows() {
   exits_.assign(sliding_.size(), {});
   coordinate_.assign(sliding_.size(), -1);
   constant_row_.assign(sliding_.size(), false);
+}
+
+void ModeField::find_rooted_rows() {
+  rooted_rows_.clear();
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    if (is_around_root(kernel_, sliding_[row])) rooted_rows_.push_back(row);
+  }
 }
 
 void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& other) {

@@ -38,6 +38,22 @@ bool ModeField::solve_independent_equations() {
   return true;
 }
 
+/// Towards the zero of a root motions vanish that are differences of terms of the size of the jump: what rounding of
+/// the selection has left of psi' is taken from the states that it moves, not from those of the root.
+void ModeField::balance_beside_roots(double t, const double* x) {
+  jump_.resize(f_[0].size());
+  for (const std::size_t row : rooted_rows_) {
+    trial_ = alpha_;
+    for (const double side : {0.0, 1.0}) {
+      trial_[at(sliding_[row])] = side;
+      kernel_.field(t, x, trial_.data(), (side == 0.0 ? jump_ : f_[1]).data());
+    }
+    for (std::size_t i = 0; i < jump_.size(); ++i) jump_[i] = f_[1][i] - jump_[i];
+    const double factor = normal_velocity(row, f_[0]) / (exits_[row].above - exits_[row].below);
+    for (std::size_t i = 0; i < jump_.size(); ++i) f_[0][i] -= jump_[i] * factor;
+  }
+}
+
 void ModeField::remove_normal_part(double* xdot) {
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
     residual_[static_cast<Eigen::Index>(row)] = normal_velocity(row, f_[0]);
