@@ -266,7 +266,8 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   const std::vector<double> x_last = x_;
   pass_to(limit.t, std::move(x));
   if (!enter(transition)) return true;
-  std::vector<int> surfaces;
+  // What has been slid on through all laps may be left at their limit, too.
+  std::vector<int> surfaces = on.sliding;
   for (const int label : limit.events) surfaces.push_back(surface_of(label));
   recorder_.spiralled(t_, surfaces, {x_last, x_, before, state_}, transition);
   row(t_, x_);
