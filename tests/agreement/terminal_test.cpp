@@ -349,6 +349,32 @@ TEST(TerminalSliding, CopiesDoNotMindEachOther) {
   }
 }
 
+// With a largest speed: x' = -1 until c |x|^q = 1, from there the curve. The bound is nested around x, too, and has one
+// sign where x is held.
+TEST(TerminalSliding, SpeedsThatAreBounded) {
+  struct Case {
+    const char* speed;
+    double c, q;
+  };
+  for (const Case& m : {Case{"min(1.2*abs(x)^0.5,1)*sign(x)", 1.2, 0.5},
+                        Case{"max(-1,min(1,1.2*sqrt(abs(x))*sign(x)))", 1.2, 0.5},
+                        Case{"min(0.9*abs(x)^0.75,1)*sign(x)", 0.9, 0.75}}) {
+    for (const double side : {1.0, -1.0}) {
+      // v' = -2 side until v = -side.
+      const double met = 0.5;
+      const double bound = std::pow(m.c, -1.0 / m.q);
+      const double arrival = met + (2.75 - bound) + std::pow(bound, 1.0 - m.q) / (m.c * (1.0 - m.q));
+      const std::string force = fmt::format("-2*sign(v+{})", m.speed);
+      for (const auto& accuracy : accuracies()) {
+        const Result result = completed(double_integrator(3.0 * side, 0, force, arrival + 1.0), accuracy);
+        ASSERT_EQ(result.events.size(), 2U);
+        EXPECT_NEAR(result.events[0].t, met, 10.0 * accuracy.rtol);
+        expect_rest(result, arrival, 10.0 * accuracy.rtol * arrival);
+      }
+    }
+  }
+}
+
 // Roots flatter at the origin than a square root need motions there far below the rounding of the fields: those of each
 // copy, while the others slide or rest.
 TEST(TerminalSliding, CopiesOfFlatRootsAreAsExact) {

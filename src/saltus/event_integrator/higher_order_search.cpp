@@ -263,15 +263,31 @@ class SetSearch {
   std::string problem_;
 };
 
+/// Whether a function around held surfaces has the sign of its mode in all regions that meet there: then it changes
+/// nothing.
+bool keeps_its_sign(const evaluation::ModelKernel& kernel, const ModeState& state, int function,
+                    const std::vector<int>& held, double t, const double* x) {
+  if (held.size() > most_surfaces) return false;
+  std::vector<double> values(at(kernel.event_functions()));
+  for (const auto& alpha : corners_at(state, held)) {
+    kernel.functions(t, x, alpha.data(), values.data());
+    if (!(values[at(function)] * state.mode[at(function)] > 0.0)) return false;
+  }
+  return true;
+}
+
 /// What of the surfaces cannot be held: kinks that no other one of them holds the sign of, and those inside functions
-/// that are not held.
-std::string find_obstacle(const Surroundings& s, const ModeState& state) {
+/// that are not held and may be zero there.
+std::string find_obstacle(const Surroundings& s, const ModeState& state, double t, const double* x) {
   const auto& kernel = s.kernel;
   std::vector<int> inside;
   for (int j = 0; j < kernel.switching_functions(); ++j) {
     const auto held = sliding_inside(kernel, state, j);
     if (held.empty()) continue;
-    if (!contains(state.sliding, j)) return "a nested switching function";
+    if (!contains(state.sliding, j)) {
+      if (!keeps_its_sign(kernel, state, j, held, t, x)) return "a nested switching function";
+      continue;
+    }
     inside.insert(inside.end(), held.begin(), held.end());
   }
   for (const int j : state.sliding) {
@@ -292,7 +308,7 @@ std::optional<HigherOrderSet> find_higher_order_set(const Surroundings& surround
   };
   if (state.sliding.empty() || state.sliding.size() > most_surfaces) return refuse("too many surfaces");
   if (!surroundings.affine_in_alpha) return refuse("selections do not enter affinely");
-  if (const auto why = find_obstacle(surroundings, state); !why.empty()) return refuse(why);
+  if (const auto why = find_obstacle(surroundings, state, t, x.data()); !why.empty()) return refuse(why);
   SetSearch search(surroundings, state, t, x, resolved);
   auto found = search.run();
   if (!found) problem = search.take_problem();
