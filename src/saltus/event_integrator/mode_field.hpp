@@ -98,7 +98,7 @@ class ModeField {
   /// Exit functions at a point, one per sliding surface.
   void exits(double t, const double* x, ExitValues* values);
   /// Behind exits(): one of the exit functions of a surface as a row, if it is affine in t and in all states but the
-  /// one that sliding keeps constant; x is any point of the mode.
+  /// one that sliding keeps constant, nullptr otherwise; x is any point of the mode. Valid until the next call.
   [[nodiscard]] const evaluation::AffineRow* exit_row(std::size_t row, Region region, const double* x);
   /// Behind exits(): size of the terms whose sum an exit function of a sliding surface is, which bounds its rounding.
   [[nodiscard]] double normal_terms(std::size_t row) const;
