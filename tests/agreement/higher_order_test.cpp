@@ -209,5 +209,46 @@ TEST(HigherOrder, SuperTwistingLosesAgainstADisturbanceThatGrows) {
   }
 }
 
+/// Continuous twisting: x and v and then e + 0.2 sin(t) are zero behind one approach along which nothing switches, with
+/// roots of both, so that no laps shrink; where x and v cannot be told from zero any more they are held, with e on
+/// -0.2 sin(t), as |0.2 cos(t)| is less than 0.75.
+TEST(HigherOrder, ContinuousTwistingIsHeldWhereItDrowns) {
+  const std::string text = R"toml(
+[model]
+name = "m"
+[states]
+x = 1
+v = 0
+e = 0
+[dynamics]
+x = "v"
+v = "-2*abs(x)^(1/3)*sign(x)-2.5*sqrt(abs(v))*sign(v)+e+0.2*sin(t)"
+e = "-0.5*sign(x)-0.25*sign(v)"
+[simulate]
+until = 12
+)toml";
+  const auto arrival = [&](const Accuracy& accuracy) {
+    const Result result = simulate_text(text, accuracy);
+    EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    const Event& last = result.events.back();
+    EXPECT_EQ(last.kind, EventKind::accumulation);
+    EXPECT_NE(last.reason.find("zero together"), std::string::npos) << last.reason;
+    EXPECT_EQ(*last.mode_after, (std::vector<int>{0, 0}));
+    EXPECT_EQ(result.final.x[0], 0.0);
+    EXPECT_EQ(result.final.x[1], 0.0);
+    EXPECT_NEAR(result.final.x[2], -0.2 * std::sin(12.0), 1e-12);
+    // Two selections, one condition.
+    EXPECT_TRUE(std::isnan(result.final.alpha[0]) && std::isnan(result.final.alpha[1]));
+    return last.t;
+  };
+  const double exact = arrival({pipeline::Integrator::dop853, 1e-12, 1e-14});
+  for (const auto integrator :
+       {pipeline::Integrator::dop853, pipeline::Integrator::dopri5, pipeline::Integrator::taylor}) {
+    for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+      EXPECT_NEAR(arrival({integrator, rtol, 1e-2 * rtol}), exact, rtol);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace saltus::problems

@@ -16,6 +16,7 @@ struct SeriesLimit {
   std::vector<int> events;  ///< numbers of those of one lap, ascending, each once
   double lap = 0.0;         ///< duration of the last one
   bool rattling = false;    ///< no laps: jumps in any order, faster than their guards are resolved
+  bool drowned = false;     ///< no laps: functions that are zero together, as far as they are resolved
 };
 
 /// The last items of a sequence, at most `capacity`. The storage of those that are gone is used again.

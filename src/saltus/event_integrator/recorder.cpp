@@ -339,7 +339,7 @@ bool Recorder::switched_lately(int function, long events) const {
 }
 
 void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passage& passage,
-                         const Transition& transition) {
+                         const Transition& transition, std::string_view why) {
   auto& entry = begin(t, result::EventKind::accumulation);
   for (std::size_t c = 0; c < system_.columns.size(); ++c) {
     const int function = system_.columns[c].function;
@@ -353,7 +353,7 @@ void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passa
   for (const std::size_t region : columns_) add_surface(entry, region);
   set_states(entry, passage.x, passage.x_after);
   entry.mode = number(passage.before);
-  add_reason(entry, "the intervals of these switches shrink geometrically: the state is their limit");
+  add_reason(entry, why);
   add_transition(entry, transition);
 }
 

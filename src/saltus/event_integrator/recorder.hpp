@@ -85,7 +85,8 @@ class Recorder {
   /// The limit of a sequence of jumps, from the last computed state.
   void accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string_view reason);
   /// The limit of a sequence of switches of these surfaces, from the last computed state; `transition` leads on.
-  void spiralled(double t, const std::vector<int>& surfaces, const Passage& passage, const Transition& transition);
+  void spiralled(double t, const std::vector<int>& surfaces, const Passage& passage, const Transition& transition,
+                 std::string_view why);
 
   [[nodiscard]] Recording take() { return std::move(recording_); }
   [[nodiscard]] bool ends_at(double t) const {

@@ -177,6 +177,7 @@ class Run {
   void accumulate_switches();
   [[nodiscard]] std::optional<SeriesLimit> drowned_here() const;
   void go_on_from_drowned();
+  bool hold_what_drowns();
   bool follow_dense_laps();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
   bool limits_repeat(double t);

@@ -203,6 +203,20 @@ void Run::go_on_from_drowned() {
   if (!follow_spiral(limit, Behind::any)) fail(transition_.termination, std::move(transition_.message));
 }
 
+/// Events cannot be told apart here: surfaces that are zero together, as far as the tolerances tell, may be held so,
+/// with their derivatives (controllers with roots of several states, which reach their origin faster than laps shrink).
+/// Returns whether the run has gone on.
+bool Run::hold_what_drowns() {
+  find_functions(t_, x_.data(), values_here_);
+  SeriesLimit limit{t_, x_, {}, smallest_step(), false, true};
+  for (std::size_t i = 0; i < values_here_.size(); ++i) {
+    const auto& function = search_.functions()[i];
+    if (function.kind != FunctionKind::surface || !(std::abs(values_here_[i]) <= search_.accuracy(i))) continue;
+    limit.events.push_back(label_of(function.index, function.sign));
+  }
+  return limit.events.size() > 1 && follow_spiral(limit, Behind::higher_order);
+}
+
 /// Laps that hardly shrink are too many for their time before as little of it remains as a limit is asked for usually.
 /// Returns whether they have one all the same, and the run has gone on from there.
 bool Run::follow_dense_laps() {
@@ -266,10 +280,12 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   const std::vector<double> x_last = x_;
   pass_to(limit.t, std::move(x));
   if (!enter(transition)) return true;
+  const auto why = limit.drowned ? "these are zero together, as far as they can be told apart"
+                                 : "the intervals of these switches shrink geometrically: the state is their limit";
   // What has been slid on through all laps may be left at their limit, too.
   std::vector<int> surfaces = on.sliding;
   for (const int label : limit.events) surfaces.push_back(surface_of(label));
-  recorder_.spiralled(t_, surfaces, {x_last, x_, before, state_}, transition);
+  recorder_.spiralled(t_, surfaces, {x_last, x_, before, state_}, transition, why);
   row(t_, x_);
   last_event_time_ = t_;
   restart_control();

@@ -192,6 +192,7 @@ Run::Step Run::undefined_step() {
     return Step::failed;
   }
   if (states.empty()) {
+    if (hold_what_drowns()) return running_ ? Step::taken : Step::failed;
     fail(Termination::step_size_too_small,
          fmt::format(
              "events cannot be told apart beyond {}, however short the step: a switching function or guard is no "
