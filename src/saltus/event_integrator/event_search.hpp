@@ -176,6 +176,7 @@ class EventSearch {
   void turn(std::size_t surface, const ModeState& state, int zero_order);
   [[nodiscard]] bool has_same_functions(const ModeState& state) const;
   void renew(const std::vector<int>& zero_order, double t, const double* x);
+  [[nodiscard]] bool may_flip(const ModeState& state) const;
   bool flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
   void begin_flipped(const ModeState& state, double t, const double* x);
   void read_start(double t, const double* x);

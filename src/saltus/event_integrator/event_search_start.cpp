@@ -70,11 +70,17 @@ void EventSearch::cross(std::size_t surface, const ModeState& state, double t, c
   special_ = inspected_;
 }
 
+/// Whether the mode has the same functions as the one that was entered last, but for their signs and what exits hold,
+/// if surfaces were crossed only.
+bool EventSearch::may_flip(const ModeState& state) const {
+  return flips_ && state.sliding == state_.sliding && !state.higher && held_.empty() && followers_.empty();
+}
+
 /// A crossing, of surfaces that nothing else of the mode depends on but the exits of what is slid on: only signs
 /// change, and these; user functions are read anew. Returns false if the mode is another one than that: it is entered
 /// afresh. Cost: O(1) for each surface crossed, but for the comparison of the modes.
 bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
-  if (!flips_ || state.sliding != state_.sliding || state.higher || !held_.empty() || !followers_.empty()) return false;
+  if (!may_flip(state)) return false;
   inspected_.clear();
   bool crosses = true;
   for_each_difference(state_.mode, state.mode, [&](std::size_t j) {
@@ -99,7 +105,7 @@ bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_orde
 
 bool EventSearch::pass(std::size_t surface, const ModeState& state, double t, const double* x) {
   start_at(t);
-  if (!flips_ || state.sliding != state_.sliding || !held_.empty() || !followers_.empty()) return false;
+  if (!may_flip(state)) return false;
   exits_.assign(1, field_.sides());
   if (!turn_exits(x)) return false;
   forget_specials();

@@ -56,18 +56,13 @@ bool Run::meet(const Located& located, int surface) {
                                  : single_surface_.decide(state_, surface, t, x, slope_beyond_, slope_);
   if (!decision) return false;
   const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
-  std::copy(located.x.begin(), located.x.end(), x_.begin());
   if (change.after != 0) {
+    std::copy(located.x.begin(), located.x.end(), x_.begin());
     field_.cross(j, constants);
     slope_.swap(slope_beyond_);
   } else {
     field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
-    field_.project(t, x_.data());
-    field_(t, x_.data(), slope_.data());
-    if (!is_finite(slope_)) {
-      field_.enter(state_);
-      return false;
-    }
+    if (!begin_at(located)) return false;
   }
   go_on_behind(located, change);
   return true;
@@ -82,31 +77,23 @@ bool Run::pass(const Located& located, int surface) {
   if (!is_finite(slope_) || !std::isfinite(selection)) return false;
   state_.alpha[at(slid)] = selection;
   look_at_both(located, slid, surface);
-  if (const auto alpha = surface_pair_.across(state_, occasion_, field_)) return pass_across(located, surface, *alpha);
-  before_ = state_;
-  if (!single_surface_.decide(before_, occasion_, transition_) &&
-      !surface_pair_.decide(before_, occasion_, transition_)) {
-    return false;
+  const bool is_pair = surface_pair_.look(state_, occasion_, &field_);
+  if (is_pair) {
+    if (const auto alpha = surface_pair_.across(state_, occasion_)) return pass_across(located, surface, *alpha);
   }
+  before_ = state_;
+  const bool decided = is_pair ? surface_pair_.conclude(before_, occasion_, transition_)
+                               : single_surface_.decide(before_, occasion_, transition_);
+  if (!decided) return false;
   const auto& next = transition_.state;
   // The usual way: the solution goes on sliding across it.
   const bool across = next.mode[at(slid)] == 0 && next.mode[j] == -before_.mode[j];
-  x_ = located.x;
   if (across) {
-    const std::size_t mark = step_memory_.mark_with(j, next.mode[j]);
-    field_.pass(j, next.alpha[j], next.alpha[at(slid)],
-                [&](const std::vector<double>& alpha) -> const evaluation::FieldConstants& {
-                  return field_memory_.of(alpha, mark);
-                });
+    pass_field(surface, next.alpha[j], next.alpha[at(slid)]);
   } else {
     field_.enter(next);
   }
-  field_.project(located.t, x_.data());
-  field_(located.t, x_.data(), slope_.data());
-  if (!is_finite(slope_)) {
-    field_.enter(state_);
-    return false;
-  }
+  if (!begin_at(located)) return false;
   t_ = located.t;
   arrival_row_ = recorder_.rows();
   recorder_.switched(t_, x_, before_, transition_);
@@ -142,20 +129,29 @@ bool Run::pass_across(const Located& located, int surface, const switching::Plan
                           surface_pair_.meeting(state_, occasion_)};
   const SurfaceSwitch change{
       surface, state_.mode[j], -state_.mode[j], state_.alpha[j], alpha[place], switching::reason_of_passage(), &across};
-  const std::size_t mark = step_memory_.mark_with(j, change.after);
-  std::copy(located.x.begin(), located.x.end(), x_.begin());
-  field_.pass(j, change.alpha_after, across.alpha_after,
-              [&](const std::vector<double>& selections) -> const evaluation::FieldConstants& {
-                return field_memory_.of(selections, mark);
-              });
-  field_.project(located.t, x_.data());
-  field_(located.t, x_.data(), slope_.data());
-  if (!is_finite(slope_)) {
-    field_.enter(state_);
-    return false;
-  }
+  pass_field(surface, change.alpha_after, across.alpha_after);
+  if (!begin_at(located)) return false;
   go_on_behind(located, change);
   return true;
+}
+
+/// The field of the mode in which the solution goes on sliding across a surface.
+void Run::pass_field(int surface, double alpha, double selection) {
+  const auto j = at(surface);
+  const std::size_t mark = step_memory_.mark_with(j, -state_.mode[j]);
+  field_.pass(j, alpha, selection, [&](const std::vector<double>& selections) -> const evaluation::FieldConstants& {
+    return field_memory_.of(selections, mark);
+  });
+}
+
+/// The state and the slope where the field in hand begins; false where that is not finite: the field is the one before.
+bool Run::begin_at(const Located& located) {
+  std::copy(located.x.begin(), located.x.end(), x_.begin());
+  field_.project(located.t, x_.data());
+  field_(located.t, x_.data(), slope_.data());
+  if (is_finite(slope_)) return true;
+  field_.enter(state_);
+  return false;
 }
 
 /// Fills the occasion.

@@ -115,6 +115,8 @@ class Run {
   bool meet(const Located& located, int surface);
   bool pass(const Located& located, int surface);
   bool pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha);
+  void pass_field(int surface, double alpha, double selection);
+  bool begin_at(const Located& located);
   void look_at_both(const Located& located, int slid, int reached);
   void end_switch();
   bool leave(const Located& located, const EventFunction& exit);

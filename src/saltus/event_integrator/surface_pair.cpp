@@ -144,17 +144,23 @@ bool SurfacePair::slides_on_both(const Occasion& occasion, ModeState& state) {
   return true;
 }
 
-std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before, const Occasion& occasion,
-                                                         const ModeField& field) {
-  if (before.sliding.size() != 1 || !applies(before, occasion)) return std::nullopt;
+bool SurfacePair::look(const ModeState& before, const Occasion& occasion, const ModeField* field) {
+  if (!applies(before, occasion)) return false;
   alpha_ = before.alpha;
-  const auto& pair = occasion.at_zero;
-  const std::size_t slid = before.mode[at(pair[0])] == 0 ? 0 : 1;
-  const std::size_t here = before.mode[at(pair[1 - slid])] > 0 ? std::size_t{1} << (1 - slid) : 0;
   KnownFields known{};
-  known[here] = &field.field_of(Region::below);
-  known[here | std::size_t{1} << slid] = &field.field_of(Region::above);
-  if (!find_normals(occasion) || !find_table(occasion, known)) return std::nullopt;
+  if (field != nullptr && before.sliding.size() == 1) {
+    const auto& pair = occasion.at_zero;
+    const std::size_t slid = before.mode[at(pair[0])] == 0 ? 0 : 1;
+    const std::size_t here = before.mode[at(pair[1 - slid])] > 0 ? std::size_t{1} << (1 - slid) : 0;
+    known[here] = &field->field_of(Region::below);
+    known[here | std::size_t{1} << slid] = &field->field_of(Region::above);
+  }
+  return find_normals(occasion) && find_table(occasion, known);
+}
+
+std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before, const Occasion& occasion) const {
+  if (before.sliding.size() != 1) return std::nullopt;
+  const auto& pair = occasion.at_zero;
   const auto behind =
       switching::pass_across(switching::plane_table(velocities_), {before.mode[at(pair[0])], before.mode[at(pair[1])]});
   // All four fields are clear of both surfaces, so is what lies between them.
@@ -163,9 +169,10 @@ std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before
 }
 
 bool SurfacePair::decide(const ModeState& before, const Occasion& occasion, Transition& transition) {
-  if (!applies(before, occasion)) return false;
-  alpha_ = before.alpha;
-  if (!find_normals(occasion) || !find_table(occasion, {})) return false;
+  return look(before, occasion, nullptr) && conclude(before, occasion, transition);
+}
+
+bool SurfacePair::conclude(const ModeState& before, const Occasion& occasion, Transition& transition) {
   const auto& pair = occasion.at_zero;
   const auto table = switching::plane_table(velocities_);
   const PlaneMode incoming{before.mode[at(pair[0])], before.mode[at(pair[1])]};

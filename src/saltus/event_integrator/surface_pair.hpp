@@ -28,12 +28,17 @@ class SurfacePair {
   /// Fills `transition`, whose storage is used again.
   /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
   [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition);
-  /// The same where the solution goes on sliding on one surface across the other (switching::pass_across()), with their
-  /// selections behind, in the order of the occasion; nullopt where it does not, or not as clearly.
-  /// @param field  of the mode before, behind an evaluation at the point of the occasion
-  /// Cost: two evaluations of f.
-  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before, const Occasion& occasion,
-                                                            const ModeField& field);
+  /// The same in two parts, so that what lies between can be asked. First: whether the occasion is of this kind, as far
+  /// as the fields tell.
+  /// @param field  of the mode before, behind an evaluation at the point of the occasion, where it slides on one
+  ///               surface; nullptr if it is not at hand
+  /// Cost: four evaluations of f, two with a field.
+  [[nodiscard]] bool look(const ModeState& before, const Occasion& occasion, const ModeField* field);
+  /// Behind it: where the solution goes on sliding on one surface across the other (switching::pass_across()), their
+  /// selections there, in the order of the occasion; nullopt where it does not, or not as clearly.
+  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before, const Occasion& occasion) const;
+  /// Second: the transition, by a tree.
+  [[nodiscard]] bool conclude(const ModeState& before, const Occasion& occasion, Transition& transition);
   /// What the last decision was made from.
   [[nodiscard]] Meeting meeting(const ModeState& before, const Occasion& occasion) const;
 

@@ -86,8 +86,8 @@ std::optional<std::string> without_limit(const Surroundings& s, double t, const 
   return fmt::format(
       "the rate of '{}' has no limit at the state reached at t = {:.17g}: it takes values from {:.3g} to {:.3g} around "
       "it at a distance of {:.3g} as at {:.3g} (a quotient that is 0/0 there, as in controllers of homogeneity degree "
-      "0), "
-      "so that it does not say what follows; end the simulation before, or add a small number, such as 1e-3, to the "
+      "0), so that it does not say what follows; end the simulation before, or add a small number, such as 1e-3, to "
+      "the "
       "denominator (the model is stiff then: integrator = \"radau5\")",
       s.system.state_names[near.state], t, near.low, near.high, 1e-3 * distance, distance);
 }

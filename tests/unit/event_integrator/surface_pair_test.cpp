@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -110,7 +111,8 @@ TEST(SurfacePair, SlidesAcrossWithTheSelectionsOfTheGeneralDecision) {
       const auto occasion = meeting_from(before);
       field.enter(before);
       field(occasion.t, occasion.x, slope.data());
-      const auto alpha = pair.across(before, occasion, field);
+      std::optional<switching::PlaneAlpha> alpha;
+      if (pair.look(before, occasion, &field)) alpha = pair.across(before, occasion);
       const Transition general = decide_mode(surroundings, before, occasion);
       if (!alpha) {
         ++other;
