@@ -1,9 +1,13 @@
 // A mathematical program with complementarity constraints: the seam between whoever states one and whoever solves it.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "saltus/mpcc/chain.hpp"
 
 namespace saltus::mpcc {
 
@@ -31,7 +35,27 @@ struct Bounds {
 /// Whether one side of a pair is known to be nonnegative.
 enum class Sign {
   constrained,  ///< 0 <= G_i(w) is a constraint of its own
-  implied,      ///< follows from the bounds of w: nobody need impose it again
+  /// Follows from the bounds of w, nobody need impose it again: the side is affine, a sum of distances of variables from
+  /// their finite bounds with positive weights (w_k - lower_k where dG_i/dw_k > 0, upper_k - w_k where it is < 0), so
+  /// that it is zero if and only if each of them is at that bound. A product of such sums is `implied`, too, but then it
+  /// has to be a method's own (Problem::pair_group -1).
+  implied,
+};
+
+/// Which side of a pair is zero.
+enum class ActiveSide {
+  G,         ///< G_i is zero, H_i is not
+  H,         ///< H_i is zero, G_i is not
+  biactive,  ///< both
+  none,      ///< neither: not complementary
+};
+
+/// What a branch problem fixes besides the sides of its pairs (Problem::close_branch).
+struct BranchClosure {
+  std::vector<int> at_lower;                ///< variables fixed at their lower bounds
+  std::vector<int> at_upper;                ///< and upper ones
+  std::vector<std::pair<int, int>> equal;   ///< variables of equal value
+  std::vector<int> dropped_rows;            ///< of g: those of a method, not of the user's problem
 };
 
 /// min f(w)   subject to   lower_w <= w <= upper_w,   lower_g <= g(w) <= upper_g,   0 <= G(w) _|_ H(w) >= 0.
@@ -67,6 +91,27 @@ class Problem {
   virtual void hessian(ConstVectorView w, double objective_factor, ConstVectorView y, VectorView values) = 0;
   [[nodiscard]] virtual const Pattern& jacobian_pattern() const = 0;
   [[nodiscard]] virtual const Pattern& hessian_pattern() const = 0;
+
+  /// Where to begin, n_w; by default 0, moved onto the bounds.
+  [[nodiscard]] virtual Eigen::VectorXd start() const;
+  [[nodiscard]] virtual std::string name(int variable) const;  ///< by default "w[3]"
+  /// Of a row of (g, G, H); by default "g[0]", "G[5]", "H[5]".
+  [[nodiscard]] virtual std::string row_name(int row) const;
+  /// Structure for solvers that use it; null for problems without any.
+  [[nodiscard]] virtual const Chain* chain() const { return nullptr; }
+
+  // A discretisation may add terms of its own to the objective and rows of its own to g, which steer the relaxed
+  // problems and are no part of what the user asks for.
+
+  /// From now on objective() and its derivatives contain the method's terms, scaled for a relaxed problem that starts
+  /// at w. They never do before the first call, nor after without_method_terms().
+  virtual void with_method_terms(ConstVectorView w) { static_cast<void>(w); }
+  virtual void without_method_terms() {}
+  /// Pairs of the same group have the same zero side in a branch problem; -1: a pair of the method's own, which a
+  /// branch problem leaves out. By default every pair is its own group.
+  [[nodiscard]] virtual int pair_group(int pair) const { return pair; }
+  /// What else a branch problem with these zero sides (G or H, one per pair) fixes, makes equal and leaves out.
+  [[nodiscard]] virtual BranchClosure close_branch(const std::vector<ActiveSide>& sides) const;
 };
 
 }  // namespace saltus::mpcc

@@ -20,14 +20,6 @@ struct Residuals {
 /// Cost: one evaluation of c.
 [[nodiscard]] Residuals residuals(Problem& problem, ConstVectorView w);
 
-/// Which side of a pair is zero.
-enum class ActiveSide {
-  G,         ///< G_i <= tolerance < H_i
-  H,         ///< H_i <= tolerance < G_i
-  biactive,  ///< both
-  none,      ///< neither: not complementary to this tolerance
-};
-
 /// One per pair; |value| <= tolerance counts as zero.
 [[nodiscard]] std::vector<ActiveSide> active_sides(Problem& problem, ConstVectorView w, double tolerance);
 

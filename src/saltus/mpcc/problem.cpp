@@ -1,0 +1,25 @@
+#include "saltus/mpcc/problem.hpp"
+
+#include <fmt/format.h>
+
+namespace saltus::mpcc {
+
+Eigen::VectorXd Problem::start() const {
+  const Bounds& bounds = variable_bounds();
+  return Eigen::VectorXd::Zero(variables()).cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+}
+
+std::string Problem::name(int variable) const { return fmt::format("w[{}]", variable); }
+
+std::string Problem::row_name(int row) const {
+  if (row < constraints()) return fmt::format("g[{}]", row);
+  const int side = row - constraints();
+  return side < pairs() ? fmt::format("G[{}]", side) : fmt::format("H[{}]", side - pairs());
+}
+
+BranchClosure Problem::close_branch(const std::vector<ActiveSide>& sides) const {
+  static_cast<void>(sides);
+  return {};
+}
+
+}  // namespace saltus::mpcc

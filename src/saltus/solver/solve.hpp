@@ -1,0 +1,68 @@
+// Solves a mathematical program with complementarity constraints: relaxed problems, branch problems, certificate.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/mpcc/problem.hpp"
+#include "saltus/result/optimization.hpp"
+#include "saltus/solver/homotopy/follow_path.hpp"
+#include "saltus/solver/lpcc_solver.hpp"
+#include "saltus/solver/nlp_solver.hpp"
+
+namespace saltus::solver {
+
+/// [optimize.mpcc] of interface.md.
+struct SolveOptions {
+  homotopy::Relaxation relaxation = homotopy::Relaxation::scholtes;
+  homotopy::Steering steering = homotopy::Steering::direct;
+  homotopy::Schedule schedule;
+  homotopy::WarmStart warm_start = homotopy::WarmStart::primal;
+  bool crossover = true;
+  double tolerance = 1e-8;      ///< of the three residuals
+  int iteration_limit = 3000;   ///< of all relaxed and branch problems together
+  std::optional<double> time_limit;  ///< seconds
+  /// Ends everything at the next iteration of the solver (stopped_by_user).
+  std::function<bool()> is_interrupted = [] { return false; };
+  /// Called after every problem.
+  std::function<void(const result::HomotopyStep&)> on_step = [](const result::HomotopyStep&) {};
+};
+
+/// Multipliers of L = f + rows'g + lower'(l - w) + upper'(w - u) - G'G - H'H, lower and upper >= 0.
+struct MpccMultipliers {
+  Eigen::VectorXd rows, lower, upper, G, H;
+};
+
+/// The best point found, whatever the outcome; everything without the method's own terms.
+struct Solution {
+  /// completed: residuals <= tolerance and B-stationary. infeasible, iteration_limit, time_limit, stopped_by_user,
+  /// evaluation_failed, else not_converged (not stationary, not B-stationary, unbounded): `message` says which.
+  result::Termination termination = result::Termination::not_converged;
+  std::string message;
+  double objective = 0.0;
+  Eigen::VectorXd w;
+  MpccMultipliers multipliers;
+  result::Certificate certificate;
+  std::vector<result::HomotopyStep> homotopy;
+  bool crossed_over = false;  ///< w solves a branch problem, whose sides are `sides`
+  std::vector<mpcc::ActiveSide> sides;
+  int iterations = 0;
+  double evaluation_seconds = 0.0, solver_seconds = 0.0;
+};
+
+/// Where to begin; multipliers may be empty.
+struct Start {
+  Eigen::VectorXd w;
+  MpccMultipliers multipliers;
+};
+
+/// Solves from problem.start(), or from `start`.
+/// Fails (invalid_option) for a schedule or tolerances outside their ranges, and (invalid_model) if a function is not
+/// finite at the start: the message names it.
+[[nodiscard]] Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
+                                       const SolveOptions& options, const std::optional<Start>& start = std::nullopt);
+
+}  // namespace saltus::solver
