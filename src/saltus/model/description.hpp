@@ -8,6 +8,7 @@
 #include "saltus/base/error.hpp"
 #include "saltus/expression/syntax_tree.hpp"
 #include "saltus/model/cells.hpp"
+#include "saltus/model/ocp_description.hpp"
 
 namespace saltus::model {
 
@@ -39,6 +40,7 @@ struct StateDescription {
   expression::NodePtr initial;
   expression::NodePtr lower, upper;  ///< may be null
   SourceLocation location;
+  bool free = false;  ///< [optimize] chooses the initial value within the bounds
 };
 
 struct ControlDescription {
@@ -98,7 +100,7 @@ struct SampledInput {
   SourceLocation location;
 };
 
-/// A model file without its [simulate] table. All vectors are in the order of the file.
+/// A model file without its [simulate] table and the numerical options of [optimize]. All vectors are in the order of the file.
 struct Description {
   std::string file;
   std::string name;
@@ -117,6 +119,9 @@ struct Description {
   std::vector<TableDescription> tables;
   std::vector<NamedExpression> inputs;  ///< values of controls during a simulation, over t and parameters
   std::vector<SampledInput> sampled_inputs;
+  std::vector<FreeParameterDescription> free_parameters;  ///< their initial values are in `parameters`
+  std::optional<OcpDescription> optimize;
+  std::optional<ClockDescription> clock;
 };
 
 /// `--set NAME=VALUE`: replaces a parameter, an initial value or a control's constant value; VALUE is an expression of

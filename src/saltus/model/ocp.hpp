@@ -1,0 +1,88 @@
+// An optimal control problem as a value: a system, and over its symbols what is minimised and constrained.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/model/description.hpp"
+#include "saltus/model/ocp_description.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::model {
+
+/// lower <= y_output <= upper, y the outputs of Ocp::system; one of both may be infinite.
+struct OcpConstraint {
+  std::string name;  ///< as written
+  int output = 0;
+  double lower = 0.0, upper = 0.0;
+  ConstraintNorm norm = ConstraintNorm::hard;
+  double penalty = 0.0;
+  bool is_slack = false;  ///< of a kink of controls: holds with every control, in no result
+};
+
+/// r'W r, r = y_of - reference.
+struct OcpLeastSquares {
+  std::vector<int> of;
+  std::vector<int> reference;    ///< outputs of t and p; empty: 0, or samples
+  Eigen::MatrixXd samples;       ///< one row per interval; 0 x 0 without
+  Eigen::MatrixXd weight;        ///< symmetric
+  CostPoints at = CostPoints::intervals;
+};
+
+/// What initial_guess says of one quantity.
+struct OcpGuess {
+  enum class Kind { state, control, parameter };
+  Kind kind = Kind::state;
+  int index = 0;
+  int output = 0;  ///< of t and p
+};
+
+struct OcpHorizon {
+  bool free = false;
+  double value = 1.0;  ///< > 0; the guess of a free one
+  double lower = 0.0, upper = 0.0;
+};
+
+/// Time frozen by hand: x_state is physical time, dx_state / dtau its speed.
+struct OcpClock {
+  int state = 0;
+  double speed_lower = 1.0, speed_upper = 1.0;
+};
+
+/// min  int L dt + E(x(T), T, p) + w T + least squares + penalties
+/// over u_k (one per interval), free T, free x_i(from) and free p, subject to xdot = f(t, x, u, p, alpha), bounds,
+/// path and terminal constraints and complementarities. Every expression is an output of `system`: L, E, constraints.
+struct Ocp {
+  System system;  ///< controls: the user's, then one per kink of controls; outputs: the user's, then those of the problem
+  int user_controls = 0, user_outputs = 0;
+  double from = 0.0;
+  OcpHorizon horizon;
+  std::optional<int> running_cost, terminal_cost;  ///< outputs
+  double time_weight = 0.0;                        ///< w; 0: none
+  std::vector<OcpConstraint> path, terminal;
+  ConstraintPoints path_at = ConstraintPoints::intervals;
+  std::vector<std::pair<int, int>> complementarities;  ///< outputs
+  std::vector<OcpLeastSquares> least_squares;
+  std::vector<bool> free_states;                       ///< one per state
+  std::vector<bool> free_parameters;                   ///< one per parameter
+  std::vector<double> parameter_lower, parameter_upper;  ///< of free ones; else the value
+  std::vector<OcpGuess> guess;
+  std::optional<OcpClock> clock;
+  std::vector<std::string> warnings;
+};
+
+/// Builds the problem a description states, with the overrides applied.
+/// @return the problem, or the first error with file, line, column and remedy.
+[[nodiscard]] Expected<Ocp> build_ocp(const Description& description, const std::vector<Override>& overrides = {});
+
+/// The system with piecewise constant controls: u = values[k] from times[k] on, the first one before.
+/// @param times  ascending
+/// @param values  one row per time, one column per control
+[[nodiscard]] System with_controls(System system, const std::vector<double>& times,
+                                   const std::vector<std::vector<double>>& values);
+
+}  // namespace saltus::model

@@ -1,0 +1,92 @@
+// What [optimize] states of the problem, as syntax trees with positions.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/expression/syntax_tree.hpp"
+
+namespace saltus::model {
+
+/// How a violated constraint is paid for; hard ones are not violated.
+enum class ConstraintNorm {
+  hard,
+  l1,    ///< penalty times the sum of violations
+  l2,    ///< of their squares
+  linf,  ///< the largest
+};
+enum class ConstraintPoints { intervals, elements, stages };
+enum class CostPoints { intervals, stages, end };
+enum class Relation { less_equal, greater_equal, equal };
+
+/// sides[0] relations[0] sides[1] (relations[1] sides[2]): one comparison, or the two-sided a <= e <= b.
+struct ConstraintDescription {
+  std::string text;  ///< as written: its name in results
+  std::vector<expression::NodePtr> sides;
+  std::vector<Relation> relations;
+  ConstraintNorm norm = ConstraintNorm::hard;
+  expression::NodePtr penalty;  ///< null for hard ones
+  SourceLocation location;
+};
+
+struct HorizonDescription {
+  expression::NodePtr value;         ///< fixed, or the guess
+  expression::NodePtr lower, upper;  ///< of a free one; null otherwise
+  bool free = false;
+  SourceLocation location;
+};
+
+/// One of [[optimize.least_squares]].
+struct LeastSquaresDescription {
+  std::vector<expression::NodePtr> of;
+  std::vector<expression::NodePtr> reference;  ///< one per expression; empty: 0, or samples
+  std::vector<std::vector<double>> samples;    ///< of a file: one row per interval; empty without
+  std::string file;                            ///< its name, for messages
+  std::vector<std::vector<expression::NodePtr>> weight;  ///< one row: the diagonal; else a matrix; empty: ones
+  CostPoints at = CostPoints::intervals;
+  SourceLocation location;
+};
+
+struct PathComplementarityDescription {
+  expression::NodePtr first, second;  ///< 0 <= first _|_ second >= 0
+  SourceLocation location;
+};
+
+/// The guess of a state, a control or a free parameter: an expression of t and parameters.
+struct GuessDescription {
+  std::string name;
+  expression::NodePtr expression;
+  SourceLocation location;
+};
+
+/// [optimize] without its numerical options.
+struct OcpDescription {
+  expression::NodePtr from;  ///< null means 0
+  HorizonDescription horizon;
+  expression::NodePtr running_cost, terminal_cost;  ///< may be null
+  expression::NodePtr time_weight;                  ///< of minimize_time; null: none
+  std::vector<ConstraintDescription> path_constraints, terminal_constraints;
+  ConstraintPoints path_constraints_at = ConstraintPoints::intervals;
+  std::vector<PathComplementarityDescription> path_complementarities;
+  std::vector<LeastSquaresDescription> least_squares;
+  std::vector<GuessDescription> guess;
+  SourceLocation location;
+};
+
+/// lower <= . <= upper of [parameters] name = { initial, lower, upper, free = true }.
+struct FreeParameterDescription {
+  std::string name;
+  expression::NodePtr lower, upper;
+  SourceLocation location;
+};
+
+/// [time_freezing] of a model whose regions freeze time by hand.
+struct ClockDescription {
+  std::string clock;                       ///< the state that is physical time
+  expression::NodePtr speed_lower, speed_upper;  ///< null: 1
+  SourceLocation location;
+};
+
+}  // namespace saltus::model
