@@ -1,0 +1,36 @@
+// The truth check: what the event engine says of an optimised trajectory.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/result/optimization.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::pipeline {
+
+/// An optimised trajectory, as far as it is simulated again.
+struct OptimizedPath {
+  double horizon = 0.0;
+  std::vector<double> parameters;             ///< all of System::p
+  /// N + 1 times of the nodes in the time of the right-hand side: physical time, or numerical time where it is frozen.
+  std::vector<double> times;
+  std::vector<std::vector<double>> nodes;     ///< N + 1 states
+  std::vector<std::vector<double>> controls;  ///< N rows, all controls of Ocp::system
+  /// Of each state the largest and smallest value of the solution at nodes and stages.
+  std::vector<double> state_max, state_min;
+  /// The switches that the solution has, in the time of `times`, with modes before and after over the columns of the
+  /// result (System::columns): those of result::Result::events.
+  std::vector<result::Event> events;
+  double amplification = 0.0;  ///< handed on to OpenLoop
+};
+
+/// Simulates every interval from its node with its controls, then the whole horizon from the first node, and compares.
+/// Definitions: interface.md, `verification`.
+/// Cost: one compilation of the model, N + 1 event-driven simulations.
+[[nodiscard]] Expected<result::Verification> verify(const model::Ocp& ocp, const OptimizedPath& path, double tolerance,
+                                                    const std::function<bool()>& is_interrupted);
+
+}  // namespace saltus::pipeline
