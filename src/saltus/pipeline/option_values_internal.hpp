@@ -56,18 +56,18 @@ inline Expected<double> number_within(Range range, const OptionValue& value) {
   return number;
 }
 
-template <auto access, Range range>
-Expected<void> set_number(SimulateOptions& options, std::string_view, const OptionValue& value) {
+template <auto access, Range range, class Options = SimulateOptions>
+Expected<void> set_number(Options& options, std::string_view, const OptionValue& value) {
   return number_within(range, value).map([&](double number) { access(options) = number; });
 }
 
-template <auto access>
-void record_number(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+template <auto access, class Options = SimulateOptions>
+void record_number(const Options& options, std::string_view key, OptionRecord& record) {
   record.emplace_back(key, access(options));
 }
 
-template <auto access>
-Expected<void> set_count(SimulateOptions& options, std::string_view, const OptionValue& value) {
+template <auto access, class Options = SimulateOptions>
+Expected<void> set_count(Options& options, std::string_view, const OptionValue& value) {
   // Written 1e6 it is a real number, and still a count.
   const double number = number_in(value);
   if (!(number >= 1.0 && number <= 9e15 && number == std::floor(number))) {
@@ -77,8 +77,8 @@ Expected<void> set_count(SimulateOptions& options, std::string_view, const Optio
   return {};
 }
 
-template <auto access>
-void record_count(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+template <auto access, class Options = SimulateOptions>
+void record_count(const Options& options, std::string_view key, OptionRecord& record) {
   record.emplace_back(key, std::int64_t{access(options)});
 }
 
@@ -89,8 +89,8 @@ struct Choices {
   std::array<Enum, n> values;
 };
 
-template <auto access, const auto& choices>
-Expected<void> set_choice(SimulateOptions& options, std::string_view, const OptionValue& value) {
+template <auto access, const auto& choices, class Options = SimulateOptions>
+Expected<void> set_choice(Options& options, std::string_view, const OptionValue& value) {
   const std::vector<std::string> known(choices.names.begin(), choices.names.end());
   const auto* word = std::get_if<std::string>(&value);
   if (word == nullptr) return tl::unexpected(out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value));
@@ -104,8 +104,8 @@ Expected<void> set_choice(SimulateOptions& options, std::string_view, const Opti
   return {};
 }
 
-template <auto access, const auto& choices>
-void record_choice(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+template <auto access, const auto& choices, class Options = SimulateOptions>
+void record_choice(const Options& options, std::string_view key, OptionRecord& record) {
   const auto* position = std::find(choices.values.begin(), choices.values.end(), access(options));
   record.emplace_back(key, std::string(choices.names[at(position - choices.values.begin())]));
 }

@@ -1,0 +1,40 @@
+// The one table of the keys of [optimize.mpcc], which `saltus mpcc` takes as --set mpcc.KEY=VALUE.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "saltus/base/error.hpp"
+#include "saltus/result/result.hpp"
+#include "saltus/solver/solve.hpp"
+
+namespace saltus::pipeline {
+
+/// One key of [optimize.mpcc]; `solver` is not among them, as it is no option of the method.
+struct MpccField {
+  std::string_view key;      ///< below [optimize.mpcc]: "sigma_final"
+  std::string_view expects;  ///< "a number > 0"
+  std::string_view doc;      ///< one sentence
+  /// Writes a value into the options; errors carry no location.
+  Expected<void> (*set)(solver::SolveOptions&, std::string_view key, const result::OptionValue&);
+  /// Appends the value in force under `key`.
+  void (*record)(const solver::SolveOptions&, std::string_view key, result::OptionRecord&);
+};
+
+/// All of them, in the order of the documentation.
+[[nodiscard]] std::span<const MpccField> mpcc_fields();
+
+/// Changes one option.
+/// @param key    below [optimize.mpcc]
+/// @param value  as written; integers are taken where numbers are expected
+/// @return unknown_name (with the nearest keys) or invalid_option (what was expected and found), without a location.
+[[nodiscard]] Expected<void> set_mpcc_option(solver::SolveOptions& options, std::string_view key,
+                                             const result::OptionValue& value);
+
+/// What is wrong between options that are fine one by one: sigma_final above sigma_initial.
+[[nodiscard]] Expected<void> check_mpcc_options(const solver::SolveOptions& options);
+
+/// Appends every option with its value in force under `prefix` and its key ("optimize.mpcc.sigma_final").
+void record_mpcc_options(const solver::SolveOptions& options, std::string_view prefix, result::OptionRecord& record);
+
+}  // namespace saltus::pipeline
