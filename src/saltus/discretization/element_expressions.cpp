@@ -15,10 +15,11 @@ using casadi::SX;
 using reformulation::Dcs;
 using reformulation::Form;
 
-/// f, the indicators and the lifting at one point, with controls replaced by their inputs.
-casadi::Function point_function(const Dcs& dcs, const SX& known) {
+/// f, the indicators and the lifting at one point; in a simulation with controls replaced by their inputs.
+casadi::Function point_function(const Dcs& dcs, const SX& known, const SharedInputs* shared) {
   std::vector<SX> out{dcs.f, dcs.indicator, dcs.lifting};
-  if (dcs.u.numel() > 0) out = SX::substitute(out, std::vector<SX>{dcs.u}, std::vector<SX>{SX::densify(dcs.input)});
+  if (dcs.u.numel() > 0 && shared == nullptr)
+    out = SX::substitute(out, std::vector<SX>{dcs.u}, std::vector<SX>{SX::densify(dcs.input)});
   return casadi::Function("saltus_point", {dcs.t, dcs.x, dcs.selection, dcs.lifted, known}, out);
 }
 
@@ -28,13 +29,18 @@ struct PointValues {
 
 class ElementBuilder {
  public:
-  ElementBuilder(const Dcs& dcs, const ButcherTableau& tableau, const FesdOptions& options)
-      : dcs_(dcs), tableau_(tableau), options_(options), known_(SX::vertcat({dcs.p, dcs.held})) {
-    point_ = point_function(dcs, known_);
+  ElementBuilder(const Dcs& dcs, const ButcherTableau& tableau, const FesdOptions& options, const SharedInputs* shared)
+      : dcs_(dcs),
+        tableau_(tableau),
+        options_(options),
+        shared_(shared),
+        known_(shared == nullptr ? SX::vertcat({dcs.p, dcs.held}) : SX::vertcat({dcs.p, dcs.held, dcs.u})) {
+    point_ = point_function(dcs, known_, shared);
     result_.pairs = selection_pairs(dcs);
     result_.depends_on_time = SX::depends_on(SX::vertcat({call(dcs.t, dcs.x, dcs.selection, dcs.lifted).f,
                                                           call(dcs.t, dcs.x, dcs.selection, dcs.lifted).indicator}),
-                                             dcs.t);
+                                             dcs.t) ||
+                              (shared != nullptr && shared->needs_time);
     for (const auto& part : dcs.parts) {
       if (part.form == Form::stewart) ++simplices_;
     }
@@ -49,15 +55,18 @@ class ElementBuilder {
     const SX left_lambda = SX::sym("lambda_left", n_lambda);
     const SX v = SX::sym("v", result_.layout.size);
     variables_ = element_variables(result_.layout, v);
-    result_.element_inputs = SX::vertcat({left_x_, left_t_, left_lambda, v});
+    h_ = shared_ == nullptr ? variables_.h : shared_->length_factor * variables_.h;
+    const SX shared = shared_ == nullptr ? SX(0, 1) : shared_->symbols;
+    result_.element_inputs = SX::vertcat({left_x_, left_t_, left_lambda, shared, v});
     add_runge_kutta_equations();
     add_algebraic_equations();
     const ElementPairs pairs = element_pairs(result_.pairs, variables_, left_lambda);
     add_cross_complementarities(options_.cross_complementarity, pairs, result_.element);
     add_correction_complementarities(pairs);
-    if (options_.step_equilibration == StepEquilibration::heuristic_mean && moves()) {
+    if (options_.step_equilibration == StepEquilibration::heuristic_mean && moves() && shared_ == nullptr) {
       result_.element.objective = options_.rho_h * SX::sq(variables_.h - mean_h_);
     }
+    take_points();
     build_boundary(left_lambda, v);
     return std::move(result_);
   }
@@ -105,13 +114,13 @@ class ElementBuilder {
   }
 
   [[nodiscard]] SX stage_time(int m) const {
-    return result_.depends_on_time ? left_t_ + tableau_.c[m] * variables_.h : SX(0.0);
+    return result_.depends_on_time ? left_t_ + tableau_.c[m] * h_ : SX(0.0);
   }
   [[nodiscard]] SX column(const SX& matrix, int m) const { return matrix(casadi::Slice(), m); }
 
   void add_runge_kutta_equations() {
     const bool invertible = Eigen::FullPivLU<Eigen::MatrixXd>(tableau_.A).isInvertible();
-    const SX& h = variables_.h;
+    const SX& h = h_;
     std::vector<SX> increments;  // x_m - x_left
     std::vector<SX> slopes;
     for (int m = 0; m < stages(); ++m) {
@@ -120,6 +129,7 @@ class ElementBuilder {
         for (int j = 0; j < stages(); ++j) increment += h * tableau_.A(m, j) * column(variables_.stage, j);
       }
       const SX x = is_integral() ? column(variables_.stage, m) : left_x_ + increment;
+      result_.stages.push_back({stage_time(m), x, column(variables_.selection, m)});
       at_stages_.push_back(call(stage_time(m), x, column(variables_.selection, m), column(variables_.lifted, m)));
       increments.push_back(increment);
       slopes.push_back(is_integral() ? at_stages_.back().f : column(variables_.stage, m));
@@ -144,7 +154,7 @@ class ElementBuilder {
       }
       result_.element.equation(variables_.end_state - end - correction());
     }
-    if (result_.depends_on_time) result_.element.equation(variables_.end_time - left_t_ - h);
+    if (result_.depends_on_time) result_.element.equation(variables_.end_time - left_t_ - h_);
   }
 
   [[nodiscard]] SX combination(const Eigen::RowVectorXd& weights, const std::vector<SX>& terms) const {
@@ -219,6 +229,13 @@ class ElementBuilder {
     }
   }
 
+  void take_points() {
+    result_.h = h_;
+    result_.end = {result_.depends_on_time ? variables_.end_time : SX(0.0),
+                   result_.layout.end_state.count > 0 ? variables_.end_state : column(variables_.stage, stages() - 1),
+                   column(variables_.selection, stages() - 1)};
+  }
+
   void build_boundary(const SX& left_lambda, const SX& v) {
     const SX after = SX::sym("v_after", result_.layout.size);
     const ElementVariables next = element_variables(result_.layout, after);
@@ -233,7 +250,7 @@ class ElementBuilder {
     result_.printed_eta = printed_switch_indicator(result_.pairs, boundary);
     if (!moves()) return;
     if (options_.cross_complementarity == CrossComplementarity::paper) {
-      add_paper_cross_complementarity(boundary, result_.boundary);
+      add_paper_cross_complementarity(boundary, result_.neighbours);
     }
     add_step_equilibration(options_, result_.pairs, boundary, result_.boundary);
   }
@@ -241,7 +258,9 @@ class ElementBuilder {
   const Dcs& dcs_;
   const ButcherTableau& tableau_;
   const FesdOptions& options_;
+  const SharedInputs* shared_;  ///< null in a simulation
   SX known_;
+  SX h_;
   SX mean_h_ = SX::sym("mean_h");
   casadi::Function point_;
   int simplices_ = 0;
@@ -280,7 +299,7 @@ ElementVariables element_variables(const ElementLayout& layout, const SX& v) {
 }
 
 Expected<ElementExpressions> element_expressions(const Dcs& dcs, const ButcherTableau& tableau,
-                                                 const FesdOptions& options) {
+                                                 const FesdOptions& options, const SharedInputs* shared) {
   if (tableau.family == TableauFamily::lobatto_iiia && dcs.selection.numel() > 0) {
     Error error;
     error.code = ErrorCode::not_available;
@@ -290,7 +309,7 @@ Expected<ElementExpressions> element_expressions(const Dcs& dcs, const ButcherTa
     error.remedy = "use radau_iia, gauss_legendre or lobatto_iiic";
     return tl::unexpected(std::move(error));
   }
-  return ElementBuilder(dcs, tableau, options).build();
+  return ElementBuilder(dcs, tableau, options, shared).build();
 }
 
 }  // namespace saltus::discretization

@@ -63,23 +63,42 @@ void add_paper_cross_complementarity(const Boundary& boundary, LocalExpressions&
 void add_step_equilibration(const FesdOptions& options, const std::vector<SelectionPair>& kinds,
                             const Boundary& boundary, LocalExpressions& expressions);
 
+/// What elements share in an optimal control problem.
+struct SharedInputs {
+  casadi::SX symbols;         ///< local inputs of every element: controls, free parameters, horizon, ...
+  casadi::SX length_factor;   ///< h = length_factor times the element's variable
+  bool needs_time = false;    ///< whether something else than the dynamics depends on time
+};
+
+/// Time, state and selections at a stage or at the right end, over the inputs of the element.
+struct ElementPoint {
+  casadi::SX t, x, selection;
+};
+
 /// All symbols and expressions of the kernel.
 struct ElementExpressions {
   ElementLayout layout;
   std::vector<SelectionPair> pairs;
-  casadi::SX parameters;      ///< p, held, T/N
-  casadi::SX element_inputs;  ///< left state, left time (if it matters), left lambda, the element's variables
+  casadi::SX parameters;  ///< p, held, T/N; of an optimal control problem what the caller makes of it
+  /// Left state, left time (if it matters), left lambda, shared inputs, the element's variables.
+  casadi::SX element_inputs;
   LocalExpressions element;
   casadi::SX boundary_inputs;  ///< left lambda and variables of the element before, variables of the one after, own
-  LocalExpressions boundary;
+  LocalExpressions neighbours;  ///< complementarities across the boundary (mode paper)
+  LocalExpressions boundary;    ///< step equilibration
+  casadi::SX h;                ///< length
+  std::vector<ElementPoint> stages;
+  ElementPoint end;
   mpcc::Bounds boundary_own_bounds;
   casadi::SX eta, printed_eta;  ///< of the boundary
   bool depends_on_time = false;
 };
 
 /// Fails (not_available) for Lobatto IIIA: the selections of its first stage are in no equation while sliding.
+/// @param shared  null in a simulation: controls are their inputs, all parameters are constants
 [[nodiscard]] Expected<ElementExpressions> element_expressions(const reformulation::Dcs& dcs,
                                                                const ButcherTableau& tableau,
-                                                               const FesdOptions& options);
+                                                               const FesdOptions& options,
+                                                               const SharedInputs* shared = nullptr);
 
 }  // namespace saltus::discretization

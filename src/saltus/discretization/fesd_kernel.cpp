@@ -60,7 +60,8 @@ Expected<std::shared_ptr<FesdKernel>> FesdKernel::compile(const reformulation::D
       if (part.form == reformulation::Form::stewart) kernel->simplices.emplace_back(part.first, part.count);
     }
     kernel->element = LocalFunction("saltus_element", built->element_inputs, built->parameters, built->element);
-    kernel->boundary = LocalFunction("saltus_boundary", built->boundary_inputs, built->parameters, built->boundary);
+    kernel->boundary = LocalFunction("saltus_boundary", built->boundary_inputs, built->parameters,
+                                     built->neighbours.joined(built->boundary));
     kernel->boundary_bounds = built->boundary_own_bounds;
     SX indicator = dcs.indicator;
     if (dcs.u.numel() > 0) indicator = SX::substitute(indicator, dcs.u, SX::densify(dcs.input));

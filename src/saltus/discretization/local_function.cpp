@@ -23,6 +23,17 @@ SX column_of(const std::vector<SX>& scalars) { return scalars.empty() ? SX(0, 1)
 
 }  // namespace
 
+LocalExpressions LocalExpressions::joined(const LocalExpressions& other) const {
+  LocalExpressions all = *this;
+  all.objective += other.objective;
+  all.g.insert(all.g.end(), other.g.begin(), other.g.end());
+  all.G.insert(all.G.end(), other.G.begin(), other.G.end());
+  all.H.insert(all.H.end(), other.H.begin(), other.H.end());
+  all.G_signs.insert(all.G_signs.end(), other.G_signs.begin(), other.G_signs.end());
+  all.H_signs.insert(all.H_signs.end(), other.H_signs.begin(), other.H_signs.end());
+  return all;
+}
+
 LocalFunction::LocalFunction(const std::string& name, const SX& z, const SX& parameters,
                              const LocalExpressions& expressions)
     : variables_(static_cast<int>(z.numel())),

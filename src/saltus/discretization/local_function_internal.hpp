@@ -25,6 +25,8 @@ struct LocalExpressions {
   void equation(const casadi::SX& rows) {
     for (casadi_int i = 0; i < rows.numel(); ++i) g.push_back(rows(i));
   }
+  /// These expressions, then the other's.
+  [[nodiscard]] LocalExpressions joined(const LocalExpressions& other) const;
   /// Both sides sums of variables with lower bound 0.
   void pair(const casadi::SX& a, const casadi::SX& b, mpcc::Sign sign = mpcc::Sign::implied) {
     G.push_back(a);

@@ -9,6 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/build_internal.hpp"
 #include "saltus/model/discrete_states_internal.hpp"
 #include "saltus/model/jumps_internal.hpp"
 #include "saltus/model/model_scope_internal.hpp"
@@ -23,8 +24,11 @@ using MaybeError = std::optional<Error>;
 /// A description and its overrides on the way to a statement; one step per table.
 class Build {
  public:
-  Build(const Description& description, const std::vector<Override>& overrides)
-      : description_(description), overrides_(overrides), scope_(description, recognition_, statement_) {}
+  Build(const Description& description, const std::vector<Override>& overrides, const Quantities* quantities)
+      : description_(description),
+        overrides_(overrides),
+        quantities_(quantities),
+        scope_(description, recognition_, statement_) {}
 
   [[nodiscard]] Expected<System> run() {
     statement_.name = description_.name;
@@ -35,8 +39,8 @@ class Build {
     using Step = MaybeError (Build::*)();
     constexpr Step steps[] = {&Build::names,  &Build::overrides,  &Build::parameters, &Build::controls,
                               &Build::states, &Build::bounds,     &Build::switching,  &Build::dynamics,
-                              &Build::modes,  &Build::outputs,    &Build::events,     &Build::jumps,
-                              &Build::inputs, &Build::definitions};
+                              &Build::modes,  &Build::outputs,    &Build::quantities, &Build::events,
+                              &Build::jumps,  &Build::inputs,     &Build::definitions};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }
@@ -100,8 +104,12 @@ class Build {
                      entry.expression->location,
                      {}};
       }
+      // One that an optimisation chooses is a variable like a control: nothing folds at its value.
+      const VariableKind kind = quantities_ != nullptr && quantities_->varying_parameters.contains(entry.name)
+                                    ? VariableKind::control
+                                    : VariableKind::parameter;
       const SXElem symbol =
-          recognition_.graph.symbol(entry.name, {.kind = VariableKind::parameter, .index = index++, .value = *value});
+          recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++, .value = *value});
       statement_.parameters.push_back({entry.name, symbol, *value});
     }
     return std::nullopt;
@@ -224,6 +232,25 @@ class Build {
     return std::nullopt;
   }
 
+  MaybeError quantities() {
+    if (quantities_ == nullptr) return std::nullopt;
+    for (const auto& entry : quantities_->expressions) {
+      if (scope_.translation().is_condition(*entry.expression)) return a_condition(entry);
+      auto quantity = scope_.expression(*entry.expression, Reach::outputs_too);
+      if (!quantity) return with_context(quantity.error(), fmt::format("in [optimize] {}", entry.name));
+      statement_.outputs.push_back({entry.name, *quantity});
+    }
+    return std::nullopt;
+  }
+
+  static Error a_condition(const NamedExpression& entry) {
+    return {ErrorCode::invalid_model,
+            fmt::format("expected a number, found the condition '{}'", expression::to_text(*entry.expression)),
+            "if(condition, 1, 0) makes a number of it",
+            entry.expression->location,
+            {fmt::format("in [optimize] {}", entry.name)}};
+  }
+
   MaybeError events() {
     for (const auto& entry : description_.events) {
       EventStatement event{
@@ -311,6 +338,9 @@ class Build {
                               &description_.dynamics, &description_.outputs, &description_.inputs}) {
       for (const auto& entry : *table) scope_.note_names(entry.expression);
     }
+    if (quantities_ != nullptr) {
+      for (const auto& entry : quantities_->expressions) scope_.note_names(entry.expression);
+    }
     for (const auto& state : description_.states) {
       for (const auto* node : {&state.initial, &state.lower, &state.upper}) scope_.note_names(*node);
     }
@@ -350,6 +380,7 @@ class Build {
 
   const Description& description_;
   const std::vector<Override>& overrides_;
+  const Quantities* quantities_;  ///< null: none
   Recognition recognition_;
   Statement statement_;
   ModelScope scope_;
@@ -359,8 +390,13 @@ class Build {
 }  // namespace
 
 Expected<System> build(const Description& description, const std::vector<Override>& overrides) {
+  return build_with(description, overrides, nullptr);
+}
+
+Expected<System> build_with(const Description& description, const std::vector<Override>& overrides,
+                            const Quantities* quantities) {
   try {
-    return Build(description, overrides).run();
+    return Build(description, overrides, quantities).run();
   } catch (const std::exception& exception) {
     // CasADi throws on what it cannot do; everything known is checked before, so say what it said.
     return tl::unexpected(Error{ErrorCode::invalid_model,

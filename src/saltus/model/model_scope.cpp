@@ -51,7 +51,7 @@ std::optional<Error> ModelScope::declare_names() {
 
 Error ModelScope::unknown(const std::string& name, const SourceLocation& location) const {
   std::vector<std::string> known;
-  if (reach_ == Reach::everything) {
+  if (reach_ >= Reach::everything) {
     known =
         names_.of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::definition, NameKind::switching});
     known.insert(known.end(), {"t", "pi"});
@@ -89,7 +89,7 @@ Error ModelScope::out_of_reach(const std::string& name, const Meaning& meaning, 
 
 Expected<SXElem> ModelScope::number(const std::string& name, const SourceLocation& location) {
   if (name == "t") {
-    if (reach_ == Reach::everything) return statement_.time;
+    if (reach_ >= Reach::everything) return statement_.time;
     return tl::unexpected(Error{ErrorCode::invalid_model,
                                 "a constant cannot depend on the time t",
                                 "use numbers, pi and functions of them",
@@ -123,6 +123,8 @@ Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meani
       }
       return switching_.at(meaning.index);
     case NameKind::output:
+      if (reach_ == Reach::outputs_too) return statement_.outputs[index].expression;
+      break;
     case NameKind::event:
     case NameKind::jump:
     case NameKind::table:
@@ -168,7 +170,7 @@ Expected<SXElem> ModelScope::definition(int index, const SourceLocation& locatio
 
 Expected<Condition> ModelScope::condition(const std::string& name, const SourceLocation& location) {
   const Meaning& meaning = *names_.find(name);
-  if (reach_ != Reach::everything) return tl::unexpected(out_of_reach(name, meaning, location));
+  if (reach_ < Reach::everything) return tl::unexpected(out_of_reach(name, meaning, location));
   if (const auto known = conditions_.find(meaning.index); known != conditions_.end()) return known->second;
   if (auto error = work_out(meaning, location)) return tl::unexpected(*error);
   return conditions_.at(meaning.index);

@@ -19,6 +19,7 @@ enum class Reach {
   constants,           ///< numbers and pi (--set)
   earlier_parameters,  ///< parameters declared so far, too
   everything,
+  outputs_too,  ///< and the outputs
 };
 
 class ModelScope {
