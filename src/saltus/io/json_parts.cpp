@@ -13,6 +13,25 @@ std::size_t read_number(JsonReader& reader, const Json& json, const std::string&
   return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
 }
 
+Json numbers_json(const std::vector<std::pair<std::string, double>>& numbers) {
+  Json json = Json::object();
+  for (const auto& [name, value] : numbers) json[name] = value;
+  return json;
+}
+
+void read_numbers(JsonReader& reader, const Json& json, const std::string& path,
+                  std::vector<std::pair<std::string, double>>& numbers) {
+  if (!json.is_object()) {
+    reader.mismatch(path, "an object", json);
+    return;
+  }
+  for (const auto& [name, value] : json.items()) {
+    double number = 0.0;
+    reader.read(value, path + "/" + name, number);
+    numbers.emplace_back(name, number);
+  }
+}
+
 Json status_json(const result::Status& status) {
   return {
       {"termination", name(status.termination)}, {"message", status.message}, {"time_reached", status.time_reached}};

@@ -17,6 +17,8 @@ template <class Value>
   return value ? Json(*value) : Json(nullptr);
 }
 
+/// An object of numbers by name.
+[[nodiscard]] Json numbers_json(const std::vector<std::pair<std::string, double>>& numbers);
 [[nodiscard]] Json status_json(const result::Status& status);
 [[nodiscard]] Json statistics_json(const result::Statistics& statistics);
 [[nodiscard]] Json sensitivities_json(const result::Sensitivities& sensitivities);
@@ -26,6 +28,8 @@ template <class Value>
 
 /// A count or an index: a whole number from 0.
 [[nodiscard]] std::size_t read_number(JsonReader& reader, const Json& json, const std::string& path, const char* key);
+void read_numbers(JsonReader& reader, const Json& json, const std::string& path,
+                  std::vector<std::pair<std::string, double>>& numbers);
 void read_status(JsonReader& reader, const Json& json, const std::string& path, result::Status& status);
 void read_statistics(JsonReader& reader, const Json& json, const std::string& path, result::Statistics& statistics);
 void read_sensitivities(JsonReader& reader, const Json& json, const std::string& path,

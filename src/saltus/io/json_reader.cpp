@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "saltus/io/atomic_file.hpp"
+#include "saltus/io/json_optimization_internal.hpp"
 #include "saltus/io/json_parts_internal.hpp"
 #include "saltus/io/json_result.hpp"
 #include "saltus/io/json_shapes_internal.hpp"
@@ -17,17 +18,7 @@ void read_model(JsonReader& reader, const Json& json, const std::string& path, r
   reader.read_member(json, path, "sha256", model.sha256);
   if (json.is_object() && json.contains("description"))
     reader.read_member(json, path, "description", model.description);
-  const auto* parameters = reader.member(json, path, "parameters");
-  if (parameters == nullptr) return;
-  if (!parameters->is_object()) {
-    reader.mismatch(path + "/parameters", "an object", *parameters);
-    return;
-  }
-  for (const auto& [name, value] : parameters->items()) {
-    double number = 0.0;
-    reader.read(value, path + "/parameters/" + name, number);
-    model.parameters.emplace_back(name, number);
-  }
+  read_part(reader, json, path, "parameters", read_numbers, model.parameters);
 }
 
 result::Alternative read_alternative(JsonReader& reader, const Json& json, const std::string& path) {
@@ -226,12 +217,12 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   read_part(reader, json, path, "final", read_final, result.final);
   read_part(reader, json, path, "events", read_recorded_events, result.events);
   read_part(reader, json, path, "trajectory", read_trajectory, result.trajectory);
-  if (json.is_object() && json.contains("u")) reader.read_member(json, path, "u", result.interval_controls);
+  if (result.command == "optimize") read_optimization(reader, json, path, result.optimization.emplace());
   // Results of versions before surfaces were recorded have none.
   if (json.is_object() && json.contains("surfaces")) {
     read_part(reader, json, path, "surfaces", read_surfaces, result.surfaces);
   }
-  read_part(reader, json, path, "statistics", read_statistics, result.statistics);
+  if (!result.optimization) read_part(reader, json, path, "statistics", read_statistics, result.statistics);
   read_part(reader, json, path, "options", read_option_record, result.options);
   if (json.is_object() && json.contains("sensitivities")) {
     read_part(reader, json, path, "sensitivities", read_sensitivities, result.sensitivities);

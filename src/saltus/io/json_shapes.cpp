@@ -99,6 +99,21 @@ void check_elements(JsonReader& reader, const std::string& path, const result::E
   check_rows(reader, path + "/selection", elements.selection, times, elements.selections.size());
 }
 
+/// What pictures and tables index; a start checks what it needs of the start values itself.
+void check_optimization(JsonReader& reader, const std::string& path, const result::Result& result) {
+  const auto& optimization = *result.optimization;
+  const std::size_t intervals = optimization.u.size();
+  check_rows(reader, path + "/u", optimization.u, intervals, result.controls.size());
+  check_length(reader, path + "/grid", optimization.grid, intervals == 0 ? 0 : intervals + 1);
+  check_length(reader, path + "/h", optimization.h, intervals);
+  if (!optimization.speed_of_time.empty()) {
+    check_length(reader, path + "/speed_of_time", optimization.speed_of_time, intervals);
+  }
+  if (!optimization.verification) return;
+  const auto& open_loop = optimization.verification->open_loop;
+  check_rows(reader, path + "/verification/open_loop/x", open_loop.x, open_loop.t.size(), result.states.size());
+}
+
 }  // namespace
 
 void check_shapes(JsonReader& reader, const std::string& path, const result::Result& result) {
@@ -111,7 +126,6 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, columns);
   check_regions(reader, path, result);
   check_rows(reader, path + "/trajectory/outputs", trajectory.outputs, times, result.outputs.size());
-  check_rows(reader, path + "/u", result.interval_controls, result.interval_controls.size(), result.controls.size());
   check_length(reader, path + "/final/x", result.final.x, result.states.size());
   check_length(reader, path + "/final/mode", result.final.mode, columns);
   check_length(reader, path + "/final/alpha", result.final.alpha, columns);
@@ -121,6 +135,7 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
     check_rows(reader, path + "/sensitivities/x0", x0, result.states.size(), result.states.size());
     check_rows(reader, path + "/sensitivities/p", p, result.states.size(), parameters.size());
   }
+  if (result.optimization) check_optimization(reader, path, result);
   if (result.elements) check_elements(reader, path + "/elements", *result.elements);
   for (std::size_t i = 0; i < result.events.size(); ++i) {
     check_event_lengths(reader, result.events[i], fmt::format("{}/events/{}", path, i), result.states.size(), columns);

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "saltus/base/version.hpp"
+#include "saltus/io/json_optimization_internal.hpp"
 #include "saltus/io/json_parts_internal.hpp"
 #include "saltus/io/json_result.hpp"
 
@@ -10,11 +11,9 @@ namespace saltus::io {
 namespace {
 
 Json model_json(const result::ModelRecord& model) {
-  Json parameters = Json::object();
-  for (const auto& [name, value] : model.parameters) parameters[name] = value;
   return {{"name", model.name},
           {"sha256", model.sha256},
-          {"parameters", std::move(parameters)},
+          {"parameters", numbers_json(model.parameters)},
           {"description", model.description}};
 }
 
@@ -167,11 +166,13 @@ Json whole_json(const result::Result& result) {
   json["final"] = final_json(result.final);
   json["events"] = std::move(events);
   json["trajectory"] = trajectory_json(result.trajectory);
-  if (!result.interval_controls.empty()) json["u"] = result.interval_controls;
+  if (result.optimization) add_optimization(json, *result.optimization);
   json["surfaces"] = std::move(surfaces);
-  json["statistics"] = statistics_json(result.statistics);
+  json["statistics"] = result.optimization ? optimization_statistics_json(result.optimization->statistics)
+                                           : statistics_json(result.statistics);
   json["options"] = options_json(result.options);
   if (result.sensitivities) json["sensitivities"] = sensitivities_json(*result.sensitivities);
+  if (result.optimization) json["start_values"] = start_values_json(*result.optimization);
   if (result.elements) json["elements"] = elements_json(*result.elements);
   if (result.comparison) json["comparison"] = comparison_json(*result.comparison);
   if (result.order) json["order"] = order_json(*result.order);

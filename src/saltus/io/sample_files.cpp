@@ -155,14 +155,10 @@ Expected<Columns> read_control(const std::filesystem::path& file, const std::str
   const auto index = static_cast<std::size_t>(found - result->controls.begin());
   Columns columns;
   columns.file = file.string();
-  const auto& intervals = result->interval_controls;
-  if (!intervals.empty()) {
-    const double from = result->trajectory.t.empty() ? 0.0 : result->trajectory.t.front();
-    const double length = (result->final.t - from) / static_cast<double>(intervals.size());
-    for (std::size_t k = 0; k < intervals.size(); ++k) {
-      columns.first.push_back(from + static_cast<double>(k) * length);
-      columns.second.push_back(intervals[k][index]);
-    }
+  if (result->optimization && !result->optimization->u.empty()) {
+    const auto& grid = result->optimization->grid;
+    columns.first.assign(grid.begin(), grid.end() - 1);
+    for (const auto& row : result->optimization->u) columns.second.push_back(row[index]);
     return columns;
   }
   for (std::size_t i = 0; i < result->trajectory.t.size(); ++i) {

@@ -13,6 +13,7 @@
 
 #include "saltus/result/comparison.hpp"
 #include "saltus/result/elements.hpp"
+#include "saltus/result/optimization.hpp"
 #include "saltus/result/sensitivities.hpp"
 #include "saltus/result/statistics.hpp"
 #include "saltus/result/status.hpp"
@@ -182,9 +183,7 @@ struct Result {
   Final final;
   std::vector<Event> events;
   Trajectory trajectory;
-  /// Of an optimisation: the controls in each interval, n_u; the intervals divide the time of the trajectory evenly.
-  std::vector<std::vector<double>> interval_controls;
-  Statistics statistics;
+  Statistics statistics;  ///< of an optimisation those of Optimization are written instead
   OptionRecord options;
   std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)
 
@@ -192,6 +191,8 @@ struct Result {
   std::optional<Elements> elements;            ///< of methods made of finite elements, unless there are too many
 
   std::vector<Family> families;  ///< other solutions that no list of events can hold, by event
+
+  std::optional<Optimization> optimization;  ///< of `optimize`
 
   /// Of `compare` and `order`, whose reference run the rest of the result is.
   std::optional<Comparison> comparison;

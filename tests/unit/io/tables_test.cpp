@@ -130,18 +130,23 @@ TEST_F(Tables, SamplesOfAStoredResult) {
   EXPECT_EQ(input.values, (std::vector<double>{1, 4, 4}));  // of rows at one time the last
 
   // An optimisation has its controls by interval: exact where the rows are only where somebody wanted them.
-  stored.interval_controls = {{5, 6}, {5, 7}, {5, 8}, {5, 9}};
+  stored.command = "optimize";
+  auto& optimization = stored.optimization.emplace();
+  optimization.u = {{5, 6}, {5, 7}, {5, 8}, {5, 9}};
+  optimization.grid = {0, 0.5, 1, 1.5, 2};
+  optimization.h = {{0.5}, {0.5}, {0.5}, {0.5}};
   write("r.json", to_json(stored));
   const auto optimised = parse(road + "[simulate]\nuntil = 3\ninputs = { u = { result = 'r.json' } }\n");
   ASSERT_TRUE(optimised.has_value()) << to_text(optimised.error());
   const auto& intervals = optimised->description.sampled_inputs.at(0);
   EXPECT_EQ(intervals.times, (std::vector<double>{0, 0.5, 1, 1.5}));
   EXPECT_EQ(intervals.values, (std::vector<double>{6, 7, 8, 9}));
-  stored.interval_controls = {{5, 6}, {5}};
+  optimization.u[1] = {5};
   write("r.json", to_json(stored));
   const auto ragged = refused(road + "[simulate]\nuntil = 3\ninputs = { u = { result = 'r.json' } }\n");
   EXPECT_NE(ragged.message.find("/u/1"), std::string::npos) << to_text(ragged);
-  stored.interval_controls.clear();
+  stored.command = "simulate";
+  stored.optimization.reset();
 
   stored.controls = {"w", "v"};
   write("r.json", to_json(stored));
