@@ -1,6 +1,7 @@
 // The seam to solvers of smooth nonlinear programs.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -25,9 +26,13 @@ struct NlpOptions {
   double tolerance = 1e-12;            ///< of the solver's own scaled optimality error
   double acceptable_tolerance = 1e-6;  ///< taken if the solver cannot improve any more
   int iteration_limit = 500;
-  std::optional<double> time_limit;  ///< seconds
+  std::optional<double> time_limit = {};  ///< seconds, of the wall clock
   /// Barrier parameter to begin with where the start has multipliers; the solver's own choice if absent.
-  std::optional<double> warm_barrier_mu;
+  std::optional<double> warm_barrier_mu = {};
+  /// How far inside of its bounds a start with multipliers is moved.
+  double warm_push = 1e-9;
+  /// Asked before every iteration: true ends the solution (stopped_by_user).
+  std::function<bool()> is_interrupted = {};
 };
 
 struct NlpReport {
@@ -35,9 +40,11 @@ struct NlpReport {
   /// evaluation_failed, factorization_failed, step_size_too_small, not_converged.
   result::Termination termination = result::Termination::not_converged;
   bool acceptable_only = false;  ///< completed, but only to the acceptable tolerance
+  bool diverging = false;        ///< not_converged, since the iterates grow without bounds
   double objective = 0.0;
   int iterations = 0;
-  std::string message;  ///< the solver's own words; empty if completed
+  double evaluation_seconds = 0.0;  ///< spent in functions of the problem
+  std::string message;              ///< the solver's own words; empty if completed
 };
 
 /// A solver of smooth nonlinear programs: mpcc::Problems without pairs.
@@ -51,6 +58,7 @@ class NlpSolver {
   /// Solves from `point` and leaves the last iterate there, whatever the outcome. Multipliers of the start are used if
   /// they are there.
   [[nodiscard]] virtual NlpReport solve(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options) = 0;
+  [[nodiscard]] virtual const char* name() const = 0;
 };
 
 }  // namespace saltus::solver

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
@@ -9,6 +10,19 @@ namespace {
 
 using Input = Eigen::Map<const Eigen::VectorXd>;
 using Output = Eigen::Map<Eigen::VectorXd>;
+
+/// Adds the time until its end to a sum.
+class Timer {
+ public:
+  explicit Timer(double& seconds) : seconds_(seconds) {}
+  ~Timer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 void write_pattern(const mpcc::Pattern& pattern, Ipopt::Index* row, Ipopt::Index* column) {
   std::copy(pattern.row.begin(), pattern.row.end(), row);
@@ -53,16 +67,19 @@ bool IpoptProgram::get_starting_point(Ipopt::Index n, bool wants_w, double* w, b
 }
 
 bool IpoptProgram::eval_f(Ipopt::Index n, const double* w, bool /*is_new*/, double& value) {
+  const Timer timer(evaluation_seconds_);
   value = problem_->objective(Input(w, n));
   return std::isfinite(value);
 }
 
 bool IpoptProgram::eval_grad_f(Ipopt::Index n, const double* w, bool /*is_new*/, double* gradient) {
+  const Timer timer(evaluation_seconds_);
   problem_->objective_gradient(Input(w, n), Output(gradient, n));
   return Input(gradient, n).allFinite();
 }
 
 bool IpoptProgram::eval_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipopt::Index m, double* g) {
+  const Timer timer(evaluation_seconds_);
   problem_->functions(Input(w, n), Output(g, m));
   return Input(g, m).allFinite();
 }
@@ -73,6 +90,7 @@ bool IpoptProgram::eval_jac_g(Ipopt::Index n, const double* w, bool /*is_new*/, 
     write_pattern(problem_->jacobian_pattern(), row, column);
     return true;
   }
+  const Timer timer(evaluation_seconds_);
   problem_->jacobian(Input(w, n), Output(values, entries));
   return Input(values, entries).allFinite();
 }
@@ -84,8 +102,18 @@ bool IpoptProgram::eval_h(Ipopt::Index n, const double* w, bool /*is_new*/, doub
     write_pattern(problem_->hessian_pattern(), row, column);
     return true;
   }
+  const Timer timer(evaluation_seconds_);
   problem_->hessian(Input(w, n), objective_factor, Input(y, m), Output(values, entries));
   return Input(values, entries).allFinite();
+}
+
+bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Ipopt::Index /*iteration*/,
+                                         double /*objective*/, double /*primal_infeasibility*/,
+                                         double /*dual_infeasibility*/, double /*mu*/, double /*step_norm*/,
+                                         double /*regularisation*/, double /*dual_step*/, double /*primal_step*/,
+                                         Ipopt::Index /*trials*/, const Ipopt::IpoptData* /*data*/,
+                                         Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
+  return !(is_interrupted_ && is_interrupted_());
 }
 
 void IpoptProgram::finalize_solution(Ipopt::SolverReturn /*status*/, Ipopt::Index n, const double* w,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <IpTNLP.hpp>
+#include <functional>
 
 #include "saltus/solver/nlp_solver.hpp"
 
@@ -11,11 +12,14 @@ namespace saltus::adapters {
 class IpoptProgram final : public Ipopt::TNLP {
  public:
   /// What the next solution is about; both outlive it.
-  void set(mpcc::Problem& problem, solver::NlpPoint& point) {
+  void set(mpcc::Problem& problem, solver::NlpPoint& point, std::function<bool()> is_interrupted) {
     problem_ = &problem;
     point_ = &point;
+    is_interrupted_ = std::move(is_interrupted);
+    evaluation_seconds_ = 0.0;
   }
   [[nodiscard]] double objective() const { return objective_; }
+  [[nodiscard]] double evaluation_seconds() const { return evaluation_seconds_; }
 
   bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries, Ipopt::Index& hessian_entries,
                     IndexStyleEnum& index_style) override;
@@ -30,6 +34,10 @@ class IpoptProgram final : public Ipopt::TNLP {
                   Ipopt::Index* column, double* values) override;
   bool eval_h(Ipopt::Index n, const double* w, bool is_new, double objective_factor, Ipopt::Index m, const double* y,
               bool is_new_y, Ipopt::Index entries, Ipopt::Index* row, Ipopt::Index* column, double* values) override;
+  bool intermediate_callback(Ipopt::AlgorithmMode mode, Ipopt::Index iteration, double objective,
+                             double primal_infeasibility, double dual_infeasibility, double mu, double step_norm,
+                             double regularisation, double dual_step, double primal_step, Ipopt::Index trials,
+                             const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities) override;
   void finalize_solution(Ipopt::SolverReturn status, Ipopt::Index n, const double* w, const double* z_lower,
                          const double* z_upper, Ipopt::Index m, const double* g, const double* y, double objective,
                          const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities) override;
@@ -37,7 +45,9 @@ class IpoptProgram final : public Ipopt::TNLP {
  private:
   mpcc::Problem* problem_ = nullptr;
   solver::NlpPoint* point_ = nullptr;
+  std::function<bool()> is_interrupted_;
   double objective_ = 0.0;
+  double evaluation_seconds_ = 0.0;
 };
 
 }  // namespace saltus::adapters

@@ -56,15 +56,28 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status) {
   return {Termination::not_converged, "Ipopt ended with an internal error"};
 }
 
-/// Where to begin when the point comes with multipliers: as near to the bounds as it stands, instead of 1e-2 inside.
-constexpr double warm_push = 1e-9;
+/// Whether the application still has what it needs to be used again: a problem that was not solved takes nothing from it.
+bool keeps_structures(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Invalid_Problem_Definition:
+    case Ipopt::Invalid_Option:
+    case Ipopt::Not_Enough_Degrees_Of_Freedom:
+    case Ipopt::Unrecoverable_Exception:
+    case Ipopt::NonIpopt_Exception_Thrown:
+    case Ipopt::Insufficient_Memory:
+    case Ipopt::Internal_Error:
+      return false;
+    default:
+      return true;
+  }
+}
 
 }  // namespace
 
 struct IpoptSolver::Implementation {
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
   Ipopt::SmartPtr<IpoptProgram> program = new IpoptProgram;
-  const mpcc::Problem* solved = nullptr;  ///< the problem the application has its structures for
+  bool has_structures = false;  ///< it has solved a problem; the sizes of the next are its own
 
   Implementation() {
     auto options = application->Options();
@@ -97,7 +110,7 @@ struct IpoptSolver::Implementation {
                    options->SetStringValue("warm_start_init_point", has_multipliers ? "yes" : "no");
     for (const char* name : {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
                              "warm_start_slack_bound_frac", "warm_start_mult_bound_push"}) {
-      are_set = are_set && options->SetNumericValue(name, warm_push);
+      are_set = are_set && options->SetNumericValue(name, wanted.warm_push);
     }
     // Only the monotone strategy begins with a given parameter; the adaptive one chooses its own.
     const bool begins_with_mu = has_multipliers && wanted.warm_barrier_mu;
@@ -112,21 +125,22 @@ IpoptSolver::~IpoptSolver() = default;
 
 solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point, const solver::NlpOptions& options) {
   SALTUS_ASSERT(point.w.size() == nlp.variables());
-  auto& [application, program, solved] = *implementation_;
+  auto& [application, program, has_structures] = *implementation_;
   const bool has_multipliers = point.y.size() == nlp.constraints() && point.z_lower.size() == nlp.variables() &&
                                point.z_upper.size() == nlp.variables();
   implementation_->set_options(options, has_multipliers);
-  program->set(nlp, point);
+  program->set(nlp, point, options.is_interrupted);
   const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
-  const auto status = solved == &nlp ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
-  // An application that failed half-way may hold half of its structures.
-  solved = status == Ipopt::Solve_Succeeded ? &nlp : nullptr;
+  const auto status = has_structures ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
+  has_structures = keeps_structures(status);
 
   const Outcome outcome = outcome_of(status);
   solver::NlpReport report;
   report.termination = outcome.termination;
   report.acceptable_only = status == Ipopt::Solved_To_Acceptable_Level;
+  report.diverging = status == Ipopt::Diverging_Iterates;
   report.objective = program->objective();
+  report.evaluation_seconds = program->evaluation_seconds();
   report.message = outcome.message;
   if (const auto statistics = application->Statistics(); Ipopt::IsValid(statistics)) {
     report.iterations = statistics->IterationCount();

@@ -8,8 +8,8 @@
 namespace saltus::adapters {
 
 /// The interior-point method of [waechter2006] with the linear solver MUMPS, through Ipopt's own C++ interface. Keeps
-/// its application between solutions, so that solving a problem of the same structure again costs no set-up. Bounds are
-/// not relaxed; reads no option file; prints nothing.
+/// its application between solutions, whatever their outcome. Bounds are not relaxed; reads no option file; prints
+/// nothing.
 class IpoptSolver final : public solver::NlpSolver {
  public:
   IpoptSolver();
@@ -17,6 +17,7 @@ class IpoptSolver final : public solver::NlpSolver {
 
   [[nodiscard]] solver::NlpReport solve(mpcc::Problem& nlp, solver::NlpPoint& point,
                                         const solver::NlpOptions& options) override;
+  [[nodiscard]] const char* name() const override { return "ipopt"; }
 
  private:
   struct Implementation;

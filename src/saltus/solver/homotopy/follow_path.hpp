@@ -9,6 +9,7 @@
 #include "saltus/base/function_ref.hpp"
 #include "saltus/mpcc/residuals.hpp"
 #include "saltus/solver/homotopy/relaxation.hpp"
+#include "saltus/solver/homotopy/steering.hpp"
 #include "saltus/solver/nlp_solver.hpp"
 
 namespace saltus::solver::homotopy {

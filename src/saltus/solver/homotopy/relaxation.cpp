@@ -9,31 +9,38 @@
 namespace saltus::solver::homotopy {
 namespace {
 
-PairFunction scholtes(double a, double b, double sigma) { return {a * b - sigma, b, a, 0.0, 1.0, 0.0}; }
+PairFunction scholtes(double a, double b, double sigma) { return {a * b - sigma, b, a, 0.0, 1.0, 0.0, -1.0}; }
 
-/// a + b - sqrt(a^2 + b^2 + s2): the root as a hypotenuse cannot overflow, and s2 > 0 keeps it away from 0.
-PairFunction fischer_burmeister(double a, double b, double s2) {
+/// a + b - sqrt(a^2 + b^2 + s2), s2 = 2 sigma > 0 keeps the root away from 0.
+PairFunction fischer_burmeister(double a, double b, double sigma) {
+  const double s2 = 2.0 * sigma;
   const double root = std::sqrt(a * a + b * b + s2);
   const double cube = root * root * root;
   // a + b - root loses all digits where a b is small: ((a + b)^2 - root^2) / (a + b + root) does not.
   const double sum = a + b;
   const double value = sum > 0.0 ? (2.0 * a * b - s2) / (sum + root) : sum - root;
-  return {value, 1.0 - a / root, 1.0 - b / root, -(b * b + s2) / cube, a * b / cube, -(a * a + s2) / cube};
+  return {value,           1.0 - a / root, 1.0 - b / root, -(b * b + s2) / cube, a * b / cube, -(a * a + s2) / cube,
+          -1.0 / root, a / cube,       b / cube,       1.0 / cube};
 }
 
-PairFunction natural_residual(double a, double b, double s2) {
+PairFunction natural_residual(double a, double b, double sigma) {
+  const double s2 = 4.0 * sigma;
   const double difference = a - b;
   const double root = std::sqrt(difference * difference + s2);
   const double slope = difference / root;
-  const double curvature = 0.5 * s2 / (root * root * root);
+  const double cube = root * root * root;
+  const double curvature = 0.5 * s2 / cube;
   const double sum = a + b;
   const double value = 0.5 * (sum > 0.0 ? (4.0 * a * b - s2) / (sum + root) : sum - root);
-  return {value, 0.5 * (1.0 - slope), 0.5 * (1.0 + slope), -curvature, curvature, -curvature};
+  return {value,       0.5 * (1.0 - slope), 0.5 * (1.0 + slope), -curvature, curvature, -curvature,
+          -1.0 / root, difference / cube,   -difference / cube,  2.0 / cube};
 }
 
 PairFunction mean(const PairFunction& p, const PairFunction& q) {
   return {0.5 * (p.value + q.value), 0.5 * (p.a + q.a),   0.5 * (p.b + q.b),
-          0.5 * (p.aa + q.aa),       0.5 * (p.ab + q.ab), 0.5 * (p.bb + q.bb)};
+          0.5 * (p.aa + q.aa),       0.5 * (p.ab + q.ab), 0.5 * (p.bb + q.bb),
+          0.5 * (p.s + q.s),         0.5 * (p.as + q.as), 0.5 * (p.bs + q.bs),
+          0.5 * (p.ss + q.ss)};
 }
 
 /// |z| made twice differentiable inside of |z| < 1, with its derivatives.
@@ -51,19 +58,27 @@ Smoothed polynomial(double z) {
   return {(3.0 + z2 * (6.0 - z2)) / 8.0, z * (3.0 - z2) / 2.0, 1.5 * (1.0 - z2)};
 }
 
-PairFunction steffensen_ulbrich(double a, double b, double s, Smoothed (*smoothed)(double)) {
-  const double z = (a - b) / s;
+/// With t = 2 sqrt(sigma) / Y(0): a = b = sqrt(sigma) on the diagonal a + b = t Y(0).
+PairFunction steffensen_ulbrich(double a, double b, double sigma, Smoothed (*smoothed)(double)) {
+  const double t = 2.0 * std::sqrt(sigma) / smoothed(0.0).value;
+  const double z = (a - b) / t;
   if (std::abs(z) >= 1.0) return a >= b ? PairFunction{2.0 * b, 0.0, 2.0} : PairFunction{2.0 * a, 2.0, 0.0};
   const auto [value, slope, curvature] = smoothed(z);
-  const double second = curvature / s;
-  return {a + b - s * value, 1.0 - slope, 1.0 + slope, -second, second, -second};
+  const double second = curvature / t;
+  const double t_s = 0.5 * t / sigma;
+  const double of_t = z * slope - value;
+  return {a + b - t * value, 1.0 - slope,
+          1.0 + slope,       -second,
+          second,            -second,
+          of_t * t_s,        z * second * t_s,
+          -z * second * t_s, -z * z * second * t_s * t_s - of_t * 0.5 * t_s / sigma};
 }
 
 PairFunction kanzow_schwartz(double a, double b, double s) {
   const double p = a - s;
   const double q = b - s;
-  if (p + q >= 0.0) return {p * q, q, p, 0.0, 1.0, 0.0};
-  return {-0.5 * (p * p + q * q), -p, -q, -1.0, 0.0, -1.0};
+  if (p + q >= 0.0) return {p * q, q, p, 0.0, 1.0, 0.0, -(p + q), -1.0, -1.0, 2.0};
+  return {-0.5 * (p * p + q * q), -p, -q, -1.0, 0.0, -1.0, p + q, 1.0, 1.0, -2.0};
 }
 
 }  // namespace
@@ -92,6 +107,13 @@ std::string_view name(Relaxation relaxation) {
   return {};
 }
 
+std::optional<Relaxation> relaxation_named(std::string_view name_of_one) {
+  for (const Relaxation relaxation : all_relaxations) {
+    if (name(relaxation) == name_of_one) return relaxation;
+  }
+  return std::nullopt;
+}
+
 int inequalities(Relaxation relaxation) { return relaxation == Relaxation::lin_fukushima ? 2 : 1; }
 
 bool is_bilinear(Relaxation relaxation) {
@@ -112,28 +134,26 @@ double lower_bound(Relaxation relaxation, double sigma) {
 
 PairFunction pair_function(Relaxation relaxation, int which, double a, double b, double sigma) {
   SALTUS_ASSERT(which >= 0 && which < inequalities(relaxation) && sigma > 0.0);
-  const double s = std::sqrt(sigma);
   switch (relaxation) {
     case Relaxation::scholtes:
       return scholtes(a, b, sigma);
     case Relaxation::fischer_burmeister:
-      return fischer_burmeister(a, b, 2.0 * sigma);
+      return fischer_burmeister(a, b, sigma);
     case Relaxation::natural_residual:
-      return natural_residual(a, b, 4.0 * sigma);
+      return natural_residual(a, b, sigma);
     case Relaxation::chen_chen_kanzow:
-      return mean(fischer_burmeister(a, b, 2.0 * sigma), scholtes(a, b, sigma));
-    // On the diagonal a + b = s Y(0): s such that a = b = sqrt(sigma) there.
+      return mean(fischer_burmeister(a, b, sigma), scholtes(a, b, sigma));
     case Relaxation::steffensen_ulbrich_sine:
-      return steffensen_ulbrich(a, b, 2.0 * s / sine(0.0).value, sine);
+      return steffensen_ulbrich(a, b, sigma, sine);
     case Relaxation::steffensen_ulbrich_poly:
-      return steffensen_ulbrich(a, b, 2.0 * s / polynomial(0.0).value, polynomial);
+      return steffensen_ulbrich(a, b, sigma, polynomial);
     case Relaxation::kanzow_schwartz:
       return kanzow_schwartz(a, b, sigma);
     case Relaxation::lin_fukushima:
-      if (which == 0) return scholtes(a, b, sigma * sigma);
-      return {-(a * b + sigma * (a + b)), -(b + sigma), -(a + sigma), 0.0, -1.0, 0.0};
+      if (which == 0) return {a * b - sigma * sigma, b, a, 0.0, 1.0, 0.0, -2.0 * sigma, 0.0, 0.0, -2.0};
+      return {-(a * b + sigma * (a + b)), -(b + sigma), -(a + sigma), 0.0, -1.0, 0.0, -(a + b), -1.0, -1.0, 0.0};
     case Relaxation::kadrani:
-      return {(a - sigma) * (b - sigma), b - sigma, a - sigma, 0.0, 1.0, 0.0};
+      return {(a - sigma) * (b - sigma), b - sigma, a - sigma, 0.0, 1.0, 0.0, 2.0 * sigma - a - b, -1.0, -1.0, 2.0};
   }
   return {};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 
 namespace saltus::solver::homotopy {
@@ -26,6 +27,8 @@ inline constexpr std::array all_relaxations{
 
 /// The name of a relaxation in model files.
 [[nodiscard]] std::string_view name(Relaxation relaxation);
+/// The inverse of name; nullopt if there is none of that name.
+[[nodiscard]] std::optional<Relaxation> relaxation_named(std::string_view name);
 
 /// How many inequalities phi <= 0 the relaxation has: 2 for lin_fukushima, else 1.
 [[nodiscard]] int inequalities(Relaxation relaxation);
@@ -36,7 +39,7 @@ inline constexpr std::array all_relaxations{
 /// The lower bound of a and b that belongs to the relaxation: -s for kadrani, -inf for lin_fukushima, else 0.
 [[nodiscard]] double lower_bound(Relaxation relaxation, double sigma);
 
-/// phi with its first and second derivatives.
+/// phi with its first and second derivatives, with those with respect to sigma, too: elastic problems vary it.
 struct PairFunction {
   double value = 0.0;
   double a = 0.0;
@@ -44,6 +47,10 @@ struct PairFunction {
   double aa = 0.0;
   double ab = 0.0;
   double bb = 0.0;
+  double s = 0.0;  ///< with respect to sigma, and so below
+  double as = 0.0;
+  double bs = 0.0;
+  double ss = 0.0;
 };
 
 /// The relaxation at (a, b), number `which` of its inequalities. The parameter is normalised: a pair whose one side is

@@ -12,16 +12,36 @@ using mpcc::ConstVectorView;
 using mpcc::Sign;
 using mpcc::VectorView;
 
-RelaxedProblem::RelaxedProblem(mpcc::Problem& problem, Relaxation relaxation)
+namespace {
+
+/// Parameters above relax nothing any more that is of the size of a scaled problem; mpcc.md's choice, and nosnoc's.
+constexpr double largest_elastic = 10.0;
+/// phi is not smooth at s = 0, where interior points never are; guards against a start there.
+constexpr double smallest_elastic = 1e-16;
+
+int elastic_variables(Steering steering, int pairs) {
+  if (steering == Steering::direct || pairs == 0) return 0;
+  return steering == Steering::l1 ? pairs : 1;
+}
+
+}  // namespace
+
+RelaxedProblem::RelaxedProblem(mpcc::Problem& problem, Relaxation relaxation, Steering steering)
     : problem_(problem),
+      cache_(problem),
       relaxation_(relaxation),
       inequalities_(inequalities(relaxation)),
-      c_(problem.rows()),
-      jacobian_(problem.jacobian_pattern().entries()),
+      elastic_(elastic_variables(steering, problem.pairs())),
       y_(problem.rows()) {
+  const int n = problem.variables();
+  variable_bounds_.lower = Eigen::VectorXd::Zero(n + elastic_);
+  variable_bounds_.upper = Eigen::VectorXd::Constant(n + elastic_, largest_elastic);
+  variable_bounds_.lower.head(n) = problem.variable_bounds().lower;
+  variable_bounds_.upper.head(n) = problem.variable_bounds().upper;
   find_rows();
   find_jacobian_pattern();
   find_hessian_pattern();
+  if (elastic_ > 0) find_elastic_hessian_pattern();
   set_sigma(1.0);
 }
 
@@ -42,6 +62,8 @@ void RelaxedProblem::find_rows() {
 void RelaxedProblem::set_sigma(double sigma) {
   SALTUS_ASSERT(sigma > 0.0);
   sigma_ = sigma;
+  // Parameters of the problem may have changed since it was solved last.
+  cache_.forget();
   for (const int row : sign_row_) {
     if (row >= 0) bounds_.lower[row] = lower_bound(relaxation_, sigma);
   }
@@ -73,6 +95,7 @@ void RelaxedProblem::find_jacobian_pattern() {
     gradient.insert(gradient.end(), more.begin(), more.end());
     for (int which = 0; which < inequalities_; ++which) {
       for (const auto& side : gradient) jacobian_pattern_.add(pair_row(pair, which), side.column);
+      if (elastic_ > 0) jacobian_pattern_.add(pair_row(pair, which), elastic_column(pair));
     }
   }
 }
@@ -96,64 +119,128 @@ void RelaxedProblem::find_hessian_pattern() {
   }
 }
 
-PairFunction RelaxedProblem::pair_at(int pair, int which) const {
+void RelaxedProblem::find_elastic_hessian_pattern() {
+  first_elastic_entry_ = hessian_pattern_.entries();
+  for (int pair = 0; pair < problem_.pairs(); ++pair) {
+    for (const auto& side : gradients_[at(pair)]) hessian_pattern_.add(elastic_column(pair), side.column);
+    hessian_pattern_.add(elastic_column(pair), elastic_column(pair));
+  }
+}
+
+PairFunction RelaxedProblem::pair_at(int pair, int which, ConstVectorView w, ConstVectorView c) const {
   const int G = problem_.constraints() + pair;
-  return pair_function(relaxation_, which, c_[G], c_[G + problem_.pairs()], sigma_);
+  const double sigma = elastic_ > 0 ? std::max(w[elastic_column(pair)], smallest_elastic) : sigma_;
+  return pair_function(relaxation_, which, c[G], c[G + problem_.pairs()], sigma);
+}
+
+Eigen::VectorXd RelaxedProblem::with_elastic_variables(ConstVectorView w) {
+  const int n = problem_.variables();
+  Eigen::VectorXd extended(n + elastic_);
+  extended.head(n) = w.head(n);
+  extended.tail(elastic_).setConstant(std::min(sigma_, largest_elastic));
+  if (elastic_ == 0) return extended;
+  const Eigen::VectorXd& c = cache_.functions(w.head(n));
+  for (int pair = 0; pair < problem_.pairs(); ++pair) {
+    // The parameter is normalised such that a b <= s, whatever the relaxation.
+    const int G = problem_.constraints() + pair;
+    double& s = extended[elastic_column(pair)];
+    s = std::clamp(c[G] * c[G + problem_.pairs()], s, largest_elastic);
+  }
+  return extended;
+}
+
+double RelaxedProblem::objective(ConstVectorView w) {
+  const double f = problem_.objective(w.head(problem_.variables()));
+  return elastic_ > 0 ? f + w.tail(elastic_).sum() / sigma_ : f;
+}
+
+void RelaxedProblem::objective_gradient(ConstVectorView w, VectorView gradient) {
+  const int n = problem_.variables();
+  problem_.objective_gradient(w.head(n), gradient.head(n));
+  gradient.tail(elastic_).setConstant(1.0 / sigma_);
 }
 
 void RelaxedProblem::functions(ConstVectorView w, VectorView c) {
-  problem_.functions(w, c_);
+  const Eigen::VectorXd& values = cache_.functions(w.head(problem_.variables()));
   const int n_g = problem_.constraints();
-  c.head(n_g) = c_.head(n_g);
+  c.head(n_g) = values.head(n_g);
   for (std::size_t side = 0; side < sign_row_.size(); ++side) {
-    if (sign_row_[side] >= 0) c[sign_row_[side]] = c_[n_g + static_cast<int>(side)];
+    if (sign_row_[side] >= 0) c[sign_row_[side]] = values[n_g + index(side)];
   }
   for (int pair = 0; pair < problem_.pairs(); ++pair) {
-    for (int which = 0; which < inequalities_; ++which) c[pair_row(pair, which)] = pair_at(pair, which).value;
+    for (int which = 0; which < inequalities_; ++which) {
+      c[pair_row(pair, which)] = pair_at(pair, which, w, values).value;
+    }
   }
 }
 
 void RelaxedProblem::jacobian(ConstVectorView w, VectorView values) {
-  problem_.functions(w, c_);
-  problem_.jacobian(w, jacobian_);
+  const Eigen::VectorXd& c = cache_.functions(w.head(problem_.variables()));
+  const Eigen::VectorXd& entries = cache_.jacobian(w.head(problem_.variables()));
   Eigen::Index next = 0;
-  for (const int entry : copied_entries_) values[next++] = jacobian_[entry];
+  for (const int entry : copied_entries_) values[next++] = entries[entry];
   for (int pair = 0; pair < problem_.pairs(); ++pair) {
     for (int which = 0; which < inequalities_; ++which) {
-      const PairFunction phi = pair_at(pair, which);
+      const PairFunction phi = pair_at(pair, which, w, c);
       for (const auto& side : gradients_[at(pair)]) {
-        values[next++] = (side.is_H ? phi.b : phi.a) * jacobian_[side.entry];
+        values[next++] = (side.is_H ? phi.b : phi.a) * entries[side.entry];
       }
+      if (elastic_ > 0) values[next++] = phi.s;
     }
   }
 }
 
-void RelaxedProblem::hessian(ConstVectorView w, double objective_factor, ConstVectorView y, VectorView values) {
-  problem_.functions(w, c_);
-  problem_.jacobian(w, jacobian_);
+Eigen::VectorXd RelaxedProblem::multipliers_of_problem(ConstVectorView w, ConstVectorView y) {
+  const Eigen::VectorXd& c = cache_.functions(w.head(problem_.variables()));
   const int n_g = problem_.constraints();
   const int pairs = problem_.pairs();
   y_.head(n_g) = y.head(n_g);
   for (std::size_t side = 0; side < sign_row_.size(); ++side) {
-    y_[n_g + static_cast<int>(side)] = sign_row_[side] >= 0 ? y[sign_row_[side]] : 0.0;
+    y_[n_g + index(side)] = sign_row_[side] >= 0 ? y[sign_row_[side]] : 0.0;
   }
-  Eigen::Index next = problem_.hessian_pattern().entries();
   for (int pair = 0; pair < pairs; ++pair) {
-    std::array<double, 3> second{};
     for (int which = 0; which < inequalities_; ++which) {
-      const PairFunction phi = pair_at(pair, which);
-      const double multiplier = y[pair_row(pair, which)];
-      y_[n_g + pair] += multiplier * phi.a;
-      y_[n_g + pairs + pair] += multiplier * phi.b;
-      second[0] += multiplier * phi.aa;
-      second[1] += multiplier * phi.ab;
-      second[2] += multiplier * phi.bb;
-    }
-    for (const auto& product : products_[at(pair)]) {
-      values[next++] = product.factor * second[at(product.sides)] * jacobian_[product.p] * jacobian_[product.q];
+      const PairFunction phi = pair_at(pair, which, w, c);
+      y_[n_g + pair] += y[pair_row(pair, which)] * phi.a;
+      y_[n_g + pairs + pair] += y[pair_row(pair, which)] * phi.b;
     }
   }
-  problem_.hessian(w, objective_factor, y_, values.head(problem_.hessian_pattern().entries()));
+  return y_;
+}
+
+void RelaxedProblem::add_elastic_hessian(int pair, const PairFunction& phi, ConstVectorView jacobian,
+                                         VectorView values, Eigen::Index& next) const {
+  for (const auto& side : gradients_[at(pair)]) values[next++] = (side.is_H ? phi.bs : phi.as) * jacobian[side.entry];
+  values[next++] = phi.ss;
+}
+
+void RelaxedProblem::hessian(ConstVectorView w, double objective_factor, ConstVectorView y, VectorView values) {
+  const auto own = w.head(problem_.variables());
+  const Eigen::VectorXd& c = cache_.functions(own);
+  const Eigen::VectorXd& entries = cache_.jacobian(own);
+  static_cast<void>(multipliers_of_problem(w, y));
+  const int own_entries = problem_.hessian_pattern().entries();
+  Eigen::Index next = own_entries;
+  Eigen::Index elastic = first_elastic_entry_;
+  for (int pair = 0; pair < problem_.pairs(); ++pair) {
+    PairFunction second;  // sum over the inequalities of the pair, each times its multiplier
+    for (int which = 0; which < inequalities_; ++which) {
+      const PairFunction phi = pair_at(pair, which, w, c);
+      const double multiplier = y[pair_row(pair, which)];
+      second.aa += multiplier * phi.aa;
+      second.ab += multiplier * phi.ab;
+      second.bb += multiplier * phi.bb;
+      second.as += multiplier * phi.as;
+      second.bs += multiplier * phi.bs;
+      second.ss += multiplier * phi.ss;
+    }
+    const std::array<double, 3> of_sides{second.aa, second.ab, second.bb};
+    for (const auto& product : products_[at(pair)]) {
+      values[next++] = product.factor * of_sides[at(product.sides)] * entries[product.p] * entries[product.q];
+    }
+    if (elastic_ > 0) add_elastic_hessian(pair, second, entries, values, elastic);
+  }
+  problem_.hessian(own, objective_factor, y_, values.head(own_entries));
 }
 
 }  // namespace saltus::solver::homotopy

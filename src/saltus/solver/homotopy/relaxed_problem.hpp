@@ -4,28 +4,33 @@
 #include <vector>
 
 #include "saltus/mpcc/problem.hpp"
+#include "saltus/solver/cached_functions.hpp"
 #include "saltus/solver/homotopy/relaxation.hpp"
+#include "saltus/solver/homotopy/steering.hpp"
 
 namespace saltus::solver::homotopy {
 
 /// min f   subject to   bounds, g, G >= l and H >= l where that is not implied, phi(G_i, H_i; sigma) <= 0,
 /// with rows in this order: g; the sides that are constrained; the inequalities of pair 0, pair 1, ...
-/// Sparsity does not depend on sigma. Refers to the problem it relaxes.
+/// An elastic one (steering l1, linf) has the parameters s of phi behind the variables of the problem, and min f + s / sigma.
+/// Sparsity does not depend on sigma. Refers to the problem it relaxes; evaluates it once per point.
 class RelaxedProblem final : public mpcc::Problem {
  public:
-  RelaxedProblem(mpcc::Problem& problem, Relaxation relaxation);
+  RelaxedProblem(mpcc::Problem& problem, Relaxation relaxation, Steering steering = Steering::direct);
   void set_sigma(double sigma);  ///< > 0
+  /// w with parameters s of pairs behind it that it satisfies, if they are below their upper bound.
+  [[nodiscard]] Eigen::VectorXd with_elastic_variables(mpcc::ConstVectorView w);
+  /// Multipliers of (g, G, H) in L = f + y'c that those of the rows here amount to: of a side also what phi asks of it.
+  [[nodiscard]] Eigen::VectorXd multipliers_of_problem(mpcc::ConstVectorView w, mpcc::ConstVectorView y);
 
-  [[nodiscard]] int variables() const override { return problem_.variables(); }
+  [[nodiscard]] int variables() const override { return problem_.variables() + elastic_; }
   [[nodiscard]] int constraints() const override { return static_cast<int>(bounds_.lower.size()); }
   [[nodiscard]] int pairs() const override { return 0; }
-  [[nodiscard]] const mpcc::Bounds& variable_bounds() const override { return problem_.variable_bounds(); }
+  [[nodiscard]] const mpcc::Bounds& variable_bounds() const override { return variable_bounds_; }
   [[nodiscard]] const mpcc::Bounds& constraint_bounds() const override { return bounds_; }
   [[nodiscard]] const std::vector<mpcc::Sign>& signs() const override { return no_signs_; }
-  [[nodiscard]] double objective(mpcc::ConstVectorView w) override { return problem_.objective(w); }
-  void objective_gradient(mpcc::ConstVectorView w, mpcc::VectorView gradient) override {
-    problem_.objective_gradient(w, gradient);
-  }
+  [[nodiscard]] double objective(mpcc::ConstVectorView w) override;
+  void objective_gradient(mpcc::ConstVectorView w, mpcc::VectorView gradient) override;
   void functions(mpcc::ConstVectorView w, mpcc::VectorView c) override;
   void jacobian(mpcc::ConstVectorView w, mpcc::VectorView values) override;
   void hessian(mpcc::ConstVectorView w, double objective_factor, mpcc::ConstVectorView y,
@@ -50,13 +55,21 @@ class RelaxedProblem final : public mpcc::Problem {
   void find_rows();
   void find_jacobian_pattern();
   void find_hessian_pattern();
-  [[nodiscard]] PairFunction pair_at(int pair, int which) const;
+  void find_elastic_hessian_pattern();
+  /// Values of the mixed and second derivatives with respect to s of one pair, from `next` on.
+  void add_elastic_hessian(int pair, const PairFunction& phi, mpcc::ConstVectorView jacobian, mpcc::VectorView values,
+                           Eigen::Index& next) const;
+  [[nodiscard]] int elastic_column(int pair) const { return problem_.variables() + (elastic_ == 1 ? 0 : pair); }
+  [[nodiscard]] PairFunction pair_at(int pair, int which, mpcc::ConstVectorView w, mpcc::ConstVectorView c) const;
   [[nodiscard]] int pair_row(int pair, int which) const { return first_pair_row_ + pair * inequalities_ + which; }
 
   mpcc::Problem& problem_;
+  CachedFunctions cache_;
   Relaxation relaxation_;
   int inequalities_;
+  int elastic_ = 0;  ///< how many variables s there are
   double sigma_ = 1.0;
+  mpcc::Bounds variable_bounds_;
   mpcc::Bounds bounds_;
   std::vector<mpcc::Sign> no_signs_;
   std::vector<int> sign_row_;  ///< for each side the row of its own, or -1
@@ -66,9 +79,8 @@ class RelaxedProblem final : public mpcc::Problem {
   std::vector<std::vector<Product>> products_;     ///< one per pair
   mpcc::Pattern jacobian_pattern_;
   mpcc::Pattern hessian_pattern_;
-  Eigen::VectorXd c_;  ///< of the problem, and so below
-  Eigen::VectorXd jacobian_;
-  Eigen::VectorXd y_;
+  int first_elastic_entry_ = 0;  ///< of the Hessian, where there are any
+  Eigen::VectorXd y_;  ///< of the rows of the problem
 };
 
 }  // namespace saltus::solver::homotopy
