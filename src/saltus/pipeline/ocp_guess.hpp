@@ -11,7 +11,7 @@ namespace saltus::pipeline {
 
 struct OcpStart {
   double horizon = 0.0;
-  std::vector<double> parameters;            ///< all of System::p
+  std::vector<double> parameters;             ///< all of System::p
   std::vector<std::vector<double>> controls;  ///< row per interval, all controls
   std::vector<double> initial_state;
   /// Rows at the asked fractions of the horizon.
@@ -21,11 +21,12 @@ struct OcpStart {
   std::vector<std::string> warnings;  ///< values outside their bounds that were moved onto them
 };
 
-/// Rule 11 of interface.md [optimize]: `initial_guess`; else an event-driven simulation of the guessed controls from the
-/// guessed initial state; from where that stops, or with a free horizon whose terminal constraint names a state
+/// Rule 11 of interface.md [optimize]: `initial_guess`; else an event-driven simulation of the guessed controls from
+/// the guessed initial state; from where that stops, or with a free horizon whose terminal constraint names a state
 /// linearly, the straight line; else the initial values.
 /// @param intervals  N >= 1
 /// @param fractions  ascending, in [0, 1], of the horizon
-[[nodiscard]] Expected<OcpStart> guess_start(const model::Ocp& ocp, int intervals, const std::vector<double>& fractions);
+[[nodiscard]] Expected<OcpStart> guess_start(const model::Ocp& ocp, int intervals,
+                                             const std::vector<double>& fractions);
 
 }  // namespace saltus::pipeline

@@ -14,7 +14,7 @@ namespace saltus::pipeline {
 /// An optimised trajectory, as far as it is simulated again.
 struct OptimizedPath {
   double horizon = 0.0;
-  std::vector<double> parameters;             ///< all of System::p
+  std::vector<double> parameters;  ///< all of System::p
   /// N + 1 times of the nodes in the time of the right-hand side: physical time, or numerical time where it is frozen.
   std::vector<double> times;
   std::vector<std::vector<double>> nodes;     ///< N + 1 states

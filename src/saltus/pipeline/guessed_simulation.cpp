@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saltus/base/at.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/pipeline/guessed_simulation_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using event_integrator::Integration;
+using event_integrator::IntegrationOptions;
+
+/// A guess need not be exact, but should have the switches of the true trajectory.
+constexpr ode::Tolerances guess_tolerances{1e-6, 1e-8};
+constexpr long most_guess_steps = 20'000;
+constexpr long most_guess_events = 2'000;
+/// Times the largest of what is given about a state: a problem solver has no use for more.
+constexpr double largest_growth = 1e6;
+
+IntegrationOptions guess_options(double from, double until, const std::vector<double>& times) {
+  IntegrationOptions options;
+  options.tolerances = guess_tolerances;
+  options.from = from;
+  options.until = until;
+  options.max_steps = most_guess_steps;
+  options.max_events = most_guess_events;
+  options.output.rows = event_integrator::OutputTimes::Rows::at_times;
+  options.output.times = times;
+  auto& output = options.output.times;
+  output.erase(std::unique(output.begin(), output.end()), output.end());
+  return options;
+}
+
+bool is_of_use(const model::System& system, const std::vector<double>& x) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double measure = std::max(1.0, std::abs(system.initial_state[i]));
+    for (const double bound : {system.state_lower[i], system.state_upper[i]}) {
+      if (std::isfinite(bound)) measure = std::max(measure, std::abs(bound));
+    }
+    if (!(std::abs(x[i]) <= largest_growth * measure)) return false;
+  }
+  return true;
+}
+
+/// What a row says of the selections; NaN where it says nothing.
+std::vector<double> known_selections(const model::System& system, const result::Trajectory& rows, std::size_t row) {
+  std::vector<double> known(system.switching.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t c = 0; c < system.columns.size(); ++c) {
+    const auto& column = system.columns[c];
+    const double alpha = rows.alpha[row][c];
+    known[at(column.function)] = column.orientation > 0 ? alpha : 1.0 - alpha;
+  }
+  std::size_t next = 0;
+  for (const auto& group : system.mode_groups) {
+    for (int i = 0; group.first >= 0 && i < group.regions && !rows.theta.empty(); ++i) {
+      known[at(group.first + i)] = rows.theta[row][next++];
+    }
+  }
+  return known;
+}
+
+}  // namespace
+
+Expected<GuessedSimulation> simulate_guess(const model::System& system, PointValues& values,
+                                           const std::vector<double>& starts,
+                                           const std::vector<std::vector<double>>& controls, double until,
+                                           const std::vector<double>& times) {
+  model::System controlled = system;
+  controlled.events.clear();  // they would stop it
+  controlled = model::with_controls(std::move(controlled), starts, controls);
+  const auto kernel = evaluation::ModelKernel::compile(controlled);
+  if (!kernel) return tl::unexpected(kernel.error());
+  const Integration run = event_integrator::integrate(*kernel, controlled, guess_options(starts.front(), until, times));
+
+  GuessedSimulation simulation;
+  simulation.time_reached = starts.front();
+  simulation.last = system.initial_state;
+  const auto& rows = run.trajectory;
+  std::size_t next = 0;
+  for (std::size_t row = 0; row < rows.t.size() && is_of_use(system, rows.x[row]); ++row) {
+    simulation.time_reached = rows.t[row];
+    simulation.last = rows.x[row];
+    // Of two rows at an event the second one, except at the end, where it is behind the horizon.
+    const bool is_first = row + 1 < rows.t.size() && rows.t[row + 1] == rows.t[row] && rows.t[row] < until;
+    if (is_first) continue;
+    for (; next < times.size() && times[next] <= rows.t[row]; ++next) {
+      const auto interval = std::upper_bound(starts.begin(), starts.end(), rows.t[row]) - starts.begin();
+      const auto& u = controls[at(std::max<std::ptrdiff_t>(interval - 1, 0))];
+      simulation.x.push_back(rows.x[row]);
+      simulation.alpha.push_back(values.selections({rows.t[row], rows.x[row], u, system.parameter_values},
+                                                   known_selections(controlled, rows, row)));
+    }
+  }
+  return simulation;
+}
+
+}  // namespace saltus::pipeline

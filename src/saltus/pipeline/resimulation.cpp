@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/pipeline/resimulation_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using event_integrator::Integration;
+using event_integrator::IntegrationOptions;
+using event_integrator::OutputTimes;
+using result::Termination;
+
+/// So small that defects of 1e-9 of the range are those of the solution.
+constexpr ode::Tolerances verification_tolerances{1e-10, 1e-12};
+/// Of one interval, and of the whole horizon: enough for everything but stiff systems, which are tried again.
+constexpr long most_explicit_steps = 100'000;
+constexpr long most_resimulated_events = 20'000;
+/// Rows to look for violations in, beside those around events.
+constexpr std::size_t rows_per_interval = 50;
+/// Of the open loop, which is drawn: a page shows no more.
+constexpr std::size_t most_drawn_rows = 1000;
+/// Of an interval: switches so near to its start are there, to what switching times are found to.
+constexpr double at_start = 1e-6;
+
+IntegrationOptions resimulation_options(double from, double until, std::size_t rows) {
+  IntegrationOptions options;
+  options.method = ode::Method::dop853;
+  options.tolerances = verification_tolerances;
+  options.from = from;
+  options.until = until;
+  options.max_steps = most_explicit_steps;
+  options.max_events = most_resimulated_events;
+  options.output.rows = OutputTimes::Rows::at_times;
+  options.output.times = equal_times(from, until, rows);
+  return options;
+}
+
+/// The mode of the solution at the start of interval k, over the columns of the result; nullopt if no event says it.
+std::optional<result::Mode> mode_at_start(const OptimizedPath& path, std::size_t k) {
+  const double t = path.times[k] + at_start * (path.times[k + 1] - path.times[k]);
+  std::optional<result::Mode> mode;
+  for (const auto& event : path.events) {
+    if (event.t > t) return mode ? mode : event.mode_before;
+    if (event.mode_after) mode = event.mode_after;
+  }
+  return mode;
+}
+
+}  // namespace
+
+std::vector<double> equal_times(double from, double until, std::size_t n) {
+  std::vector<double> times;
+  for (std::size_t i = 0; i <= n; ++i) {
+    times.push_back(i == n ? until : from + (until - from) * (static_cast<double>(i) / static_cast<double>(n)));
+  }
+  return times;
+}
+
+Resimulation::Resimulation(model::System system, evaluation::ModelKernel kernel, const OptimizedPath& path)
+    : system_(std::move(system)), kernel_(std::move(kernel)), path_(&path) {}
+
+Expected<Resimulation> Resimulation::make(const model::System& system, const OptimizedPath& path) {
+  model::System controlled = system;
+  controlled.parameter_values = path.parameters;
+  controlled.events.clear();  // they would stop it
+  controlled = model::with_controls(
+      std::move(controlled), {path.times.begin(), path.times.begin() + index(path.controls.size())}, path.controls);
+  auto kernel = evaluation::ModelKernel::compile(controlled, evaluation::NativeCode::automatic);
+  if (!kernel) return tl::unexpected(kernel.error());
+  return Resimulation(std::move(controlled), std::move(*kernel), path);
+}
+
+Integration Resimulation::run(const IntegrationOptions& options, const std::function<bool()>& is_interrupted) {
+  const auto observer = [&](const result::Progress&) {
+    return is_interrupted && is_interrupted() ? result::Continue::no : result::Continue::yes;
+  };
+  auto run = event_integrator::integrate(kernel_, system_, options, observer);
+  if (run.status.termination != Termination::iteration_limit || run.statistics.steps < options.max_steps / 2) {
+    return run;
+  }
+  auto stiff = options;
+  stiff.method = ode::Method::radau5;
+  return event_integrator::integrate(kernel_, system_, stiff, observer);
+}
+
+std::vector<std::pair<int, int>> Resimulation::wanted_mode(const Integration& run, std::size_t k) const {
+  if (run.events.empty() || run.events.front().kind != result::EventKind::start) return {};
+  const auto& start = run.events.front();
+  const auto wanted = mode_at_start(*path_, k);
+  if (!wanted || !start.mode_after || *wanted == *start.mode_after) return {};
+  const bool is_offered = std::any_of(start.alternatives.begin(), start.alternatives.end(),
+                                      [&](const auto& alternative) { return alternative.mode == *wanted; });
+  if (!is_offered) return {};
+  std::vector<std::pair<int, int>> forced;
+  for (std::size_t c = 0; c < wanted->size(); ++c) {
+    const auto& column = system_.columns[c];
+    if ((*wanted)[c] != (*start.mode_after)[c]) {
+      forced.emplace_back(column.function, column.orientation * (*wanted)[c]);
+    }
+  }
+  return forced;
+}
+
+Resimulation::Segment Resimulation::from_node(std::size_t k, IntegrationOptions options,
+                                              const std::function<bool()>& is_interrupted) {
+  system_.initial_state = path_->nodes[k];
+  const auto is_complete = [&](const Integration& run) {
+    // What happens at the end itself, where controls jump, belongs to the next interval, and so do its failures.
+    return run.status.termination != Termination::stopped_by_user && run.status.time_reached >= options.until &&
+           std::all_of(run.final.x.begin(), run.final.x.end(), [](double value) { return std::isfinite(value); });
+  };
+  Segment segment{run(options, is_interrupted), false, false};
+  segment.is_complete = is_complete(segment.run);
+  options.initial_mode = wanted_mode(segment.run, k);
+  if (options.initial_mode.empty()) return segment;
+  auto other = run(options, is_interrupted);
+  if (is_complete(other)) segment = {std::move(other), true, true};
+  return segment;
+}
+
+Resimulation::Segment Resimulation::interval(std::size_t k, const std::function<bool()>& is_interrupted) {
+  return from_node(k, resimulation_options(path_->times[k], path_->times[k + 1], rows_per_interval), is_interrupted);
+}
+
+Resimulation::Segment Resimulation::open_loop(const std::function<bool()>& is_interrupted) {
+  const std::size_t rows = std::clamp(20 * path_->controls.size(), std::size_t{200}, most_drawn_rows);
+  return from_node(0, resimulation_options(path_->times.front(), path_->times.back(), rows), is_interrupted);
+}
+
+}  // namespace saltus::pipeline

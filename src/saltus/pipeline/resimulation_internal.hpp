@@ -1,0 +1,49 @@
+// Event-driven simulations of optimised controls: of one interval, or of all.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/pipeline/verify.hpp"
+
+namespace saltus::pipeline {
+
+/// The system with the controls and parameters of a solution, compiled once.
+class Resimulation {
+ public:
+  /// Fails if the symbolic layer refuses the model. `path` must outlive it.
+  [[nodiscard]] static Expected<Resimulation> make(const model::System& system, const OptimizedPath& path);
+
+  struct Segment {
+    event_integrator::Integration run;
+    bool is_complete = false;  ///< it came to its end
+    bool was_chosen = false;   ///< the mode at the node is that of the solution, and not what the engine takes
+  };
+  /// From node k with the controls of interval k to its end. Where the solution from there is not unique, the mode that
+  /// the optimised trajectory has is taken if it is one of those that are possible.
+  [[nodiscard]] Segment interval(std::size_t k, const std::function<bool()>& is_interrupted);
+  /// From the first node over the whole horizon, likewise.
+  [[nodiscard]] Segment open_loop(const std::function<bool()>& is_interrupted);
+
+ private:
+  Resimulation(model::System system, evaluation::ModelKernel kernel, const OptimizedPath& path);
+  [[nodiscard]] Segment from_node(std::size_t k, event_integrator::IntegrationOptions options,
+                                  const std::function<bool()>& is_interrupted);
+  [[nodiscard]] event_integrator::Integration run(const event_integrator::IntegrationOptions& options,
+                                                  const std::function<bool()>& is_interrupted);
+  [[nodiscard]] std::vector<std::pair<int, int>> wanted_mode(const event_integrator::Integration& run,
+                                                             std::size_t k) const;
+
+  model::System system_;
+  evaluation::ModelKernel kernel_;
+  const OptimizedPath* path_;
+};
+
+/// n + 1 times of equal distance from `from` until `until`.
+[[nodiscard]] std::vector<double> equal_times(double from, double until, std::size_t n);
+
+}  // namespace saltus::pipeline

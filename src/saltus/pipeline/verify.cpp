@@ -1,0 +1,218 @@
+#include "saltus/pipeline/verify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "saltus/base/at.hpp"
+#include "saltus/pipeline/resimulation_internal.hpp"
+#include "saltus/pipeline/switch_comparison_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using event_integrator::Integration;
+using model::Ocp;
+using model::OcpConstraint;
+using result::Termination;
+using result::Verification;
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+/// Lengths of an interval: a switch so near to its end may be found in the next one. The states say how much it
+/// matters.
+constexpr double end_tolerance = 1e-3;
+/// Rows of the open loop that are kept.
+constexpr std::size_t most_kept_rows = 2000;
+
+/// The larger one; what is not a number stays.
+double worse(double a, double b) { return std::isnan(a) || std::isnan(b) ? not_known : std::max(a, b); }
+
+double violation(double value, double lower, double upper) { return worse(worse(lower - value, value - upper), 0.0); }
+
+double violation_of(const std::vector<OcpConstraint>& constraints, const std::vector<double>& outputs) {
+  double worst = 0.0;
+  for (const auto& constraint : constraints) {
+    if (constraint.norm != model::ConstraintNorm::hard) continue;
+    worst = worse(worst, violation(outputs[at(constraint.output)], constraint.lower, constraint.upper));
+  }
+  return worst;
+}
+
+/// Of path constraints and bounds of states, in all rows up to the end of the interval, with its controls.
+double path_violation(const Ocp& ocp, const Integration& run, double until) {
+  const auto& rows = run.trajectory;
+  double worst = 0.0;
+  for (std::size_t r = 0; r < rows.t.size(); ++r) {
+    worst = worse(worst, violation_of(ocp.path, rows.outputs[r]));
+    for (std::size_t i = 0; i < rows.x[r].size(); ++i) {
+      worst = worse(worst, violation(rows.x[r][i], ocp.system.state_lower[i], ocp.system.state_upper[i]));
+    }
+    if (rows.t[r] >= until) break;  // a second row at the end is behind the jump of the controls
+  }
+  return worst;
+}
+
+/// What errors of a state are divided by: its range, at least 1e-3 of its bound and 1e-6.
+class Scales {
+ public:
+  Scales(const model::System& system, const OptimizedPath& path)
+      : system_(system), low_(path.state_min), high_(path.state_max) {}
+
+  void include(const Integration& run) {
+    for (const auto& x : run.trajectory.x) {
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (!std::isfinite(x[i])) continue;
+        low_[i] = std::min(low_[i], x[i]);
+        high_[i] = std::max(high_[i], x[i]);
+      }
+    }
+  }
+
+  [[nodiscard]] double of(std::size_t state) const {
+    double scale = std::max(high_[state] - low_[state], 1e-6);
+    for (const double bound : {system_.state_lower[state], system_.state_upper[state]}) {
+      if (std::isfinite(bound)) scale = std::max(scale, 1e-3 * std::abs(bound));
+    }
+    return scale;
+  }
+
+ private:
+  const model::System& system_;
+  std::vector<double> low_, high_;
+};
+
+/// Everything but the open loop.
+class IntervalChecks {
+ public:
+  IntervalChecks(const Ocp& ocp, const OptimizedPath& path, Verification& verification)
+      : ocp_(ocp), path_(path), verification_(verification), scales_(ocp.system, path) {}
+
+  /// @return false: interrupted
+  [[nodiscard]] bool simulate(Resimulation& resimulation, const std::function<bool()>& is_interrupted) {
+    for (std::size_t k = 0; k < path_.controls.size(); ++k) {
+      const auto interval = resimulation.interval(k, is_interrupted);
+      if (interval.run.status.termination == Termination::stopped_by_user) return false;
+      switches_.push_back(switches_of(interval.run.events));
+      if (interval.was_chosen) chosen_.push_back(k);
+      ends_.push_back(interval.run.final.x);
+      if (!interval.is_complete) {
+        note_failure(k, interval.run.status);
+        continue;
+      }
+      scales_.include(interval.run);
+      const double worst = path_violation(ocp_, interval.run, path_.times[k + 1]);
+      verification_.path_violation = worse(verification_.path_violation, worst);
+    }
+    return true;
+  }
+
+  void compare() {
+    find_defect();
+    const auto switches = compare_switches(path_.times, switches_, switches_of(path_.events), end_tolerance);
+    verification_.switch_time_error = switches.time_error;
+    verification_.switches_missed = switches.missed;
+    verification_.switches_extra = switches.extra;
+    if (failures_ > 1) verification_.message += fmt::format(" ({} intervals cannot be simulated)", failures_);
+    if (chosen_.empty()) return;
+    add(
+        fmt::format("the solution is not unique from the start of interval{} {}: the mode of the optimised trajectory "
+                    "is compared",
+                    chosen_.size() == 1 ? "" : "s", fmt::join(chosen_, ", ")));
+  }
+
+  [[nodiscard]] const Scales& scales() const { return scales_; }
+
+ private:
+  void add(const std::string& text) { verification_.message += (verification_.message.empty() ? "" : "; ") + text; }
+
+  void note_failure(std::size_t k, const result::Status& status) {
+    verification_.path_violation = not_known;
+    if (++failures_ > 1) return;
+    verification_.interval = static_cast<int>(k);
+    add(fmt::format("interval {} cannot be simulated: {}{}{}", k, result::name(status.termination),
+                    status.message.empty() ? "" : ": ", status.message));
+  }
+
+  void find_defect() {
+    if (failures_ > 0) {
+      verification_.interval_defect = not_known;
+      return;
+    }
+    for (std::size_t k = 0; k < ends_.size(); ++k) {
+      for (std::size_t i = 0; i < ends_[k].size(); ++i) {
+        const double defect = std::abs(ends_[k][i] - path_.nodes[k + 1][i]) / scales_.of(i);
+        if (verification_.interval >= 0 && !(defect > verification_.interval_defect)) continue;
+        verification_.interval_defect = defect;
+        verification_.interval = static_cast<int>(k);
+        verification_.state = ocp_.system.state_names[i];
+      }
+    }
+  }
+
+  const Ocp& ocp_;
+  const OptimizedPath& path_;
+  Verification& verification_;
+  Scales scales_;
+  std::vector<std::vector<double>> ends_;
+  std::vector<std::vector<Switch>> switches_;
+  std::vector<std::size_t> chosen_;
+  int failures_ = 0;
+};
+
+/// At most so many rows, of equal distance in number; first and last ones stay.
+void keep_rows(result::Trajectory& rows, result::OpenLoop& open_loop) {
+  const std::size_t n = rows.t.size(), kept = std::min(n, most_kept_rows);
+  for (std::size_t i = 0; i < kept; ++i) {
+    const std::size_t row = kept < 2 ? i : i * (n - 1) / (kept - 1);
+    open_loop.t.push_back(rows.t[row]);
+    open_loop.x.push_back(std::move(rows.x[row]));
+  }
+}
+
+result::OpenLoop open_loop_of(const Ocp& ocp, const OptimizedPath& path, const Scales& scales,
+                              Resimulation::Segment segment) {
+  auto& run = segment.run;
+  result::OpenLoop open_loop;
+  open_loop.termination = run.status.termination;
+  open_loop.message = run.status.message;
+  open_loop.amplification = path.amplification;
+  open_loop.end_state_error = open_loop.terminal_violation = not_known;
+  if (segment.is_complete) {
+    open_loop.end_state_error = 0.0;
+    for (std::size_t i = 0; i < run.final.x.size(); ++i) {
+      const double error = std::abs(run.final.x[i] - path.nodes.back()[i]) / scales.of(i);
+      open_loop.end_state_error = worse(open_loop.end_state_error, error);
+    }
+    open_loop.terminal_violation = violation_of(ocp.terminal, run.final.outputs);
+  }
+  keep_rows(run.trajectory, open_loop);
+  return open_loop;
+}
+
+}  // namespace
+
+Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, double tolerance,
+                              const std::function<bool()>& is_interrupted) {
+  auto resimulation = Resimulation::make(ocp.system, path);
+  if (!resimulation) return tl::unexpected(resimulation.error());
+  Verification verification;
+  verification.tolerance = tolerance;
+  IntervalChecks checks(ocp, path, verification);
+  if (!checks.simulate(*resimulation, is_interrupted)) {
+    verification.interval_defect = verification.path_violation = not_known;
+    verification.open_loop.end_state_error = verification.open_loop.terminal_violation = not_known;
+    verification.open_loop.amplification = path.amplification;
+    verification.open_loop.termination = Termination::stopped_by_user;
+    verification.message = "stopped before all intervals were simulated";
+    return verification;
+  }
+  checks.compare();
+  verification.open_loop = open_loop_of(ocp, path, checks.scales(), resimulation->open_loop(is_interrupted));
+  return verification;
+}
+
+}  // namespace saltus::pipeline
