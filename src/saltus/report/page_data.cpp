@@ -5,6 +5,7 @@
 #include "saltus/base/version.hpp"
 #include "saltus/report/page_comparison_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
+#include "saltus/report/page_optimization_internal.hpp"
 #include "saltus/report/thinning_internal.hpp"
 
 namespace saltus::report {
@@ -304,6 +305,7 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"surfaces", std::move(surfaces)},
           {"elements", elements_data(result.elements)},
           {"sensitivities", sensitivities_data(result.sensitivities)},
+          {"optimization", optimization_data(result, share_of_trajectory)},
           {"comparison", comparison_data(result.comparison)},
           {"order", order_data(result.order)},
           {"statistics",

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/report/comparison_table_internal.hpp"
+#include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/text_columns_internal.hpp"
 
 namespace saltus::report {
@@ -156,6 +157,7 @@ std::string family_table(const result::Result& result) {
 }
 
 std::string method_text(const result::Result& result) {
+  if (result.optimization) return optimization_method(result);
   const auto value_of = [&](std::string_view key, std::string_view form) -> std::string {
     for (const auto& [name, value] : result.options) {
       if (name != key) continue;
@@ -230,11 +232,14 @@ std::string to_table(const result::Result& result) {
                     ? std::string(name(result.status.termination))
                     : fmt::format("{} at t = {:.12g}", name(result.status.termination), result.status.time_reached));
   if (!result.status.message.empty()) text += paragraph("", result.status.message);
+  if (result.optimization) text += objective_table(*result.optimization);
   text += end_state(result);
+  if (result.optimization) text += findings_table(result, *result.optimization);
   if (result.sensitivities) text += sensitivity_table(result, *result.sensitivities);
   text += event_table(result);
   text += branch_table(result);
   text += family_table(result);
+  if (result.optimization) return text + optimization_statistics(*result.optimization);
   const auto& statistics = result.statistics;
   text += paragraph("statistics", fmt::format("{} steps, {} rejected, {} evaluations of the right-hand side, {:.3g} s",
                                               statistics.steps, statistics.rejected, statistics.rhs_evaluations,

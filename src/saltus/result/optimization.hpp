@@ -1,4 +1,5 @@
-// What an optimisation leaves beside a trajectory: how the path went, what the point is, what the other engine says of it.
+// What an optimisation leaves beside a trajectory: how the path went, what the point is, what the other engine says of
+// it.
 #pragma once
 
 #include <optional>

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "saltus/report/page_data_internal.hpp"
+#include "sample_optimization.hpp"
 #include "sample_results.hpp"
 
 namespace saltus::report {
@@ -190,6 +191,33 @@ TEST(PageData, BranchesAreAListWithTheirParents) {
   std::size_t open = 0;
   for (const auto& entry : result::tree(root)) open += result::not_followed(*entry.result);
   EXPECT_EQ(data["not_followed"], open);
+}
+
+TEST(PageData, OfAnOptimisationHasControlsBoundsPathAndWords) {
+  EXPECT_TRUE(page_data(report_samples::decay())["optimization"].is_null());
+  const auto data = nlohmann::json::parse(page_data(report_samples::turbo_car()).dump())["optimization"];
+  EXPECT_EQ(data["objective"], 11.8);
+  EXPECT_EQ(data["terms"], nlohmann::json::parse(R"([["time", 11.8]])"));
+  EXPECT_EQ(data["grid"].size(), 21U);
+  EXPECT_EQ(data["u"].size(), 1U);
+  EXPECT_EQ(data["u"][0].size(), 20U);
+  EXPECT_EQ(data["u"][0][19], -5.0);
+  EXPECT_EQ(data["bounds"], nlohmann::json::parse(R"({"x": [[null, null], [-25.0, 25.0]], "u": [[-5.0, 5.0]]})"));
+  EXPECT_EQ(data["homotopy"][12]["phase"], "branch");
+  EXPECT_EQ(data["multipliers"].size(), 23U);
+  EXPECT_EQ(data["open_loop"]["x"].size(), 2U);
+  EXPECT_EQ(data["open_loop"]["x"][1].size(), data["open_loop"]["t"].size());
+  EXPECT_EQ(data["certificate"][0]["tone"], "good");
+  EXPECT_EQ(data["verification"].size(), 4U);
+  EXPECT_EQ(data["statistics"]["pairs"], 240);
+}
+
+TEST(PageData, OfAnOptimisationWithoutSimulationHasNoOpenLoop) {
+  auto result = report_samples::turbo_car();
+  result.optimization->verification.reset();
+  EXPECT_TRUE(page_data(result)["optimization"]["open_loop"].is_null());
+  *result.optimization = {};
+  EXPECT_EQ(page_data(result)["optimization"]["bounds"]["x"].size(), 2U);
 }
 
 }  // namespace

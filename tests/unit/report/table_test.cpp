@@ -1,10 +1,13 @@
 #include "saltus/report/table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include "sample_optimization.hpp"
 
 namespace saltus::report {
 namespace {
@@ -140,6 +143,53 @@ TEST(Table, FitsAHundredColumnsWhateverTheModel) {
   r.events[0].kind = result::EventKind::change_sliding;
   r.events[0].unique = std::nullopt;
   for (const auto& line : lines(to_table(r))) EXPECT_LE(columns(line), 100) << line;
+}
+
+TEST(Table, OfAnOptimisationSaysWhatWasFoundAndWhatItIsWorth) {
+  const auto text = to_table(report_samples::turbo_car());
+  for (const auto* line :
+       {"method      fesd (radau_iia, 2 stages, 20 intervals of 3 elements)\n", "objective   11.8 (time)\n",
+        "horizon     11.8\n", "optimised   k = 3\n",
+        "certificate Feasible to 3e-12; complementarity 0; stationary to 1e-11.\n", "B-stationary (S): no feasible",
+        "simulated   Simulated event by event", "off by at most 5e-08", "in interval 4 of 20 (t = 1.77 to 2.36)",
+        "No switch is missed or added", "events      2\n", "size        1204 variables, 1165 equations, 240 pairs\n",
+        "statistics  13 problems (11 relaxed, 1 branch, 1 linear), 263 iterations; 0.83 s"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
+  }
+  EXPECT_EQ(text.find("rejected"), std::string::npos) << text;
+  for (const auto& line : lines(text)) EXPECT_LE(columns(line), 100) << line;
+}
+
+TEST(Table, OfAnOptimisationThatFailedNamesEveryFailure) {
+  auto r = report_samples::turbo_car();
+  r.status.termination = result::Termination::not_converged;
+  auto& optimization = *r.optimization;
+  const double nan = std::nan("");
+  optimization.terms.running = 1.5;
+  optimization.certificate = {3e-3, 1e-4, nan, 4, result::StationarityType::C, false, -0.03};
+  auto& verification = *optimization.verification;
+  verification.interval_defect = 0.02;
+  verification.switches_missed = 1;
+  verification.switches_extra = 2;
+  verification.path_violation = 0.2;
+  verification.open_loop.termination = result::Termination::step_size_too_small;
+  auto text = to_table(r);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  for (std::size_t at = 0; (at = text.find("  ", at)) != std::string::npos;) text.erase(at, 1);
+  for (const auto* part :
+       {"objective 11.8 (running 1.5, time 11.8)", "NOT feasible: a bound or row is violated by 0.003",
+        "complementarity NOT reached: 0.0001", "NOT stationary: the gradient of the Lagrangian is an unknown error",
+        "(allowed 1e-08)", "NOT B-stationary (C)", "4 pairs have both sides at zero",
+        "off by at most 0.02 of the range of `v`", "MORE than the allowed 0.001",
+        "1 switch of the simulation not in the solution, 2 switches of the solution not in the simulation",
+        "violated by at most 0.2", "ended early (step_size_too_small)"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+  optimization.certificate.b_stationary.reset();
+  optimization.verification.reset();
+  text = to_table(r);
+  EXPECT_NE(text.find("Not decided whether it is B-stationary (multipliers: C)"), std::string::npos) << text;
+  EXPECT_NE(text.find("Not simulated again."), std::string::npos) << text;
 }
 
 }  // namespace

@@ -34,6 +34,21 @@ TEST(Names, EventKindsReadBackAndAreThoseOfTheContract) {
   EXPECT_FALSE(event_kind_named("sliding").has_value());
 }
 
+TEST(Names, PhasesAndTypesOfStationarityReadBack) {
+  for (const auto* word : {"relaxed", "branch", "lpcc"}) {
+    const auto phase = homotopy_phase_named(word);
+    ASSERT_TRUE(phase.has_value()) << word;
+    EXPECT_EQ(name(*phase), word);
+  }
+  EXPECT_FALSE(homotopy_phase_named("S").has_value());
+  for (const auto* word : {"S", "M", "C", "A", "W"}) {
+    const auto type = stationarity_type_named(word);
+    ASSERT_TRUE(type.has_value()) << word;
+    EXPECT_EQ(name(*type), word);
+  }
+  EXPECT_FALSE(stationarity_type_named("B").has_value());
+}
+
 TEST(IsDone, HoldsForCompletionAndAStopTheModelAskedFor) {
   EXPECT_TRUE(is_done(Termination::completed));
   EXPECT_TRUE(is_done(Termination::stopped_by_event));

@@ -20,6 +20,7 @@ saltus.statusBadge = (result) => {
 };
 
 saltus.facts = (result) => {
+  if (result.optimization) return saltus.optimizationFacts(result);
   const {t} = result.trajectory;
   const facts = [["method", [result.method, ...saltus.computedBy(result).filter((part) => part !== null)].join(", ")]];
   // Finite elements have steps and no tolerances.
@@ -149,7 +150,7 @@ saltus.infoCards = (result) => {
             saltus.pairTable(model.parameters.map(([name, value]) => [name, saltus.exact(value)])) :
             quiet("The model has none.")),
     result.options.length > 0 ? saltus.optionsCard(result) : saltus.card("Options", quiet("None are recorded.")),
-    saltus.card("Statistics", saltus.pairTable(numbers)),
+    saltus.card("Statistics", saltus.pairTable(result.optimization ? saltus.optimizationStatistics(result) : numbers)),
   ];
 };
 

@@ -93,14 +93,18 @@ saltus.lineOverTime = (axis, x, y) => ({
 
 saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve, i) => {
   const color = saltus.curveColour(panel, i, view.palette);
-  const {x, y, jumps} = saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
+  const {x, y, jumps} = saltus.controlSteps(result, curve) ??
+      saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
   const line = {
     ...saltus.lineOverTime(axis, x, y),
     // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
-    line: {simplify: false, color, width: 1.6, shape: curve.stepwise ? "hv" : "linear"},
+    line: {simplify: false, color, width: 1.6, shape: curve.stepwise || saltus.controlSteps(result, curve) !== null ? "hv" : "linear"},
   };
   const jumpTraces = jumps.x.length === 0 ? [] : [saltus.jumpTrace(curve, jumps, axis, color)];
-  return [...saltus.branchCurves(result, curve, axis, color, view), line, ...jumpTraces];
+  return [
+    ...saltus.boundLines(result, curve, axis, view), ...saltus.branchCurves(result, curve, axis, color, view), line,
+    ...jumpTraces, ...saltus.simulatedCurve(result, curve, axis, view)
+  ];
 });
 
 saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) => {

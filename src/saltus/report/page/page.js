@@ -14,6 +14,7 @@ saltus.legend = (result, holder, timeline) => {
   return saltus.element(
       "div", {class: "toolbar"}, ...modes, ...regions,
       ...(result.events.some(saltus.isAlarming) ? [swatch("alarm-line", "not unique")] : []),
+      ...saltus.optimizationSwatches(result, swatch),
       ...(result.branches.length > 0 ? [swatch("branch-line", "branches")] : []),
       saltus.element(
           "span", {class: "quiet help", title: "A click on the line of an event shows the event."},
@@ -108,7 +109,7 @@ saltus.start = () => {
   });
   const families = saltus.familyCard(result);
   const sensitivities = saltus.sensitivityCard(result);
-  const sections = [branches, families, cards, sensitivities];
+  const sections = [saltus.verdictCard(result), branches, families, cards, sensitivities];
   main.append(...sections.filter((section) => section !== null), saltus.notes(result));
   if (result.states.length > 1 && result.trajectory.t.length > 0) {
     phases.push(saltus.phasePlane(result, timeline, select));
@@ -116,6 +117,7 @@ saltus.start = () => {
   }
   const multipliers = saltus.multiplierPicture(result, timeline);
   if (multipliers !== null) phases.push(multipliers);
+  phases.push(...saltus.optimizationPictures(result, timeline));
   const intersection = saltus.intersectionPicture(result, timeline, select);
   if (intersection !== null) phases.push(intersection);
   const inCards = phases.slice(orders.length);

@@ -17,6 +17,7 @@ saltus.palette = () => {
     slidingShade: colour("sliding-shade"),
     minus: colour("minus"),
     plus: colour("plus"),
+    simulated: colour("simulated"),
     jump: colour("jump"),
     accumulation: colour("accumulation"),
     surfaces: [1, 2, 3, 4, 5].map((i) => colour(`surface-${i}`)),

@@ -99,6 +99,7 @@ saltus.planeTraces = (result, choice, view, palette) => {
     point(rows[0], "begin", "circle-open"),
     point(rows[rows.length - 1], "end", "square"),
     ...flagged,
+    ...saltus.simulatedOrbit(result, choice, view, palette, "scatter"),
   ];
 };
 

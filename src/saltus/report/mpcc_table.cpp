@@ -1,0 +1,89 @@
+#include "saltus/report/mpcc_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/report/text_columns_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+constexpr std::size_t variables_shown = 12;
+
+/// Definitions: docs/foreign-mpcc.md.
+std::string stationarity_in_words(const result::Certificate& certificate) {
+  std::string text;
+  if (certificate.stationarity_type) {
+    text = fmt::format("{}-stationary", name(*certificate.stationarity_type));
+  } else {
+    text = "kind of stationarity not known";
+  }
+  if (certificate.biactive == 0) {
+    text += ", no biactive pair";
+  } else {
+    text += fmt::format(", {} biactive pair{}", certificate.biactive, certificate.biactive == 1 ? "" : "s");
+  }
+  if (!certificate.b_stationary) return text + "; whether a first-order descent direction exists was not decided";
+  return text + (*certificate.b_stationary ? "; no first-order descent direction (B-stationary)"
+                                           : "; there is a first-order descent direction (not B-stationary)");
+}
+
+std::string residual(double value) { return std::isfinite(value) ? fmt::format("{:.1e}", value) : "not known"; }
+
+std::string path_table(const std::vector<result::HomotopyStep>& steps) {
+  if (steps.empty()) return "";
+  std::vector<Row> rows{{"phase", "sigma", "iterations", "objective", "infeasible", "min(|G|, |H|)", "s", ""}};
+  for (const auto& step : steps) {
+    rows.push_back({std::string(name(step.phase)), fmt::format("{:.0e}", step.sigma),
+                    fmt::format("{}", step.iterations), fmt::format("{:.9g}", step.objective),
+                    residual(step.primal_infeasibility), residual(step.complementarity_residual),
+                    fmt::format("{:.2f}", step.seconds),
+                    step.termination == result::Termination::completed ? "" : std::string(name(step.termination))});
+  }
+  return "path\n" + aligned(rows);
+}
+
+std::string variables_line(const result::MpccResult& result) {
+  std::vector<std::string> pieces;
+  for (std::size_t i = 0; i < std::min(result.x.size(), variables_shown); ++i) {
+    const auto label = i < result.names.size() ? shortened(result.names[i], 24) : fmt::format("x[{}]", i);
+    pieces.push_back(fmt::format("{} = {:.9g}", label, result.x[i]));
+  }
+  if (result.x.size() > variables_shown)
+    pieces.push_back(fmt::format("and {} more", result.x.size() - variables_shown));
+  return wrapped("variables", pieces);
+}
+
+}  // namespace
+
+std::string to_line(const result::HomotopyStep& step) {
+  return fmt::format(
+      "{:<8} sigma {:<8.1e} {:>5} iterations   objective {:<16.9g} infeasible {:<8} min(|G|, |H|) {:<8} {:.2f} s{}",
+      name(step.phase), step.sigma, step.iterations, step.objective, residual(step.primal_infeasibility),
+      residual(step.complementarity_residual), step.seconds, step.message.empty() ? "" : "   " + step.message);
+}
+
+std::string to_table(const result::MpccResult& result) {
+  const auto& certificate = result.certificate;
+  const auto& statistics = result.statistics;
+  std::string text = wrapped("file", {result.file});
+  text += wrapped("size", {fmt::format("{} variables", result.x.size()), fmt::format("{} rows", statistics.equations),
+                           fmt::format("{} complementarities", statistics.pairs)});
+  text += paragraph("status", std::string(name(result.status.termination)) +
+                                  (result.status.message.empty() ? "" : ": " + result.status.message));
+  text += wrapped("objective", {fmt::format("{:.12g}", result.objective)});
+  text += wrapped("residuals", {"feasibility " + residual(certificate.primal_infeasibility),
+                                "complementarity " + residual(certificate.complementarity_residual),
+                                "stationarity " + residual(certificate.stationarity)});
+  text += paragraph("certificate", stationarity_in_words(certificate));
+  text += variables_line(result);
+  text += path_table(result.homotopy);
+  text += wrapped("statistics", {fmt::format("{} iterations", statistics.iterations),
+                                 fmt::format("{:.2f} s reading and derivatives", statistics.build_seconds),
+                                 fmt::format("{:.2f} s solving", statistics.wall_seconds)});
+  return text;
+}
+
+}  // namespace saltus::report

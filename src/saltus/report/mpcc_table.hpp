@@ -1,0 +1,16 @@
+// The solution of a foreign MPCC as a short readable table for a terminal.
+#pragma once
+
+#include <string>
+
+#include "saltus/result/mpcc_result.hpp"
+
+namespace saltus::report {
+
+/// File, status, objective, residuals, the certificate in words, the path and the largest variables.
+[[nodiscard]] std::string to_table(const result::MpccResult& result);
+
+/// One problem of a path on a line: phase, sigma, iterations, objective, infeasibility, min(|G|, |H|), seconds.
+[[nodiscard]] std::string to_line(const result::HomotopyStep& step);
+
+}  // namespace saltus::report

@@ -1,0 +1,148 @@
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "saltus/report/optimization_words_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+using Tone = Finding::Tone;
+
+Tone good_if(bool good) { return good ? Tone::good : Tone::bad; }
+
+/// Two digits are enough for an error.
+std::string error_text(double value) {
+  if (!std::isfinite(value)) return "an unknown error";
+  return value == 0.0 ? "0" : fmt::format("{:.2g}", value);
+}
+
+std::string counted(int count, std::string_view one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : (one.ends_with("ch") ? "es" : "s"));
+}
+
+Finding residuals(const result::Certificate& certificate, double tolerance) {
+  const auto within = [tolerance](double residual) { return std::abs(residual) <= tolerance; };  // false for NaN
+  const auto piece = [&](double residual, std::string_view good, std::string_view bad) {
+    return fmt::format("{} {}", within(residual) ? good : bad, error_text(residual));
+  };
+  const auto& [primal, complementarity, stationarity, biactive, type, b_stationary, decrease] = certificate;
+  const bool all = within(primal) && within(complementarity) && within(stationarity);
+  auto text = fmt::format("{}; {}; {}", piece(primal, "feasible to", "NOT feasible: a bound or row is violated by"),
+                          piece(complementarity, "complementarity", "complementarity NOT reached:"),
+                          piece(stationarity, "stationary to", "NOT stationary: the gradient of the Lagrangian is"));
+  text.front() = text.front() == 'f' ? 'F' : text.front();
+  return {good_if(all), text + (all ? "." : fmt::format(" (allowed {:.2g}).", tolerance))};
+}
+
+std::string pairs_text(int biactive) {
+  if (biactive == 0) return "no pair has both sides at zero, so this is a smooth optimum within its pieces";
+  return fmt::format("{} {} both sides at zero", counted(biactive, "pair"), biactive == 1 ? "has" : "have");
+}
+
+Finding b_stationarity(const result::Certificate& certificate) {
+  const auto type = certificate.stationarity_type ? std::string(name(*certificate.stationarity_type)) : std::string();
+  const auto pairs = pairs_text(certificate.biactive);
+  if (!certificate.b_stationary) {
+    return {Tone::bad, fmt::format("Not decided whether it is B-stationary{}: {}.",
+                                   type.empty() ? "" : fmt::format(" (multipliers: {})", type), pairs)};
+  }
+  if (*certificate.b_stationary) {
+    return {Tone::good, fmt::format("B-stationary{}: no feasible direction improves the objective to first order; {}.",
+                                    type.empty() ? "" : fmt::format(" ({})", type), pairs)};
+  }
+  return {Tone::bad,
+          fmt::format("NOT B-stationary{}: a feasible direction improves the objective to first order{}; {}.",
+                      type.empty() ? "" : fmt::format(" ({})", type),
+                      certificate.lpcc_decrease
+                          ? fmt::format(" ({} of its steepest)", error_text(-*certificate.lpcc_decrease))
+                          : "",
+                      pairs)};
+}
+
+std::string interval_text(const result::Optimization& optimization, int interval) {
+  const auto k = static_cast<std::size_t>(interval);
+  if (interval < 0 || k + 1 >= optimization.grid.size()) return "";
+  return fmt::format(" in interval {} of {} (t = {:.4g} to {:.4g})", interval + 1, optimization.grid.size() - 1,
+                     optimization.grid[k], optimization.grid[k + 1]);
+}
+
+Finding interval_finding(const result::Optimization& optimization, const result::Verification& verification) {
+  const double defect = verification.interval_defect;
+  const bool fine = defect <= verification.tolerance;
+  const auto where = verification.state.empty() ? "the states" : fmt::format("`{}`", verification.state);
+  return {good_if(fine),
+          fmt::format("Simulated event by event, each interval from its own node: off by at most {} of the range of {}"
+                      "{}; {} {:.2g}.",
+                      error_text(defect), where, interval_text(optimization, verification.interval),
+                      fine ? "allowed is" : "that is MORE than the allowed", verification.tolerance)};
+}
+
+Finding switch_finding(const result::Verification& verification) {
+  const auto& [missed, extra] = std::pair(verification.switches_missed, verification.switches_extra);
+  const auto times = fmt::format("times of switches differ by at most {}", error_text(verification.switch_time_error));
+  if (missed == 0 && extra == 0) return {Tone::good, fmt::format("No switch is missed or added; {}.", times)};
+  std::string text;
+  if (missed > 0) text += counted(missed, "switch") + " of the simulation not in the solution";
+  if (extra > 0)
+    text +=
+        fmt::format("{}{} of the solution not in the simulation", text.empty() ? "" : ", ", counted(extra, "switch"));
+  return {Tone::bad, fmt::format("{}; {}.", text, times)};
+}
+
+Finding path_finding(const result::Verification& verification) {
+  if (verification.path_violation <= 0.0) {
+    return {Tone::good, "Bounds and path constraints hold along the whole simulation, not only at the nodes."};
+  }
+  return {Tone::neutral, fmt::format("Along the simulation bounds and path constraints are violated by at most {}.",
+                                     error_text(verification.path_violation))};
+}
+
+/// Information, never a verdict: an unstable system fails it at every accuracy.
+Finding open_loop_finding(const result::OpenLoop& open_loop) {
+  std::string text = "Controls over the whole horizon, from the start on: ";
+  if (!is_done(open_loop.termination)) {
+    text += fmt::format("the simulation ended early ({}).", name(open_loop.termination));
+    return {Tone::neutral, open_loop.message.empty() ? text : text + " " + open_loop.message};
+  }
+  text += fmt::format("the end state is off by {} of its range", error_text(open_loop.end_state_error));
+  if (open_loop.terminal_violation > 0.0) {
+    text += fmt::format(", terminal constraints are violated by at most {}", error_text(open_loop.terminal_violation));
+  }
+  if (std::isfinite(open_loop.amplification)) {
+    text += fmt::format("; the system itself magnifies a small error at the start by up to {:.2g}",
+                        open_loop.amplification);
+  }
+  return {Tone::neutral, text + "."};
+}
+
+}  // namespace
+
+std::vector<Finding> certificate_findings(const result::Certificate& certificate, double tolerance) {
+  return {residuals(certificate, tolerance), b_stationarity(certificate)};
+}
+
+std::vector<Finding> verification_findings(const result::Optimization& optimization) {
+  if (!optimization.verification) return {{Tone::neutral, "Not simulated again."}};
+  const auto& verification = *optimization.verification;
+  std::vector<Finding> findings;
+  if (!verification.message.empty()) findings.push_back({Tone::bad, verification.message});
+  findings.push_back(interval_finding(optimization, verification));
+  findings.push_back(switch_finding(verification));
+  findings.push_back(path_finding(verification));
+  findings.push_back(open_loop_finding(verification.open_loop));
+  return findings;
+}
+
+std::vector<std::pair<std::string, double>> objective_terms(const result::ObjectiveTerms& terms) {
+  std::vector<std::pair<std::string, double>> list{{"running", terms.running},
+                                                   {"terminal", terms.terminal},
+                                                   {"least squares", terms.least_squares},
+                                                   {"time", terms.time},
+                                                   {"penalties", terms.penalties}};
+  std::erase_if(list, [](const auto& term) { return term.second == 0.0; });
+  return list;
+}
+
+}  // namespace saltus::report
