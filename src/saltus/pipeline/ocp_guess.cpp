@@ -39,7 +39,9 @@ class Guess {
     take_initial_state();
     take_controls();
     raise_slacks();
+    if (error_) return tl::unexpected(*error_);
     if (auto done = take_states(); !done) return tl::unexpected(done.error());
+    if (error_) return tl::unexpected(*error_);
     return std::move(start_);
   }
 
@@ -56,8 +58,25 @@ class Guess {
 
   /// The expression of a guess. It says nothing of states and controls, which have their initial values here.
   [[nodiscard]] double value_of(const OcpGuess& guess, double t) {
+    const double value = output_at(guess, t);
+    if (!std::isfinite(value) && !error_) {
+      error_ = Error{ErrorCode::invalid_model,
+                     fmt::format("the initial guess of '{}' is {} at t = {:.6g}", name_of(guess), value, t),
+                     "give an expression that is finite over the whole horizon",
+                     {},
+                     {"in optimize.initial_guess"}};
+    }
+    return value;
+  }
+  [[nodiscard]] double output_at(const OcpGuess& guess, double t) {
     return values_.outputs(
         {t, ocp_.system.initial_state, ocp_.system.control_initial, start_.parameters})[at(guess.output)];
+  }
+
+  [[nodiscard]] const std::string& name_of(const OcpGuess& guess) const {
+    const auto& system = ocp_.system;
+    if (guess.kind == OcpGuess::Kind::parameter) return system.parameter_names[at(guess.index)];
+    return (guess.kind == OcpGuess::Kind::state ? system.state_names : system.control_names)[at(guess.index)];
   }
 
   /// Onto the bounds, with one warning for every quantity.
@@ -217,6 +236,7 @@ class Guess {
   OcpStart start_;
   std::vector<double> starts_, times_;
   std::set<std::string> warned_;
+  std::optional<Error> error_;
 };
 
 }  // namespace

@@ -109,13 +109,13 @@ class OneInterval {
 
 }  // namespace
 
-std::vector<Switch> switches_of(const std::vector<result::Event>& events) {
+std::vector<Switch> switches_of(const std::vector<result::Event>& events, const std::vector<bool>& is_listed) {
   std::vector<Switch> switches;
   for (const auto& event : events) {
     if (event.mode_before && event.mode_after) {
       const auto &before = *event.mode_before, &after = *event.mode_after;
       for (std::size_t i = 0; i < before.size(); ++i) {
-        if (before[i] == after[i]) continue;
+        if (before[i] == after[i] || !is_listed[i]) continue;
         switches.push_back({event.t, 2 * i, fmt::format("{}", before[i]), fmt::format("{}", after[i])});
       }
     }

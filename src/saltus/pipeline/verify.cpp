@@ -89,14 +89,18 @@ class Scales {
 class IntervalChecks {
  public:
   IntervalChecks(const Ocp& ocp, const OptimizedPath& path, Verification& verification)
-      : ocp_(ocp), path_(path), verification_(verification), scales_(ocp.system, path) {}
+      : ocp_(ocp), path_(path), verification_(verification), scales_(ocp.system, path) {
+    for (const auto& column : ocp.system.columns) {
+      is_listed_.push_back(ocp.system.switching[at(column.function)].role == model::SwitchingRole::listed);
+    }
+  }
 
   /// @return false: interrupted
   [[nodiscard]] bool simulate(Resimulation& resimulation, const std::function<bool()>& is_interrupted) {
     for (std::size_t k = 0; k < path_.controls.size(); ++k) {
       const auto interval = resimulation.interval(k, is_interrupted);
       if (interval.run.status.termination == Termination::stopped_by_user) return false;
-      switches_.push_back(switches_of(interval.run.events));
+      switches_.push_back(switches_of(interval.run.events, is_listed_));
       if (interval.was_chosen) chosen_.push_back(k);
       ends_.push_back(interval.run.final.x);
       if (!interval.is_complete) {
@@ -112,7 +116,8 @@ class IntervalChecks {
 
   void compare() {
     find_defect();
-    const auto switches = compare_switches(path_.times, switches_, switches_of(path_.events), end_tolerance);
+    const auto switches =
+        compare_switches(path_.times, switches_, switches_of(path_.events, is_listed_), end_tolerance);
     verification_.switch_time_error = switches.time_error;
     verification_.switches_missed = switches.missed;
     verification_.switches_extra = switches.extra;
@@ -159,6 +164,7 @@ class IntervalChecks {
   Scales scales_;
   std::vector<std::vector<double>> ends_;
   std::vector<std::vector<Switch>> switches_;
+  std::vector<bool> is_listed_;
   std::vector<std::size_t> chosen_;
   int failures_ = 0;
 };

@@ -143,6 +143,16 @@ TEST(OcpGuessTest, FreeInitialStatesAndParameters) {
   EXPECT_EQ(start.warnings.size(), 3U);  // a, y at the start, x at the end
 }
 
+TEST(OcpGuessTest, GuessesThatAreNotFinite) {
+  Builder model = geared_car();
+  model.output("v_guess", log(1 - model.time()));
+  Ocp ocp = problem_of(model, 2.0);
+  ocp.guess = {{OcpGuess::Kind::state, 1, 0}};
+  const auto start = guess_start(ocp, 1, {0.0, 0.5, 1.0});
+  ASSERT_FALSE(start.has_value());
+  EXPECT_EQ(start.error().message, "the initial guess of 'v' is -inf at t = 1");
+}
+
 TEST(OcpGuessTest, SlacksHoldTheirInequalities) {
   // outer >= |inner| + 1, inner >= |u|, as max(abs(u)) would be nested.
   Builder model("slacks");

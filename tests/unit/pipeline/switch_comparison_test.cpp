@@ -61,12 +61,13 @@ TEST(SwitchComparisonTest, FunctionsThatChangeTogetherAreOneEach) {
   both.mode_after = {1, 0, -1};
   both.regions_before = {{"a"}, {"c", "b"}};
   both.regions_after = {{"a"}, {"c"}};
-  const auto switches = switches_of({both});
+  const auto switches = switches_of({both}, {true, true, true});
   ASSERT_EQ(switches.size(), 3U);
   EXPECT_EQ(switches[0].place, 0U);
   EXPECT_EQ(switches[1].place, 4U);
   EXPECT_EQ(switches[2].place, 3U);
   EXPECT_EQ(switches[2].from, "b c");
+  EXPECT_EQ(switches_of({both}, {false, true, true}).size(), 2U);
   // In another order, as rounding puts them.
   expect(compare_switches(two_intervals, {switches, {}}, {down(0.5, 4), {0.5, 3, "b c", "c"}, up(0.5)}, at_ends), 0.0,
          0, 0);
@@ -76,7 +77,7 @@ TEST(SwitchComparisonTest, EventsWithoutAChangeOfModeAreNone) {
   result::Event start, user;
   start.mode_after = {1};
   user.mode_before = user.mode_after = {1};
-  EXPECT_TRUE(switches_of({start, user}).empty());
+  EXPECT_TRUE(switches_of({start, user}, {true}).empty());
 }
 
 }  // namespace

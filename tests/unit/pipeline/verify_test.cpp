@@ -226,6 +226,39 @@ TEST(VerifyTest, TheModeOfTheSolutionWhereThereAreSeveral) {
   EXPECT_LT(verified(ocp, staying).interval_defect, exact);
 }
 
+TEST(VerifyTest, NodesBesideASurfaceOnWhichTheSolutionSlides) {
+  // x' = 1/2 - sign(x) from 1/4: on the surface from t = 1/2 on.
+  Builder model("sliding");
+  const SX x = model.state("x", {0.25});
+  model.dynamics("x", 0.5 - model.sign(x));
+  auto path = path_of(3.0, {{0.25}, {1e-9}, {-1e-9}, {0.0}}, {{}, {}, {}});
+  path.events = {crossing(0.5, 1, 0)};
+  const auto found = verified(problem_of(model, 3.0), path);
+  EXPECT_LT(found.interval_defect, 1e-8);
+  EXPECT_LT(found.switch_time_error, exact);
+  EXPECT_EQ(found.switches_missed + found.switches_extra, 0);
+}
+
+/// Of two regions, by indicator: x' = 3 where -x is the larger one, else 1, as refraction().
+TEST(VerifyTest, SwitchesOfRegions) {
+  Builder model("regions");
+  const SX x = model.state("x", {-1.0});
+  model.region(x, {{"x", 3}}, "left");
+  model.region(-x, {{"x", 1}}, "right");
+  auto path = refracted();
+  path.events.front().mode_before = path.events.front().mode_after = result::Mode{};
+  path.events.front().regions_before = result::Regions{{"left"}};
+  path.events.front().regions_after = result::Regions{{"right"}};
+  const Ocp ocp = problem_of(model, 1.0);
+  auto found = verified(ocp, path);
+  EXPECT_LT(found.interval_defect, exact);
+  EXPECT_LT(found.switch_time_error, exact);
+  EXPECT_EQ(found.switches_missed + found.switches_extra, 0);
+  path.events.clear();
+  found = verified(ocp, path);
+  EXPECT_EQ(found.switches_missed, 1);
+}
+
 /// A sliding mode that the input breaks off, and starts again.
 Builder rubbed() {
   Builder model("rubbed");
