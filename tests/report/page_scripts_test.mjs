@@ -8,7 +8,7 @@ const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
       "format.js", "series.js", "panels.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
-      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js"
+      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sample_optimization.hpp"
 #include "sample_results.hpp"
 
 namespace saltus::report {
@@ -82,7 +83,8 @@ TEST(Html, WritesSamplesOnRequest) {
                                                                     {"failed", report_samples::failed()},
                                                                     {"many-rows", report_samples::many_rows(1000000)},
                                                                     {"many-events", report_samples::many_events(20000)},
-                                                                    {"nothing", report_samples::nothing()}};
+                                                                    {"nothing", report_samples::nothing()},
+                                                                    {"turbo-car", report_samples::turbo_car()}};
   for (const auto& [name, sample] : samples) {
     const auto file = std::filesystem::path(folder) / (name + ".html");
     std::ofstream(file, std::ios::binary) << to_html(sample, source);

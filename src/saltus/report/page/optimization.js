@@ -35,7 +35,7 @@ saltus.simulatedCurve = (result, curve, axis, view) => {
   const simulated = result.optimization?.open_loop ?? null;
   if (curve.sort !== "state" || simulated === null) return [];
   const {x, y} = saltus.points(simulated.t, simulated.x[curve.index], view.window, view.pixels, true);
-  const line = {simplify: false, color: view.palette.simulated, width: 2, dash: "2px,5px"};
+  const line = {simplify: false, color: view.palette.simulated, width: 2, dash: "2px,7px"};
   return [{...saltus.lineOverTime(axis, x, y), meta: "simulated", line}];
 };
 
@@ -54,7 +54,7 @@ saltus.simulatedOrbit = (result, choice, view, palette, type) => {
     ...(z === undefined ? {} : {z}),
     name: "simulated",
     hoverinfo: "skip",
-    line: {simplify: false, color: palette.simulated, width: type === "scatter" ? 2.4 : 4, dash: type === "scatter" ? "2px,6px" : "dot"},
+    line: {simplify: false, color: palette.simulated, width: type === "scatter" ? 2.4 : 4, dash: type === "scatter" ? "2px,7px" : "dot"},
   }];
 };
 
