@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/discretization/fesd_checks_internal.hpp"
 #include "saltus/discretization/fesd_kernel_internal.hpp"
 
 namespace saltus::discretization {
@@ -19,6 +20,8 @@ tl::unexpected<Error> refusal(ErrorCode code, std::string message, std::string r
   return tl::unexpected(std::move(error));
 }
 
+}  // namespace
+
 Expected<void> check(const FesdOptions& options) {
   if (!(options.gamma_h >= 0.0 && options.gamma_h <= 1.0)) {
     return refusal(ErrorCode::invalid_option, fmt::format("gamma_h = {} is not in [0, 1]", options.gamma_h));
@@ -29,8 +32,6 @@ Expected<void> check(const FesdOptions& options) {
   }
   return {};
 }
-
-}  // namespace
 
 FesdKernel::FesdKernel(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 FesdKernel::~FesdKernel() = default;

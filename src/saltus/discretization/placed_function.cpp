@@ -82,13 +82,13 @@ double PlacedFunction::objective(ConstVectorView w, const Eigen::VectorXd& const
 }
 
 void PlacedFunction::add_gradient(ConstVectorView w, const Eigen::VectorXd& constants,
-                                  const Eigen::VectorXd& parameters, VectorView gradient) {
+                                  const Eigen::VectorXd& parameters, VectorView gradient, double factor) {
   if (!function_.has_objective()) return;
   for (std::size_t i = 0; i < copies_.size(); ++i) {
     function_.gradient(gather(static_cast<int>(i), w, constants).data(), parameters.data(), entries_.data());
     const auto& places = copies_[i].places;
     for (std::size_t k = 0; k < places.size(); ++k) {
-      if (places[k] >= 0) gradient[places[k]] += entries_[k];
+      if (places[k] >= 0) gradient[places[k]] += factor * entries_[k];
     }
   }
 }

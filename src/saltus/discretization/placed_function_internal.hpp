@@ -33,12 +33,19 @@ class PlacedFunction {
   void write_signs(std::vector<mpcc::Sign>& signs, int equations) const;
   void add_patterns(mpcc::Pattern& jacobian, mpcc::Pattern& hessian) const;
 
+  [[nodiscard]] int copies() const { return static_cast<int>(copies_.size()); }
+  /// Rows of a copy in the problem: its equations, then G, then H.
+  [[nodiscard]] const std::vector<int>& rows_of(int copy) const { return copies_[static_cast<std::size_t>(copy)].rows; }
+  [[nodiscard]] const std::vector<int>& places_of(int copy) const {
+    return copies_[static_cast<std::size_t>(copy)].places;
+  }
   /// The local variables of a copy; overwritten by the next call.
   const std::vector<double>& gather(int copy, mpcc::ConstVectorView w, const Eigen::VectorXd& constants);
   [[nodiscard]] double objective(mpcc::ConstVectorView w, const Eigen::VectorXd& constants,
                                  const Eigen::VectorXd& parameters);
+  /// Adds factor times the gradient of the objective.
   void add_gradient(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
-                    mpcc::VectorView gradient);
+                    mpcc::VectorView gradient, double factor = 1.0);
   void rows(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
             mpcc::VectorView c);
   /// Values in the order of add_patterns from `next` on; returns what follows them.

@@ -1,0 +1,101 @@
+#include <exception>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/discretization/fesd_checks_internal.hpp"
+#include "saltus/discretization/ocp/ocp_kernel_internal.hpp"
+
+namespace saltus::discretization {
+namespace {
+
+using casadi::SX;
+using reformulation::Dcs;
+
+Error no_roots() {
+  return ocp_refusal(
+      ErrorCode::not_available,
+      "[optimize] does not cover roots of a switching function (sqrt(abs(x))): the equations of elements have "
+      "infinite derivatives there",
+      "replace the root by a smooth function near zero, for example sqrt(abs(x) + 1e-6)");
+}
+
+void take_sizes(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation& kernel) {
+  kernel.states = static_cast<int>(dcs.x.numel());
+  kernel.selections = static_cast<int>(dcs.selection.numel());
+  kernel.pairs = selection_pairs(dcs);
+  kernel.moves = kernel.options.cross_complementarity != CrossComplementarity::same_stage;
+  for (std::size_t i = 0; i < ocp.free_parameters.size(); ++i) {
+    if (ocp.free_parameters[i]) kernel.free_parameters.push_back(static_cast<int>(i));
+    else kernel.fixed_parameters.push_back(ocp.system.parameter_values[i]);
+  }
+  for (const auto& part : dcs.parts) {
+    if (part.form == reformulation::Form::stewart) kernel.simplex_parts.emplace_back(part.first, part.count);
+  }
+  kernel.simplices = static_cast<int>(kernel.simplex_parts.size());
+}
+
+void compile_functions(const OcpExpressions& made, OcpKernel::Implementation& kernel) {
+  const auto& element = made.element;
+  const auto function = [&](const char* name, const SX& inputs, const LocalExpressions& expressions) {
+    return LocalFunction(std::string("saltus_ocp_") + name, inputs, made.parameters, expressions);
+  };
+  kernel.element = function("element", element.element_inputs, element.element);
+  kernel.running = function("running", element.element_inputs, made.running);
+  kernel.stage_squares = function("stage_squares", element.element_inputs, made.stage_squares);
+  kernel.stage_rows = function("stage_rows", made.stage_inputs, made.stage_rows);
+  kernel.node_squares = function("node_squares", made.node_inputs, made.node_squares);
+  kernel.node_rows = function("node_rows", made.node_row_inputs, made.node_rows);
+  kernel.first_rows = function("first_rows", made.node_row_inputs, made.first_rows);
+  kernel.slack_rows = function("slack_rows", made.slack_inputs, made.slack_rows);
+  kernel.terminal = function("terminal", made.node_inputs, made.terminal);
+  kernel.end_squares = function("end_squares", made.node_inputs, made.end_squares);
+  kernel.terminal_rows = function("terminal_rows", made.terminal_row_inputs, made.terminal_rows);
+  kernel.start = function("start", made.start_inputs, made.start);
+  kernel.equilibration = function("equilibration", element.boundary_inputs, element.boundary);
+  kernel.neighbours = function("neighbours", element.boundary_inputs, element.neighbours);
+}
+
+}  // namespace
+
+OcpKernel::OcpKernel(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+OcpKernel::~OcpKernel() = default;
+
+Expected<std::shared_ptr<OcpKernel>> OcpKernel::compile(const model::Ocp& ocp, const Dcs& dcs,
+                                                        const ButcherTableau& tableau, const FesdOptions& options,
+                                                        evaluation::NativeCode native) {
+  if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
+  if (!dcs.root_exponents.empty()) return tl::unexpected(no_roots());
+  try {
+    auto kernel = std::make_unique<Implementation>();
+    kernel->tableau = tableau;
+    kernel->options = options;
+    take_sizes(ocp, dcs, *kernel);
+    auto made = ocp_expressions(ocp, dcs, *kernel);
+    if (!made) return tl::unexpected(made.error());
+    kernel->layout = made->element.layout;
+    kernel->depends_on_time = made->element.depends_on_time;
+    kernel->boundary_bounds = made->element.boundary_own_bounds;
+    kernel->correction_pairs = 2 * (kernel->layout.correction.count > 0 ? kernel->selections : 0);
+    compile_functions(*made, *kernel);
+    kernel->indicator = casadi::Function("saltus_indicator", {dcs.t, dcs.x, made->known}, {dcs.indicator});
+    SX arguments(0, 1);
+    for (const auto& symbol : dcs.held_symbols) arguments = SX::vertcat({arguments, symbol.argument});
+    kernel->held_arguments = casadi::Function("saltus_held", {dcs.t, dcs.x, made->known}, {arguments});
+    std::vector<model::ModelFunction*> functions;
+    for (LocalFunction* function :
+         {&kernel->element, &kernel->running, &kernel->stage_squares, &kernel->stage_rows, &kernel->node_squares,
+          &kernel->node_rows, &kernel->first_rows, &kernel->slack_rows, &kernel->terminal, &kernel->end_squares, &kernel->terminal_rows,
+          &kernel->start, &kernel->equilibration, &kernel->neighbours}) {
+      function->join(kernel->native, functions);
+    }
+    auto started = kernel->native.start(native, std::move(functions));
+    if (!started) return tl::unexpected(started.error());
+    return std::shared_ptr<OcpKernel>(new OcpKernel(std::move(kernel)));
+  } catch (const std::exception& error) {
+    return tl::unexpected(
+        ocp_refusal(ErrorCode::invalid_model,
+                    std::string("the finite element of the problem cannot be compiled: ") + error.what(), ""));
+  }
+}
+
+}  // namespace saltus::discretization

@@ -1,0 +1,123 @@
+// An optimal control problem by finite elements with switch detection, as a problem with complementarities.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/base/error.hpp"
+#include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/discretization/fesd_options.hpp"
+#include "saltus/discretization/fesd_problem.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/mpcc/problem.hpp"
+#include "saltus/result/optimization.hpp"
+
+namespace saltus::reformulation {
+struct Dcs;
+}
+
+namespace saltus::discretization {
+
+/// An element with what its interval shares, costs, constraints and boundaries, compiled.
+class OcpKernel {
+ public:
+  struct Implementation;
+  /// Fails (invalid_option, not_available, invalid_model) as FesdKernel::compile.
+  /// Cost: symbolic derivatives of one element, whatever the number of intervals.
+  /// @param ocp  whose system `dcs` is the reformulation of
+  [[nodiscard]] static Expected<std::shared_ptr<OcpKernel>> compile(
+      const model::Ocp& ocp, const reformulation::Dcs& dcs, const ButcherTableau& tableau, const FesdOptions& options,
+      evaluation::NativeCode native = evaluation::NativeCode::off);
+  ~OcpKernel();
+  [[nodiscard]] Implementation& parts() { return *implementation_; }
+
+ private:
+  explicit OcpKernel(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// What an optimisation begins with. Rows of `states` belong to OcpProblem::start_fractions().
+struct OcpGuessValues {
+  double horizon = 0.0;
+  std::vector<double> parameters;             ///< all of System::p
+  std::vector<std::vector<double>> controls;  ///< row per interval
+  std::vector<double> initial_state;
+  std::vector<std::vector<double>> states;
+  bool simulated = false;  ///< selections and multipliers by the signs of psi at these states, else neutral
+};
+
+/// A point of the problem in the user's quantities.
+struct OcpSolution {
+  double horizon = 0.0;
+  std::vector<double> parameters;             ///< all of System::p
+  std::vector<std::vector<double>> controls;  ///< row per interval, all controls
+  std::vector<double> speed_of_time;          ///< per interval; 1 unless time is frozen by hand
+  std::vector<double> initial_state;
+  /// Per interval. Times are those of the right-hand side: physical, or numerical where time is frozen by hand.
+  std::vector<std::vector<SolvedElement>> elements;
+};
+
+/// min f, g = 0, 0 <= G _|_ H >= 0 of fesd.md (Optimal control), [nurkanovic2024] eq. (45). Variables: horizon and free
+/// parameters; free initial states and their multipliers; per interval controls, speed of time, lengths
+/// hhat (h = hhat s T/N, sum hhat = 1), then its elements.
+///
+/// Building and one evaluation cost a multiple of the number of elements. One problem per kernel and thread at a time.
+class OcpProblem final : public mpcc::Problem {
+ public:
+  /// @param elements  per interval, as many entries as intervals
+  /// Fails (invalid_model) where a function of time breaks inside an interval, (not_available) where it breaks and the
+  /// horizon is free.
+  [[nodiscard]] static Expected<std::unique_ptr<OcpProblem>> make(std::shared_ptr<OcpKernel> kernel,
+                                                                  const model::Ocp& ocp, const reformulation::Dcs& dcs,
+                                                                  const std::vector<int>& elements);
+  ~OcpProblem() override;
+
+  /// Times of stages and ends of equal elements as fractions of the horizon, in the order of the elements.
+  [[nodiscard]] std::vector<double> start_fractions() const;
+  void set_start(const OcpGuessValues& guess);
+  void set_start(Eigen::VectorXd w);
+  [[nodiscard]] OcpSolution read(mpcc::ConstVectorView w) const;
+  /// Parts of the user's objective at w.
+  [[nodiscard]] result::ObjectiveTerms objective_terms(mpcc::ConstVectorView w);
+  /// Multipliers of path, terminal and boundary constraints from those of rows and bounds (upper minus lower).
+  [[nodiscard]] std::vector<result::ConstraintMultiplier> constraint_multipliers(mpcc::ConstVectorView w,
+                                                                                 mpcc::ConstVectorView rows,
+                                                                                 mpcc::ConstVectorView bounds) const;
+  /// The name of a cost or constraint that is not finite at w; empty if all are.
+  [[nodiscard]] std::string not_finite(mpcc::ConstVectorView w);
+
+  [[nodiscard]] int variables() const override;
+  [[nodiscard]] int constraints() const override;
+  [[nodiscard]] int pairs() const override;
+  [[nodiscard]] const mpcc::Bounds& variable_bounds() const override;
+  [[nodiscard]] const mpcc::Bounds& constraint_bounds() const override;
+  [[nodiscard]] const std::vector<mpcc::Sign>& signs() const override;
+  [[nodiscard]] double objective(mpcc::ConstVectorView w) override;
+  void objective_gradient(mpcc::ConstVectorView w, mpcc::VectorView gradient) override;
+  void functions(mpcc::ConstVectorView w, mpcc::VectorView c) override;
+  void jacobian(mpcc::ConstVectorView w, mpcc::VectorView values) override;
+  void hessian(mpcc::ConstVectorView w, double objective_factor, mpcc::ConstVectorView y,
+               mpcc::VectorView values) override;
+  [[nodiscard]] const mpcc::Pattern& jacobian_pattern() const override;
+  [[nodiscard]] const mpcc::Pattern& hessian_pattern() const override;
+
+  [[nodiscard]] Eigen::VectorXd start() const override;
+  [[nodiscard]] std::string name(int variable) const override;
+  [[nodiscard]] std::string row_name(int row) const override;
+  [[nodiscard]] const mpcc::Chain* chain() const override;
+  void with_method_terms(mpcc::ConstVectorView w) override;
+  void without_method_terms() override;
+  [[nodiscard]] int pair_group(int pair) const override;
+  [[nodiscard]] mpcc::BranchClosure close_branch(const std::vector<mpcc::ActiveSide>& sides) const override;
+
+ private:
+  struct Implementation;
+  explicit OcpProblem(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace saltus::discretization

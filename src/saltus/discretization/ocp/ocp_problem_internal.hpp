@@ -1,0 +1,32 @@
+// What an OcpProblem holds.
+#pragma once
+
+#include <memory>
+
+#include "saltus/discretization/ocp/ocp_structure_internal.hpp"
+
+namespace saltus::discretization {
+
+struct OcpProblem::Implementation {
+  std::unique_ptr<OcpStructure> structure;
+  mpcc::Pattern jacobian_pattern, hessian_pattern;
+  Eigen::VectorXd start;
+  double time_weight = 0.0;
+  double method_scale = 0.0;  ///< 0: without the method's terms
+  std::vector<int> mean_lengths;  ///< of heuristic_mean: variables; their mean is 1 over the number of their interval
+  std::vector<double> mean_values;
+  std::vector<std::string> path_names, terminal_names, state_names;
+
+  Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp);
+  void find_patterns();
+  /// factor of a function's objective: 1, or that of the method.
+  [[nodiscard]] double factor(const Placed& placed) const { return placed.term == Term::method ? method_scale : 1.0; }
+  [[nodiscard]] double term(Term wanted, mpcc::ConstVectorView w);
+  [[nodiscard]] double mean_term(mpcc::ConstVectorView w) const;
+  [[nodiscard]] double penalties(mpcc::ConstVectorView w) const;
+  [[nodiscard]] double value(int place, mpcc::ConstVectorView w) const {
+    return value_at(place, w, structure->constants);
+  }
+};
+
+}  // namespace saltus::discretization

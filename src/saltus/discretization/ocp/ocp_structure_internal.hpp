@@ -1,0 +1,111 @@
+// Where the variables, rows and constants of an optimal control problem stand.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/discretization/ocp/ocp_kernel_internal.hpp"
+#include "saltus/discretization/placed_function_internal.hpp"
+#include "saltus/mpcc/chain.hpp"
+
+namespace saltus::discretization {
+
+/// Which part of the objective a function belongs to.
+enum class Term { none, running, terminal, least_squares, method };
+
+/// Copies of one function of the kernel, each with where it belongs.
+struct Placed {
+  struct Copy {
+    int interval = 0, element = 0;  ///< numbers over the whole problem; -1: none
+    int first_row = 0;              ///< of g
+    int first_pair = 0;
+  };
+  LocalFunction* function = nullptr;
+  std::string what;  ///< for names of rows
+  Term term = Term::none;
+  const std::vector<ConstraintRow>* bounds = nullptr;  ///< null: equations
+  bool of_method = false;  ///< rows and pairs that steer relaxed problems only
+  std::vector<std::vector<int>> places;
+  std::vector<Copy> copies;
+  std::unique_ptr<PlacedFunction> placed{};
+};
+
+/// sum coefficient w_variable = right-hand side.
+struct LinearRow {
+  std::vector<std::pair<int, double>> entries;
+  double value = 0.0;
+  std::string name;
+};
+
+/// A slack of a soft constraint: factor v or factor v^2 in the objective.
+struct Penalty {
+  int variable = 0;
+  double factor = 0.0;
+  bool squared = false;
+};
+
+/// One element: its variables but the length stand together.
+struct OcpElement {
+  int interval = 0;
+  int number = 0;  ///< within the interval
+  int length = 0;  ///< place of hhat: a variable or a constant
+  int first = 0;   ///< variable of local variable 1 is `first`
+  std::vector<int> left;  ///< places of left state, left time, left lambda
+  [[nodiscard]] int variable(int local) const { return first + local - 1; }
+};
+
+struct OcpInterval {
+  std::vector<int> shared;  ///< places, SharedSizes
+  int first_element = 0, elements = 0;
+  mpcc::IndexRange own;  ///< variables shared by its elements
+  std::vector<int> lengths;  ///< variables hhat; empty for one element or fixed lengths
+  int t_left = 0;  ///< place of the time at its left end, if time matters
+};
+
+/// The whole problem without its functions' values.
+struct OcpStructure {
+  std::shared_ptr<OcpKernel> owner;
+  OcpKernel::Implementation& kernel;
+  int intervals = 0;
+  std::vector<OcpInterval> interval;
+  std::vector<OcpElement> element;
+  int horizon = 0;  ///< place of T
+  std::vector<int> parameters;  ///< variables of the free ones
+  std::vector<int> start_state, start_lambda;  ///< places
+  std::vector<int> start_own;  ///< mu and theta of the start: variables
+  std::vector<int> boundary_own;  ///< variables of step equilibration
+  std::vector<Placed> functions;
+  std::vector<LinearRow> linear;
+  std::vector<Penalty> penalties;
+  int first_linear_row = 0;
+  int n_w = 0, n_g = 0, n_pairs = 0;
+  mpcc::Bounds w_bounds, g_bounds;
+  std::vector<mpcc::Sign> signs;
+  std::vector<int> pair_group;
+  Eigen::VectorXd constants, local_parameters;
+  mpcc::Chain chain;
+  double from = 0.0;
+  std::vector<std::string> names;  ///< of variables
+
+  explicit OcpStructure(std::shared_ptr<OcpKernel> kernel_owner)
+      : owner(std::move(kernel_owner)), kernel(owner->parts()) {}
+  /// The place of a boundary's left lambda: right end of the element before, or the start.
+  [[nodiscard]] std::vector<int> left_lambda(int element_number) const;
+  [[nodiscard]] std::vector<int> element_places(int element_number) const;
+  [[nodiscard]] std::vector<int> end_places(int element_number) const;  ///< t, x, selections of its last stage
+};
+
+[[nodiscard]] Expected<std::unique_ptr<OcpStructure>> ocp_structure(std::shared_ptr<OcpKernel> kernel,
+                                                                    const model::Ocp& ocp,
+                                                                    const reformulation::Dcs& dcs,
+                                                                    const std::vector<int>& elements);
+
+/// Values of Dcs::held in every interval, rows; an error where one changes inside an interval.
+[[nodiscard]] Expected<Eigen::MatrixXd> held_in_intervals(const model::Ocp& ocp, const reformulation::Dcs& dcs,
+                                                          const casadi::Function& arguments, int intervals);
+
+}  // namespace saltus::discretization
