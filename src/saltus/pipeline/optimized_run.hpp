@@ -1,0 +1,35 @@
+// The trajectory of an optimised point in the columns of a result.
+#pragma once
+
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/discretization/ocp/ocp_problem.hpp"
+#include "saltus/mpcc/problem.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/pipeline/verify.hpp"
+#include "saltus/reformulation/dcs.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::pipeline {
+
+/// Rows at stages and ends of elements with controls and outputs of the user, events where the active set changes,
+/// the complementarities at the points of the elements, as in a simulation with `fesd`.
+struct OptimizedRun {
+  result::Trajectory trajectory;
+  std::vector<result::Event> events;
+  result::Final final;
+  result::Elements elements;
+  /// The same for the truth check: nodes, controls, ranges, events in the time of the right-hand side.
+  OptimizedPath path;
+};
+
+/// The sides of the pairs of an element are read off its sums over the stages: the smaller one is zero.
+/// Where time is frozen by hand, rows, events and elements of the result are in physical time (the clock), frozen pieces
+/// left out of trajectory and events; those of `path` are in the time of the right-hand side.
+[[nodiscard]] Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const discretization::OcpSolution& solution,
+                                                   const reformulation::ReformulationOptions& form,
+                                                   const discretization::ButcherTableau& tableau);
+
+}  // namespace saltus::pipeline
