@@ -1,8 +1,6 @@
 #include "saltus/io/sample_files.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -10,40 +8,12 @@
 
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json_result.hpp"
+#include "saltus/io/separated_line_internal.hpp"
 
 namespace saltus::io {
 namespace {
 
 constexpr std::size_t largest_file = std::size_t{64} << 20;
-
-/// The fields of a line. It is separated by semicolons if there are some, else by commas, else by tabs, between which a
-/// field may be empty; else by spaces.
-std::vector<std::string_view> fields_of(std::string_view line) {
-  char separator = ' ';
-  for (const char candidate : {'\t', ',', ';'}) {
-    if (line.find(candidate) != std::string_view::npos) separator = candidate;
-  }
-  std::vector<std::string_view> fields;
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
-  for (std::size_t from = 0; from <= line.size();) {
-    const auto to = std::min(line.find(separator, from), line.size());
-    auto field = line.substr(from, to - from);
-    while (!field.empty() && is_blank(field.front())) field.remove_prefix(1);
-    while (!field.empty() && is_blank(field.back())) field.remove_suffix(1);
-    if (field.size() > 1 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
-    if (separator != ' ' || !field.empty()) fields.push_back(field);
-    from = to + 1;
-  }
-  return fields;
-}
-
-std::optional<double> number_of_field(std::string_view field) {
-  if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (failure != std::errc{} || end != field.data() + field.size()) return std::nullopt;
-  return value;
-}
 
 /// Reads line by line; the first mistake ends it.
 class ColumnReader {
@@ -59,7 +29,7 @@ class ColumnReader {
       ++line_;
       if (line.ends_with('\r')) line.remove_suffix(1);
       if (line.find_first_not_of(" \t") == std::string_view::npos || line.starts_with('#')) continue;
-      row(fields_of(line));
+      row(separated_fields(line));
     }
     if (error_) return tl::unexpected(*error_);
     return std::move(columns_);
@@ -73,8 +43,8 @@ class ColumnReader {
   void row(const std::vector<std::string_view>& fields) {
     const bool begins = !width_;
     if (begins) width_ = fields.size();
-    if (begins && !number_of_field(fields.front()) &&
-        std::none_of(fields.begin(), fields.end(), [](auto field) { return number_of_field(field).has_value(); })) {
+    if (begins && !separated_number(fields.front()) &&
+        std::none_of(fields.begin(), fields.end(), [](auto field) { return separated_number(field).has_value(); })) {
       header(fields);
       return;
     }
@@ -106,7 +76,7 @@ class ColumnReader {
   }
 
   std::optional<double> value(std::string_view field) {
-    auto number = number_of_field(field);
+    auto number = separated_number(field);
     if (!number) {
       constexpr std::size_t shown = 40;
       fail(fmt::format("expected a number, found '{}'", field.substr(0, shown)),

@@ -1,73 +1,20 @@
 // --set of dotted keys.
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstdint>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "saltus/expression/parser.hpp"
-#include "saltus/io/constant_value_internal.hpp"
+#include "saltus/io/optimize/toml_optimize_internal.hpp"
+#include "saltus/io/option_text.hpp"
+#include "saltus/io/setting_values_internal.hpp"
 #include "saltus/io/toml_model.hpp"
 #include "saltus/io/toml_sections_internal.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 
 namespace saltus::io {
 namespace {
-
-using result::OptionValue;
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
-template <class Number>
-std::optional<Number> whole_text_as(std::string_view text) {
-  Number number{};
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
-std::optional<double> constant_in(std::string_view text) {
-  if (const auto number = whole_text_as<double>(text)) return number;
-  const auto tree = expression::parse(text, {});
-  return tree ? constant_value(**tree) : std::nullopt;
-}
-
-std::optional<std::vector<double>> list_in(std::string_view text) {
-  if (!text.starts_with('[') || !text.ends_with(']')) return std::nullopt;
-  text = text.substr(1, text.size() - 2);
-  std::vector<double> list;
-  while (!text.empty()) {
-    const auto comma = std::min(text.find(','), text.size());
-    const auto number = constant_in(trimmed(text.substr(0, comma)));
-    if (!number) return std::nullopt;
-    list.push_back(*number);
-    text.remove_prefix(std::min(comma + 1, text.size()));
-  }
-  return list;
-}
-
-/// What a text on the command line states: true and false, a whole number, a number or an expression of constants, a
-/// list of numbers, or else a word.
-OptionValue option_value(std::string_view text) {
-  text = trimmed(text);
-  if (text == "true" || text == "false") return text == "true";
-  if (const auto integer = whole_text_as<std::int64_t>(text)) return *integer;
-  if (const auto number = constant_in(text)) return *number;
-  if (auto list = list_in(text)) return std::move(*list);
-  return std::string(text);
-}
-
-SourceLocation place_of(std::string_view key) { return {fmt::format("--set {}", key), 0, 0}; }
-
-tl::unexpected<Error> refused(std::string_view key, ErrorCode code, std::string message, std::string remedy) {
-  return tl::unexpected(Error{code, std::move(message), std::move(remedy), place_of(key), {}});
-}
 
 /// The expression that `path` ("q", "q.lower") names within a table, or null.
 expression::NodePtr* place_in(std::vector<model::NamedExpression>& list, std::string_view path) {
@@ -107,17 +54,56 @@ Expected<void> set_expression(model::Description& description, std::string_view 
     const auto known = names_of(list);
     const auto name = std::string(path.substr(0, path.find('.')));
     if (name.size() < path.size() && std::find(known.begin(), known.end(), name) != known.end()) {
-      return refused(key, ErrorCode::unknown_name,
+      return refused_setting(key, ErrorCode::unknown_name,
                      fmt::format("'{}' is no part of '{}'", path.substr(name.size() + 1), name),
                      "states and controls have the parts initial, lower and upper; other names have none");
     }
-    return refused(key, ErrorCode::unknown_name, fmt::format("the model has no '{}' there", path),
+    return refused_setting(key, ErrorCode::unknown_name, fmt::format("the model has no '{}' there", path),
                    known.empty() ? "--set changes what the file states and adds nothing" : suggest(name, known));
   }
-  auto tree = expression::parse(value, place_of(key), names_of(description.tables));
+  auto tree = expression::parse(value, place_of_setting(key), names_of(description.tables));
   if (!tree) return tl::unexpected(tree.error());
   *place = std::move(*tree);
   return {};
+}
+
+/// parameters.k, and parameters.k.lower of a free one.
+Expected<void> set_parameter(model::Description& description, std::string_view key, std::string_view value) {
+  const auto path = path_in(key);
+  const auto dot = std::min(path.find('.'), path.size());
+  const auto part = path.substr(std::min(dot + 1, path.size()));
+  for (auto& parameter : description.free_parameters) {
+    if (parameter.name != path.substr(0, dot) || part.empty()) continue;
+    if (part == "initial") break;
+    if (part != "lower" && part != "upper") continue;
+    auto tree = expression::parse(value, place_of_setting(key), names_of(description.tables));
+    if (!tree) return tl::unexpected(tree.error());
+    (part == "lower" ? parameter.lower : parameter.upper) = std::move(*tree);
+    return {};
+  }
+  const bool initial = part == "initial";
+  return set_expression<&model::Description::parameters>(description, initial ? key.substr(0, key.rfind('.')) : key,
+                                                         value);
+}
+
+/// states.q, states.q.lower, and states.q.free=true.
+Expected<void> set_state(model::Description& description, std::string_view key, std::string_view value) {
+  const auto path = path_in(key);
+  if (!path.ends_with(".free")) return set_expression<&model::Description::states>(description, key, value);
+  const auto name = path.substr(0, path.rfind('.'));
+  const auto found = std::find_if(description.states.begin(), description.states.end(),
+                                  [&](const auto& state) { return state.name == name; });
+  if (found == description.states.end()) {
+    return refused_setting(key, ErrorCode::unknown_name, fmt::format("the model has no state '{}'", name),
+                           suggest(std::string(name), names_of(description.states)));
+  }
+  if (value != "true" && value != "false") {
+    return refused_setting(key, ErrorCode::invalid_option, fmt::format("expected true or false, found {}", value), "");
+  }
+  found->free = value == "true";
+  if (!found->free || (found->lower && found->upper)) return {};
+  return refused_setting(key, ErrorCode::invalid_option, fmt::format("'{}' has no two bounds", name),
+                         "what is optimised needs `lower` and `upper` in [states]");
 }
 
 Expected<void> set_model_key(model::Description& description, std::string_view full_key, std::string_view value) {
@@ -129,12 +115,12 @@ Expected<void> set_model_key(model::Description& description, std::string_view f
   } else if (key == "inclusion") {
     auto inclusion = inclusion_named(std::string(value));
     if (!inclusion) {
-      inclusion.error().location = place_of(full_key);
+      inclusion.error().location = place_of_setting(full_key);
       return tl::unexpected(inclusion.error());
     }
     description.inclusion = *inclusion;
   } else {
-    return refused(full_key, ErrorCode::unknown_name, fmt::format("[model] has no key '{}'", key),
+    return refused_setting(full_key, ErrorCode::unknown_name, fmt::format("[model] has no key '{}'", key),
                    suggest(std::string(key), {"name", "description", "inclusion"}));
   }
   return {};
@@ -146,8 +132,8 @@ struct SettableTable {
 };
 constexpr std::array settable{
     SettableTable{"model", set_model_key},
-    SettableTable{"parameters", set_expression<&model::Description::parameters>},
-    SettableTable{"states", set_expression<&model::Description::states>},
+    SettableTable{"parameters", set_parameter},
+    SettableTable{"states", set_state},
     SettableTable{"controls", set_expression<&model::Description::controls>},
     SettableTable{"definitions", set_expression<&model::Description::definitions>},
     SettableTable{"switching", set_expression<&model::Description::switching>},
@@ -156,28 +142,28 @@ constexpr std::array settable{
 };
 
 /// Tables of a model file whose entries have no name of their own, or that --set does not reach for another reason.
-constexpr std::array fixed{"modes", "events", "jumps", "tables", "mechanics", "contacts", "optimize", "sensitivity"};
+constexpr std::array fixed{"modes", "events", "jumps", "tables", "mechanics", "contacts", "time_freezing", "sensitivity"};
 
 tl::unexpected<Error> not_settable(std::string_view key, std::string_view table) {
   if (std::find(fixed.begin(), fixed.end(), table) != fixed.end()) {
-    return refused(key, ErrorCode::invalid_option, fmt::format("nothing in '{}' can be set on the command line", table),
+    return refused_setting(key, ErrorCode::invalid_option, fmt::format("nothing in '{}' can be set on the command line", table),
                    "write a parameter there, and set that: --set NAME=VALUE");
   }
-  std::vector<std::string> known{"simulate"};
+  std::vector<std::string> known{"simulate", "optimize"};
   for (const auto& candidate : settable) known.emplace_back(candidate.name);
-  return refused(key, ErrorCode::unknown_name, fmt::format("'{}' is no table of a model file", table),
+  return refused_setting(key, ErrorCode::unknown_name, fmt::format("'{}' is no table of a model file", table),
                  suggest(std::string(table), known));
 }
 
 Expected<void> set_input_expression(model::Description& description, std::string_view name, std::string_view value) {
-  auto tree = expression::parse(value, place_of(fmt::format("simulate.inputs.{}", name)), names_of(description.tables));
+  auto tree = expression::parse(value, place_of_setting(fmt::format("simulate.inputs.{}", name)), names_of(description.tables));
   if (!tree) return tl::unexpected(tree.error());
   std::erase_if(description.sampled_inputs, [&](const auto& input) { return input.name == name; });
   if (auto* place = place_in(description.inputs, name); place != nullptr) {
     *place = std::move(*tree);
   } else {
     description.inputs.push_back(
-        {std::string(name), std::move(*tree), place_of(fmt::format("simulate.inputs.{}", name))});
+        {std::string(name), std::move(*tree), place_of_setting(fmt::format("simulate.inputs.{}", name))});
   }
   return {};
 }
@@ -185,7 +171,7 @@ Expected<void> set_input_expression(model::Description& description, std::string
 /// simulate.inputs.u.file=… and simulate.inputs.u.result=…, relative to the working folder.
 Expected<void> set_samples(model::Description& description, std::string_view name, std::string_view source,
                            std::string_view file) {
-  const auto place = place_of(fmt::format("simulate.inputs.{}.{}", name, source));
+  const auto place = place_of_setting(fmt::format("simulate.inputs.{}.{}", name, source));
   auto input = sampled_input(std::string(name), source, std::string(file), place);
   if (!input) return tl::unexpected(input.error());
   const auto same = [&](const auto& other) { return other.name == name; };
@@ -200,7 +186,7 @@ Expected<void> set_input(model::Description& description, std::string_view path,
   if (dot == std::string_view::npos) return set_input_expression(description, path, value);
   const auto source = path.substr(dot + 1);
   if (source == "file" || source == "result") return set_samples(description, path.substr(0, dot), source, value);
-  return refused(fmt::format("simulate.inputs.{}", path), ErrorCode::unknown_name,
+  return refused_setting(fmt::format("simulate.inputs.{}", path), ErrorCode::unknown_name,
                  fmt::format("an input has no key '{}'", source), suggest(std::string(source), {"file", "result"}));
 }
 
@@ -210,15 +196,16 @@ Expected<pipeline::SimulateOptions> with_option(pipeline::SimulateOptions option
                                                 std::string_view value) {
   constexpr std::string_view root = "simulate.";
   if (!key.starts_with(root)) {
-    return refused(key, ErrorCode::unknown_name, fmt::format("unknown option {}", key), "options begin with simulate.");
+    return refused_setting(key, ErrorCode::unknown_name, fmt::format("unknown option {}", key), "options begin with simulate.");
   }
   auto changed = pipeline::with_value(std::move(options), key.substr(root.size()), option_value(value));
-  if (!changed) changed.error().location = place_of(key);
+  if (!changed) changed.error().location = place_of_setting(key);
   return changed;
 }
 
 Expected<void> set_option(ModelFile& model, std::string_view key, std::string_view value,
                           const SourceLocation& location) {
+  if (key.starts_with("optimize.")) return set_optimize_option(model, key, value, location);
   auto options = with_option(model.simulate, key, value);
   if (!options) {
     options.error().location = location;
@@ -237,7 +224,9 @@ Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::str
   if (key.starts_with(inputs)) {
     done = set_input(model.description, key.substr(inputs.size()), value);
   } else if (table == "simulate") {
-    done = set_option(model, key, value, place_of(key));
+    done = set_option(model, key, value, place_of_setting(key));
+  } else if (table == "optimize") {
+    done = set_optimize(model, key, value);
   } else {
     const auto same = [&](const auto& candidate) { return candidate.name == table; };
     const auto* found = std::find_if(settable.begin(), settable.end(), same);

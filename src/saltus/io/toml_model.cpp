@@ -41,6 +41,8 @@ constexpr std::array sections{
     Section{"events", read_events},
     Section{"tables", read_tables},
     Section{"simulate", read_simulate},
+    Section{"optimize", read_optimize},
+    Section{"time_freezing", read_time_freezing},
 };
 
 struct LaterTable {
@@ -50,7 +52,6 @@ struct LaterTable {
 constexpr std::array later_tables{
     LaterTable{"mechanics", "[mechanics]"},
     LaterTable{"contacts", "[[contacts]]"},
-    LaterTable{"optimize", "[optimize]"},
     LaterTable{"sensitivity", "[sensitivity]"},
 };
 
@@ -83,6 +84,20 @@ void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) 
                {}});
 }
 
+/// The clock of [time_freezing] is a state.
+Expected<void> check_clock(const model::Description& description) {
+  if (!description.clock) return {};
+  std::vector<std::string> states;
+  for (const auto& state : description.states) states.push_back(state.name);
+  if (std::find(states.begin(), states.end(), description.clock->clock) != states.end()) return {};
+  return tl::unexpected(with_context({ErrorCode::unknown_name,
+                                      fmt::format("the clock '{}' is no state", description.clock->clock),
+                                      suggest(description.clock->clock, states),
+                                      description.clock->location,
+                                      {}},
+                                     "in [time_freezing]"));
+}
+
 }  // namespace
 
 Expected<ModelFile> parse_model(std::string_view text, const std::string& file) {
@@ -105,6 +120,7 @@ Expected<ModelFile> parse_model(std::string_view text, const std::string& file) 
                                 {file, 1, 1},
                                 {}});
   }
+  if (auto fits = check_clock(model.description); !fits) return tl::unexpected(fits.error());
   return model;
 }
 
@@ -145,6 +161,10 @@ Error located(Error error, const ModelFile& model) {
   }
   for (const auto& [key, location] : model.option_locations) {
     const auto frame = fmt::format("in simulate.{}", key);
+    if (std::find(error.context.begin(), error.context.end(), frame) != error.context.end()) error.location = location;
+  }
+  for (const auto& [key, location] : model.optimize_locations) {
+    const auto frame = fmt::format("in optimize.{}", key);
     if (std::find(error.context.begin(), error.context.end(), frame) != error.context.end()) error.location = location;
   }
   return error;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/model/description.hpp"
+#include "saltus/pipeline/optimize_options.hpp"
 #include "saltus/pipeline/simulate_options.hpp"
 
 namespace saltus::io {
@@ -17,9 +19,12 @@ namespace saltus::io {
 struct ModelFile {
   model::Description description;
   pipeline::SimulateOptions simulate;
-  std::string sha256;  ///< of the file's bytes
+  std::optional<pipeline::OptimizeOptions> optimize;  ///< of a file with [optimize]; its problem is in `description`
+  std::string sha256;                                 ///< of the file's bytes
   /// Where each option was written ("rtol", "output.times"), for errors that show only later.
   std::vector<std::pair<std::string, SourceLocation>> option_locations;
+  /// The same for options of [optimize] ("mpcc.tolerance").
+  std::vector<std::pair<std::string, SourceLocation>> optimize_locations;
   /// Where each table begins, by its name.
   std::vector<std::pair<std::string, SourceLocation>> table_locations;
 };
@@ -34,20 +39,28 @@ struct ModelFile {
 /// Larger files are refused: no model is written by hand at that length.
 inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
 
-/// `--set a.b=value` for any key of the file: options of [simulate], its inputs, the inclusion, and the expressions of
-/// [parameters] [states] [controls] [definitions] [switching] [dynamics] [outputs] that the file already has
+/// `--set a.b=value` for any key of the file: options of [simulate], its inputs, options and expressions of [optimize], the
+/// inclusion, and the expressions of [parameters] [states] [controls] [definitions] [switching] [dynamics] [outputs] that the file already has
 /// ("states.q", "states.q.lower", "dynamics.v").
 /// @param key    dotted path below the file's root
 /// @param value  a number, a list of numbers, an expression, or a bare word
 /// @return the model with that key replaced, or an error that names the nearest known keys.
 [[nodiscard]] Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::string_view value);
 
-/// Changes an option of [simulate] ("simulate.rtol") and notes that it was given at `location`.
+/// Changes an option of [simulate] ("simulate.rtol") or [optimize] ("optimize.elements") and notes that it was given at `location`.
 [[nodiscard]] Expected<void> set_option(ModelFile& model, std::string_view key, std::string_view value,
                                         const SourceLocation& location);
 
 /// Checks the options of [simulate] against each other (pipeline::find_problem), and tells where the file states them.
 [[nodiscard]] Expected<void> check_options(const ModelFile& model);
+
+/// Checks that the file has [optimize], and its options against each other and the problem (pipeline::find_problem), and
+/// tells where the file states them.
+[[nodiscard]] Expected<void> check_optimize_options(const ModelFile& model);
+
+/// Reads the result that `initial_guess` or --start names (OptimizeOptions::start_result) into start_from; does nothing
+/// if none is named. Fails if there is no such file, or if it holds no result.
+[[nodiscard]] Expected<void> read_start_result(ModelFile& model);
 
 /// The error with the place of the option or the table it is about, if it has no place of its own and a frame of its
 /// context names it ("in simulate.initial_mode.slip", "in [states]"); a table the file does not have is missed at its

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -17,7 +18,22 @@ std::optional<double> number_in(const TomlValue& value) {
   return std::nullopt;
 }
 
+/// Line and column of a byte, counted from the beginning of the string's value.
+SourceLocation place_within(const TomlString& text, std::size_t offset) {
+  const auto before = std::string_view(text.text).substr(0, offset);
+  const auto breaks = std::count(before.begin(), before.end(), '\n');
+  const auto line_start = breaks == 0 ? 0 : before.rfind('\n') + 1;
+  return {text.start.file, static_cast<int>(breaks) + 1, static_cast<int>(offset - line_start) + 1};
+}
+
 }  // namespace
+
+SourceLocation place_in_string(const TomlString& text, std::size_t offset) {
+  const auto within = place_within(text, offset);
+  if (!text.anchors.empty()) return StringPlaces(text.text, text.anchors).in_file(within);
+  const int column = within.line == 1 ? text.start.column + within.column - 1 : within.column;
+  return {text.start.file, text.start.line + within.line - 1, column};
+}
 
 void TomlReader::fail(Error error) {
   if (error_) return;
@@ -70,6 +86,17 @@ expression::NodePtr TomlReader::expression(const TomlValue& value) {
   const StringPlaces places(text->text, text->anchors);
   auto tree =
       expression::parse(text->text, as_it_stands ? text->start : SourceLocation{text->start.file, 1, 1}, functions_);
+  if (tree) return as_it_stands ? *tree : places.in_file(*tree);
+  if (!as_it_stands) tree.error().location = places.in_file(tree.error().location);
+  fail(tree.error());
+  return nullptr;
+}
+
+expression::NodePtr TomlReader::expression_in(const TomlString& text, std::size_t offset, std::size_t length) {
+  const auto part = std::string_view(text.text).substr(offset, length);
+  const bool as_it_stands = text.anchors.empty();
+  const StringPlaces places(text.text, text.anchors);
+  auto tree = expression::parse(part, as_it_stands ? place_in_string(text, offset) : place_within(text, offset), functions_);
   if (tree) return as_it_stands ? *tree : places.in_file(*tree);
   if (!as_it_stands) tree.error().location = places.in_file(tree.error().location);
   fail(tree.error());

@@ -2,6 +2,7 @@
 // lines.
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ class TomlReader {
   const TomlTable* table(const TomlValue& value, std::string_view expected);
   /// A number or an expression in quotes; null after an error.
   expression::NodePtr expression(const TomlValue& value);
+  /// A part of a string as an expression, for texts that are no expression as a whole; null after an error.
+  expression::NodePtr expression_in(const TomlString& text, std::size_t offset, std::size_t length);
   /// As `expression`, but plus or minus infinity means no bound: null.
   expression::NodePtr bound(const TomlValue& value);
   /// A number, not an expression; nothing after an error.
@@ -53,5 +56,8 @@ class TomlReader {
   std::vector<std::string> functions_;
   std::optional<Error> error_;
 };
+
+/// Where a byte of a string stands in the file.
+[[nodiscard]] SourceLocation place_in_string(const TomlString& text, std::size_t offset);
 
 }  // namespace saltus::io

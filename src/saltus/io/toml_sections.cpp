@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/toml_sections_internal.hpp"
 #include "saltus/io/toml_words_internal.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 /// { initial, lower, upper, free } of a state, a parameter or a control.
 struct Quantity {
   expression::NodePtr initial, lower, upper;
+  bool free = false;
 };
 
 /// Reads `name = value` or `name = { initial = …, … }`.
@@ -31,9 +33,14 @@ Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::ve
       quantity.lower = reader.bound(value);
     } else if (key == "upper") {
       quantity.upper = reader.bound(value);
-    } else if (reader.boolean(value)) {
-      reader.not_available(location, fmt::format("'{}' with free = true (optimisation)", entry.key));
+    } else if (key == "free") {
+      quantity.free = reader.boolean(value);
+    } else {
+      reader.string(value, "a text in quotes");  // unit, label: for people
     }
+  }
+  if (quantity.free && quantity.initial) {
+    check_free(reader, fmt::format("'{}'", entry.key), quantity.initial, quantity.lower, quantity.upper, entry.location);
   }
   return quantity;
 }
@@ -47,7 +54,7 @@ void require_initial(TomlReader& reader, const TomlEntry& entry, const Quantity&
                {}});
 }
 
-const std::vector<std::string> quantity_keys{"initial", "lower", "upper", "free"};
+const std::vector<std::string> quantity_keys{"initial", "lower", "upper", "free", "unit", "label"};
 const std::vector<std::string> control_keys{"initial", "lower", "upper"};
 
 const std::vector<std::pair<std::string, model::Inclusion>> inclusions{
@@ -164,6 +171,9 @@ void read_parameters(TomlReader& reader, const TomlEntry& entry, ModelFile& mode
     auto quantity = read_quantity(reader, field, quantity_keys);
     require_initial(reader, field, quantity);
     model.description.parameters.push_back({field.key, std::move(quantity.initial), field.location});
+    if (!quantity.free) continue;
+    model.description.free_parameters.push_back(
+        {field.key, std::move(quantity.lower), std::move(quantity.upper), field.location});
   }
 }
 
@@ -171,10 +181,10 @@ void read_states(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "the table [states]");
   if (table == nullptr) return;
   for (const auto& field : *table) {
-    auto [initial, lower, upper] = read_quantity(reader, field, quantity_keys);
-    require_initial(reader, field, {initial, nullptr, nullptr});
-    model.description.states.push_back(
-        {field.key, std::move(initial), std::move(lower), std::move(upper), field.location});
+    auto quantity = read_quantity(reader, field, quantity_keys);
+    require_initial(reader, field, quantity);
+    model.description.states.push_back({field.key, std::move(quantity.initial), std::move(quantity.lower),
+                                        std::move(quantity.upper), field.location, quantity.free});
   }
 }
 
@@ -182,9 +192,9 @@ void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
   const auto* table = reader.table(entry.value, "the table [controls]");
   if (table == nullptr) return;
   for (const auto& field : *table) {
-    auto [initial, lower, upper] = read_quantity(reader, field, control_keys);
-    model.description.controls.push_back(
-        {field.key, std::move(initial), std::move(lower), std::move(upper), field.location});
+    auto quantity = read_quantity(reader, field, control_keys);
+    model.description.controls.push_back({field.key, std::move(quantity.initial), std::move(quantity.lower),
+                                          std::move(quantity.upper), field.location});
   }
 }
 

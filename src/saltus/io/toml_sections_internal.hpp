@@ -1,8 +1,11 @@
 // Readers of the tables of a model file, one each.
 #pragma once
 
+#include <optional>
+
 #include "saltus/io/toml_model.hpp"
 #include "saltus/io/toml_reader_internal.hpp"
+#include "saltus/result/result.hpp"
 
 namespace saltus::io {
 
@@ -14,6 +17,8 @@ void read_events(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_modes(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_jumps(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
 void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
@@ -25,6 +30,9 @@ void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 [[nodiscard]] Expected<model::SampledInput> sampled_input(const std::string& control, std::string_view source,
                                                           const std::filesystem::path& file,
                                                           const SourceLocation& location);
+
+/// The value of an option: truth, number, word or list of numbers; nullopt and an error for anything else.
+[[nodiscard]] std::optional<result::OptionValue> read_option_value(TomlReader& reader, const TomlValue& value);
 
 /// A table of name = expression.
 void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<model::NamedExpression>& expressions);

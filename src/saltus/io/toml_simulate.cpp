@@ -28,31 +28,6 @@ std::optional<std::vector<double>> numbers(TomlReader& reader, const TomlArray& 
   return list;
 }
 
-std::optional<OptionValue> read_option_value(TomlReader& reader, std::string_view key, const TomlValue& value) {
-  // Built in place: moving a variant into the optional makes g++ 12 with sanitizers warn of what it never reads.
-  std::optional<OptionValue> result;
-  if (const auto* truth = std::get_if<bool>(&value.value)) {
-    result.emplace(*truth);
-  } else if (const auto* integer = std::get_if<std::int64_t>(&value.value)) {
-    result.emplace(*integer);
-  } else if (const auto* real = std::get_if<double>(&value.value)) {
-    result.emplace(*real);
-  } else if (const auto* text = std::get_if<TomlString>(&value.value)) {
-    result.emplace(text->text);
-  } else if (const auto* array = std::get_if<TomlArray>(&value.value)) {
-    if (auto list = numbers(reader, *array)) result.emplace(std::move(*list));
-  } else {
-    // No option is a table or a date; whether there is one of that name is for the option table to say.
-    const auto known = pipeline::with_value({}, key, false);
-    if (!known && known.error().code == ErrorCode::unknown_name) {
-      result.emplace(false);
-    } else {
-      reader.wrong_type("a number, a word in quotes or a list of numbers", value);
-    }
-  }
-  return result;
-}
-
 /// Whether some option's key begins with this one and a dot: then it is a table.
 bool is_table_of_options(std::string_view key) {
   const auto prefix = fmt::format("{}.", key);
@@ -70,7 +45,13 @@ void read_option(TomlReader& reader, const std::string& key, const TomlEntry& en
     reader.wrong_type(fmt::format("the table [simulate.{}]", key), entry.value);
     return;
   }
-  const auto value = read_option_value(reader, key, entry.value);
+  // No option is a table or a date; whether there is one of that name is for the option table to say.
+  const bool is_value = !std::holds_alternative<TomlTable>(entry.value.value) &&
+                        !std::holds_alternative<TomlDate>(entry.value.value);
+  const auto known = pipeline::with_value(pipeline::SimulateOptions{}, key, false);
+  const bool unknown = !known && known.error().code == ErrorCode::unknown_name;
+  const auto value =
+      is_value || !unknown ? read_option_value(reader, entry.value) : std::optional<OptionValue>(std::in_place, false);
   if (!value) return;
   auto options = pipeline::with_value(model.simulate, key, *value);
   if (options) {
@@ -148,6 +129,25 @@ void read_inputs(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
 }
 
 }  // namespace
+
+std::optional<OptionValue> read_option_value(TomlReader& reader, const TomlValue& value) {
+  // Built in place: moving a variant into the optional makes g++ 12 with sanitizers warn of what it never reads.
+  std::optional<OptionValue> result;
+  if (const auto* truth = std::get_if<bool>(&value.value)) {
+    result.emplace(*truth);
+  } else if (const auto* integer = std::get_if<std::int64_t>(&value.value)) {
+    result.emplace(*integer);
+  } else if (const auto* real = std::get_if<double>(&value.value)) {
+    result.emplace(*real);
+  } else if (const auto* text = std::get_if<TomlString>(&value.value)) {
+    result.emplace(text->text);
+  } else if (const auto* array = std::get_if<TomlArray>(&value.value)) {
+    if (auto list = numbers(reader, *array)) result.emplace(std::move(*list));
+  } else {
+    reader.wrong_type("a number, a word in quotes or a list of numbers", value);
+  }
+  return result;
+}
 
 void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "the table [simulate]");

@@ -1,0 +1,269 @@
+// [optimize] and [time_freezing].
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/expression/parser.hpp"
+#include "saltus/io/constant_value_internal.hpp"
+#include "saltus/io/optimize/toml_optimize_internal.hpp"
+#include "saltus/io/toml_sections_internal.hpp"
+#include "saltus/io/toml_words_internal.hpp"
+#include "saltus/pipeline/optimize_fields.hpp"
+
+namespace saltus::io {
+namespace {
+
+using result::OptionValue;
+
+Error problem_mistake(std::string message, std::string remedy, const SourceLocation& location) {
+  return {ErrorCode::invalid_option, std::move(message), std::move(remedy), location, {}};
+}
+
+const std::vector<std::pair<std::string, model::ConstraintPoints>> constraint_points{
+    {"intervals", model::ConstraintPoints::intervals},
+    {"elements", model::ConstraintPoints::elements},
+    {"stages", model::ConstraintPoints::stages}};
+
+/// One of the options of the numerical method.
+void read_option_of_optimize(TomlReader& reader, const std::string& key, const TomlEntry& entry, ModelFile& model) {
+  const auto known = pipeline::with_value(*model.optimize, key, false);
+  const bool unknown = !known && known.error().code == ErrorCode::unknown_name;
+  const auto value =
+      unknown ? std::optional<OptionValue>(std::in_place, false) : read_option_value(reader, entry.value);
+  if (!value) return;
+  auto options = pipeline::with_value(*model.optimize, key, *value);
+  if (options) {
+    model.optimize = std::move(*options);
+    model.optimize_locations.emplace_back(key, entry.value.location);
+    return;
+  }
+  auto error = options.error();
+  error.location = unknown ? entry.location : entry.value.location;
+  if (!unknown && error.code != ErrorCode::not_available) error.message = fmt::format("{}: {}", entry.key, error.message);
+  reader.fail(std::move(error));
+}
+
+void read_mpcc(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [optimize.mpcc]");
+  if (table == nullptr) return;
+  for (const auto& field : *table) read_option_of_optimize(reader, fmt::format("mpcc.{}", field.key), field, model);
+}
+
+/// true, false, or a weight.
+expression::NodePtr read_time_weight(TomlReader& reader, const TomlValue& value) {
+  const auto* truth = std::get_if<bool>(&value.value);
+  if (truth == nullptr) return reader.expression(value);
+  return *truth ? expression::number(1.0, value.location) : nullptr;
+}
+
+/// [["q", "u"], ["v", "w"]].
+void read_complementarities(TomlReader& reader, const TomlEntry& entry, model::OcpDescription& problem) {
+  constexpr std::string_view expected = "a list of pairs, e.g. [[\"q\", \"u\"]]";
+  const auto* list = std::get_if<TomlArray>(&entry.value.value);
+  if (list == nullptr) {
+    reader.wrong_type(expected, entry.value);
+    return;
+  }
+  for (const auto& element : *list) {
+    const auto* pair = std::get_if<TomlArray>(&element.value);
+    if (pair == nullptr) {
+      reader.wrong_type("a pair of expressions, e.g. [\"q\", \"u\"]", element);
+    } else if (pair->size() != 2) {
+      reader.fail(problem_mistake(fmt::format("a complementarity has two sides, found {}", pair->size()),
+                                  "write [\"q\", \"u\"] for 0 <= q _|_ u >= 0", element.location));
+    } else {
+      problem.path_complementarities.push_back(
+          {reader.expression((*pair)[0]), reader.expression((*pair)[1]), element.location});
+    }
+  }
+}
+
+/// { q = "t" } or { result = "r.json" }.
+void read_guess(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "a table like { q = \"t\" } or { result = \"r.json\" }");
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    if (field.key != "result") {
+      model.description.optimize->guess.push_back({field.key, reader.expression(field.value), field.location});
+    } else if (table->size() > 1) {
+      reader.fail(problem_mistake("initial_guess has a result and other entries",
+                                  "write either { result = \"r.json\" } or expressions", field.location));
+    } else {
+      const auto name = reader.string(field.value, "a file name in quotes");
+      model.optimize->start_result = beside(reader.file(), name).string();
+      model.optimize_locations.emplace_back("initial_guess.result", field.value.location);
+    }
+  }
+}
+
+void read_all_least_squares(TomlReader& reader, const TomlEntry& entry, model::OcpDescription& problem) {
+  const auto* array = std::get_if<TomlArray>(&entry.value.value);
+  if (array == nullptr) {
+    reader.wrong_type("tables that begin with [[optimize.least_squares]]", entry.value);
+    return;
+  }
+  for (const auto& value : *array) problem.least_squares.push_back(read_least_squares(reader, value));
+}
+
+/// What is minimised and constrained; whether the key was one of those.
+bool read_problem_key(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  auto& problem = *model.description.optimize;
+  const auto& [key, location, value] = entry;
+  if (key == "from") {
+    problem.from = reader.expression(value);
+  } else if (key == "horizon") {
+    problem.horizon = read_horizon(reader, entry);
+  } else if (key == "running_cost") {
+    problem.running_cost = reader.expression(value);
+  } else if (key == "terminal_cost") {
+    problem.terminal_cost = reader.expression(value);
+  } else if (key == "minimize_time") {
+    problem.time_weight = read_time_weight(reader, value);
+  } else if (key == "path_constraints") {
+    problem.path_constraints = read_constraints(reader, entry, ConstraintPlace::path);
+  } else if (key == "terminal_constraints") {
+    problem.terminal_constraints = read_constraints(reader, entry, ConstraintPlace::terminal);
+  } else if (key == "path_constraints_at") {
+    problem.path_constraints_at = read_enum(reader, value, constraint_points, problem.path_constraints_at);
+  } else if (key == "path_complementarities") {
+    read_complementarities(reader, entry, problem);
+  } else if (key == "initial_guess") {
+    read_guess(reader, entry, model);
+  } else if (key == "least_squares") {
+    read_all_least_squares(reader, entry, problem);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// { lower = 1, upper = 100 }.
+void read_speed(TomlReader& reader, const TomlEntry& entry, model::ClockDescription& clock) {
+  const auto* table = reader.table(entry.value, "a table { lower = 1, upper = 100 }");
+  if (table == nullptr) return;
+  for (const auto& field : *table) {
+    if (field.key == "lower") {
+      clock.speed_lower = reader.expression(field.value);
+    } else if (field.key == "upper") {
+      clock.speed_upper = reader.expression(field.value);
+    } else {
+      reader.unknown_key(field, {"lower", "upper"});
+    }
+  }
+  if (!clock.speed_lower || !clock.speed_upper) {
+    reader.fail(problem_mistake("speed needs two bounds", "write speed = { lower = 1, upper = 100 }",
+                                entry.value.location));
+    return;
+  }
+  const auto lower = constant_value(*clock.speed_lower), upper = constant_value(*clock.speed_upper);
+  if (lower && !(*lower > 0.0)) {
+    reader.fail(problem_mistake(fmt::format("speed: expected lower > 0, found {}", *lower),
+                                "time goes on: choose a positive bound", entry.value.location));
+  } else if (lower && upper && *lower > *upper) {
+    reader.fail(problem_mistake(fmt::format("speed: lower ({}) is above upper ({})", *lower, *upper),
+                                "choose lower <= upper", entry.value.location));
+  }
+}
+
+}  // namespace
+
+void check_free(TomlReader& reader, const std::string& what, const expression::NodePtr& initial,
+                const expression::NodePtr& lower, const expression::NodePtr& upper, const SourceLocation& location) {
+  if (reader.failed()) return;
+  if (!lower || !upper) {
+    reader.fail(problem_mistake(
+        fmt::format("{} is free and has no {} bound", what, lower ? "upper" : upper ? "lower" : "lower and no upper"),
+        "what is optimised needs finite numbers or expressions for `lower` and `upper`", location));
+    return;
+  }
+  const auto from = constant_value(*lower), to = constant_value(*upper);
+  if (from && to && *from > *to) {
+    reader.fail(problem_mistake(fmt::format("{}: lower ({}) is above upper ({})", what, *from, *to),
+                                "choose lower <= initial <= upper", location));
+  }
+  const auto begin = initial ? constant_value(*initial) : std::nullopt;
+  if (begin && ((from && *begin < *from) || (to && *begin > *to))) {
+    reader.fail(problem_mistake(
+        fmt::format("{}: initial ({}) is {}", what, *begin,
+                    from && *begin < *from ? fmt::format("below lower ({})", *from) : fmt::format("above upper ({})", *to)),
+        "choose lower <= initial <= upper", location));
+  }
+}
+
+model::HorizonDescription read_horizon(TomlReader& reader, const TomlEntry& entry) {
+  model::HorizonDescription horizon;
+  horizon.location = entry.value.location;
+  const auto* table = std::get_if<TomlTable>(&entry.value.value);
+  if (table == nullptr) horizon.value = reader.expression(entry.value);
+  for (const auto& field : table != nullptr ? *table : TomlTable{}) {
+    if (field.key == "initial") {
+      horizon.value = reader.expression(field.value);
+    } else if (field.key == "lower") {
+      horizon.lower = reader.bound(field.value);
+    } else if (field.key == "upper") {
+      horizon.upper = reader.bound(field.value);
+    } else if (field.key == "free") {
+      horizon.free = reader.boolean(field.value);
+    } else {
+      reader.unknown_key(field, {"free", "initial", "lower", "upper"});
+    }
+  }
+  if (!horizon.value) {
+    reader.fail(problem_mistake("the horizon has no initial value",
+                                "write horizon = { free = true, initial = 10, lower = 1, upper = 100 }",
+                                horizon.location));
+    return horizon;
+  }
+  if (!horizon.free) horizon.lower = horizon.upper = nullptr;
+  if (horizon.free) check_free(reader, "the horizon", horizon.value, horizon.lower, horizon.upper, horizon.location);
+  for (const auto& bound : {horizon.value, horizon.lower}) {
+    const auto number = bound ? constant_value(*bound) : std::nullopt;
+    if (!number || *number > 0.0) continue;
+    reader.fail(problem_mistake(fmt::format("horizon: expected a length of time > 0, found {}", *number),
+                                "write horizon = 10, counted from `from`", bound->location));
+  }
+  return horizon;
+}
+
+void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [optimize]");
+  if (table == nullptr) return;
+  model.optimize.emplace();
+  model.description.optimize.emplace();
+  model.description.optimize->location = entry.location;
+  for (const auto& field : *table) {
+    if (field.key == "mpcc") {
+      read_mpcc(reader, field, model);
+    } else if (!read_problem_key(reader, field, model)) {
+      read_option_of_optimize(reader, field.key, field, model);
+    }
+  }
+}
+
+void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [time_freezing]");
+  if (table == nullptr) return;
+  const std::vector<std::string> later{"a_n", "stiffness", "stabilisation", "eps_t", "transfer"};
+  model::ClockDescription clock;
+  clock.location = entry.location;
+  for (const auto& field : *table) {
+    if (field.key == "clock") {
+      clock.clock = reader.string(field.value, "the name of a state in quotes");
+      clock.location = field.value.location;
+    } else if (field.key == "speed") {
+      read_speed(reader, field, clock);
+    } else if (std::find(later.begin(), later.end(), field.key) != later.end()) {
+      reader.not_available(field.location, fmt::format("{} of [time_freezing]", field.key));
+    } else {
+      reader.unknown_key(field, {"clock", "speed", "a_n", "stiffness", "stabilisation", "eps_t", "transfer"});
+    }
+  }
+  if (clock.clock.empty()) {
+    reader.fail(problem_mistake("[time_freezing] names no clock",
+                                "write clock = \"tau\", the state that is physical time", entry.location));
+  }
+  model.description.clock = std::move(clock);
+}
+
+}  // namespace saltus::io

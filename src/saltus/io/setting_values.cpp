@@ -1,0 +1,70 @@
+#include "saltus/io/setting_values_internal.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "saltus/expression/parser.hpp"
+#include "saltus/io/constant_value_internal.hpp"
+#include "saltus/io/option_text.hpp"
+
+namespace saltus::io {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+template <class Number>
+std::optional<Number> whole_text_as(std::string_view text) {
+  Number number{};
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::optional<double> constant_in(std::string_view text) {
+  if (const auto number = whole_text_as<double>(text)) return number;
+  const auto tree = expression::parse(text, {});
+  return tree ? constant_value(**tree) : std::nullopt;
+}
+
+std::optional<std::vector<double>> list_in(std::string_view text) {
+  if (!text.starts_with('[') || !text.ends_with(']')) return std::nullopt;
+  text = text.substr(1, text.size() - 2);
+  std::vector<double> list;
+  while (!text.empty()) {
+    const auto comma = std::min(text.find(','), text.size());
+    const auto number = constant_in(trimmed(text.substr(0, comma)));
+    if (!number) return std::nullopt;
+    list.push_back(*number);
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return list;
+}
+
+}  // namespace
+
+result::OptionValue option_value(std::string_view text) {
+  text = trimmed(text);
+  if (text == "true" || text == "false") return text == "true";
+  if (const auto integer = whole_text_as<std::int64_t>(text)) return *integer;
+  if (const auto number = constant_in(text)) return *number;
+  if (auto list = list_in(text)) return std::move(*list);
+  return std::string(text);
+}
+
+SourceLocation place_of_setting(std::string_view key) { return {fmt::format("--set {}", key), 0, 0}; }
+
+tl::unexpected<Error> refused_setting(std::string_view key, ErrorCode code, std::string message, std::string remedy) {
+  return tl::unexpected(Error{code, std::move(message), std::move(remedy), place_of_setting(key), {}});
+}
+
+}  // namespace saltus::io
