@@ -5,6 +5,7 @@
 # Eigen           >= 3.4   MPL-2.0   libeigen3-dev; small dense linear algebra of the integrators
 # CasADi          >= 3.7   LGPL-3    wheel of PyPI in .venv; symbolic expressions of the model, their derivatives
 # Ipopt           >= 3.14  EPL-2.0   the same wheel, with MUMPS and OpenBLAS; nonlinear programs (cmake/ipopt.cmake)
+# HiGHS           >= 1.7   MIT       the same wheel; linear programs (cmake/highs.cmake)
 # tl::expected    >= 1.0   CC0       libexpected-dev; error lane for bad input (std::expected is C++23)
 # fmt             >= 9     MIT       libfmt-dev; messages (std::format is not in g++ 12)
 # toml++          >= 3.3   MIT       libtomlplusplus-dev; model files, with source positions
@@ -39,6 +40,10 @@ if(casadi_FOUND)
   include(cmake/ipopt.cmake)
   if(NOT TARGET saltus_wheel::ipopt)
     string(APPEND saltus_missing "\n  Ipopt: no libipopt beside ${casadi_DIR}; the wheel of PyPI has it, other builds of CasADi may not")
+  endif()
+  include(cmake/highs.cmake)
+  if(NOT TARGET saltus_wheel::highs)
+    string(APPEND saltus_missing "\n  HiGHS: no libhighs beside ${casadi_DIR}; the wheel of PyPI has it, other builds of CasADi may not")
   endif()
 endif()
 if(SALTUS_DEVELOPER)

@@ -17,15 +17,16 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/saltusConfig.cmake.in ${
   INSTALL_DESTINATION ${saltus_package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/saltusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/saltusConfig.cmake ${PROJECT_BINARY_DIR}/saltusConfigVersion.cmake
-    ${CMAKE_CURRENT_LIST_DIR}/ipopt.cmake
+    ${CMAKE_CURRENT_LIST_DIR}/ipopt.cmake ${CMAKE_CURRENT_LIST_DIR}/highs.cmake
   DESTINATION ${saltus_package_folder})
 
 if(TARGET saltus_tool)
-  # The tool finds its own copies of CasADi and Ipopt, so that it survives the source tree and a move of the prefix.
+  # The tool finds its own copies of CasADi, Ipopt and HiGHS, so that it survives the source tree and a move of the prefix.
   file(RELATIVE_PATH up_from_bin /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR}/saltus)
   set_target_properties(saltus_tool PROPERTIES INSTALL_RPATH "$ORIGIN/${up_from_bin}")
   install(TARGETS saltus_tool RUNTIME)
-  install(FILES $<TARGET_SONAME_FILE:casadi::casadi> ${SALTUS_IPOPT_LIBRARIES} DESTINATION ${CMAKE_INSTALL_LIBDIR}/saltus)
+  install(FILES $<TARGET_SONAME_FILE:casadi::casadi> ${SALTUS_IPOPT_LIBRARIES}
+      ${SALTUS_HIGHS_LIBRARIES} DESTINATION ${CMAKE_INSTALL_LIBDIR}/saltus)
 endif()
 
 install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus/models

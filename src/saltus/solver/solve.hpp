@@ -11,6 +11,7 @@
 #include "saltus/result/optimization.hpp"
 #include "saltus/solver/homotopy/follow_path.hpp"
 #include "saltus/solver/lpcc_solver.hpp"
+#include "saltus/solver/multipliers.hpp"
 #include "saltus/solver/nlp_solver.hpp"
 
 namespace saltus::solver {
@@ -29,11 +30,6 @@ struct SolveOptions {
   std::function<bool()> is_interrupted = [] { return false; };
   /// Called after every problem.
   std::function<void(const result::HomotopyStep&)> on_step = [](const result::HomotopyStep&) {};
-};
-
-/// Multipliers of L = f + rows'g + lower'(l - w) + upper'(w - u) - G'G - H'H, lower and upper >= 0.
-struct MpccMultipliers {
-  Eigen::VectorXd rows, lower, upper, G, H;
 };
 
 /// The best point found, whatever the outcome; everything without the method's own terms.

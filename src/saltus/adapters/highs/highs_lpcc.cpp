@@ -1,0 +1,185 @@
+#include "saltus/adapters/highs/highs_lpcc.hpp"
+
+#include <Highs.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/SparseCore>
+
+#include "saltus/base/at.hpp"
+#include "saltus/base/contracts.hpp"
+
+namespace saltus::adapters {
+namespace {
+
+using result::Termination;
+using solver::LpccProblem;
+using solver::LpccSolution;
+
+/// HiGHS's own smallest; rows and variables are of order 1.
+constexpr double feasibility = 1e-10;
+/// A row this near to its bound is at it.
+constexpr double at_bound = 1e-9;
+/// What is better than the best solution by less is not looked at.
+constexpr double gap = 1e-12;
+
+HighsLp linear_program(const LpccProblem& problem) {
+  const auto n = static_cast<HighsInt>(problem.cost.size());
+  const auto m = static_cast<HighsInt>(problem.rows.lower.size());
+  std::vector<Eigen::Triplet<double, HighsInt>> entries;
+  for (int e = 0; e < problem.pattern.entries(); ++e) {
+    entries.emplace_back(problem.pattern.row[at(e)], problem.pattern.column[at(e)], problem.entries[e]);
+  }
+  Eigen::SparseMatrix<double, Eigen::ColMajor, HighsInt> matrix(m, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const auto copy = [](const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); };
+  HighsLp lp;
+  lp.num_col_ = n;
+  lp.num_row_ = m;
+  lp.col_cost_ = copy(problem.cost);
+  lp.col_lower_ = copy(problem.variables.lower);
+  lp.col_upper_ = copy(problem.variables.upper);
+  lp.row_lower_ = copy(problem.rows.lower);
+  lp.row_upper_ = copy(problem.rows.upper);
+  lp.a_matrix_.format_ = MatrixFormat::kColwise;
+  lp.a_matrix_.num_col_ = n;
+  lp.a_matrix_.num_row_ = m;
+  lp.a_matrix_.start_.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + n + 1);
+  lp.a_matrix_.index_.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
+  lp.a_matrix_.value_.assign(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros());
+  return lp;
+}
+
+class Search {
+ public:
+  Search(const LpccProblem& problem, double seconds, int node_limit)
+      : problem_(problem), seconds_(seconds), node_limit_(node_limit), choice_(problem.disjunctions.size(), Choice::open) {
+    bool is_set = highs_.setOptionValue("output_flag", false) == HighsStatus::kOk;
+    is_set = is_set && highs_.setOptionValue("primal_feasibility_tolerance", feasibility) == HighsStatus::kOk;
+    is_set = is_set && highs_.setOptionValue("dual_feasibility_tolerance", feasibility) == HighsStatus::kOk;
+    is_set = is_set && highs_.setOptionValue("threads", 1) == HighsStatus::kOk;
+    is_set = is_set && highs_.setOptionValue("solver", "simplex") == HighsStatus::kOk;
+    SALTUS_ASSERT(is_set);
+  }
+
+  LpccSolution run() {
+    best_.d = Eigen::VectorXd::Zero(problem_.cost.size());
+    for (const auto& [first, second] : problem_.disjunctions) {
+      best_.first_is_active.push_back(problem_.rows.lower[first] == 0.0);
+    }
+    best_.objective = zero_is_feasible() ? 0.0 : std::numeric_limits<double>::infinity();
+    if (highs_.passModel(linear_program(problem_)) == HighsStatus::kError) return std::move(best_);
+    explore();
+    if (is_cut_short_) {
+      best_.termination = out_of_time() ? Termination::time_limit : Termination::not_converged;
+    } else {
+      best_.termination = std::isfinite(best_.objective) ? Termination::completed : Termination::infeasible;
+    }
+    return std::move(best_);
+  }
+
+ private:
+  enum class Choice { open, first, second };
+
+  [[nodiscard]] bool out_of_time() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() >= seconds_;
+  }
+
+  /// 0 is a solution unless rows or bounds exclude it: a bound to begin with.
+  [[nodiscard]] bool zero_is_feasible() const {
+    const auto holds = [](const mpcc::Bounds& bounds) {
+      return bounds.lower.size() == 0 || (bounds.lower.maxCoeff() <= 0.0 && bounds.upper.minCoeff() >= 0.0);
+    };
+    const bool are_at_bounds =
+        std::all_of(problem_.disjunctions.begin(), problem_.disjunctions.end(), [&](const auto& disjunction) {
+          return problem_.rows.lower[disjunction.first] == 0.0 || problem_.rows.lower[disjunction.second] == 0.0;
+        });
+    return holds(problem_.rows) && holds(problem_.variables) && are_at_bounds;
+  }
+
+  [[nodiscard]] double distance(int row) const {
+    return highs_.getSolution().row_value[at(row)] - problem_.rows.lower[row];
+  }
+
+  /// The open disjunction that the program's solution violates most; -1 if it violates none.
+  [[nodiscard]] int most_violated() const {
+    double largest = at_bound;
+    int found = -1;
+    for (std::size_t i = 0; i < choice_.size(); ++i) {
+      if (choice_[i] != Choice::open) continue;
+      const double violation = std::min(distance(problem_.disjunctions[i].first), distance(problem_.disjunctions[i].second));
+      if (violation > largest) {
+        largest = violation;
+        found = static_cast<int>(i);
+      }
+    }
+    return found;
+  }
+
+  void keep() {
+    const auto& values = highs_.getSolution().col_value;
+    best_.d = Eigen::Map<const Eigen::VectorXd>(values.data(), index(values.size()));
+    best_.objective = highs_.getInfo().objective_function_value;
+    for (std::size_t i = 0; i < choice_.size(); ++i) {
+      const auto& [first, second] = problem_.disjunctions[i];
+      const bool is_nearer = distance(first) <= distance(second);
+      best_.first_is_active[i] = choice_[i] == Choice::open ? is_nearer : choice_[i] == Choice::first;
+    }
+  }
+
+  void explore() {
+    if (is_cut_short_ || best_.nodes >= node_limit_ || out_of_time()) {
+      is_cut_short_ = true;
+      return;
+    }
+    ++best_.nodes;
+    highs_.run();
+    const HighsModelStatus status = highs_.getModelStatus();
+    if (status == HighsModelStatus::kInfeasible) return;
+    if (status != HighsModelStatus::kOptimal) {
+      is_cut_short_ = true;
+      return;
+    }
+    if (highs_.getInfo().objective_function_value >= best_.objective - gap) return;
+    const int violated = most_violated();
+    if (violated < 0) {
+      keep();
+      return;
+    }
+    const auto& [first, second] = problem_.disjunctions[at(violated)];
+    const bool first_before = distance(first) <= distance(second);
+    for (const bool is_first : {first_before, !first_before}) {
+      const int row = is_first ? first : second;
+      const double lower = problem_.rows.lower[row];
+      const double upper = highs_.getLp().row_upper_[at(row)];  // another disjunction may hold the same row
+      choice_[at(violated)] = is_first ? Choice::first : Choice::second;
+      highs_.changeRowBounds(row, lower, lower);
+      explore();
+      highs_.changeRowBounds(row, lower, upper);
+    }
+    choice_[at(violated)] = Choice::open;
+  }
+
+  const LpccProblem& problem_;
+  double seconds_;
+  int node_limit_;
+  std::vector<Choice> choice_;
+  Highs highs_;
+  LpccSolution best_;
+  bool is_cut_short_ = false;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+HighsLpcc::HighsLpcc(int node_limit) : node_limit_(node_limit) {}
+HighsLpcc::~HighsLpcc() = default;
+
+LpccSolution HighsLpcc::solve(const LpccProblem& problem, double seconds) {
+  return Search(problem, seconds, node_limit_).run();
+}
+
+}  // namespace saltus::adapters

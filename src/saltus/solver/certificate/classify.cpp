@@ -1,0 +1,125 @@
+#include "saltus/solver/certificate/classify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "saltus/base/at.hpp"
+#include "saltus/mpcc/residuals.hpp"
+#include "saltus/solver/crossover/sides.hpp"
+
+namespace saltus::solver::certificate {
+namespace {
+
+using result::StationarityType;
+
+struct Violation {
+  double amount;
+  std::string name;
+};
+
+/// Calls back with every bound that is violated: the amount relative to the bound, and which variable or row it is.
+template <class OnViolation>
+void for_violations(ConstVectorView values, const mpcc::Bounds& bounds, OnViolation&& on_violation) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const double below = (bounds.lower[i] - values[i]) / std::max(1.0, std::abs(bounds.lower[i]));
+    const double above = (values[i] - bounds.upper[i]) / std::max(1.0, std::abs(bounds.upper[i]));
+    // An infinite bound gives NaN or -inf: never violated.
+    if (below > 0.0 && std::isfinite(bounds.lower[i])) on_violation(below, static_cast<int>(i));
+    if (above > 0.0 && std::isfinite(bounds.upper[i])) on_violation(above, static_cast<int>(i));
+  }
+}
+
+}  // namespace
+
+PairStates pair_states(mpcc::Problem& problem, ConstVectorView w, const std::vector<mpcc::ActiveSide>& sides,
+                       double tolerance) {
+  PairStates states{.sides = sides, .biactive = {}, .is_open = {}};
+  for (const auto side : mpcc::active_sides(problem, w, 10.0 * tolerance)) {
+    states.biactive.push_back(side == mpcc::ActiveSide::biactive);
+  }
+  states.is_open.assign(states.biactive.size(), false);
+  for (const auto& group : crossover::groups_of(problem)) {
+    const bool is_open = std::all_of(group.begin(), group.end(), [&](int pair) { return states.biactive[at(pair)]; });
+    for (const int pair : group) states.is_open[at(pair)] = is_open;
+  }
+  return states;
+}
+
+StationarityType stationarity_type(const MpccMultipliers& multipliers, const std::vector<bool>& biactive,
+                                   double tolerance) {
+  double largest = 1.0;
+  for (std::size_t pair = 0; pair < biactive.size(); ++pair) {
+    if (!biactive[pair]) continue;
+    largest = std::max({largest, std::abs(multipliers.G[index(pair)]), std::abs(multipliers.H[index(pair)])});
+  }
+  const double zero = 10.0 * tolerance * largest;
+  bool S = true;
+  bool M = true;
+  bool C = true;
+  bool A = true;
+  for (std::size_t pair = 0; pair < biactive.size(); ++pair) {
+    if (!biactive[pair]) continue;
+    const double G = multipliers.G[index(pair)];
+    const double H = multipliers.H[index(pair)];
+    const bool has_zero = std::abs(G) <= zero || std::abs(H) <= zero;
+    const bool are_positive = G >= -zero && H >= -zero;
+    S = S && are_positive;
+    M = M && (are_positive || has_zero);
+    C = C && (has_zero || (G > 0.0) == (H > 0.0));
+    A = A && (G >= -zero || H >= -zero);
+  }
+  if (S) return StationarityType::S;
+  if (M) return StationarityType::M;
+  if (C) return StationarityType::C;
+  return A ? StationarityType::A : StationarityType::W;
+}
+
+double scaled_infeasibility(mpcc::Problem& problem, ConstVectorView w) {
+  Eigen::VectorXd c(problem.rows());
+  problem.functions(w, c);
+  if (!c.allFinite() || !w.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  double largest = 0.0;
+  const auto raise = [&largest](double amount, int) { largest = std::max(largest, amount); };
+  for_violations(w, problem.variable_bounds(), raise);
+  for_violations(c.head(problem.constraints()), problem.constraint_bounds(), raise);
+  for (const double side : c.tail(2 * problem.pairs())) largest = std::max(largest, -side);
+  return largest;
+}
+
+double complementarity(mpcc::Problem& problem, ConstVectorView w) {
+  return mpcc::residuals(problem, w).complementarity_residual;
+}
+
+std::string worst_rows(mpcc::Problem& problem, ConstVectorView w, double tolerance) {
+  Eigen::VectorXd c(problem.rows());
+  problem.functions(w, c);
+  const int n_g = problem.constraints();
+  const int pairs = problem.pairs();
+  std::vector<Violation> violations;
+  for_violations(w, problem.variable_bounds(), [&](double amount, int i) {
+    if (amount > tolerance) violations.push_back({amount, fmt::format("a bound of {}", problem.name(i))});
+  });
+  for_violations(c.head(n_g), problem.constraint_bounds(), [&](double amount, int i) {
+    if (amount > tolerance) violations.push_back({amount, problem.row_name(i)});
+  });
+  for (int side = 0; side < 2 * pairs; ++side) {
+    if (-c[n_g + side] > tolerance) violations.push_back({-c[n_g + side], problem.row_name(n_g + side)});
+  }
+  for (int pair = 0; pair < pairs; ++pair) {
+    const double residual = std::min(std::abs(c[n_g + pair]), std::abs(c[n_g + pairs + pair]));
+    if (!(residual > tolerance)) continue;
+    const std::string G = problem.row_name(n_g + pair);
+    violations.push_back({residual, fmt::format("{} _|_ {}", G, problem.row_name(n_g + pairs + pair))});
+  }
+  std::stable_sort(violations.begin(), violations.end(), [](const auto& a, const auto& b) { return a.amount > b.amount; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(violations.size(), 3); ++i) {
+    text += fmt::format("{}{} (by {:.3g})", i > 0 ? ", " : "", violations[i].name, violations[i].amount);
+  }
+  return text;
+}
+
+}  // namespace saltus::solver::certificate

@@ -1,0 +1,198 @@
+#include "saltus/solver/crossover/reduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <unordered_set>
+
+#include "saltus/base/at.hpp"
+
+namespace saltus::solver::crossover {
+namespace {
+
+using mpcc::ActiveSide;
+using mpcc::Sign;
+
+constexpr double no_bound = std::numeric_limits<double>::infinity();
+
+/// Variables that are held, and those that are equal: each points to another one, the last to itself.
+class Holding {
+ public:
+  explicit Holding(const mpcc::Problem& problem)
+      : bounds_(problem.variable_bounds()),
+        parent_(at(problem.variables())),
+        hold_(parent_.size(), Hold::free),
+        value_(Eigen::VectorXd::Zero(problem.variables())) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+    for (int i = 0; i < problem.variables(); ++i) {
+      if (bounds_.lower[i] == bounds_.upper[i]) set(i, Hold::bounds, bounds_.lower[i]);
+    }
+  }
+
+  void set(int variable, Hold why, double value) {
+    if (hold_[at(variable)] == Hold::bounds || !std::isfinite(value)) return;
+    hold_[at(variable)] = why;
+    value_[variable] = value;
+  }
+  [[nodiscard]] int root(int variable) const {
+    while (parent_[at(variable)] != variable) variable = parent_[at(variable)];
+    return variable;
+  }
+  void make_equal(int i, int j) { parent_[at(std::max(root(i), root(j)))] = std::min(root(i), root(j)); }
+
+  /// Whoever is equal to a held variable is held at the same value.
+  void spread() {
+    for (int i = 0; i < value_.size(); ++i) {
+      const int top = root(i);
+      if (hold_[at(i)] != Hold::free && hold_[at(top)] == Hold::free) set(top, Hold::closure, value_[i]);
+    }
+    for (int i = 0; i < value_.size(); ++i) {
+      const int top = root(i);
+      if (hold_[at(i)] == Hold::free && hold_[at(top)] != Hold::free) set(i, Hold::closure, value_[top]);
+    }
+  }
+  [[nodiscard]] const std::vector<Hold>& hold() const { return hold_; }
+  [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
+
+ private:
+  const mpcc::Bounds& bounds_;
+  std::vector<int> parent_;
+  std::vector<Hold> hold_;
+  Eigen::VectorXd value_;
+};
+
+/// An implied side is zero if and only if all its variables are at the bounds that it measures distances from.
+void hold_side(Holding& holding, const mpcc::Bounds& bounds, const RowMatrix& jacobian, int row) {
+  for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
+    const int variable = static_cast<int>(entry.col());
+    if (entry.value() > 0.0) holding.set(variable, Hold::side, bounds.lower[variable]);
+    if (entry.value() < 0.0) holding.set(variable, Hold::side, bounds.upper[variable]);
+  }
+}
+
+/// The same function has the same value and derivatives, to the bit; pairs of one element share their sides.
+class SeenRows {
+ public:
+  bool is_new(const RowMatrix& jacobian, const Eigen::VectorXd& c, int row) {
+    std::uint64_t sum = 14695981039346656037ull;
+    const auto add = [&sum](double value) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &value, sizeof bits);
+      sum = (sum ^ bits) * 1099511628211ull + (sum >> 29);
+    };
+    add(c[row]);
+    for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
+      add(static_cast<double>(entry.col()));
+      add(entry.value());
+    }
+    return seen_.insert(sum).second;
+  }
+
+ private:
+  std::unordered_set<std::uint64_t> seen_;
+};
+
+void place_variables(const Holding& holding, const mpcc::Bounds& bounds, Reduction& reduction) {
+  const int n = static_cast<int>(bounds.lower.size());
+  reduction.hold = holding.hold();
+  reduction.value = holding.value();
+  reduction.place.assign(at(n), -1);
+  std::vector<double> lower;
+  std::vector<double> upper;
+  for (int i = 0; i < n; ++i) {
+    if (reduction.hold[at(i)] != Hold::free) continue;
+    const int top = holding.root(i);  // never above i: it has its place already
+    if (top == i) {
+      reduction.place[at(i)] = reduction.variables();
+      reduction.leader.push_back(i);
+      lower.push_back(bounds.lower[i]);
+      upper.push_back(bounds.upper[i]);
+      continue;
+    }
+    const int place = reduction.place[at(i)] = reduction.place[at(top)];
+    lower[at(place)] = std::max(lower[at(place)], bounds.lower[i]);
+    upper[at(place)] = std::min(upper[at(place)], bounds.upper[i]);
+  }
+  reduction.bounds.lower = Eigen::Map<const Eigen::VectorXd>(lower.data(), index(lower.size()));
+  reduction.bounds.upper = Eigen::Map<const Eigen::VectorXd>(upper.data(), index(upper.size()));
+}
+
+/// Takes rows one by one, leaves out those without free variables.
+class RowList {
+ public:
+  RowList(const RowMatrix& jacobian, Reduction& reduction) : jacobian_(jacobian), reduction_(reduction) {}
+
+  void add(int row, double lower, double upper) {
+    for (RowMatrix::InnerIterator entry(jacobian_, row); entry; ++entry) {
+      if (reduction_.place[at(entry.col())] < 0) continue;
+      reduction_.rows.push_back(row);
+      lower_.push_back(lower);
+      upper_.push_back(upper);
+      return;
+    }
+    reduction_.dead_rows.push_back(row);
+  }
+  void finish() {
+    reduction_.row_bounds.lower = Eigen::Map<const Eigen::VectorXd>(lower_.data(), index(lower_.size()));
+    reduction_.row_bounds.upper = Eigen::Map<const Eigen::VectorXd>(upper_.data(), index(upper_.size()));
+  }
+
+ private:
+  const RowMatrix& jacobian_;
+  Reduction& reduction_;
+  std::vector<double> lower_;
+  std::vector<double> upper_;
+};
+
+}  // namespace
+
+int Reduction::equations() const {
+  return static_cast<int>((row_bounds.lower.array() == row_bounds.upper.array()).count());
+}
+
+Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& sides, const RowMatrix& jacobian,
+                 const Eigen::VectorXd& c) {
+  const int n_g = problem.constraints();
+  const int pairs = problem.pairs();
+  const auto& bounds = problem.variable_bounds();
+  const mpcc::BranchClosure closure = problem.close_branch(sides);
+  Holding holding(problem);
+  for (const int i : closure.at_lower) holding.set(i, Hold::closure, bounds.lower[i]);
+  for (const int i : closure.at_upper) holding.set(i, Hold::closure, bounds.upper[i]);
+  for (const auto& [i, j] : closure.equal) holding.make_equal(i, j);
+
+  std::vector<int> zero_rows;
+  std::vector<int> other_rows;
+  for (int side = 0; side < 2 * pairs; ++side) {
+    const int pair = side % pairs;
+    if (problem.pair_group(pair) < 0 || sides[at(pair)] == ActiveSide::none) continue;
+    const bool is_zero = is_zero_side(sides[at(pair)], side < pairs ? ActiveSide::G : ActiveSide::H);
+    const bool is_implied = problem.signs()[at(side)] == Sign::implied;
+    if (is_zero && is_implied) hold_side(holding, bounds, jacobian, n_g + side);
+    if (!is_implied) (is_zero ? zero_rows : other_rows).push_back(n_g + side);
+  }
+  holding.spread();
+
+  Reduction reduction;
+  place_variables(holding, bounds, reduction);
+  std::vector<bool> is_dropped(at(n_g), false);
+  for (const int row : closure.dropped_rows) is_dropped[at(row)] = true;
+  RowList list(jacobian, reduction);
+  for (int row = 0; row < n_g; ++row) {
+    if (!is_dropped[at(row)]) list.add(row, problem.constraint_bounds().lower[row], problem.constraint_bounds().upper[row]);
+  }
+  SeenRows seen;
+  for (const int row : zero_rows) {
+    if (seen.is_new(jacobian, c, row)) list.add(row, 0.0, 0.0);
+  }
+  for (const int row : other_rows) {
+    if (seen.is_new(jacobian, c, row)) list.add(row, 0.0, no_bound);
+  }
+  list.finish();
+  return reduction;
+}
+
+}  // namespace saltus::solver::crossover

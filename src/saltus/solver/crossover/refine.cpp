@@ -1,0 +1,235 @@
+#include "saltus/solver/crossover/refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/SparseLU>
+#include <Eigen/SparseQR>
+
+#include "saltus/base/at.hpp"
+#include "saltus/solver/sparse.hpp"
+
+namespace saltus::solver::crossover {
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+/// Weight of the regularisation: small beside anything that matters, large beside rounding of entries of order 1.
+constexpr double regularisation = 1e-9;
+constexpr int largest_steps = 12;
+constexpr int refinements = 5;
+
+struct Values {
+  Eigen::VectorXd gradient;
+  Eigen::VectorXd c;
+  Matrix jacobian;
+};
+
+Values evaluate(mpcc::Problem& nlp, ConstVectorView v) {
+  Values values{.gradient = Eigen::VectorXd(nlp.variables()), .c = Eigen::VectorXd(nlp.constraints()), .jacobian = {}};
+  nlp.objective_gradient(v, values.gradient);
+  nlp.functions(v, values.c);
+  values.jacobian = jacobian_matrix(nlp, v);
+  return values;
+}
+
+/// Of one inequality lower <= x <= upper with multiplier `pressure` > 0 at the upper bound, < 0 at the lower one.
+double inequality_error(double x, double lower, double upper, double pressure) {
+  const double violation = std::max({lower - x, x - upper, 0.0});
+  if (lower == upper) return violation;
+  const double at_upper = pressure > 0.0 ? std::min(pressure, std::abs(upper - x)) : 0.0;
+  const double at_lower = pressure < 0.0 ? std::min(-pressure, std::abs(x - lower)) : 0.0;
+  return std::max({violation, at_upper, at_lower});
+}
+
+double error_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values) {
+  const auto& bounds = nlp.variable_bounds();
+  const auto& rows = nlp.constraint_bounds();
+  const Eigen::VectorXd slope =
+      values.gradient + values.jacobian.transpose() * point.y - point.z_lower + point.z_upper;
+  double error = slope.size() > 0 ? slope.lpNorm<Eigen::Infinity>() : 0.0;
+  for (Eigen::Index i = 0; i < point.w.size(); ++i) {
+    const double pressure = point.z_upper[i] - point.z_lower[i];
+    error = std::max(error, inequality_error(point.w[i], bounds.lower[i], bounds.upper[i], pressure));
+  }
+  for (Eigen::Index i = 0; i < point.y.size(); ++i) {
+    error = std::max(error, inequality_error(values.c[i], rows.lower[i], rows.upper[i], point.y[i]));
+  }
+  return std::isfinite(slope.sum() + values.c.sum()) ? error : std::numeric_limits<double>::infinity();
+}
+
+/// Which bounds and rows hold with equality, and where the others stand in the system.
+struct ActiveSet {
+  std::vector<int> column;   ///< of each variable that no active bound holds; else -1
+  Eigen::VectorXd held;      ///< values of the others
+  std::vector<int> line;     ///< of each active row; else -1
+  Eigen::VectorXd target;    ///< values of active rows
+  int variables = 0;
+  int rows = 0;
+};
+
+ActiveSet find_active_set(mpcc::Problem& nlp, const NlpPoint& point, const Eigen::VectorXd& c) {
+  const auto& bounds = nlp.variable_bounds();
+  const auto& rows = nlp.constraint_bounds();
+  ActiveSet active;
+  active.held = point.w;
+  active.target = c;
+  for (Eigen::Index i = 0; i < point.w.size(); ++i) {
+    const bool at_lower = point.z_lower[i] > point.w[i] - bounds.lower[i];
+    const bool at_upper = !at_lower && point.z_upper[i] > bounds.upper[i] - point.w[i];
+    if (at_lower) active.held[i] = bounds.lower[i];
+    if (at_upper) active.held[i] = bounds.upper[i];
+    active.column.push_back(at_lower || at_upper ? -1 : active.variables++);
+  }
+  for (Eigen::Index i = 0; i < c.size(); ++i) {
+    const bool at_lower = rows.lower[i] == rows.upper[i] || -point.y[i] > c[i] - rows.lower[i];
+    const bool at_upper = !at_lower && point.y[i] > rows.upper[i] - c[i];
+    if (at_lower) active.target[i] = rows.lower[i];
+    if (at_upper) active.target[i] = rows.upper[i];
+    active.line.push_back(at_lower || at_upper ? active.rows++ : -1);
+  }
+  return active;
+}
+
+/// [H A'; A 0] of the free variables and active rows, without regularisation.
+Matrix system_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values, const ActiveSet& active) {
+  Eigen::VectorXd entries(nlp.hessian_pattern().entries());
+  nlp.hessian(point.w, 1.0, point.y, entries);
+  const auto& pattern = nlp.hessian_pattern();
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (int e = 0; e < pattern.entries(); ++e) {
+    const int row = active.column[at(pattern.row[at(e)])];
+    const int column = active.column[at(pattern.column[at(e)])];
+    if (row < 0 || column < 0) continue;
+    triplets.emplace_back(row, column, entries[e]);
+    if (row != column) triplets.emplace_back(column, row, entries[e]);
+  }
+  for (int outer = 0; outer < values.jacobian.outerSize(); ++outer) {
+    for (Matrix::InnerIterator entry(values.jacobian, outer); entry; ++entry) {
+      const int line = active.line[at(entry.row())];
+      const int column = active.column[at(entry.col())];
+      if (line < 0 || column < 0) continue;
+      triplets.emplace_back(active.variables + line, column, entry.value());
+      triplets.emplace_back(column, active.variables + line, entry.value());
+    }
+  }
+  const int size = active.variables + active.rows;
+  Matrix system(size, size);
+  system.setFromTriplets(triplets.begin(), triplets.end());
+  return system;
+}
+
+/// Solves the exact system by corrections with the regularised one; empty if that cannot be factorised.
+Eigen::VectorXd solve_refined(const Matrix& system, const Eigen::VectorXd& right, int variables) {
+  Matrix shift(system.rows(), system.cols());
+  shift.setIdentity();
+  for (Eigen::Index i = 0; i < system.rows(); ++i) shift.coeffRef(i, i) = i < variables ? regularisation : -regularisation;
+  Matrix regular = system + shift;
+  regular.makeCompressed();
+  Eigen::SparseLU<Matrix> factors(regular);
+  if (factors.info() != Eigen::Success) return {};
+  Eigen::VectorXd solution = Eigen::VectorXd::Zero(right.size());
+  double last = right.norm();
+  for (int i = 0; i < refinements; ++i) {
+    const Eigen::VectorXd next = solution + factors.solve(right - system * solution);
+    const double left = (right - system * next).norm();
+    if (!(left <= last)) break;
+    solution = next;
+    last = left;
+  }
+  return solution;
+}
+
+/// Multipliers of active bounds from stationarity; those of the others are zero.
+void set_bound_multipliers(NlpPoint& point, const Values& values, const ActiveSet& active, const mpcc::Bounds& bounds) {
+  const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * point.y;
+  point.z_lower.setZero();
+  point.z_upper.setZero();
+  for (Eigen::Index i = 0; i < slope.size(); ++i) {
+    if (active.column[at(i)] >= 0) continue;
+    const bool at_lower = active.held[i] == bounds.lower[i];
+    const bool at_upper = active.held[i] == bounds.upper[i];
+    if (at_lower) point.z_lower[i] = at_upper ? std::max(slope[i], 0.0) : slope[i];
+    if (at_upper) point.z_upper[i] = at_lower ? std::max(-slope[i], 0.0) : -slope[i];
+  }
+}
+
+/// A multiplier of the wrong sign says that the active set was guessed wrong.
+bool has_right_signs(const NlpPoint& point, double tolerance) {
+  return point.w.size() == 0 || std::min(point.z_lower.minCoeff(), point.z_upper.minCoeff()) >= -tolerance;
+}
+
+}  // namespace
+
+double optimality_error(mpcc::Problem& nlp, const NlpPoint& point) { return error_of(nlp, point, evaluate(nlp, point.w)); }
+
+double refine(mpcc::Problem& nlp, NlpPoint& point) {
+  Values values = evaluate(nlp, point.w);
+  double best = error_of(nlp, point, values);
+  if (nlp.variables() == 0 || !std::isfinite(best)) return best;
+  const ActiveSet active = find_active_set(nlp, point, values.c);
+  NlpPoint trial = point;
+  trial.w = active.held;
+  for (Eigen::Index i = 0; i < trial.y.size(); ++i) {
+    if (active.line[at(i)] < 0) trial.y[i] = 0.0;
+  }
+  double last = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < largest_steps; ++step) {
+    values = evaluate(nlp, trial.w);
+    set_bound_multipliers(trial, values, active, nlp.variable_bounds());
+    const double error = error_of(nlp, trial, values);
+    if (error < best && has_right_signs(trial, std::max(1e-9, error))) {
+      best = error;
+      point = trial;
+    }
+    // Quadratic until rounding is reached, from where it stands still; a step that makes it worse comes from afar.
+    if (!std::isfinite(error) || (step > 3 && error > 0.5 * last)) break;
+    last = error;
+    const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * trial.y;
+    Eigen::VectorXd right(active.variables + active.rows);
+    for (Eigen::Index i = 0; i < slope.size(); ++i) {
+      if (active.column[at(i)] >= 0) right[active.column[at(i)]] = -slope[i];
+    }
+    for (Eigen::Index i = 0; i < values.c.size(); ++i) {
+      if (active.line[at(i)] >= 0) right[active.variables + active.line[at(i)]] = active.target[i] - values.c[i];
+    }
+    const Eigen::VectorXd d = solve_refined(system_of(nlp, trial, values, active), right, active.variables);
+    if (d.size() == 0 || !d.allFinite()) break;
+    for (Eigen::Index i = 0; i < slope.size(); ++i) {
+      if (active.column[at(i)] >= 0) trial.w[i] += d[active.column[at(i)]];
+    }
+    for (Eigen::Index i = 0; i < values.c.size(); ++i) {
+      if (active.line[at(i)] >= 0) trial.y[i] += d[active.variables + active.line[at(i)]];
+    }
+  }
+  return best;
+}
+
+std::vector<int> dependent_equations(mpcc::Problem& nlp, ConstVectorView v) {
+  const RowMatrix jacobian = jacobian_matrix(nlp, v);
+  const auto& rows = nlp.constraint_bounds();
+  std::vector<int> equations;
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (int row = 0; row < nlp.constraints(); ++row) {
+    if (rows.lower[row] != rows.upper[row]) continue;
+    for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
+      triplets.emplace_back(static_cast<int>(entry.col()), static_cast<int>(equations.size()), entry.value());
+    }
+    equations.push_back(row);
+  }
+  Matrix transposed(nlp.variables(), index(equations.size()));
+  transposed.setFromTriplets(triplets.begin(), triplets.end());
+  transposed.makeCompressed();
+  Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>> factors;
+  // At a point near a branch, rows that depend on each other there do so to the square root of the last sigma only.
+  factors.setPivotThreshold(1e-6 * std::max(1.0, transposed.norm() / std::sqrt(1.0 + static_cast<double>(equations.size()))));
+  factors.compute(transposed);
+  std::vector<int> dependent;
+  for (Eigen::Index i = factors.rank(); i < index(equations.size()); ++i) {
+    dependent.push_back(equations[at(factors.colsPermutation().indices()[i])]);
+  }
+  return dependent;
+}
+
+}  // namespace saltus::solver::crossover

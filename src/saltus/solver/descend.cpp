@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "saltus/base/at.hpp"
+#include "saltus/solver/certificate/linearise.hpp"
+#include "saltus/solver/crossover/sides.hpp"
+#include "saltus/solver/run_internal.hpp"
+
+namespace saltus::solver {
+namespace {
+
+using mpcc::ActiveSide;
+using result::StationarityType;
+using result::Termination;
+
+constexpr double radius = 1e-3;
+/// Of one linear program with complementarities.
+constexpr double lpcc_seconds = 60.0;
+/// Branches that a solution may visit: every one is better than the one before, so this is only a guard.
+constexpr int largest_rounds = 200;
+/// Flips tried one by one before the linear program decides.
+constexpr int flips_tried = 5;
+
+ActiveSide other(ActiveSide side) { return side == ActiveSide::G ? ActiveSide::H : ActiveSide::G; }
+
+std::vector<ActiveSide> flipped(std::vector<ActiveSide> sides, const std::vector<int>& group) {
+  for (const int pair : group) sides[at(pair)] = other(sides[at(pair)]);
+  return sides;
+}
+
+/// Improvements below are rounding.
+bool falls(double before, double after) { return after < before - 1e-11 * std::max(1.0, std::abs(before)); }
+
+/// The branch that has been found, and what is known of it.
+class Descent {
+ public:
+  explicit Descent(Run& run) : run_(run) {}
+
+  void descend() {
+    for (int round = 0; round < largest_rounds; ++round) {
+      certify();
+      if (run_.solution.certificate.b_stationary) return;
+      if (run_.is_over()) return;
+      if (flip()) continue;
+      if (run_.is_over() || !decide()) return;
+    }
+  }
+
+ private:
+  [[nodiscard]] crossover::Branch& branch() { return *run_.branch; }
+  [[nodiscard]] double tolerance() const { return run_.options.tolerance; }
+
+  void certify() {
+    states_ = certificate::pair_states(run_.problem, branch().w, branch().sides, tolerance());
+    auto& multipliers = run_.solution.multipliers;
+    multipliers = certificate::multipliers_of_branch(run_.problem, *branch().problem, branch().point, states_);
+    auto& of = run_.solution.certificate;
+    of = {};
+    of.primal_infeasibility = branch().primal_infeasibility;
+    of.complementarity_residual = branch().complementarity_residual;
+    of.stationarity =
+        certificate::stationarity(run_.problem, branch().w, multipliers, &branch().problem->reduction());
+    of.biactive = static_cast<int>(std::count(states_.biactive.begin(), states_.biactive.end(), true));
+    of.stationarity_type = certificate::stationarity_type(multipliers, states_.biactive, tolerance());
+    if (of.stationarity_type == StationarityType::S && of.stationarity <= tolerance()) of.b_stationary = true;
+  }
+
+  /// Takes the branch with the group on its other side if that is better.
+  bool take(const std::vector<ActiveSide>& sides, ConstVectorView from, const char* message) {
+    if (!visited_.insert(sides).second) return false;
+    crossover::Branch next = run_.solve_branch(sides, from, message);
+    if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
+    run_.branch = std::move(next);
+    return true;
+  }
+
+  bool flip() {
+    visited_.insert(branch().sides);
+    std::vector<std::pair<double, std::size_t>> candidates;
+    for (std::size_t group = 0; group < run_.groups.size(); ++group) {
+      if (!states_.is_open[at(run_.groups[group].front())]) continue;
+      double lowest = 0.0;
+      for (const int pair : run_.groups[group]) {
+        const auto& of = run_.solution.multipliers;
+        lowest = std::min(lowest, branch().sides[at(pair)] == ActiveSide::G ? of.G[pair] : of.H[pair]);
+      }
+      if (lowest < -10.0 * tolerance()) candidates.emplace_back(lowest, group);
+    }
+    std::sort(candidates.begin(), candidates.end());
+    if (candidates.size() > flips_tried) candidates.resize(flips_tried);
+    for (const auto& [multiplier, group] : candidates) {
+      if (run_.is_over()) return false;
+      if (take(flipped(branch().sides, run_.groups[group]), branch().w, "flip")) return true;
+    }
+    return false;
+  }
+
+  /// The linear program: true if it led to a better branch, else the certificate has its answer.
+  bool decide() {
+    const double started = run_.seconds();
+    const auto linear =
+        certificate::linearise(run_.problem, branch().w, states_, &branch().problem->reduction(), radius);
+    const double left = run_.options.time_limit ? *run_.options.time_limit - started : lpcc_seconds;
+    const LpccSolution found = run_.lpcc.solve(linear.problem, std::clamp(left, 0.0, lpcc_seconds));
+    result::HomotopyStep step;
+    step.phase = result::HomotopyPhase::lpcc;
+    step.solver = run_.lpcc.name();
+    step.sigma = run_.relaxed.sigma;
+    step.iterations = found.nodes;
+    step.objective = branch().objective;
+    step.primal_infeasibility = branch().primal_infeasibility;
+    step.complementarity_residual = branch().complementarity_residual;
+    step.termination = found.termination;
+    run_.record(step, nullptr, started);
+    if (found.termination != Termination::completed) return false;
+    auto& of = run_.solution.certificate;
+    of.lpcc_decrease = std::min(found.objective, 0.0) / linear.scale;
+    if (*of.lpcc_decrease >= -tolerance()) {
+      of.b_stationary = true;
+      return false;
+    }
+    of.b_stationary = false;
+    std::vector<ActiveSide> sides = branch().sides;
+    for (std::size_t i = 0; i < linear.groups.size(); ++i) {
+      for (const int pair : linear.groups[i]) sides[at(pair)] = found.first_is_active[i] ? ActiveSide::G : ActiveSide::H;
+    }
+    if (take(sides, branch().w, "proposed by the linear program")) return true;
+    // Flipped already, but not from as far as the linear program sees.
+    return visited_.erase(sides) > 0 && take(sides, branch().w + radius * found.d, "proposed by the linear program");
+  }
+
+  Run& run_;
+  certificate::PairStates states_;
+  std::set<std::vector<ActiveSide>> visited_;
+};
+
+}  // namespace
+
+void descend(Run& run) { Descent(run).descend(); }
+
+void rescue(Run& run) {
+  const Eigen::VectorXd w = run.relaxed.point.w.head(run.problem.variables());
+  Eigen::VectorXd c(run.problem.rows());
+  run.problem.functions(w, c);
+  const auto sides = crossover::smaller_sides(run.problem, run.groups, c);
+  // Undecided is what the last sigma has not pulled to an axis: products are below it, sides below its root.
+  const double undecided = 0.3 * std::sqrt(std::max(run.relaxed.sigma, 1e-12));
+  const auto states = certificate::pair_states(run.problem, w, sides, undecided);
+  const auto linear = certificate::linearise(run.problem, w, states, nullptr, std::max(radius, 10.0 * undecided));
+  if (!run.is_over() && !linear.groups.empty()) {
+    const LpccSolution found = run.lpcc.solve(linear.problem, lpcc_seconds);
+    std::vector<ActiveSide> proposed = sides;
+    if (found.termination == Termination::completed) {
+      for (std::size_t i = 0; i < linear.groups.size(); ++i) {
+        for (const int pair : linear.groups[i]) {
+          proposed[at(pair)] = found.first_is_active[i] ? ActiveSide::G : ActiveSide::H;
+        }
+      }
+      crossover::Branch branch = run.solve_branch(proposed, w, "proposed by the linear program");
+      const bool is_better = !run.refused || falls(run.refused->objective, branch.objective);
+      if (branch.is_feasible(run.options.tolerance) && is_better) run.refused = std::move(branch);
+    }
+  }
+  run.branch = std::move(run.refused);
+}
+
+void certify_relaxed(Run& run) {
+  const int n = run.problem.variables();
+  const Eigen::VectorXd w = run.relaxed.point.w.head(n);
+  Eigen::VectorXd c(run.problem.rows());
+  run.problem.functions(w, c);
+  const auto sides = crossover::smaller_sides(run.problem, run.groups, c);
+  const auto states = certificate::pair_states(run.problem, w, sides, run.options.tolerance);
+  auto& of = run.solution.certificate;
+  of = {};
+  of.primal_infeasibility = certificate::scaled_infeasibility(run.problem, w);
+  of.complementarity_residual = certificate::complementarity(run.problem, w);
+  of.stationarity = std::numeric_limits<double>::quiet_NaN();
+  of.biactive = static_cast<int>(std::count(states.biactive.begin(), states.biactive.end(), true));
+  if (run.relaxed.point.y.size() != run.relaxed.problem->constraints()) return;
+  auto& multipliers = run.solution.multipliers;
+  multipliers = certificate::multipliers_of_relaxed(run.problem, *run.relaxed.problem, run.relaxed.point, states);
+  of.stationarity = certificate::stationarity(run.problem, w, multipliers, nullptr);
+  of.stationarity_type = certificate::stationarity_type(multipliers, states.biactive, run.options.tolerance);
+  if (of.stationarity_type == StationarityType::S) {
+    if (of.stationarity <= run.options.tolerance) of.b_stationary = true;
+    return;
+  }
+  const auto linear = certificate::linearise(run.problem, w, states, nullptr, radius);
+  const LpccSolution found = run.lpcc.solve(linear.problem, lpcc_seconds);
+  if (found.termination != Termination::completed) return;
+  of.lpcc_decrease = std::min(found.objective, 0.0) / linear.scale;
+  of.b_stationary = *of.lpcc_decrease >= -run.options.tolerance;
+}
+
+}  // namespace saltus::solver

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/solver/crossover/sides.hpp"
+#include "saltus/solver/run_internal.hpp"
+
+namespace saltus::solver {
+namespace {
+
+using result::Termination;
+
+/// Crossing over earlier costs more than the next relaxed problem (mpcc.md's C.1: right from here on the easy ones).
+constexpr double crossover_sigma = 1e-3;
+constexpr int failures_that_end = 3;
+/// Relaxed problems are solved to 1e-4 sigma: from here on to the last digit.
+constexpr double sharp_sigma = 1e-6;
+/// A branch that is feasible only far from where the path has led to is a solution at infinity.
+constexpr double far_away = 1e5;
+/// How much worse than the relaxed point a branch may be: relaxed points are better than any feasible one.
+constexpr double objective_slack = 1e-3;
+
+/// Follows one schedule.
+class Path {
+ public:
+  Path(Run& run, const Attempt& attempt) : run_(run), attempt_(attempt) {
+    run_.relaxed.problem =
+        std::make_unique<homotopy::RelaxedProblem>(run.problem, run.options.relaxation, attempt.steering);
+    w_ = attempt.w;
+    infeasibility_ = infeasibility_of(w_);
+  }
+
+  PathEnd follow() {
+    const auto& schedule = run_.options.schedule;
+    int failures = 0;
+    for (double sigma = attempt_.sigma_initial;; sigma *= schedule.sigma_factor) {
+      // The last factor is cut short; 1.0001 keeps rounding from adding one more problem at nearly the same sigma.
+      const bool is_last = sigma <= 1.0001 * schedule.sigma_final;
+      if (is_last) sigma = schedule.sigma_final;
+      if (run_.is_over()) return PathEnd::stopped;
+      const bool is_solved = solve(sigma);
+      failures = is_solved ? 0 : failures + 1;
+      if (run_.is_over()) return PathEnd::stopped;
+      if (is_solved && run_.options.crossover && cross_over(sigma)) return PathEnd::crossed_over;
+      // Problems of larger sigma are not solved as sharply.
+      const bool is_sharp = is_solved && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
+      if (is_sharp && !run_.options.crossover) return PathEnd::finished;
+      if (failures >= failures_that_end) return PathEnd::failed;
+      if (is_last) return is_solved ? PathEnd::finished : PathEnd::failed;
+    }
+  }
+
+ private:
+  [[nodiscard]] double infeasibility_of(const Eigen::VectorXd& w) {
+    return std::max(certificate::scaled_infeasibility(run_.problem, w), certificate::complementarity(run_.problem, w));
+  }
+
+  [[nodiscard]] static double norm(const Eigen::VectorXd& w) { return w.size() > 0 ? w.lpNorm<Eigen::Infinity>() : 0.0; }
+
+  /// With the multipliers of the problem before, where they are wanted and there.
+  [[nodiscard]] NlpPoint start(double sigma, NlpOptions& options) {
+    auto& relaxed = *run_.relaxed.problem;
+    NlpPoint point{.w = relaxed.with_elastic_variables(w_), .y = {}, .z_lower = {}, .z_upper = {}};
+    if (run_.options.warm_start != homotopy::WarmStart::primal_dual) return point;
+    const auto& last = run_.relaxed.point;
+    if (has_multipliers_) {
+      point.y = last.y;
+      point.z_lower = last.z_lower;
+      point.z_upper = last.z_upper;
+    } else if (attempt_.multipliers.rows.size() == run_.problem.constraints() &&
+               attempt_.multipliers.lower.size() == w_.size() && attempt_.multipliers.upper.size() == w_.size()) {
+      point.y = Eigen::VectorXd::Zero(relaxed.constraints());
+      point.y.head(run_.problem.constraints()) = attempt_.multipliers.rows;
+      point.z_lower = point.z_upper = Eigen::VectorXd::Ones(relaxed.variables());
+      point.z_lower.head(w_.size()) = attempt_.multipliers.lower;
+      point.z_upper.head(w_.size()) = attempt_.multipliers.upper;
+    } else {
+      return point;
+    }
+    // Products of pairs are of the order of sigma, and so are those of bounds and their multipliers.
+    options.warm_barrier_mu = std::clamp(std::pow(sigma, 1.2), 1e-9, 0.1);
+    options.warm_push = std::clamp(*options.warm_barrier_mu, 1e-9, 1e-5);
+    return point;
+  }
+
+  /// Solves the problem of one sigma; false if it failed. Its point is kept if it is no worse than the one before.
+  bool solve(double sigma) {
+    const double started = run_.seconds();
+    auto& relaxed = *run_.relaxed.problem;
+    relaxed.set_sigma(sigma);
+    run_.relaxed.sigma = sigma;
+    NlpOptions options = run_.nlp_options();
+    options.tolerance = std::clamp(1e-4 * sigma, options.tolerance, 1e-6);
+    NlpPoint point = start(sigma, options);
+    run_.problem.with_method_terms(w_);
+    const NlpReport report = run_.nlp.solve(relaxed, point, options);
+    run_.problem.without_method_terms();
+
+    const Eigen::VectorXd w = point.w.head(w_.size());
+    const double infeasibility = point.w.allFinite() && !report.diverging ? infeasibility_of(w) : NAN;
+    const bool stands_still = report.termination == Termination::step_size_too_small &&
+                              certificate::scaled_infeasibility(run_.problem, w) <= run_.options.tolerance;
+    const bool is_solved = report.termination == Termination::completed || stands_still;
+    if (is_solved || infeasibility <= infeasibility_) {
+      w_ = w;
+      infeasibility_ = infeasibility;
+      has_multipliers_ = is_solved;
+      run_.relaxed.point = point;
+      run_.relaxed.report = report;
+    }
+    note_failure(report, is_solved);
+    result::HomotopyStep step;
+    step.sigma = sigma;
+    step.objective = run_.problem.objective(w);
+    step.primal_infeasibility = certificate::scaled_infeasibility(run_.problem, w);
+    step.complementarity_residual = certificate::complementarity(run_.problem, w);
+    run_.record(step, &report, started);
+    return is_solved;
+  }
+
+  void note_failure(const NlpReport& report, bool is_solved) {
+    run_.is_diverging = report.diverging;
+    run_.is_infeasible = run_.is_infeasible || report.termination == Termination::infeasible;
+    run_.failure = is_solved ? "" : report.message;
+  }
+
+  /// True if the branch of the smaller sides is good enough.
+  bool cross_over(double sigma) {
+    if (run_.problem.pairs() > 0 && sigma > 1.0001 * crossover_sigma) return false;
+    Eigen::VectorXd c(run_.problem.rows());
+    run_.problem.functions(w_, c);
+    const auto sides = crossover::smaller_sides(run_.problem, run_.groups, c);
+    // The same sides have the same solution: once refused, always refused.
+    if (sides == refused_sides_) return false;
+    crossover::Branch branch = run_.solve_branch(sides, w_);
+    if (run_.is_over() && !branch.is_feasible(run_.options.tolerance)) return false;
+    const double relaxed = run_.problem.objective(w_);
+    const bool is_near = norm(branch.w) <= far_away * std::max(1.0, norm(w_));
+    const bool is_feasible = branch.is_feasible(run_.options.tolerance) && std::isfinite(branch.objective) && is_near;
+    if (is_feasible && branch.objective <= relaxed + objective_slack * std::max(1.0, std::abs(relaxed))) {
+      run_.branch = std::move(branch);
+      return true;
+    }
+    refused_sides_ = sides;
+    auto& step = run_.solution.homotopy.back();
+    step.message = "refused: ";
+    step.message += is_feasible ? fmt::format("the relaxed objective is {:.6g}", relaxed)
+                    : !is_near  ? "it lies at infinity"
+                                : certificate::worst_rows(run_.problem, branch.w, run_.options.tolerance);
+    const bool is_better = is_feasible && (!run_.refused || branch.objective < run_.refused->objective);
+    if (is_better) run_.refused = std::move(branch);
+    return false;
+  }
+
+  Run& run_;
+  const Attempt& attempt_;
+  Eigen::VectorXd w_;
+  double infeasibility_ = 0.0;
+  bool has_multipliers_ = false;
+  std::vector<mpcc::ActiveSide> refused_sides_;
+};
+
+}  // namespace
+
+PathEnd follow_relaxed(Run& run, const Attempt& attempt) { return Path(run, attempt).follow(); }
+
+}  // namespace saltus::solver

@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/solver/certificate/classify.hpp"
+#include "saltus/solver/crossover/sides.hpp"
+#include "saltus/solver/run_internal.hpp"
+
+namespace saltus::solver {
+
+using result::Termination;
+
+namespace {
+
+/// Of one problem; one that needs more is better off with another sigma.
+constexpr int problem_iteration_limit = 500;
+/// Of the solver's scaled error; what is missing to rounding, refine.hpp adds.
+constexpr double problem_tolerance = 1e-10;
+
+}  // namespace
+
+Run::Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpcc_solver, const SolveOptions& wanted)
+    : problem(problem_to_solve),
+      nlp(nlp_solver),
+      lpcc(lpcc_solver),
+      options(wanted),
+      groups(crossover::groups_of(problem_to_solve)) {}
+
+double Run::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+bool Run::is_over() {
+  if (stopped) return true;
+  if (options.is_interrupted && options.is_interrupted()) {
+    stopped = Termination::stopped_by_user;
+  } else if (options.time_limit && seconds() >= *options.time_limit) {
+    stopped = Termination::time_limit;
+  } else if (solution.iterations >= options.iteration_limit) {
+    stopped = Termination::iteration_limit;
+  }
+  return stopped.has_value();
+}
+
+NlpOptions Run::nlp_options() const {
+  NlpOptions result;
+  result.tolerance = problem_tolerance;
+  result.iteration_limit = std::max(0, std::min(problem_iteration_limit, options.iteration_limit - solution.iterations));
+  if (options.time_limit) result.time_limit = std::max(0.0, *options.time_limit - seconds());
+  result.is_interrupted = options.is_interrupted;
+  return result;
+}
+
+void Run::record(result::HomotopyStep step, const NlpReport* report, double started) {
+  step.seconds = seconds() - started;
+  if (report != nullptr) {
+    step.solver = nlp.name();
+    step.iterations = report->iterations;
+    step.termination = report->termination;
+    if (step.message.empty()) step.message = report->message;
+    solution.iterations += report->iterations;
+    solution.evaluation_seconds += report->evaluation_seconds;
+  }
+  solution.solver_seconds += step.seconds - (report != nullptr ? report->evaluation_seconds : 0.0);
+  solution.homotopy.push_back(step);
+  if (options.on_step) options.on_step(solution.homotopy.back());
+}
+
+crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, std::string message) {
+  const double started = seconds();
+  crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, nlp_options());
+  result::HomotopyStep step;
+  step.phase = result::HomotopyPhase::branch;
+  step.sigma = relaxed.sigma;
+  step.objective = found.objective;
+  step.primal_infeasibility = found.primal_infeasibility;
+  step.complementarity_residual = found.complementarity_residual;
+  step.message = std::move(message);
+  record(step, &found.report, started);
+  return found;
+}
+
+}  // namespace saltus::solver

@@ -1,0 +1,80 @@
+// What the parts of one solution share: limits, log, and the branch that has been found.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/solver/certificate/classify.hpp"
+#include "saltus/solver/crossover/branch.hpp"
+#include "saltus/solver/solve.hpp"
+
+namespace saltus::solver {
+
+/// Where the relaxed problems have come to.
+struct RelaxedState {
+  std::unique_ptr<homotopy::RelaxedProblem> problem;
+  NlpPoint point;  ///< in its variables, multipliers included
+  NlpReport report;
+  double sigma = 0.0;
+};
+
+class Run {
+ public:
+  Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpcc_solver, const SolveOptions& wanted);
+
+  [[nodiscard]] double seconds() const;
+  /// Whether a limit has been reached or the user wants an end; `stopped` says which.
+  [[nodiscard]] bool is_over();
+  /// Limits of the next problem.
+  [[nodiscard]] NlpOptions nlp_options() const;
+  void record(result::HomotopyStep step, const NlpReport* report, double started);
+  /// Solves a branch problem, counts and records it.
+  [[nodiscard]] crossover::Branch solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
+                                               std::string message = {});
+
+  mpcc::Problem& problem;
+  NlpSolver& nlp;
+  LpccSolver& lpcc;
+  const SolveOptions& options;
+  std::vector<std::vector<int>> groups;
+  Solution solution;
+  RelaxedState relaxed;                     ///< the last relaxed problem that left a point
+  std::optional<crossover::Branch> branch;  ///< the best one accepted
+  std::optional<crossover::Branch> refused; ///< feasible, but its objective was too far above the relaxed one
+  std::optional<result::Termination> stopped;
+  std::string failure;         ///< why the last relaxed problem failed
+  bool is_diverging = false;   ///< it failed since its iterates grow without bounds
+  bool is_infeasible = false;  ///< a relaxed problem was infeasible
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// One attempt at the path: its start, its first sigma, its steering.
+struct Attempt {
+  Eigen::VectorXd w;
+  MpccMultipliers multipliers;  ///< may be empty
+  homotopy::Steering steering = homotopy::Steering::direct;
+  double sigma_initial = 1.0;
+};
+
+enum class PathEnd {
+  crossed_over,  ///< run.branch is accepted
+  finished,      ///< the last relaxed problem is solved
+  failed,        ///< three relaxed problems in a row have failed
+  stopped,       ///< run.stopped
+};
+/// Follows the relaxed problems, tries to cross over behind each.
+[[nodiscard]] PathEnd follow_relaxed(Run& run, const Attempt& attempt);
+
+/// From run.branch to better branches, until none is found: flips of biactive pairs with negative multipliers, then the
+/// linear program over them. Leaves certificate and multipliers in run.solution.
+void descend(Run& run);
+/// Where no branch was accepted: the linear program at the relaxed point proposes sides. Leaves run.branch if it works.
+void rescue(Run& run);
+/// Certificate and multipliers of the relaxed point.
+void certify_relaxed(Run& run);
+
+}  // namespace saltus::solver

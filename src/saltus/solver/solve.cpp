@@ -1,0 +1,154 @@
+#include "saltus/solver/solve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/solver/run_internal.hpp"
+
+namespace saltus::solver {
+namespace {
+
+using homotopy::Steering;
+using result::Termination;
+
+tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
+  Error error;
+  error.code = code;
+  error.message = std::move(message);
+  return tl::unexpected(std::move(error));
+}
+
+Expected<void> check(const SolveOptions& options) {
+  const auto& [initial, factor, last] = options.schedule;
+  const auto code = ErrorCode::invalid_option;
+  if (!(initial > 0.0 && std::isfinite(initial))) {
+    return refuse(code, fmt::format("sigma_initial = {} is not > 0", initial));
+  }
+  if (!(factor > 0.0 && factor < 1.0)) return refuse(code, fmt::format("sigma_factor = {} is not in (0, 1)", factor));
+  if (!(last > 0.0 && last <= initial)) {
+    return refuse(code, fmt::format("sigma_final = {} is not in (0, sigma_initial = {}]", last, initial));
+  }
+  if (!(options.tolerance > 0.0)) return refuse(code, fmt::format("tolerance = {} is not > 0", options.tolerance));
+  if (options.iteration_limit < 1) {
+    return refuse(code, fmt::format("iteration_limit = {} is not >= 1", options.iteration_limit));
+  }
+  if (options.time_limit && !(*options.time_limit > 0.0)) {
+    return refuse(code, fmt::format("time_limit = {} is not > 0", *options.time_limit));
+  }
+  return {};
+}
+
+Expected<void> check_start(mpcc::Problem& problem, ConstVectorView w) {
+  const auto code = ErrorCode::invalid_model;
+  for (Eigen::Index i = 0; i < w.size(); ++i) {
+    if (!std::isfinite(w[i])) {
+      return refuse(code, fmt::format("the start of {} is {}", problem.name(static_cast<int>(i)), w[i]));
+    }
+  }
+  if (const double f = problem.objective(w); !std::isfinite(f)) {
+    return refuse(code, fmt::format("the objective is {} at the start", f));
+  }
+  Eigen::VectorXd c(problem.rows());
+  problem.functions(w, c);
+  for (Eigen::Index i = 0; i < c.size(); ++i) {
+    if (!std::isfinite(c[i])) {
+      return refuse(code, fmt::format("{} is {} at the start", problem.row_name(static_cast<int>(i)), c[i]));
+    }
+  }
+  return {};
+}
+
+/// The path, and where three relaxed problems in a row fail, the path from a smaller sigma, then an elastic one.
+PathEnd follow_with_restarts(Run& run, const Start& start) {
+  const auto& schedule = run.options.schedule;
+  Attempt attempt{.w = start.w,
+                  .multipliers = start.multipliers,
+                  .steering = run.options.steering,
+                  .sigma_initial = schedule.sigma_initial};
+  PathEnd end = follow_relaxed(run, attempt);
+  if (end != PathEnd::failed) return end;
+  attempt.sigma_initial = std::max(0.1 * schedule.sigma_initial, schedule.sigma_final);
+  end = follow_relaxed(run, attempt);
+  if (end != PathEnd::failed || run.options.steering == Steering::l1) return end;
+  attempt.sigma_initial = schedule.sigma_initial;
+  attempt.steering = Steering::l1;
+  return follow_relaxed(run, attempt);
+}
+
+bool has_small_residuals(const result::Certificate& certificate, double tolerance) {
+  return certificate.primal_infeasibility <= tolerance && certificate.complementarity_residual <= tolerance &&
+         certificate.stationarity <= tolerance;
+}
+
+/// Why a point that no limit has stopped is no solution.
+std::string reason(const Run& run) {
+  const auto& of = run.solution.certificate;
+  const double tolerance = run.options.tolerance;
+  if (run.is_diverging) return "unbounded: the iterates grow without limit while the objective falls";
+  if (!(of.primal_infeasibility <= tolerance && of.complementarity_residual <= tolerance)) {
+    const std::string rows = certificate::worst_rows(run.problem, run.solution.w, tolerance);
+    return fmt::format("not feasible: {}{}{}", rows, run.failure.empty() ? "" : "; ", run.failure);
+  }
+  if (!(of.stationarity <= tolerance)) {
+    return fmt::format("not stationary: the gradient of the Lagrangian is {:.3g}", of.stationarity);
+  }
+  if (!of.b_stationary) return "not decided whether the point is B-stationary";
+  return fmt::format("not B-stationary: a direction of descent has slope {:.3g}", of.lpcc_decrease.value_or(0.0));
+}
+
+void conclude(Run& run) {
+  Solution& solution = run.solution;
+  const auto& of = solution.certificate;
+  const double tolerance = run.options.tolerance;
+  const bool is_feasible = of.primal_infeasibility <= tolerance && of.complementarity_residual <= tolerance;
+  if (has_small_residuals(of, tolerance) && of.b_stationary.value_or(false)) {
+    solution.termination = Termination::completed;
+    solution.message.clear();
+  } else if (run.stopped) {
+    solution.termination = *run.stopped;
+    const double worst = std::max(of.primal_infeasibility, of.complementarity_residual);
+    solution.message = fmt::format("stopped before it was solved; constraints are violated by {:.3g}", worst);
+  } else if (run.is_infeasible && !is_feasible) {
+    solution.termination = Termination::infeasible;
+    solution.message = "locally infeasible: " + certificate::worst_rows(run.problem, solution.w, tolerance);
+  } else {
+    solution.termination = Termination::not_converged;
+    solution.message = reason(run);
+  }
+}
+
+}  // namespace
+
+Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
+                         const std::optional<Start>& start) {
+  if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
+  Start from = start.value_or(Start{.w = problem.start(), .multipliers = {}});
+  SALTUS_ASSERT(from.w.size() == problem.variables());
+  const auto& bounds = problem.variable_bounds();
+  from.w = from.w.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+  problem.without_method_terms();
+  if (auto checked = check_start(problem, from.w); !checked) return tl::unexpected(checked.error());
+
+  Run run(problem, nlp, lpcc, options);
+  run.relaxed.point.w = from.w;
+  const PathEnd end = follow_with_restarts(run, from);
+  if (options.crossover && end != PathEnd::crossed_over && end != PathEnd::stopped) rescue(run);
+  Solution& solution = run.solution;
+  if (run.branch) {
+    descend(run);
+    solution.crossed_over = true;
+    solution.w = run.branch->w;
+    solution.sides = run.branch->sides;
+  } else {
+    certify_relaxed(run);
+    solution.w = run.relaxed.point.w.head(problem.variables());
+  }
+  solution.objective = problem.objective(solution.w);
+  conclude(run);
+  return std::move(solution);
+}
+
+}  // namespace saltus::solver

@@ -1,0 +1,171 @@
+#include "saltus/solver/solve.hpp"
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "saltus/adapters/highs/highs_lpcc.hpp"
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "small_problems.hpp"
+
+namespace saltus::solver {
+namespace {
+
+using homotopy::Relaxation;
+using homotopy::Steering;
+using result::StationarityType;
+using result::Termination;
+using small::infinity;
+
+Solution solved(mpcc::Problem& problem, const Eigen::VectorXd& start, const SolveOptions& options = {}) {
+  adapters::IpoptSolver ipopt;
+  adapters::HighsLpcc highs;
+  auto solution = solve(problem, ipopt, highs, options, Start{.w = start, .multipliers = {}});
+  EXPECT_TRUE(solution.has_value());
+  return solution ? *solution : Solution{};
+}
+
+std::string log_of(const Solution& solution) {
+  std::string text = solution.message + "\n";
+  for (const auto& step : solution.homotopy) {
+    text += std::string(result::name(step.phase)) + " sigma " + std::to_string(step.sigma) + " iterations " +
+            std::to_string(step.iterations) + " f " + std::to_string(step.objective) + " " +
+            std::string(result::name(step.termination)) + " " + step.message + "\n";
+  }
+  return text;
+}
+
+/// The certificate once more, from nothing but the problem, the point and the multipliers.
+void expect_certified(mpcc::PolynomialProblem& problem, const Solution& solution, double tolerance) {
+  const int n = problem.variables();
+  const int n_g = problem.constraints();
+  const int pairs = problem.pairs();
+  Eigen::VectorXd c(problem.rows());
+  problem.functions(solution.w, c);
+  Eigen::VectorXd slope(n);
+  problem.objective_gradient(solution.w, slope);
+  Eigen::VectorXd entries(problem.jacobian_pattern().entries());
+  problem.jacobian(solution.w, entries);
+  const auto& m = solution.multipliers;
+  ASSERT_EQ(m.rows.size(), n_g);
+  ASSERT_EQ(m.G.size(), pairs);
+  for (int row = 0; row < problem.rows(); ++row) {
+    const double y = row < n_g ? m.rows[row] : row < n_g + pairs ? -m.G[row - n_g] : -m.H[row - n_g - pairs];
+    for (int i = 0; i < n; ++i) slope[i] += y * entries[row * n + i];
+  }
+  slope += m.upper - m.lower;
+  EXPECT_LE(slope.lpNorm<Eigen::Infinity>(), tolerance);
+  EXPECT_GE(m.lower.minCoeff(), 0.0);
+  EXPECT_GE(m.upper.minCoeff(), 0.0);
+  for (int i = 0; i < n; ++i) {
+    if (m.lower[i] > tolerance) {
+      EXPECT_NEAR(solution.w[i], problem.variable_bounds().lower[i], tolerance);
+    }
+    if (m.upper[i] > tolerance) {
+      EXPECT_NEAR(solution.w[i], problem.variable_bounds().upper[i], tolerance);
+    }
+  }
+  for (int row = 0; row < n_g; ++row) {
+    EXPECT_GE(c[row], problem.constraint_bounds().lower[row] - tolerance);
+    EXPECT_LE(c[row], problem.constraint_bounds().upper[row] + tolerance);
+    if (m.rows[row] > tolerance) {
+      EXPECT_NEAR(c[row], problem.constraint_bounds().upper[row], tolerance);
+    }
+    if (m.rows[row] < -tolerance) {
+      EXPECT_NEAR(c[row], problem.constraint_bounds().lower[row], tolerance);
+    }
+  }
+  for (int pair = 0; pair < pairs; ++pair) {
+    const double G = c[n_g + pair];
+    const double H = c[n_g + pairs + pair];
+    EXPECT_GE(std::min(G, H), -tolerance);
+    EXPECT_LE(std::min(G, H), tolerance);
+    if (G > 10.0 * tolerance) {
+      EXPECT_NEAR(m.G[pair], 0.0, tolerance);
+    }
+    if (H > 10.0 * tolerance) {
+      EXPECT_NEAR(m.H[pair], 0.0, tolerance);
+    }
+  }
+}
+
+class EveryMethod : public testing::TestWithParam<std::tuple<Relaxation, Steering, bool>> {};
+
+TEST_P(EveryMethod, MinimumOnOneAxis) {
+  auto statement = small::minimum_on_one_axis();
+  if (std::get<2>(GetParam())) small::imply_signs(statement);
+  mpcc::PolynomialProblem problem(statement);
+  if (std::get<2>(GetParam())) small::imply_signs(problem);
+  SolveOptions options;
+  options.relaxation = std::get<0>(GetParam());
+  options.steering = std::get<1>(GetParam());
+  const Solution solution = solved(problem, Eigen::Vector2d(0.0, 5.0), options);
+  EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
+  EXPECT_TRUE(solution.crossed_over);
+  EXPECT_NEAR(solution.w[0], 1.0, 1e-12);
+  EXPECT_NEAR(solution.w[1], 0.0, 1e-12);
+  EXPECT_NEAR(solution.objective, 0.0, 1e-12);
+  EXPECT_EQ(solution.certificate.stationarity_type, StationarityType::S);
+  expect_certified(problem, solution, 1e-10);
+
+  options.crossover = false;
+  const Solution relaxed = solved(problem, Eigen::Vector2d(0.0, 5.0), options);
+  EXPECT_FALSE(relaxed.crossed_over);
+  EXPECT_NEAR(relaxed.w[0], 1.0, 1e-6) << log_of(relaxed);
+  EXPECT_NEAR(relaxed.w[1], 0.0, 1e-6) << log_of(relaxed);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
+                         testing::Combine(testing::ValuesIn(homotopy::all_relaxations),
+                                          testing::ValuesIn(homotopy::all_steerings), testing::Bool()),
+                         [](const auto& test) {
+                           return std::string(name(std::get<0>(test.param))) + "_" +
+                                  std::string(name(std::get<1>(test.param))) +
+                                  (std::get<2>(test.param) ? "_implied" : "_constrained");
+                         });
+
+TEST(Solve, StronglyStationaryBiactivePoint) {
+  // min (w0 + 1)^2 + (w1 + 2)^2: the origin, nu = (2, 4).
+  mpcc::PolynomialProblem problem(small::statement(2, 1, small::distance(-1.0, -2.0)));
+  const Solution solution = solved(problem, Eigen::Vector2d(1.0, 1.0));
+  EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
+  EXPECT_NEAR(solution.w.norm(), 0.0, 1e-12);
+  EXPECT_EQ(solution.certificate.stationarity_type, StationarityType::S);
+  EXPECT_EQ(solution.certificate.biactive, 1);
+  EXPECT_NEAR(solution.multipliers.G[0], 2.0, 1e-9);
+  EXPECT_NEAR(solution.multipliers.H[0], 4.0, 1e-9);
+  EXPECT_EQ(solution.certificate.lpcc_decrease, std::nullopt);
+  expect_certified(problem, solution, 1e-9);
+}
+
+TEST(Solve, NotStronglyButBStationary) {
+  mpcc::PolynomialProblem problem(small::b_not_strong());
+  const Solution solution = solved(problem, Eigen::Vector3d(0.0, 1.0, 0.0));
+  EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
+  EXPECT_NEAR(solution.w.norm(), 0.0, 1e-10);
+  EXPECT_NE(solution.certificate.stationarity_type, StationarityType::S);
+  EXPECT_EQ(solution.certificate.b_stationary, true);
+  ASSERT_TRUE(solution.certificate.lpcc_decrease.has_value());
+  EXPECT_NEAR(*solution.certificate.lpcc_decrease, 0.0, 1e-9);
+  expect_certified(problem, solution, 1e-9);
+}
+
+TEST(Solve, Infeasible) {
+  auto statement = small::statement(2, 1, small::distance(1.0, 1.0));
+  small::add_row(statement, {{{1.0, {1, 1}}}}, 1.0, 1.0);  // w0 w1 = 1
+  mpcc::PolynomialProblem problem(statement);
+  const Solution solution = solved(problem, Eigen::Vector2d(1.0, 1.0));
+  EXPECT_EQ(solution.termination, Termination::infeasible) << log_of(solution);
+  EXPECT_NE(solution.message.find("G[0]"), std::string::npos) << solution.message;
+}
+
+TEST(Solve, Unbounded) {
+  mpcc::PolynomialProblem problem(small::statement(2, 1, {{{-1.0, {1}}, {-1.0, {0, 1}}}}));
+  const Solution solution = solved(problem, Eigen::Vector2d(1.0, 2.0));
+  EXPECT_EQ(solution.termination, Termination::not_converged) << log_of(solution);
+  EXPECT_NE(solution.message.find("unbounded"), std::string::npos) << solution.message;
+}
+
+}  // namespace
+}  // namespace saltus::solver
