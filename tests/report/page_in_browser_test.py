@@ -202,6 +202,63 @@ class ThreeStates(Page):
                                     "Math.abs(x) < 1e-15)"), True)
 
 
+def optimised(result):
+    """The result of an optimisation with the trajectory of a simulation without controls, in four intervals."""
+    rows, until = result["trajectory"], result["final"]["t"]
+    zero = {"termination": "completed", "message": "", "end_state_error": 0, "terminal_violation": 0, "amplification": 2}
+    step = {"solver": "ipopt", "iterations": 7, "objective": 3, "primal_infeasibility": 0, "complementarity_residual": 0,
+            "termination": "completed", "seconds": 0}
+    return {
+        **result, "command": "optimize", "objective": 3, "horizon": until, "parameters": {"mass": 2}, "u": [[]] * 4,
+        "objective_terms": {"running": 1, "terminal": 2, "least_squares": 0, "time": 0, "penalties": 0},
+        "grid": [until * k / 4 for k in range(5)], "h": [[until / 8] * 2] * 4,
+        "multipliers": [{"name": "v <= 1", "time": until, "value": 0.5}, {"name": "q == 2", "time": until, "value": -1}],
+        "homotopy": [{**step, "phase": "relaxed", "sigma": 1}, {**step, "phase": "branch", "sigma": 1}],
+        "certificate": {"primal_infeasibility": 1e-12, "complementarity_residual": 0, "stationarity": 1e-10, "biactive": 0,
+                        "stationarity_type": "S", "b_stationary": True, "lpcc_decrease": None},
+        "verification": {"tolerance": 1e-3, "interval_defect": 0.5, "interval": 2, "state": "v", "switch_time_error": 0,
+                         "switches_missed": 0, "switches_extra": 0, "path_violation": 0, "message": "",
+                         "open_loop": {**zero, "t": rows["t"], "x": rows["x"]}},
+        "statistics": {"iterations": 14, "variables": 3, "equations": 2, "pairs": 1, "build_seconds": 0,
+                       "evaluation_seconds": 0, "linear_algebra_seconds": 0, "wall_seconds": 1},
+        "start_values": {"nodes": [], "state_lower": [None, -1], "state_upper": [None, 1], "control_lower": [],
+                         "control_upper": [], "primal": [], "dual_rows": [], "dual_lower": [], "dual_upper": []},
+    }
+
+
+class Optimisation(Page):
+    def setUp(self):
+        super().setUp()
+        self.tool("simulate", "stick-slip", "--quiet", "--out", "simulated.json")
+        simulated = json.loads((self.folder / "simulated.json").read_text(encoding="utf-8"))
+        (self.folder / "page.json").write_text(json.dumps(optimised(simulated)), encoding="utf-8")
+        # Neither model nor solver: everything is in the result.
+        self.tool("report", "page.json")
+        self.open("page.html")
+
+    def test_words_and_drawings(self):
+        titles = "[...document.querySelectorAll('.phase h2')].map((title) => title.textContent)"
+        self.assertEqual(self.value(titles), ["Phase plane", "Simulated against optimised", "Multipliers of constraints",
+                                              "Lengths of elements", "Path of problems"])
+        self.assertEqual(self.value(DRAWN), 6)
+        self.assertEqual(self.value("document.querySelectorAll('.verdict li.good').length"), 4)
+        self.assertEqual(self.value("[...document.querySelectorAll('.verdict li.bad')].map((said) => "
+                                    "said.textContent.includes('0.5 of the range of `v` in interval 3 of 4'))"), [True])
+        metas = "document.querySelector('.timeline').data.map((trace) => trace.meta).filter((meta) => meta)"
+        self.assertEqual(self.value(metas), ["simulated", "bound", "bound", "simulated"])
+
+    def test_one_constraint_can_be_chosen_and_zooming_is_for_all(self):
+        shown = "document.querySelectorAll('.phase-plot')[2].data.map((trace) => trace.name).filter((name) => name)"
+        self.assertEqual(self.value(shown), ["q == 2", "v &lt;= 1"])
+        self.value("(() => { const list = document.querySelector('select.wide'); list.value = '1';"
+                   " list.dispatchEvent(new Event('change')); })()")
+        self.becomes(shown, ["v &lt;= 1"])
+        self.value("document.querySelectorAll('.phase-plot')[1].emit('plotly_relayout',"
+                   " {'xaxis.range[0]': 5, 'xaxis.range[1]': 6})")
+        self.becomes("document.querySelector('.timeline').layout.xaxis.range", [5, 6])
+        self.becomes("document.querySelectorAll('.phase-plot')[3].layout.xaxis.range", [5, 6])
+
+
 class WithoutWebGL(Page):
     flags = "--disable-3d-apis"
 

@@ -253,7 +253,7 @@ Error json_syntax_error(const std::string& text, const std::string& file, std::s
   const auto line_start = before.rfind('\n') + 1;  // npos + 1 is 0: the first line
   return {ErrorCode::parse_failure,
           text.empty() ? "the file is empty" : "not valid JSON",
-          "expected a result file written by saltus simulate --out FILE.json",
+          "expected a result file written by saltus simulate or saltus optimize with --out FILE.json",
           {file, static_cast<int>(line), static_cast<int>(before.size() - line_start + 1)},
           {}};
 }

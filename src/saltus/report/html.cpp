@@ -81,9 +81,8 @@ std::string to_html(const result::Result& result, std::string_view plotly_source
   page += fmt::format("<title>{} - Saltus</title>\n<style>\n", title);
   page += embedded::report_style;
   page += "</style>\n</head>\n<body>\n";
-  page +=
-      fmt::format("<noscript><p>Report of the simulation of {}: {}. {} The pictures need JavaScript.</p></noscript>\n",
-                  title, result::name(result.status.termination), escape_html(result.status.message));
+  page += fmt::format("<noscript><p>Report of {}: {}. {} The pictures need JavaScript.</p></noscript>\n", title,
+                      result::name(result.status.termination), escape_html(result.status.message));
   page += "<main id=\"report\"></main>\n";
   page += fmt::format("<script type=\"application/json\" id=\"result\">{}</script>\n", data);
   const auto add_script = [&](std::string_view script) {

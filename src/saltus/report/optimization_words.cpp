@@ -45,8 +45,9 @@ Finding b_stationarity(const result::Certificate& certificate) {
   const auto type = certificate.stationarity_type ? std::string(name(*certificate.stationarity_type)) : std::string();
   const auto pairs = pairs_text(certificate.biactive);
   if (!certificate.b_stationary) {
-    return {Tone::bad, fmt::format("Not decided whether it is B-stationary{}: {}.",
-                                   type.empty() ? "" : fmt::format(" (multipliers: {})", type), pairs)};
+    return {Tone::bad, fmt::format("Not decided whether it is B-stationary{}{}.",
+                                   type.empty() ? "" : fmt::format(" (multipliers: {})", type),
+                                   certificate.biactive > 0 ? ": " + pairs : "")};
   }
   if (*certificate.b_stationary) {
     return {Tone::good, fmt::format("B-stationary{}: no feasible direction improves the objective to first order; {}.",

@@ -225,12 +225,12 @@ std::string to_table(const result::Result& result) {
   if (result.comparison) return text + comparison_table(result, *result.comparison);
   if (result.order) return text + order_table(result, *result.order);
   text += paragraph("method", method_text(result));
-  // The message mostly says when, with all digits.
-  const bool says_when = result.status.message.find("t = ") != std::string::npos;
-  text += paragraph(
-      "status", says_when && !is_done(result.status.termination)
-                    ? std::string(name(result.status.termination))
-                    : fmt::format("{} at t = {:.12g}", name(result.status.termination), result.status.time_reached));
+  // The message mostly says when, with all digits; an optimisation has no time at which it stops.
+  const bool says_when = !is_done(result.status.termination) && result.status.message.find("t = ") != std::string::npos;
+  const auto termination = std::string(name(result.status.termination));
+  text += paragraph("status", says_when || result.optimization
+                                  ? termination
+                                  : fmt::format("{} at t = {:.12g}", termination, result.status.time_reached));
   if (!result.status.message.empty()) text += paragraph("", result.status.message);
   if (result.optimization) text += objective_table(*result.optimization);
   text += end_state(result);

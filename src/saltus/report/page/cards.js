@@ -60,7 +60,7 @@ saltus.banners = (result, select) => {
         saltus.element(
             "strong", {},
             status.done ? "Stopped by an event" : `Not completed: ${status.termination.replaceAll("_", " ")}`),
-        status.message.includes("t = ") ? ": " : ` at t = ${saltus.exact(status.time_reached)}. `, status.message));
+        status.message.includes("t = ") || result.optimization ? ": " : ` at t = ${saltus.exact(status.time_reached)}. `, status.message));
   }
   if (status.termination === "completed" && status.message !== "")
     banners.push(saltus.element("div", {class: "banner notice", role: "status"}, status.message));

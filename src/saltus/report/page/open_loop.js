@@ -38,6 +38,9 @@ saltus.openLoopDifference = (trajectory, simulated, state) => {
   };
 };
 
+/** More points than this: a line alone. */
+saltus.maximumDifferenceMarks = 150;
+
 saltus.openLoopPicture = (result, timeline) => {
   const {open_loop: simulated} = result.optimization;
   if (simulated === null || result.trajectory.t.length < 2) return null;
@@ -47,7 +50,7 @@ saltus.openLoopPicture = (result, timeline) => {
       const {x, y} = saltus.openLoopDifference(result.trajectory, simulated, i);
       return {
         type: "scatter",
-        mode: "lines+markers",
+        mode: x.length > saltus.maximumDifferenceMarks ? "lines" : "lines+markers",
         name: saltus.plain(saltus.shorten(name, 24)),
         x,
         y: y.map((value) => (value === null ? null : Math.max(value, saltus.leastResidual))),
