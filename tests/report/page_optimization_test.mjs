@@ -112,6 +112,11 @@ test("with too few rows in common the simulation is interpolated, and ends where
   assert.deepEqual(y, [0, 0.125, 0.25, 0.375, null]);
 });
 
+test("no difference is a gap, no difference at all a line at rounding", () => {
+  assert.deepEqual(saltus.logarithmic([0, 1e-9, null]), [null, 1e-9, null]);
+  assert.deepEqual(saltus.logarithmic([0, 0, null]), [saltus.leastResidual, saltus.leastResidual, null]);
+});
+
 test("elements fill their interval", () => {
   const {grid, h} = result.optimization;
   assert.deepEqual(saltus.intervalSteps(grid, h), {x: [0, 1, 1, 2, 2, 2.5, 2.5, 4], y: [1, 1, 1, 1, 0.5, 0.5, 1.5, 1.5]});

@@ -5,30 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "saltus/report/optimization_words_internal.hpp"
 #include "saltus/report/text_columns_internal.hpp"
 
 namespace saltus::report {
 namespace {
 
 constexpr std::size_t variables_shown = 12;
-
-/// Definitions: docs/foreign-mpcc.md.
-std::string stationarity_in_words(const result::Certificate& certificate) {
-  std::string text;
-  if (certificate.stationarity_type) {
-    text = fmt::format("{}-stationary", name(*certificate.stationarity_type));
-  } else {
-    text = "kind of stationarity not known";
-  }
-  if (certificate.biactive == 0) {
-    text += ", no biactive pair";
-  } else {
-    text += fmt::format(", {} biactive pair{}", certificate.biactive, certificate.biactive == 1 ? "" : "s");
-  }
-  if (!certificate.b_stationary) return text + "; whether a first-order descent direction exists was not decided";
-  return text + (*certificate.b_stationary ? "; no first-order descent direction (B-stationary)"
-                                           : "; there is a first-order descent direction (not B-stationary)");
-}
 
 std::string residual(double value) { return std::isfinite(value) ? fmt::format("{:.1e}", value) : "not known"; }
 
@@ -66,7 +49,6 @@ std::string to_line(const result::HomotopyStep& step) {
 }
 
 std::string to_table(const result::MpccResult& result) {
-  const auto& certificate = result.certificate;
   const auto& statistics = result.statistics;
   std::string text = wrapped("file", {result.file});
   text += wrapped("size", {fmt::format("{} variables", result.x.size()), fmt::format("{} rows", statistics.equations),
@@ -74,10 +56,11 @@ std::string to_table(const result::MpccResult& result) {
   text += paragraph("status", std::string(name(result.status.termination)) +
                                   (result.status.message.empty() ? "" : ": " + result.status.message));
   text += wrapped("objective", {fmt::format("{:.12g}", result.objective)});
-  text += wrapped("residuals", {"feasibility " + residual(certificate.primal_infeasibility),
-                                "complementarity " + residual(certificate.complementarity_residual),
-                                "stationarity " + residual(certificate.stationarity)});
-  text += paragraph("certificate", stationarity_in_words(certificate));
+  const char* label = "certificate";
+  for (const auto& finding : certificate_findings(result.certificate, result.tolerance)) {
+    text += paragraph(label, finding.text);
+    label = "";
+  }
   text += variables_line(result);
   text += path_table(result.homotopy);
   text += wrapped("statistics", {fmt::format("{} iterations", statistics.iterations),

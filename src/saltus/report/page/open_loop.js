@@ -38,6 +38,12 @@ saltus.openLoopDifference = (trajectory, simulated, state) => {
   };
 };
 
+/** A difference of 0, as at the start, is a gap: a logarithm has none. Where all are 0 they are drawn at rounding. */
+saltus.logarithmic = (values) => {
+  const some = values.some((value) => value > 0);
+  return values.map((value) => (value === 0 ? (some ? null : saltus.leastResidual) : value));
+};
+
 /** More points than this: a line alone. */
 saltus.maximumDifferenceMarks = 150;
 
@@ -53,7 +59,7 @@ saltus.openLoopPicture = (result, timeline) => {
         mode: x.length > saltus.maximumDifferenceMarks ? "lines" : "lines+markers",
         name: saltus.plain(saltus.shorten(name, 24)),
         x,
-        y: y.map((value) => (value === null ? null : Math.max(value, saltus.leastResidual))),
+        y: saltus.logarithmic(y),
         hovertemplate: "t = %{x:.6g}: %{y:.2e}<extra>%{fullData.name}</extra>",
         line: {simplify: false, color: palette.curves[i % palette.curves.length], width: 1.4},
         marker: {size: 3, color: palette.curves[i % palette.curves.length]},
