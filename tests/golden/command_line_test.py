@@ -29,11 +29,11 @@ class Help(tool.ToolTest):
 
     def test_help_names_what_is_there_and_nothing_else(self):
         text, _ = self.run_tool("--help", code=0)
-        for later in ("optimize", "mpcc", "options-page"):
+        for later in ("optimize", "options-page"):
             self.assertNotIn(later, text)
 
     def test_every_subcommand_ends_with_one_example(self):
-        for command in ("simulate", "compare", "order", "check", "report", "models"):
+        for command in ("simulate", "compare", "order", "check", "mpcc", "report", "models"):
             text, _ = self.run_tool(command, "--help", code=0)
             lines = text.rstrip().splitlines()
             self.assertEqual(lines[-2], "Example:", text)
@@ -76,8 +76,7 @@ class BadInput(tool.ToolTest):
         self.refused("--rtol", "simulate", "crossing", "--rtol")
 
     def test_later_commands_and_methods(self):
-        for later in ("optimize", "mpcc"):
-            self.refused("a later one brings it", later, "crossing")
+        self.refused("a later one brings it", "optimize", "crossing")
         self.refused("radau_iia has 1 to 9 stages, not 10", "simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.stages=10")
         self.refused("at least 2 elements", "simulate", "crossing", "--method", "fesd", "--set",
                      "simulate.fesd.elements=1")

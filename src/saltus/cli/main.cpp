@@ -18,7 +18,7 @@ namespace saltus::cli {
 namespace {
 
 /// Subcommands that are planned and not there yet: refused by name, so that nobody looks for a typing error.
-constexpr std::array later_commands{"optimize", "mpcc"};
+constexpr std::array later_commands{"optimize"};
 
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -65,8 +65,8 @@ ExitCode run(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("saltus {}", version));
   app.footer("Example:\n  saltus simulate stick-slip");
   app.get_formatter()->column_width(26);
-  const std::vector<Command> commands{add_simulate(app), add_compare(app), add_order(app),       add_check(app),
-                                      add_models(app),   add_report(app),  add_options_page(app)};
+  const std::vector<Command> commands{add_simulate(app), add_compare(app), add_order(app),  add_check(app),
+                                      add_mpcc(app),     add_models(app),  add_report(app), add_options_page(app)};
   const auto chosen = [&](const Command& command) { return argc > 1 && command.name == argv[1]; };
   const auto command = std::find_if(commands.begin(), commands.end(), chosen);
   if (command == commands.end() && argc > 1 && argv[1][0] != '-') return refuse(unknown_command(argv[1], commands));

@@ -1,6 +1,6 @@
-#include "saltus/foreign/functions_internal.hpp"
-
 #include <array>
+
+#include "saltus/foreign/functions_internal.hpp"
 
 namespace saltus::foreign {
 

@@ -1,5 +1,3 @@
-#include "saltus/foreign/json_file_internal.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/foreign/json_file_internal.hpp"
 
 namespace saltus::foreign {
 namespace {
@@ -138,7 +137,8 @@ std::string JsonFile::stream(const char* key, const char* what) {
   constexpr std::int64_t mark = 123456789012345;
   constexpr std::int64_t protocol = 3;
   if (bytes.size() < 17 || whole_number_at(bytes, 0) != mark) {
-    fail(fmt::format("{}: expected {} serialised by CasADi (a string of letters a to p), found {}", key, what, shown(*json)));
+    fail(fmt::format("{}: expected {} serialised by CasADi (a string of letters a to p), found {}", key, what,
+                     shown(*json)));
   } else if (const auto found = whole_number_at(bytes, 8); found != protocol) {
     fail(fmt::format("{}: serialised with protocol {} of CasADi, this version reads protocol {}", key, found, protocol),
          "write the file with CasADi 3.5 to 3.8", ErrorCode::not_available);
@@ -176,13 +176,15 @@ std::vector<SX> JsonFile::values(const char* key, const SX& w, const std::vector
     const auto function = casadi::Function::deserialize(text);
     const auto inputs = function.n_in();
     if (inputs < 1 || inputs > 2 || function.n_out() != 1) {
-      fail(fmt::format("{}: expected a function of w, or of w and p, with one value; this one has {} inputs and {} outputs",
-                       key, inputs, function.n_out()));
+      fail(fmt::format(
+          "{}: expected a function of w, or of w and p, with one value; this one has {} inputs and {} outputs", key,
+          inputs, function.n_out()));
       return {};
     }
-    if (function.numel_in(0) != w.numel() || (inputs == 2 && function.numel_in(1) != static_cast<casadi_int>(p.size()))) {
-      fail(fmt::format("{}: expected a function of {} variables and {} parameters, found one of {} and {}", key, w.numel(),
-                       p.size(), function.numel_in(0), inputs == 2 ? function.numel_in(1) : 0));
+    if (function.numel_in(0) != w.numel() ||
+        (inputs == 2 && function.numel_in(1) != static_cast<casadi_int>(p.size()))) {
+      fail(fmt::format("{}: expected a function of {} variables and {} parameters, found one of {} and {}", key,
+                       w.numel(), p.size(), function.numel_in(0), inputs == 2 ? function.numel_in(1) : 0));
       return {};
     }
     std::vector<SX> arguments{SX::reshape(w, function.size1_in(0), function.size2_in(0))};

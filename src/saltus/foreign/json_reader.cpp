@@ -18,7 +18,8 @@ std::vector<std::string> names_of(const SX& symbols) {
   return names;
 }
 
-void check_bounds(JsonFile& json, const char* what, const std::vector<double>& lower, const std::vector<double>& upper) {
+void check_bounds(JsonFile& json, const char* what, const std::vector<double>& lower,
+                  const std::vector<double>& upper) {
   for (std::size_t i = 0; i < lower.size(); ++i) {
     if (lower[i] <= upper[i] && lower[i] < infinity && upper[i] > -infinity) continue;
     json.fail(fmt::format("lb{0}[{1}] = {2} and ub{0}[{1}] = {3} are no bounds", what, i, lower[i], upper[i]));
@@ -50,7 +51,8 @@ void read_rows(JsonFile& json, const std::vector<SX>& g, Statement& statement) {
 
 SX objective_of(JsonFile& json, const char* key, const SX& w, const std::vector<double>& p) {
   const auto values = json.values(key, w, p);
-  if (!json.failed() && values.size() != 1) json.fail(fmt::format("{}: expected one value, found {}", key, values.size()));
+  if (!json.failed() && values.size() != 1)
+    json.fail(fmt::format("{}: expected one value, found {}", key, values.size()));
   return values.size() == 1 ? values.front() : SX(0.0);
 }
 
@@ -84,7 +86,8 @@ void add_pair(JsonFile& json, std::size_t i, const Side& G, const Side& H, State
   const bool low = std::isfinite(H.lower), high = std::isfinite(H.upper);
   if (low && high) {
     const bool is_free = (G.lower == 0.0 || G.lower == -infinity) && G.upper == infinity;
-    if (!is_free) json.fail(fmt::format("H[{0}] has two bounds, and G[{0}] is not free: that is no complementarity", i));
+    if (!is_free)
+      json.fail(fmt::format("H[{0}] has two bounds, and G[{0}] is not free: that is no complementarity", i));
     add_box(statement, H.value, H.lower, H.upper, G.value, name);
   } else if (low) {
     // G at its lower bound; a G that has an upper one only, and is at most that, is meant from above.

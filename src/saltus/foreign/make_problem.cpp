@@ -1,10 +1,9 @@
-#include "saltus/foreign/make_problem_internal.hpp"
-
 #include <cmath>
 #include <utility>
 
 #include "saltus/base/at.hpp"
 #include "saltus/foreign/functions_internal.hpp"
+#include "saltus/foreign/make_problem_internal.hpp"
 #include "saltus/foreign/signs_internal.hpp"
 
 namespace saltus::foreign {
@@ -50,7 +49,8 @@ std::unique_ptr<Problem> make_problem(Statement statement) {
   for (const auto& split : all->statement.splits) bodies.push_back(split.body);
 
   const SX w = column_of(all->statement.symbols), c = column_of(scalars);
-  const SX f = SX::densify(all->statement.sense == Sense::maximize ? -all->statement.objective : all->statement.objective);
+  const SX f =
+      SX::densify(all->statement.sense == Sense::maximize ? -all->statement.objective : all->statement.objective);
   const SX factor = SX::sym("factor"), y = SX::sym("y", c.numel());
   const SX jacobian = SX::jacobian(c, w);
   const SX hessian = SX::tril(SX::hessian(factor * f + SX::dot(y, c), w));

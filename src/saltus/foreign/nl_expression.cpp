@@ -1,5 +1,3 @@
-#include "saltus/foreign/nl_expression_internal.hpp"
-
 #include <cmath>
 #include <optional>
 #include <string>
@@ -8,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/foreign/nl_expression_internal.hpp"
 
 namespace saltus::foreign {
 namespace {
@@ -58,7 +57,8 @@ SX piecewise_linear_term(NlLines& lines, const NlNames& names) {
   }
   if (!lines.advance("the variable of a piecewise linear term")) return 0.0;
   if (lines.letter() != 'v') {
-    lines.fail(fmt::format("expected the variable of a piecewise linear term, v and a number, found '{}'", lines.word(0)));
+    lines.fail(
+        fmt::format("expected the variable of a piecewise linear term, v and a number, found '{}'", lines.word(0)));
   }
   const SX x = reference(lines, names);
   return lines.failed() ? SX(0.0) : piecewise_linear(slopes, breakpoints, x);

@@ -22,7 +22,7 @@ struct NlHeader {
 struct NlBound {
   double lower = -infinity;
   double upper = infinity;
-  int complements = -1;        ///< variable, from 0
+  int complements = -1;         ///< variable, from 0
   bool has_lower_side = false;  ///< the variable's lower bound takes part, 1 of k
   bool has_upper_side = false;  ///< 2 of k
   int line = 0;

@@ -1,11 +1,11 @@
-#include "saltus/foreign/nl_lines_internal.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "saltus/foreign/nl_lines_internal.hpp"
 
 namespace saltus::foreign {
 namespace {

@@ -44,7 +44,9 @@ SX with_digits(const SX& x, const SX& digits) {
   const SX unit = SX::pow(10.0, size + 1.0 - digits);
   return nearest(x / unit) * unit;
 }
-SX with_decimals(const SX& x, const SX& decimals) { return nearest(x * SX::pow(10.0, decimals)) / SX::pow(10.0, decimals); }
+SX with_decimals(const SX& x, const SX& decimals) {
+  return nearest(x * SX::pow(10.0, decimals)) / SX::pow(10.0, decimals);
+}
 SX cut_decimals(const SX& x, const SX& decimals) {
   return truncated(x * SX::pow(10.0, decimals)) / SX::pow(10.0, decimals);
 }

@@ -26,8 +26,11 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 Error at_row(const std::string& file, const NlBound& row, std::string message) {
-  return {ErrorCode::invalid_model, std::move(message), "give the variable the bound, or state another kind of row",
-          {file, row.line, 0}, {}};
+  return {ErrorCode::invalid_model,
+          std::move(message),
+          "give the variable the bound, or state another kind of row",
+          {file, row.line, 0},
+          {}};
 }
 
 /// Row `r` of the file, whose body is `body`, as row or pairs of the statement.
@@ -40,12 +43,14 @@ Expected<void> add_row(Statement& statement, const std::string& file, const NlBo
   const auto i = at(row.complements);
   const double lower = statement.lower[i], upper = statement.upper[i];
   if (row.has_lower_side && !std::isfinite(lower)) {
-    return tl::unexpected(at_row(file, row, fmt::format("the row complements the lower bound of variable {}, which has none", i + 1)));
+    return tl::unexpected(
+        at_row(file, row, fmt::format("the row complements the lower bound of variable {}, which has none", i + 1)));
   }
   if (row.has_upper_side && !std::isfinite(upper)) {
-    return tl::unexpected(at_row(file, row, fmt::format("the row complements the upper bound of variable {}, which has none", i + 1)));
+    return tl::unexpected(
+        at_row(file, row, fmt::format("the row complements the upper bound of variable {}, which has none", i + 1)));
   }
-  const SX& side = statement.symbols[i];
+  const SX side = statement.symbols[i];  // a copy: boxes add symbols
   if (row.has_lower_side && row.has_upper_side) {
     add_box(statement, side, lower, upper, body, name);
   } else if (row.has_lower_side) {

@@ -12,12 +12,13 @@ namespace {
 
 Error unknown_format(const std::string& text, const std::string& file, std::size_t first) {
   const bool is_empty = first == std::string::npos;
-  return {ErrorCode::parse_failure,
-          is_empty ? "the file is empty" : "this is neither an AMPL .nl text (first letter g) nor JSON (first letter {)",
-          !is_empty && text[first] == 'b' ? "a binary .nl file? write it as text, in AMPL `write gNAME;`"
-                                          : "saltus mpcc reads .nl text, and JSON of NOSBENCH and mpecopt",
-          {file, is_empty ? 0 : 1, 0},
-          {}};
+  return {
+      ErrorCode::parse_failure,
+      is_empty ? "the file is empty" : "this is neither an AMPL .nl text (first letter g) nor JSON (first letter {)",
+      !is_empty && text[first] == 'b' ? "a binary .nl file? write it as text, in AMPL `write gNAME;`"
+                                      : "saltus mpcc reads .nl text, and JSON of NOSBENCH and mpecopt",
+      {file, is_empty ? 0 : 1, 0},
+      {}};
 }
 
 Expected<Statement> statement_in(const std::string& text, const std::string& file, const Names& names) {

@@ -1,6 +1,6 @@
-#include "saltus/foreign/statement_internal.hpp"
-
 #include <fmt/format.h>
+
+#include "saltus/foreign/statement_internal.hpp"
 
 namespace saltus::foreign {
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "saltus/base/version.hpp"
+#include "saltus/io/json_layout_internal.hpp"
 #include "saltus/io/json_optimization_internal.hpp"
 #include "saltus/io/json_parts_internal.hpp"
 #include "saltus/io/json_result.hpp"
@@ -185,42 +186,8 @@ Json whole_json(const result::Result& result) {
   return json;
 }
 
-/// Texts of a result may come from anywhere; what is no UTF-8 in them is replaced, not thrown at the user.
-std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-bool fits_on_a_line(const Json& json) {
-  if (!json.is_structured()) return true;
-  for (const auto& element : json) {
-    if (element.is_structured()) return false;
-  }
-  return json.is_array() || json.size() <= 2;
-}
-
-/// One name, one row of a table, one event field per line: small to store and still to be read by people.
-void write(const Json& json, std::size_t indent, std::string& text) {
-  if (fits_on_a_line(json)) {
-    text += compact(json);
-    return;
-  }
-  const std::string margin(indent + 2, ' ');
-  const bool is_object = json.is_object();
-  text += is_object ? "{\n" : "[\n";
-  std::size_t written = 0;
-  for (auto element = json.begin(); element != json.end(); ++element) {
-    text += margin;
-    if (is_object) text += compact(Json(element.key())) + ": ";
-    write(*element, indent + 2, text);
-    text += ++written < json.size() ? ",\n" : "\n";
-  }
-  text += std::string(indent, ' ') + (is_object ? "}" : "]");
-}
-
 }  // namespace
 
-std::string to_json(const result::Result& result) {
-  std::string text;
-  write(whole_json(result), 0, text);
-  return text + "\n";
-}
+std::string to_json(const result::Result& result) { return laid_out(whole_json(result)); }
 
 }  // namespace saltus::io

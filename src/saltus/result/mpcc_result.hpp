@@ -22,6 +22,7 @@ struct MpccResult {
   std::vector<double> x;           ///< the file's variables in its order
   std::vector<std::string> names;  ///< empty if the file has none
   Certificate certificate;
+  double tolerance = 0.0;  ///< of its residuals
   MpccMultipliers multipliers;
   std::vector<HomotopyStep> homotopy;
   OptimizationStatistics statistics;

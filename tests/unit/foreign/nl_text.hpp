@@ -15,7 +15,8 @@ namespace saltus::foreign {
 /// The ten lines at the beginning.
 inline std::string nl_header(int variables, int constraints, int objectives = 1, int jacobian = 0, int gradient = 0) {
   return fmt::format(
-      "g3 1 1 0\t# problem small\n {} {} {} 0 0\t# vars, constraints, objectives, ranges, eqns\n 0 1 1 0\n 0 0\n 0 0 0\n"
+      "g3 1 1 0\t# problem small\n {} {} {} 0 0\t# vars, constraints, objectives, ranges, eqns\n 0 1 1 0\n 0 0\n 0 0 "
+      "0\n"
       " 0 0 0 1\n 0 0 0 0 0\n {} {}\n 0 0\n 0 0 0 0 0\n",
       variables, constraints, objectives, jacobian, gradient);
 }

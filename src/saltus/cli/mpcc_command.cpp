@@ -1,0 +1,212 @@
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "saltus/cli/commands.hpp"
+#include "saltus/cli/interrupt.hpp"
+#include "saltus/cli/outputs.hpp"
+#include "saltus/cli/terminal.hpp"
+#include "saltus/foreign/parse.hpp"
+#include "saltus/io/atomic_file.hpp"
+#include "saltus/io/mpcc/json_mpcc.hpp"
+#include "saltus/io/option_text.hpp"
+#include "saltus/io/sha256.hpp"
+#include "saltus/pipeline/mpcc/solve_mpcc.hpp"
+#include "saltus/pipeline/mpcc_options.hpp"
+#include "saltus/report/mpcc_table.hpp"
+
+namespace saltus::cli {
+namespace {
+
+struct MpccArguments {
+  std::string file;
+  std::optional<std::string> solver, method, time_limit;
+  std::string start;
+  std::vector<std::string> settings;
+  std::vector<std::string> outputs;
+  bool quiet = false;
+};
+
+Error at_option(Error error, const std::string& option) {
+  error.location = {option, 0, 0};
+  return error;
+}
+
+/// `solver` is no option of the method, but written beside them.
+Expected<void> set_one(solver::SolveOptions& options, const std::string& key, const std::string& text) {
+  if (key != "solver") return pipeline::set_mpcc_option(options, key, io::option_value(text));
+  if (text == "ipopt") return {};
+  const bool is_later = text == "structured";
+  return tl::unexpected(Error{is_later ? ErrorCode::not_available : ErrorCode::invalid_option,
+                              is_later ? "solver structured is for problems of saltus optimize"
+                                       : fmt::format("expected the solver \"ipopt\", found \"{}\"", text),
+                              "leave it out, or write ipopt",
+                              {},
+                              {}});
+}
+
+Expected<void> set_setting(solver::SolveOptions& options, const std::string& setting) {
+  constexpr std::string_view root = "mpcc.";
+  const auto equal = setting.find('=');
+  const auto failed = [&](Error error) { return tl::unexpected(at_option(std::move(error), "--set " + setting)); };
+  if (equal == std::string::npos || equal == 0 || equal + 1 == setting.size()) {
+    return failed(
+        {ErrorCode::parse_failure, "expected mpcc.KEY=VALUE", "for example --set mpcc.sigma_factor=0.2", {}, {}});
+  }
+  const auto key = setting.substr(0, equal);
+  if (!key.starts_with(root)) {
+    return failed({ErrorCode::unknown_name,
+                   fmt::format("'{}' is no option of saltus mpcc", key),
+                   "options begin with mpcc., for example mpcc.tolerance",
+                   {},
+                   {}});
+  }
+  auto done = set_one(options, key.substr(root.size()), setting.substr(equal + 1));
+  if (!done) return failed(done.error());
+  return {};
+}
+
+Expected<solver::SolveOptions> options_of(const MpccArguments& arguments) {
+  solver::SolveOptions options;
+  for (const auto& setting : arguments.settings) {
+    if (auto done = set_setting(options, setting); !done) return tl::unexpected(done.error());
+  }
+  const auto shortcut = [&](const char* flag, const char* key,
+                            const std::optional<std::string>& text) -> Expected<void> {
+    if (!text) return {};
+    auto done = set_one(options, key, *text);
+    if (!done) return tl::unexpected(at_option(done.error(), fmt::format("{} {}", flag, *text)));
+    return {};
+  };
+  if (auto done = shortcut("--solver", "solver", arguments.solver); !done) return tl::unexpected(done.error());
+  if (auto done = shortcut("--method", "method", arguments.method); !done) return tl::unexpected(done.error());
+  if (arguments.time_limit) {
+    const auto value = io::option_value(*arguments.time_limit);
+    const auto* real = std::get_if<double>(&value);
+    const auto* whole = std::get_if<std::int64_t>(&value);
+    options.time_limit = real != nullptr ? *real : whole != nullptr ? static_cast<double>(*whole) : -1.0;
+    if (!(*options.time_limit > 0.0)) {
+      return tl::unexpected(Error{ErrorCode::invalid_option,
+                                  fmt::format("expected a number of seconds > 0, found {}", *arguments.time_limit),
+                                  "",
+                                  {fmt::format("--time-limit {}", *arguments.time_limit), 0, 0},
+                                  {}});
+    }
+  }
+  if (auto fits = pipeline::check_mpcc_options(options); !fits) return tl::unexpected(fits.error());
+  return options;
+}
+
+/// What AMPL may have written beside an .nl file.
+foreign::Names names_beside(const std::string& file) {
+  const auto text_of = [&](const char* suffix) {
+    const auto path = std::filesystem::path(file).replace_extension(suffix);
+    std::error_code failed;
+    if (!std::filesystem::is_regular_file(path, failed)) return std::string();
+    return io::read_file(path).value_or("");
+  };
+  return {text_of(".col"), text_of(".row")};
+}
+
+/// A line per problem that was solved, where somebody looks.
+void show_steps(const MpccArguments& arguments, const foreign::Problem& problem, solver::SolveOptions& options) {
+  if (arguments.quiet || ::isatty(STDERR_FILENO) != 1) return;
+  options.on_step = [&problem](result::HomotopyStep step) {
+    step.objective = problem.in_sense_of_file(step.objective);
+    print_error(report::to_line(step));
+  };
+}
+
+ExitCode finish(const MpccArguments& arguments, const result::MpccResult& result) {
+  Expected<void> written;
+  const auto text = arguments.outputs.empty() ? std::string() : io::to_json(result);
+  for (const auto& file : arguments.outputs) {
+    auto done = io::write_file(file, text);
+    if (!done && written) written = std::move(done);
+  }
+  if (!arguments.quiet) print(report::to_table(result));
+  if (!written) return refuse(written.error());
+  if (is_done(result.status.termination)) return ExitCode::done;
+  print_error(fmt::format("stopped early: {}{}{}", name(result.status.termination),
+                          result.status.message.empty() ? "" : ": ", result.status.message));
+  return ExitCode::stopped_early;
+}
+
+ExitCode run_mpcc(const MpccArguments& arguments) {
+  auto options = options_of(arguments);
+  if (!options) return refuse(options.error());
+  const auto began = std::chrono::steady_clock::now();
+  const auto text = io::read_file(arguments.file);
+  if (!text) return refuse(text.error());
+  auto problem = foreign::parse(*text, arguments.file, names_beside(arguments.file));
+  if (!problem) return refuse(problem.error());
+  const auto outputs = Outputs::make(arguments.outputs, "", arguments.file, {".json"});
+  if (!outputs) return refuse(outputs.error());
+  std::optional<std::vector<double>> start;
+  if (!arguments.start.empty()) {
+    auto x = io::read_mpcc_start(arguments.start);
+    if (!x) return refuse(x.error());
+    start = std::move(*x);
+  }
+  if (!arguments.quiet) {
+    for (const auto& note : (*problem)->notes()) print_error(fmt::format("note: {}: {}", arguments.file, note));
+  }
+  const std::chrono::duration<double> building = std::chrono::steady_clock::now() - began;
+
+  catch_interrupt();
+  options->is_interrupted = interrupted;
+  show_steps(arguments, **problem, *options);
+  auto result = pipeline::solve_mpcc(**problem, *options, start);
+  if (!result) {
+    if (result.error().location.file.empty()) result.error().location.file = arguments.file;
+    return refuse(result.error());
+  }
+  result->file = arguments.file;
+  result->sha256 = io::sha256(*text);
+  result->statistics.build_seconds = building.count();
+  return finish(arguments, *result);
+}
+
+std::string keys_help() {
+  std::string text = "Keys of --set mpcc.KEY=VALUE:\n";
+  for (const auto& field : pipeline::mpcc_fields()) {
+    text += fmt::format("  {:<17} {}\n        {}\n", field.key, field.expects, field.doc);
+  }
+  return text;
+}
+
+}  // namespace
+
+Command add_mpcc(CLI::App& app) {
+  auto* command = app.add_subcommand("mpcc", "solve a problem with complementarities that another program wrote");
+  // Shared: the parser fills it after this function has returned, the command reads it.
+  auto arguments = std::make_shared<MpccArguments>();
+  command->add_option("FILE", arguments->file, "AMPL .nl text, or JSON of NOSBENCH or mpecopt")->required();
+  command->add_option("--solver", arguments->solver, "solver of the smooth problems (ipopt)")->type_name("NAME");
+  command->add_option("--method", arguments->method, "relaxation (scholtes): mpcc.method below")->type_name("NAME");
+  command->add_option("--start", arguments->start, "begin at the x of a stored result")->type_name("RESULT.json");
+  command->add_option("--time-limit", arguments->time_limit, "seconds")->type_name("S");
+  command->add_option("--set", arguments->settings, "change an option of the method; may repeat")
+      ->type_name("mpcc.KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--out", arguments->outputs, "write the result; may repeat")
+      ->type_name("FILE.json")
+      ->expected(1)
+      ->take_all();
+  command->add_flag("--quiet", arguments->quiet, "no table, no progress");
+  command->footer(keys_help() +
+                  "\nExit code 0: feasible, complementary, stationary and without a first-order descent direction; 3: "
+                  "the table\nsays what is missing. The models of the example are in examples/mpcc.\n"
+                  "\nExample:\n  saltus mpcc examples/mpcc/corner.nl --out corner.json");
+  return {"mpcc", [arguments] { return run_mpcc(*arguments); }};
+}
+
+}  // namespace saltus::cli

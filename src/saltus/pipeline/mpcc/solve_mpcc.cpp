@@ -1,0 +1,73 @@
+#include "saltus/pipeline/mpcc/solve_mpcc.hpp"
+
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "saltus/adapters/highs/highs_lpcc.hpp"
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+std::vector<double> values_of(const Eigen::VectorXd& vector) { return {vector.begin(), vector.end()}; }
+
+Expected<std::optional<solver::Start>> start_of(const foreign::Problem& problem,
+                                                const std::optional<std::vector<double>>& x) {
+  if (!x) return std::optional<solver::Start>();
+  const auto n = problem.file_variables();
+  if (static_cast<int>(x->size()) != n) {
+    return tl::unexpected(Error{ErrorCode::invalid_option,
+                                fmt::format("the start has {} values, the problem {} variables", x->size(), n),
+                                "start from a result of the same file",
+                                {},
+                                {}});
+  }
+  return solver::Start{problem.complete(Eigen::Map<const Eigen::VectorXd>(x->data(), n)), {}};
+}
+
+result::MpccResult result_of(const foreign::Problem& problem, const solver::Solution& solution) {
+  const auto n = problem.file_variables();
+  result::MpccResult result;
+  result.status.termination = solution.termination;
+  result.status.message = solution.message;
+  result.objective = problem.in_sense_of_file(solution.objective);
+  result.x = values_of(solution.w.head(n));
+  result.names = problem.file_names();
+  result.certificate = solution.certificate;
+  const auto& multipliers = solution.multipliers;
+  const auto of_file = [n](const Eigen::VectorXd& all) {
+    return values_of(all.head(std::min<Eigen::Index>(n, all.size())));
+  };
+  result.multipliers = {values_of(multipliers.rows), of_file(multipliers.lower), of_file(multipliers.upper),
+                        values_of(multipliers.G), values_of(multipliers.H)};
+  result.homotopy = solution.homotopy;
+  for (auto& step : result.homotopy) step.objective = problem.in_sense_of_file(step.objective);
+  result.statistics.iterations = solution.iterations;
+  result.statistics.variables = problem.variables();
+  result.statistics.equations = problem.constraints();
+  result.statistics.pairs = problem.pairs();
+  result.statistics.evaluation_seconds = solution.evaluation_seconds;
+  result.statistics.linear_algebra_seconds = solution.solver_seconds;
+  return result;
+}
+
+}  // namespace
+
+Expected<result::MpccResult> solve_mpcc(foreign::Problem& problem, const solver::SolveOptions& options,
+                                        const std::optional<std::vector<double>>& x) {
+  const auto start = start_of(problem, x);
+  if (!start) return tl::unexpected(start.error());
+  const auto began = std::chrono::steady_clock::now();
+  adapters::IpoptSolver nlp;
+  adapters::HighsLpcc lpcc;
+  auto solution = solver::solve(problem, nlp, lpcc, options, *start);
+  if (!solution) return tl::unexpected(solution.error());
+  auto result = result_of(problem, *solution);
+  result.tolerance = options.tolerance;
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began;
+  result.statistics.wall_seconds = passed.count();
+  return result;
+}
+
+}  // namespace saltus::pipeline
