@@ -24,10 +24,61 @@ struct Bounds {
   double lower = 0.0, upper = 0.0;
 };
 
+/// The expressions of initial_guess, which say nothing of states and controls: these have their initial values here.
+class StatedGuesses {
+ public:
+  StatedGuesses(const Ocp& ocp, PointValues& values) : ocp_(ocp), values_(values) {}
+
+  /// Null if nothing is said of this quantity.
+  [[nodiscard]] const OcpGuess* find(OcpGuess::Kind kind, std::size_t index) const {
+    for (const auto& guess : ocp_.guess) {
+      if (guess.kind == kind && at(guess.index) == index) return &guess;
+    }
+    return nullptr;
+  }
+
+  [[nodiscard]] double value(const OcpGuess& guess, double t, const std::vector<double>& parameters) {
+    const ModelPoint point{t, ocp_.system.initial_state, ocp_.system.control_initial, parameters};
+    const double value = values_.outputs(point)[at(guess.output)];
+    if (!std::isfinite(value) && !error_) {
+      error_ = Error{ErrorCode::invalid_model,
+                     fmt::format("the initial guess of '{}' is {} at t = {:.6g}", name(guess), value, t),
+                     "give an expression that is finite over the whole horizon",
+                     {},
+                     {"in optimize.initial_guess"}};
+    }
+    return value;
+  }
+
+  /// The first value that was not finite.
+  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+ private:
+  [[nodiscard]] const std::string& name(const OcpGuess& guess) const {
+    const auto& system = ocp_.system;
+    if (guess.kind == OcpGuess::Kind::parameter) return system.parameter_names[at(guess.index)];
+    return (guess.kind == OcpGuess::Kind::state ? system.state_names : system.control_names)[at(guess.index)];
+  }
+
+  const Ocp& ocp_;
+  PointValues& values_;
+  std::optional<Error> error_;
+};
+
+struct Place {
+  double t = 0.0;
+  double value = 0.0;
+};
+
+double on_line(const Place& from, const Place& to, double t) {
+  if (!(to.t > from.t)) return to.value;
+  return from.value + (to.value - from.value) * ((t - from.t) / (to.t - from.t));
+}
+
 class Guess {
  public:
   Guess(const Ocp& ocp, PointValues& values, int intervals, const std::vector<double>& fractions)
-      : ocp_(ocp), values_(values), intervals_(intervals) {
+      : ocp_(ocp), values_(values), stated_(ocp, values), intervals_(intervals) {
     start_.horizon = ocp.horizon.value;
     start_.parameters = ocp.system.parameter_values;
     for (int k = 0; k < intervals; ++k) starts_.push_back(time(static_cast<double>(k) / intervals));
@@ -39,45 +90,15 @@ class Guess {
     take_initial_state();
     take_controls();
     raise_slacks();
-    if (error_) return tl::unexpected(*error_);
+    if (stated_.error()) return tl::unexpected(*stated_.error());
     if (auto done = take_states(); !done) return tl::unexpected(done.error());
-    if (error_) return tl::unexpected(*error_);
+    if (stated_.error()) return tl::unexpected(*stated_.error());
     return std::move(start_);
   }
 
  private:
   [[nodiscard]] double time(double fraction) const { return ocp_.from + fraction * ocp_.horizon.value; }
   [[nodiscard]] double until() const { return time(1.0); }
-
-  [[nodiscard]] const OcpGuess* stated(OcpGuess::Kind kind, std::size_t index) const {
-    for (const auto& guess : ocp_.guess) {
-      if (guess.kind == kind && at(guess.index) == index) return &guess;
-    }
-    return nullptr;
-  }
-
-  /// The expression of a guess. It says nothing of states and controls, which have their initial values here.
-  [[nodiscard]] double value_of(const OcpGuess& guess, double t) {
-    const double value = output_at(guess, t);
-    if (!std::isfinite(value) && !error_) {
-      error_ = Error{ErrorCode::invalid_model,
-                     fmt::format("the initial guess of '{}' is {} at t = {:.6g}", name_of(guess), value, t),
-                     "give an expression that is finite over the whole horizon",
-                     {},
-                     {"in optimize.initial_guess"}};
-    }
-    return value;
-  }
-  [[nodiscard]] double output_at(const OcpGuess& guess, double t) {
-    return values_.outputs(
-        {t, ocp_.system.initial_state, ocp_.system.control_initial, start_.parameters})[at(guess.output)];
-  }
-
-  [[nodiscard]] const std::string& name_of(const OcpGuess& guess) const {
-    const auto& system = ocp_.system;
-    if (guess.kind == OcpGuess::Kind::parameter) return system.parameter_names[at(guess.index)];
-    return (guess.kind == OcpGuess::Kind::state ? system.state_names : system.control_names)[at(guess.index)];
-  }
 
   /// Onto the bounds, with one warning for every quantity.
   double moved(double value, const Bounds& bounds, const std::string& what) {
@@ -99,8 +120,8 @@ class Guess {
       const auto& name = ocp_.system.parameter_names[i];
       if (!ocp_.free_parameters[i]) continue;
       const Bounds bounds{ocp_.parameter_lower[i], ocp_.parameter_upper[i]};
-      const auto* guess = stated(OcpGuess::Kind::parameter, i);
-      parameters[i] = guess != nullptr ? value_of(*guess, ocp_.from) : parameters[i];
+      const auto* guess = stated_.find(OcpGuess::Kind::parameter, i);
+      parameters[i] = guess != nullptr ? stated_.value(*guess, ocp_.from, start_.parameters) : parameters[i];
       parameters[i] = moved(parameters[i], bounds, fmt::format("the initial guess of parameter '{}'", name));
     }
     start_.parameters = std::move(parameters);
@@ -112,7 +133,8 @@ class Guess {
     for (std::size_t i = 0; i < start_.initial_state.size(); ++i) {
       if (!ocp_.free_states[i]) continue;
       double& value = start_.initial_state[i];
-      if (const auto* guess = stated(OcpGuess::Kind::state, i)) value = value_of(*guess, ocp_.from);
+      if (const auto* guess = stated_.find(OcpGuess::Kind::state, i))
+        value = stated_.value(*guess, ocp_.from, start_.parameters);
       value = moved(value, state_bounds(i),
                     fmt::format("the initial guess of '{}' at the start", ocp_.system.state_names[i]));
     }
@@ -123,8 +145,8 @@ class Guess {
     for (int k = 0; k < intervals_; ++k) {
       auto u = system.control_initial;
       for (std::size_t i = 0; i < u.size(); ++i) {
-        const auto* guess = stated(OcpGuess::Kind::control, i);
-        if (guess != nullptr) u[i] = value_of(*guess, time((k + 0.5) / intervals_));
+        const auto* guess = stated_.find(OcpGuess::Kind::control, i);
+        if (guess != nullptr) u[i] = stated_.value(*guess, time((k + 0.5) / intervals_), start_.parameters);
         if (i < at(ocp_.user_controls)) {
           const auto what = fmt::format("the initial guess of control '{}'", system.control_names[i]);
           u[i] = moved(u[i], {system.control_lower[i], system.control_upper[i]}, what);
@@ -174,7 +196,7 @@ class Guess {
     std::vector<const OcpGuess*> guesses(n);
     bool needs_simulation = false;
     for (std::size_t i = 0; i < n; ++i) {
-      guesses[i] = stated(OcpGuess::Kind::state, i);
+      guesses[i] = stated_.find(OcpGuess::Kind::state, i);
       needs_simulation = needs_simulation || (guesses[i] == nullptr && !is_line(targets[i]));
     }
     GuessedSimulation simulation;
@@ -201,7 +223,7 @@ class Guess {
 
   double stated_value(const OcpGuess& guess, std::size_t row) {
     const auto& name = ocp_.system.state_names[at(guess.index)];
-    return moved(value_of(guess, times_[row]), state_bounds(at(guess.index)),
+    return moved(stated_.value(guess, times_[row], start_.parameters), state_bounds(at(guess.index)),
                  fmt::format("the initial guess of '{}'", name));
   }
 
@@ -210,33 +232,24 @@ class Guess {
                                       const GuessedSimulation& simulation) const {
     double value = 0.0;
     if (is_line(target)) {
-      value = on_line({ocp_.from, start_.initial_state[i]}, *target, times_[row]);
+      value = on_line({ocp_.from, start_.initial_state[i]}, {until(), *target}, times_[row]);
     } else if (row < simulation.x.size()) {
       value = simulation.x[row][i];
     } else {
-      const LineStart from{simulation.time_reached, simulation.last[i]};
-      value = target ? on_line(from, *target, times_[row]) : from.value;
+      const Place from{simulation.time_reached, simulation.last[i]};
+      value = target ? on_line(from, {until(), *target}, times_[row]) : from.value;
     }
     const auto bounds = state_bounds(i);
     return std::max(bounds.lower, std::min(value, bounds.upper));
   }
 
-  struct LineStart {
-    double t = 0.0;
-    double value = 0.0;
-  };
-  [[nodiscard]] double on_line(const LineStart& from, double target, double t) const {
-    if (!(until() > from.t)) return target;
-    return from.value + (target - from.value) * ((t - from.t) / (until() - from.t));
-  }
-
   const Ocp& ocp_;
   PointValues& values_;
+  StatedGuesses stated_;
   int intervals_;
   OcpStart start_;
   std::vector<double> starts_, times_;
   std::set<std::string> warned_;
-  std::optional<Error> error_;
 };
 
 }  // namespace
