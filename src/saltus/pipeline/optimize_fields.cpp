@@ -98,9 +98,10 @@ Expected<void> set_solver(OptimizeOptions& options, const OptionValue& value) {
 
 /// An option that [simulate.fesd] has, too: the same words and ranges, with the default of an optimisation.
 OptimizeField element_option(std::string_view key, std::string doc = {}) {
-  const auto fields = element_fields();
+  const auto shared_fields = element_fields();
   const auto name = fmt::format("fesd.{}", key);
-  const auto shared = *std::find_if(fields.begin(), fields.end(), [&](const auto& field) { return field.key == name; });
+  const auto shared = *std::find_if(shared_fields.begin(), shared_fields.end(),
+                                    [&](const auto& field) { return field.key == name; });
   return {std::string(key), std::string(shared.expects), doc.empty() ? std::string(shared.doc) : std::move(doc),
           [shared](OptimizeOptions& options, const OptionValue& value) {
             SimulateOptions carrier;
