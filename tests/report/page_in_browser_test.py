@@ -221,7 +221,7 @@ def optimised(result):
                          "open_loop": {**zero, "t": rows["t"], "x": rows["x"]}},
         "statistics": {"iterations": 14, "variables": 3, "equations": 2, "pairs": 1, "build_seconds": 0,
                        "evaluation_seconds": 0, "linear_algebra_seconds": 0, "wall_seconds": 1},
-        "start_values": {"nodes": [], "state_lower": [None, -1], "state_upper": [None, 1], "control_lower": [],
+        "start_values": {"nodes": [], "state_lower": [None, -0.5], "state_upper": [None, 0.3], "control_lower": [],
                          "control_upper": [], "primal": [], "dual_rows": [], "dual_lower": [], "dual_upper": []},
     }
 
