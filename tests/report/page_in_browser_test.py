@@ -243,7 +243,7 @@ class Optimisation(Page):
         self.assertEqual(self.value(DRAWN), 6)
         self.assertEqual(self.value("document.querySelectorAll('.verdict li.good').length"), 4)
         self.assertEqual(self.value("[...document.querySelectorAll('.verdict li.bad')].map((said) => "
-                                    "said.textContent.includes('0.5 of the range of `v` in interval 3 of 4'))"), [True])
+                                    "said.textContent.includes('0.5 of the range of `v` in interval 2 (t ='))"), [True])
         metas = "document.querySelector('.timeline').data.map((trace) => trace.meta).filter((meta) => meta)"
         self.assertEqual(self.value(metas), ["simulated", "bound", "bound", "simulated"])
 

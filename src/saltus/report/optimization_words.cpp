@@ -65,8 +65,8 @@ Finding b_stationarity(const result::Certificate& certificate) {
 std::string interval_text(const result::Optimization& optimization, int interval) {
   const auto k = static_cast<std::size_t>(interval);
   if (interval < 0 || k + 1 >= optimization.grid.size()) return "";
-  return fmt::format(" in interval {} of {} (t = {:.4g} to {:.4g})", interval + 1, optimization.grid.size() - 1,
-                     optimization.grid[k], optimization.grid[k + 1]);
+  return fmt::format(" in interval {} (t = {:.4g} to {:.4g})", interval, optimization.grid[k],
+                     optimization.grid[k + 1]);
 }
 
 Finding interval_finding(const result::Optimization& optimization, const result::Verification& verification) {
