@@ -6,8 +6,8 @@
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/ocp/ocp_problem.hpp"
-#include "saltus/mpcc/problem.hpp"
 #include "saltus/model/ocp.hpp"
+#include "saltus/mpcc/problem.hpp"
 #include "saltus/pipeline/verify.hpp"
 #include "saltus/reformulation/dcs.hpp"
 #include "saltus/result/result.hpp"
@@ -26,8 +26,8 @@ struct OptimizedRun {
 };
 
 /// The sides of the pairs of an element are read off its sums over the stages: the smaller one is zero.
-/// Where time is frozen by hand, rows, events and elements of the result are in physical time (the clock), frozen pieces
-/// left out of trajectory and events; those of `path` are in the time of the right-hand side.
+/// Where time is frozen by hand, rows, events and elements of the result are in physical time (the clock), frozen
+/// pieces left out of trajectory and events; those of `path` are in the time of the right-hand side.
 [[nodiscard]] Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const discretization::OcpSolution& solution,
                                                    const reformulation::ReformulationOptions& form,
                                                    const discretization::ButcherTableau& tableau);

@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/base/contracts.hpp"
+#include "saltus/fesd_integrator/held_values.hpp"
+#include "saltus/fesd_integrator/projected_field.hpp"
+#include "saltus/pipeline/optimized_pieces_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using discretization::OcpSolution;
+using discretization::SolvedElement;
+using fesd_integrator::ActiveSet;
+using fesd_integrator::Facts;
+using fesd_integrator::Part;
+
+/// Of an element's length to the mean of its interval; shorter ones are roundings of the solver.
+constexpr double vanishing_share = 1e-9;
+/// How far selections of the projected field may be outside [0, 1]: states of a solution are accurate to about 1e-9,
+/// rates of surfaces a little less.
+constexpr double most_outside = 1e-6;
+
+std::vector<double> flattened(const Eigen::MatrixXd& matrix) { return {matrix.data(), matrix.data() + matrix.size()}; }
+
+/// Of every pair one sum over the element is zero: which one tells the mode (Lemmas 9 and 10 of [nurkanovic2024]).
+std::vector<int> modes_of(const SolvedElement& element, const std::vector<Part>& parts) {
+  const Eigen::VectorXd selected = element.selections.rowwise().sum();
+  const Eigen::VectorXd lambda = element.lambda.rowwise().sum();
+  const auto stages = static_cast<double>(element.selections.cols());
+  std::vector<int> modes(at(selected.size()), 0);
+  Eigen::Index pair = 0;
+  for (const Part& part : parts) {
+    for (int j = part.first; j < part.first + part.count; ++j) {
+      if (lambda[pair++] > selected[j]) modes[at(j)] = -1;
+      if (!part.simplex && lambda[pair++] > stages - selected[j]) modes[at(j)] = 1;
+    }
+    if (!part.simplex) continue;
+    const auto first = modes.begin() + part.first;
+    if (std::find(first, first + part.count, 0) != first + part.count) continue;
+    // Far from a solution no region may be left: the one with the largest weight then.
+    Eigen::Index largest = 0;
+    selected.segment(part.first, part.count).maxCoeff(&largest);
+    *(first + largest) = 0;
+  }
+  return modes;
+}
+
+struct Span {
+  double begin = 0.0, end = 0.0;
+};
+
+class PieceMaker {
+ public:
+  PieceMaker(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions,
+             const Facts& facts)
+      : facts_(facts), projected_(kernel), held_(functions, facts.held) {}
+
+  /// From here on what is held is that of an interval.
+  void begin_interval(double t, double length, const std::vector<double>& x) { held_.set_behind(t, length, x.data()); }
+
+  [[nodiscard]] OptimizedPiece piece(const SolvedElement& solved, Span span, const std::vector<double>& x) {
+    SALTUS_ASSERT(at(solved.selections.rows()) == facts_.selections.size());
+    OptimizedPiece made;
+    made.held.assign(held_.data(), held_.data() + facts_.held.size());
+    made.set = ActiveSet(facts_.parts, modes_of(solved, facts_.parts));
+    auto& element = made.element;
+    element.t = span.begin;
+    element.h = span.end - span.begin;
+    element.x = x;
+    element.end = flattened(solved.end);
+    element.stage_states = flattened(solved.states);
+    for (const double value : element.stage_states) element.size = std::max(element.size, std::abs(value));
+    const auto stages = solved.selections.cols();
+    for (Eigen::Index m = 0; m < stages; ++m) {
+      const auto selections = on_sides(solved, m, made.set);
+      element.stage_selections.insert(element.stage_selections.end(), selections.begin(), selections.end());
+    }
+    made.end = span.end;
+    made.left = projected(made, element.t, element.x, on_sides(solved, 0, made.set));
+    made.right = projected(made, span.end, element.end, on_sides(solved, stages - 1, made.set));
+    return made;
+  }
+
+ private:
+  /// The selections of a stage, those that are fixed without the error of the solution.
+  [[nodiscard]] static std::vector<double> on_sides(const SolvedElement& solved, Eigen::Index stage,
+                                                    const ActiveSet& set) {
+    std::vector<double> all = flattened(solved.selections.col(stage));
+    std::vector<double> unknown(set.sliding().size());
+    set.unknowns(all.data(), unknown.data());
+    set.selections(unknown.data(), all.data());
+    return all;
+  }
+
+  /// Those of the projected field, or the stage's where it has none.
+  [[nodiscard]] std::vector<double> projected(const OptimizedPiece& piece, double t, const std::vector<double>& x,
+                                              const std::vector<double>& of_stage) {
+    if (piece.set.sliding().empty()) return of_stage;
+    std::vector<double> found = of_stage;
+    const double rounding =
+        fesd_integrator::ProjectedField::rounding_of_rates(std::max(piece.element.size, 1.0), piece.element.h);
+    if (!projected_.solve(t, x.data(), piece.set, piece.held.data(), found.data(), rounding)) return of_stage;
+    projected_.take_undetermined(piece.set, of_stage.data(), found.data());
+    const bool inside = std::all_of(found.begin(), found.end(),
+                                    [](double value) { return value > -most_outside && value < 1.0 + most_outside; });
+    return inside ? found : of_stage;
+  }
+
+  const Facts& facts_;
+  fesd_integrator::ProjectedField projected_;
+  fesd_integrator::HeldValues held_;
+};
+
+}  // namespace
+
+std::vector<double> node_times(double from, const OcpSolution& solution) {
+  const auto intervals = solution.elements.size();
+  std::vector<double> times{from};
+  // As the elements' own times are added up.
+  for (const double speed : solution.speed_of_time) {
+    times.push_back(times.back() + speed * solution.horizon / static_cast<double>(intervals));
+  }
+  return times;
+}
+
+std::vector<OptimizedPiece> optimized_pieces(const OcpSolution& solution, const std::vector<double>& times,
+                                             const discretization::StageKernel& kernel,
+                                             const discretization::PointFunctions& functions, const Facts& facts) {
+  PieceMaker maker(kernel, functions, facts);
+  std::vector<OptimizedPiece> pieces;
+  std::vector<double> x = solution.initial_state;
+  for (std::size_t k = 0; k < solution.elements.size(); ++k) {
+    const auto& elements = solution.elements[k];
+    double mean = 0.0;
+    for (const auto& element : elements) mean += element.h / static_cast<double>(elements.size());
+    std::vector<const SolvedElement*> kept;
+    for (const auto& element : elements) {
+      if (!(element.h < vanishing_share * mean)) kept.push_back(&element);
+    }
+    maker.begin_interval(times[k], times[k + 1] - times[k], x);
+    for (std::size_t n = 0; n < kept.size(); ++n) {
+      const Span span{n == 0 ? times[k] : kept[n]->t, n + 1 < kept.size() ? kept[n + 1]->t : times[k + 1]};
+      pieces.push_back(maker.piece(*kept[n], span, x));
+      x = pieces.back().element.end;
+    }
+  }
+  return pieces;
+}
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,36 @@
+// The elements of an optimised point with their active sets, one after the other.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "saltus/discretization/ocp/ocp_problem.hpp"
+#include "saltus/discretization/point_functions.hpp"
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/element.hpp"
+#include "saltus/fesd_integrator/facts.hpp"
+
+namespace saltus::pipeline {
+
+/// An element that has a length.
+struct OptimizedPiece {
+  fesd_integrator::Element element;
+  double end = 0.0;  ///< its right end: where the next one begins
+  fesd_integrator::ActiveSet set;
+  std::vector<double> left, right;  ///< selections at its ends, limits from its inside
+  std::vector<double> held;         ///< what is held in its interval
+  bool is_frozen = false;           ///< time frozen by hand: the clock stands
+};
+
+/// The left ends of the intervals in the time of the right-hand side, then the end of the last one.
+[[nodiscard]] std::vector<double> node_times(double from, const discretization::OcpSolution& solution);
+
+/// Elements that vanished (h < 1e-9 of the mean of their interval) are left out. Nothing is frozen yet.
+[[nodiscard]] std::vector<OptimizedPiece> optimized_pieces(const discretization::OcpSolution& solution,
+                                                           const std::vector<double>& times,
+                                                           const discretization::StageKernel& kernel,
+                                                           const discretization::PointFunctions& functions,
+                                                           const fesd_integrator::Facts& facts);
+
+}  // namespace saltus::pipeline
