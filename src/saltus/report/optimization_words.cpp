@@ -71,6 +71,8 @@ std::string interval_text(const result::Optimization& optimization, int interval
 
 Finding interval_finding(const result::Optimization& optimization, const result::Verification& verification) {
   const double defect = verification.interval_defect;
+  if (std::isnan(defect))
+    return {Tone::bad, "Not every interval could be simulated, so nothing is known of the states."};
   const bool fine = defect <= verification.tolerance;
   const auto where = verification.state.empty() ? "the states" : fmt::format("`{}`", verification.state);
   return {good_if(fine),
@@ -82,19 +84,23 @@ Finding interval_finding(const result::Optimization& optimization, const result:
 
 Finding switch_finding(const result::Verification& verification) {
   const auto& [missed, extra] = std::pair(verification.switches_missed, verification.switches_extra);
-  const auto times = fmt::format("times of switches differ by at most {}", error_text(verification.switch_time_error));
-  if (missed == 0 && extra == 0) return {Tone::good, fmt::format("No switch is missed or added; {}.", times)};
+  const double error = verification.switch_time_error;
+  const auto times = error > 0.0 ? "; times of switches differ by at most " + error_text(error) : "";
+  if (missed == 0 && extra == 0) return {Tone::good, fmt::format("No switch is missed or added{}.", times)};
   std::string text;
   if (missed > 0) text += counted(missed, "switch") + " of the simulation not in the solution";
   if (extra > 0)
     text +=
         fmt::format("{}{} of the solution not in the simulation", text.empty() ? "" : ", ", counted(extra, "switch"));
-  return {Tone::bad, fmt::format("{}; {}.", text, times)};
+  return {Tone::bad, fmt::format("{}{}.", text, times)};
 }
 
 Finding path_finding(const result::Verification& verification) {
   if (verification.path_violation <= 0.0) {
     return {Tone::good, "Bounds and path constraints hold along the whole simulation, not only at the nodes."};
+  }
+  if (std::isnan(verification.path_violation)) {
+    return {Tone::neutral, "Whether bounds and path constraints hold between the nodes is not known."};
   }
   return {Tone::neutral, fmt::format("Along the simulation bounds and path constraints are violated by at most {}.",
                                      error_text(verification.path_violation))};

@@ -185,6 +185,13 @@ TEST(Table, OfAnOptimisationThatFailedNamesEveryFailure) {
         "violated by at most 0.2", "ended early (step_size_too_small)"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
+  verification.interval_defect = verification.path_violation = nan;
+  verification.switches_missed = verification.switches_extra = 0;
+  verification.switch_time_error = 0.0;
+  text = to_table(r);
+  EXPECT_NE(text.find("Not every interval could be simulated"), std::string::npos) << text;
+  EXPECT_NE(text.find("No switch is missed or added.\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("between the nodes is not known"), std::string::npos) << text;
   optimization.certificate.b_stationary.reset();
   optimization.verification.reset();
   text = to_table(r);
