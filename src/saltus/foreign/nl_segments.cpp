@@ -141,13 +141,17 @@ void check_complete(NlLines& lines, const NlFile& file) {
     lines.fail(fmt::format("the file ends without {}", what),
                "the file is not complete: write it again, or copy it as a whole");
   };
+  const auto is_absent = [](const std::map<long, NlBody>& bodies, long i) {
+    const auto found = bodies.find(i);
+    return found == bodies.end() || !found->second.nonlinear;
+  };
   if (file.variable_bounds.empty()) missing("a segment b, the bounds of the variables");
   if (file.row_bounds.empty() && header.constraints > 0) missing("a segment r, the bounds of the constraints");
   for (long i = 0; i < header.constraints && !lines.failed(); ++i) {
-    if (!file.constraints.contains(i)) missing(fmt::format("a segment C{}, the body of a constraint", i));
+    if (is_absent(file.constraints, i)) missing(fmt::format("a segment C{}, the body of a constraint", i));
   }
   for (long i = 0; i < header.objectives && !lines.failed(); ++i) {
-    if (!file.objectives.contains(i)) missing(fmt::format("a segment O{}, an objective", i));
+    if (is_absent(file.objectives, i)) missing(fmt::format("a segment O{}, an objective", i));
   }
   const auto compare = [&](const char* what, long promised, long found) {
     if (found < promised) missing(fmt::format("{} of the {} {} of its header", promised - found, promised, what));

@@ -18,12 +18,6 @@ std::string one_row(const std::string& row, const std::string& b0, const std::st
   return nl_header(2, 1, 0, 2) + "C0\nn-1\nr\n" + row + "\nb\n" + b0 + "\n" + b1 + "\nk1\n1\nJ0 2\n0 1\n1 2\n";
 }
 
-Eigen::VectorXd functions_at(Problem& problem, const Eigen::VectorXd& w) {
-  Eigen::VectorXd c(problem.rows());
-  problem.functions(w, c);
-  return c;
-}
-
 TEST(NlReader, Bounds) {
   struct {
     const char* text;

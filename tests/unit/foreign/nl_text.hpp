@@ -42,4 +42,10 @@ inline Eigen::VectorXd point(std::initializer_list<double> values) {
   return w;
 }
 
+inline Eigen::VectorXd functions_at(Problem& problem, const Eigen::VectorXd& w) {
+  Eigen::VectorXd c(problem.rows());
+  problem.functions(w, c);
+  return c;
+}
+
 }  // namespace saltus::foreign
