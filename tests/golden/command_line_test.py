@@ -29,8 +29,8 @@ class Help(tool.ToolTest):
 
     def test_help_names_what_is_there_and_nothing_else(self):
         text, _ = self.run_tool("--help", code=0)
-        for later in ("optimize", "options-page"):
-            self.assertNotIn(later, text)
+        self.assertIn("optimize", text)
+        self.assertNotIn("options-page", text)
 
     def test_every_subcommand_ends_with_one_example(self):
         for command in ("simulate", "compare", "order", "check", "mpcc", "report", "models"):
@@ -76,7 +76,6 @@ class BadInput(tool.ToolTest):
         self.refused("--rtol", "simulate", "crossing", "--rtol")
 
     def test_later_commands_and_methods(self):
-        self.refused("a later one brings it", "optimize", "crossing")
         self.refused("radau_iia has 1 to 9 stages, not 10", "simulate", "crossing", "--method", "fesd", "--set", "simulate.fesd.stages=10")
         self.refused("at least 2 elements", "simulate", "crossing", "--method", "fesd", "--set",
                      "simulate.fesd.elements=1")

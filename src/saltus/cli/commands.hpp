@@ -18,6 +18,7 @@ struct Command {
 };
 
 [[nodiscard]] Command add_simulate(CLI::App& app);
+[[nodiscard]] Command add_optimize(CLI::App& app);
 [[nodiscard]] Command add_compare(CLI::App& app);
 [[nodiscard]] Command add_order(CLI::App& app);
 [[nodiscard]] Command add_check(CLI::App& app);

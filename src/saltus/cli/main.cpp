@@ -1,6 +1,5 @@
 // The command-line tool.
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -16,9 +15,6 @@
 
 namespace saltus::cli {
 namespace {
-
-/// Subcommands that are planned and not there yet: refused by name, so that nobody looks for a typing error.
-constexpr std::array later_commands{"optimize"};
 
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -46,13 +42,6 @@ Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
 }
 
 Error unknown_command(const std::string& word, const std::vector<Command>& commands) {
-  if (std::find(later_commands.begin(), later_commands.end(), word) != later_commands.end()) {
-    return {ErrorCode::not_available,
-            fmt::format("saltus {} is not available in this version; a later one brings it", word),
-            "saltus --help lists what is there",
-            {},
-            {}};
-  }
   std::vector<std::string> known;
   for (const auto& command : commands) {
     if (command.name != "options-page") known.push_back(command.name);
@@ -61,12 +50,13 @@ Error unknown_command(const std::string& word, const std::vector<Command>& comma
 }
 
 ExitCode run(int argc, char** argv) {
-  CLI::App app("Simulates nonsmooth dynamical systems: switches and sliding modes, located exactly.", "saltus");
+  CLI::App app("Simulates and optimises nonsmooth dynamical systems: switches and sliding modes, located exactly.", "saltus");
   app.set_version_flag("--version", fmt::format("saltus {}", version));
   app.footer("Example:\n  saltus simulate stick-slip");
   app.get_formatter()->column_width(26);
-  const std::vector<Command> commands{add_simulate(app), add_compare(app), add_order(app),  add_check(app),
-                                      add_mpcc(app),     add_models(app),  add_report(app), add_options_page(app)};
+  const std::vector<Command> commands{add_simulate(app), add_optimize(app), add_compare(app),
+                                      add_order(app),    add_check(app),    add_mpcc(app),
+                                      add_models(app),   add_report(app),   add_options_page(app)};
   const auto chosen = [&](const Command& command) { return argc > 1 && command.name == argv[1]; };
   const auto command = std::find_if(commands.begin(), commands.end(), chosen);
   if (command == commands.end() && argc > 1 && argv[1][0] != '-') return refuse(unknown_command(argv[1], commands));

@@ -2,6 +2,7 @@
 
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/terminal.hpp"
+#include "saltus/pipeline/optimize_fields.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 
 namespace saltus::cli {
@@ -11,7 +12,7 @@ Command add_options_page(CLI::App& app) {
   command->group("");  // for developers: not in --help
   command->footer("Example:\n  saltus options-page > docs/options.md");
   return {"options-page", [] {
-            print(pipeline::options_page());
+            print(pipeline::options_page() + pipeline::optimize_options_page());
             return ExitCode::done;
           }};
 }

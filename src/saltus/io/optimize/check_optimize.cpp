@@ -53,13 +53,11 @@ Expected<void> check_optimize_options(const ModelFile& model) {
 Expected<void> read_start_result(ModelFile& model) {
   if (!model.optimize || !model.optimize->start_result) return {};
   auto stored = read_result(*model.optimize->start_result);
-  if (!stored) {
-    return tl::unexpected(with_context(stored.error(), "in the result to start from"));
-  }
-  if (!stored->optimization) {
-    return tl::unexpected(in_optimize(
-        fmt::format("{} is no result of an optimisation (command \"{}\")", *model.optimize->start_result, stored->command),
-        "start from a file that saltus optimize wrote", place_of_key(model, "initial_guess.result")));
+  if (!stored) return tl::unexpected(with_context(stored.error(), "in the result to start from"));
+  if (stored->trajectory.t.empty()) {
+    return tl::unexpected(in_optimize(fmt::format("{} has no trajectory", *model.optimize->start_result),
+                                      "start from a file that saltus optimize or saltus simulate wrote",
+                                      place_of_key(model, "initial_guess.result")));
   }
   model.optimize->start_from = std::make_shared<const result::Result>(std::move(*stored));
   return {};

@@ -1,0 +1,142 @@
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "saltus/cli/commands.hpp"
+#include "saltus/cli/interrupt.hpp"
+#include "saltus/cli/model_input.hpp"
+#include "saltus/cli/outputs.hpp"
+#include "saltus/cli/run_command.hpp"
+#include "saltus/cli/terminal.hpp"
+#include "saltus/expression/parser.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/pipeline/optimize.hpp"
+#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/pipeline/surfaces.hpp"
+#include "saltus/report/mpcc_table.hpp"
+#include "saltus/report/table.hpp"
+
+namespace saltus::cli {
+namespace {
+
+constexpr std::array optimize_shortcuts{
+    Shortcut{"--intervals", "optimize.control_intervals", "N", "number of control intervals"},
+    Shortcut{"--solver", "optimize.mpcc.solver", "S", "solver of the smooth problems (ipopt)"},
+    Shortcut{"--time-limit", "optimize.time_limit", "S", "seconds"},
+};
+
+struct OptimizeArguments {
+  RunArguments run;
+  std::string start;  ///< of --start; empty for none
+};
+
+/// The model with what was typed beside --set.
+Expected<ModelInput> stated_input(const OptimizeArguments& arguments) {
+  auto input = read_input(arguments.run.model, arguments.run.settings);
+  if (!input) return input;
+  for (const auto& [shortcut, value] : arguments.run.shortcuts) {
+    if (!value) continue;
+    const SourceLocation typed{fmt::format("{} {}", shortcut.flag, *value), 0, 0};
+    if (auto done = io::set_option(input->file, shortcut.key, *value, typed); !done) {
+      return tl::unexpected(done.error());
+    }
+  }
+  if (auto fits = io::check_optimize_options(input->file); !fits) return tl::unexpected(fits.error());
+  if (!arguments.start.empty()) input->file.optimize->start_result = arguments.start;
+  if (auto done = io::read_start_result(input->file); !done) return tl::unexpected(done.error());
+  return input;
+}
+
+/// What the numerical method does not know: the file's fingerprint, and the problem as it was written.
+void complete_record(const ModelInput& input, result::Result& result) {
+  result.model.sha256 = input.file.sha256;
+  const auto& problem = *input.file.description.optimize;
+  const auto note = [&](std::string_view key, const expression::NodePtr& tree) {
+    if (tree) result.options.emplace_back(fmt::format("optimize.{}", key), expression::to_text(*tree));
+  };
+  note("from", problem.from);
+  note(problem.horizon.free ? "horizon.initial" : "horizon", problem.horizon.value);
+  note("horizon.lower", problem.horizon.lower);
+  note("horizon.upper", problem.horizon.upper);
+  note("running_cost", problem.running_cost);
+  note("terminal_cost", problem.terminal_cost);
+  note("minimize_time", problem.time_weight);
+  if (input.file.optimize->start_result) {
+    result.options.emplace_back("optimize.initial_guess.result", *input.file.optimize->start_result);
+  }
+}
+
+pipeline::OptimizeObservers observers_of(const RunArguments& arguments) {
+  catch_interrupt();
+  pipeline::OptimizeObservers observers;
+  observers.is_interrupted = interrupted;
+  if (!arguments.quiet && ::isatty(STDERR_FILENO) == 1) {
+    observers.on_step = [](const result::HomotopyStep& step) { print_error(report::to_line(step)); };
+  }
+  return observers;
+}
+
+Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, const ModelInput& input,
+                                         const Outputs& outputs) {
+  const auto ocp = model::build_ocp(input.file.description, input.overrides);
+  if (!ocp) return tl::unexpected(ocp.error());
+  for (const auto& warning : ocp->system.warnings) print_error(fmt::format("warning: {}", warning));
+  for (const auto& warning : ocp->warnings) print_error(fmt::format("warning: {}", warning));
+  auto result = pipeline::optimize(*ocp, *input.file.optimize, observers_of(arguments.run));
+  if (!result) return result;
+  complete_record(input, *result);
+  if (outputs.show_surfaces() && result->model.parameters.size() == ocp->system.parameter_values.size()) {
+    auto system = ocp->system;  // with the parameters that were found
+    for (std::size_t i = 0; i < system.parameter_values.size(); ++i) {
+      system.parameter_values[i] = result->model.parameters[i].second;
+    }
+    result->surfaces = pipeline::surfaces(system, *result);
+  }
+  return result;
+}
+
+ExitCode run_optimize(const OptimizeArguments& arguments) {
+  const auto input = stated_input(arguments);
+  if (!input) return refuse(input.error());
+  const auto outputs =
+      Outputs::make(arguments.run.outputs, arguments.run.report, input->path, arguments.run.output_suffixes);
+  if (!outputs) return refuse(outputs.error());
+  const auto result = compute_optimum(arguments, *input, *outputs);
+  if (!result) return refuse(io::located(result.error(), input->file));
+  const auto written = outputs->write(*result);
+  if (!arguments.run.quiet) print(report::to_table(*result));
+  if (!written) return refuse(written.error());
+  if (is_done(result->status.termination)) return ExitCode::done;
+  print_error(fmt::format("stopped early: {}{}{}", name(result->status.termination),
+                          result->status.message.empty() ? "" : ": ", result->status.message));
+  return ExitCode::stopped_early;
+}
+
+std::string optimize_footer() {
+  return fmt::format(
+      "Keys of [optimize], for --set optimize.KEY=VALUE:\n{}\nExit code 0: feasible, stationary, and confirmed by an "
+      "event-driven simulation of every interval; 3: the table\nsays what is missing.\n\nExample:\n  saltus optimize "
+      "examples/optimize/turbo-car.toml --intervals 10 --out turbo-car.json --report turbo-car.html",
+      pipeline::optimize_options_help());
+}
+
+}  // namespace
+
+Command add_optimize(CLI::App& app) {
+  auto* command = app.add_subcommand("optimize", "find controls that minimise the cost of [optimize], and verify them");
+  // Shared: the parser fills it after this function has returned, the command reads it.
+  auto arguments = std::make_shared<OptimizeArguments>();
+  add_run_options(*command, arguments->run, optimize_shortcuts, {".json", ".csv"},
+                  "write the result: .json all of it, .csv the trajectory; may repeat");
+  command->add_option("--start", arguments->start, "begin at the solution of a stored result")
+      ->type_name("RESULT.json");
+  command->footer(optimize_footer());
+  return {"optimize", [arguments] { return run_optimize(*arguments); }};
+}
+
+}  // namespace saltus::cli

@@ -1,0 +1,67 @@
+"""saltus optimize from outside: help, bad input, files."""
+
+import json
+
+import tool
+
+CAR = (tool.SOURCE / "examples/optimize/turbo-car.toml").read_text(encoding="utf-8")
+
+
+class OptimizeHelp(tool.ToolTest):
+    def test_help(self):
+        text, _ = self.run_tool("optimize", "--help", code=0)
+        self.assertLessEqual(max(map(len, text.splitlines())), 120)
+        for part in ("--intervals N", "--start RESULT.json", "--solver S", "--time-limit S", "--set NAME=VALUE", "--out FILE",
+                     "--report FILE.html", "--quiet", "mpcc.sigma_final", "control_intervals", "running_cost"):
+            self.assertIn(part, text)
+        self.assertEqual(text.rstrip().splitlines()[-2], "Example:")
+
+
+class OptimizeBadInput(tool.ToolTest):
+    def refused(self, expected, *arguments, model=CAR):
+        self.write("car.toml", model)
+        out, err = self.run_tool("optimize", "car.toml", *arguments, code=2)
+        self.assertIn(expected, err)
+        self.assertEqual(out, "")
+
+    def test_a_model_without_optimize(self):
+        out, err = self.run_tool("optimize", "crossing", code=2)
+        self.assertIn("no table [optimize]", err)
+        self.assertIn("saltus simulate", err)
+        self.assertEqual(out, "")
+
+    def test_options(self):
+        self.refused("--intervals 0: error: expected a whole number >= 1, found 0", "--intervals", "0")
+        self.refused("--time-limit -1: error:", "--time-limit", "-1")
+        self.refused("solver \"structured\" is not available", "--solver", "structured")
+        self.refused("did you mean 'optimize.elements'?", "--set", "optimize.elemens=2")
+        self.refused("expected a whole number >= 1", "--set", "optimize.elements=0")
+        self.refused("elements has 2 entries, control_intervals is 10", "--set", "optimize.elements=[1,2]")
+        self.refused("a length of time > 0", "--set", "optimize.horizon=0")
+        self.refused("none.json", "--start", "none.json")
+        self.refused("no number of control intervals", model=CAR.replace("control_intervals = 10\n", ""))
+        self.refused("must end in .json or .csv", "--out", "r.txt")
+
+    def test_it_can_still_be_simulated_and_checked(self):
+        self.write("car.toml", CAR)
+        self.run_tool("simulate", "car.toml", "--quiet", code=0)
+        text, _ = self.run_tool("check", "car.toml", code=0)
+        self.assertIn("optimal control", text)
+
+
+class Optimize(tool.ToolTest):
+    def test_the_car_arrives_in_least_time(self):
+        self.write("car.toml", CAR)
+        out, err = self.run_tool("optimize", "car.toml", "--out", "car.json", "--out", "car.csv", code=0)
+        self.assertEqual(err, "")
+        result = json.loads((self.folder / "car.json").read_text(encoding="utf-8"))
+        self.assertEqual(result["command"], "optimize")
+        self.assertEqual(result["status"]["termination"], "completed")
+        self.assertEqual(len(result["u"]), 10)
+        self.assertAlmostEqual(result["trajectory"]["x"][-1][0], 200.0, places=6)
+        self.assertAlmostEqual(result["horizon"], result["objective"], places=9)
+        self.run_tool("optimize", "car.toml", "--start", "car.json", "--quiet", code=0)
+
+
+if __name__ == "__main__":
+    tool.main()
