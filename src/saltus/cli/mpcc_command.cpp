@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -174,10 +175,28 @@ ExitCode run_mpcc(const MpccArguments& arguments) {
   return finish(arguments, *result);
 }
 
+/// What is expected, broken into lines behind the column of keys.
+std::string wrapped_words(std::string_view words) {
+  constexpr std::size_t widest = 90;
+  std::string text;
+  std::size_t column = 0;
+  while (!words.empty()) {
+    const auto end = std::min(words.find(' '), words.size());
+    if (column > 0 && column + end > widest) {
+      text += "\n" + std::string(20, ' ');
+      column = 0;
+    }
+    text += fmt::format("{}{}", column > 0 ? " " : "", words.substr(0, end));
+    column += end + 1;
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return text;
+}
+
 std::string keys_help() {
   std::string text = "Keys of --set mpcc.KEY=VALUE:\n";
   for (const auto& field : pipeline::mpcc_fields()) {
-    text += fmt::format("  {:<17} {}\n        {}\n", field.key, field.expects, field.doc);
+    text += fmt::format("  {:<17} {}\n        {}\n", field.key, wrapped_words(field.expects), field.doc);
   }
   return text;
 }

@@ -24,7 +24,7 @@ Error unknown_format(const std::string& text, const std::string& file, std::size
 Expected<Statement> statement_in(const std::string& text, const std::string& file, const Names& names) {
   const auto first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   const char letter = first == std::string::npos ? '\0' : text[first];
-  if (letter == '{' || letter == '[') return parse_json(text.substr(first), file);
+  if (letter == '{') return parse_json(text.substr(first), file);
   if (letter == 'g' || (letter == 'b' && first + 1 < text.size() && text[first + 1] >= '0' && text[first + 1] <= '9')) {
     return parse_nl(text, file, names);
   }

@@ -15,6 +15,11 @@ constexpr std::size_t variables_shown = 12;
 
 std::string residual(double value) { return std::isfinite(value) ? fmt::format("{:.1e}", value) : "not known"; }
 
+std::string remark(const result::HomotopyStep& step) {
+  if (!step.message.empty()) return shortened(step.message, 60);
+  return step.termination == result::Termination::completed ? "" : std::string(name(step.termination));
+}
+
 std::string path_table(const std::vector<result::HomotopyStep>& steps) {
   if (steps.empty()) return "";
   std::vector<Row> rows{{"phase", "sigma", "iterations", "objective", "infeasible", "min(|G|, |H|)", "s", ""}};
@@ -22,8 +27,7 @@ std::string path_table(const std::vector<result::HomotopyStep>& steps) {
     rows.push_back({std::string(name(step.phase)), fmt::format("{:.0e}", step.sigma),
                     fmt::format("{}", step.iterations), fmt::format("{:.9g}", step.objective),
                     residual(step.primal_infeasibility), residual(step.complementarity_residual),
-                    fmt::format("{:.2f}", step.seconds),
-                    step.termination == result::Termination::completed ? "" : std::string(name(step.termination))});
+                    fmt::format("{:.2f}", step.seconds), remark(step)});
   }
   return "path\n" + aligned(rows);
 }
@@ -51,8 +55,8 @@ std::string to_line(const result::HomotopyStep& step) {
 std::string to_table(const result::MpccResult& result) {
   const auto& statistics = result.statistics;
   std::string text = wrapped("file", {result.file});
-  text += wrapped("size", {fmt::format("{} variables", result.x.size()), fmt::format("{} rows", statistics.equations),
-                           fmt::format("{} complementarities", statistics.pairs)});
+  text += wrapped("size", {fmt::format("variables: {}", result.x.size()), fmt::format("rows: {}", statistics.equations),
+                           fmt::format("complementarities: {}", statistics.pairs)});
   text += paragraph("status", std::string(name(result.status.termination)) +
                                   (result.status.message.empty() ? "" : ": " + result.status.message));
   text += wrapped("objective", {fmt::format("{:.12g}", result.objective)});

@@ -10,7 +10,12 @@
 namespace saltus::pipeline {
 namespace {
 
-std::vector<double> values_of(const Eigen::VectorXd& vector) { return {vector.begin(), vector.end()}; }
+/// Without negative zeros, which say nothing.
+std::vector<double> values_of(const Eigen::VectorXd& vector) {
+  std::vector<double> values;
+  for (const double value : vector) values.push_back(value + 0.0);
+  return values;
+}
 
 Expected<std::optional<solver::Start>> start_of(const foreign::Problem& problem,
                                                 const std::optional<std::vector<double>>& x) {
