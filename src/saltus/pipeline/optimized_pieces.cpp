@@ -19,34 +19,62 @@ using fesd_integrator::Part;
 
 /// Of an element's length to the mean of its interval; shorter ones are roundings of the solver.
 constexpr double vanishing_share = 1e-9;
+/// Complementarities of a solution hold to about 1e-9.
+constexpr double zero_sum = 1e-8;
 /// How far selections of the projected field may be outside [0, 1]: states of a solution are accurate to about 1e-9,
 /// rates of surfaces a little less.
 constexpr double most_outside = 1e-6;
 
 std::vector<double> flattened(const Eigen::MatrixXd& matrix) { return {matrix.data(), matrix.data() + matrix.size()}; }
 
-/// Of every pair one sum over the element is zero: which one tells the mode (Lemmas 9 and 10 of [nurkanovic2024]).
-std::vector<int> modes_of(const SolvedElement& element, const std::vector<Part>& parts) {
-  const Eigen::VectorXd selected = element.selections.rowwise().sum();
-  const Eigen::VectorXd lambda = element.lambda.rowwise().sum();
-  const auto stages = static_cast<double>(element.selections.cols());
-  std::vector<int> modes(at(selected.size()), 0);
-  Eigen::Index pair = 0;
-  for (const Part& part : parts) {
-    for (int j = part.first; j < part.first + part.count; ++j) {
-      if (lambda[pair++] > selected[j]) modes[at(j)] = -1;
-      if (!part.simplex && lambda[pair++] > stages - selected[j]) modes[at(j)] = 1;
+/// The modes of an element from the sums of its pairs, of which one is zero (Lemmas 9 and 10 of [nurkanovic2024]).
+class ModesOfElement {
+ public:
+  /// @param before  modes of the element before it; empty for the first one
+  ModesOfElement(const SolvedElement& element, const std::vector<int>& before)
+      : selected_(element.selections.rowwise().sum()),
+        lambda_(element.lambda.rowwise().sum()),
+        stages_(static_cast<double>(element.selections.cols())),
+        before_(before),
+        modes_(at(selected_.size()), 0) {}
+
+  [[nodiscard]] std::vector<int> read(const std::vector<Part>& parts) {
+    Eigen::Index pair = 0;
+    for (const Part& part : parts) {
+      for (int j = part.first; j < part.first + part.count; ++j) {
+        look(j, -1, selected_[j], lambda_[pair++]);
+        if (!part.simplex) look(j, 1, stages_ - selected_[j], lambda_[pair++]);
+      }
+      if (part.simplex) keep_one(part);
     }
-    if (!part.simplex) continue;
-    const auto first = modes.begin() + part.first;
-    if (std::find(first, first + part.count, 0) != first + part.count) continue;
-    // Far from a solution no region may be left: the one with the largest weight then.
+    return modes_;
+  }
+
+ private:
+  void look(int selection, int side, double selected, double lambda) {
+    bool is_aside = lambda > selected;
+    // On the surface with the selection at its bound both are zero, and roundings do not switch.
+    if (!before_.empty() && std::max(lambda, selected) < zero_sum) {
+      const int mode = before_[at(selection)];
+      if (mode == 0 || mode == side) is_aside = mode == side;
+    }
+    if (is_aside) modes_[at(selection)] = side;
+  }
+
+  /// Far from a solution no region may be left: the one with the largest weight then.
+  void keep_one(const Part& part) {
+    const auto first = modes_.begin() + part.first;
+    if (std::find(first, first + part.count, 0) != first + part.count) return;
     Eigen::Index largest = 0;
-    selected.segment(part.first, part.count).maxCoeff(&largest);
+    selected_.segment(part.first, part.count).maxCoeff(&largest);
     *(first + largest) = 0;
   }
-  return modes;
-}
+
+  Eigen::VectorXd selected_, lambda_;
+  double stages_;
+  const std::vector<int>& before_;
+  std::vector<int> modes_;
+};
 
 struct Span {
   double begin = 0.0, end = 0.0;
@@ -65,7 +93,8 @@ class PieceMaker {
     SALTUS_ASSERT(at(solved.selections.rows()) == facts_.selections.size());
     OptimizedPiece made;
     made.held.assign(held_.data(), held_.data() + facts_.held.size());
-    made.set = ActiveSet(facts_.parts, modes_of(solved, facts_.parts));
+    modes_ = ModesOfElement(solved, modes_).read(facts_.parts);
+    made.set = ActiveSet(facts_.parts, modes_);
     auto& element = made.element;
     element.t = span.begin;
     element.h = span.end - span.begin;
@@ -112,6 +141,7 @@ class PieceMaker {
   const Facts& facts_;
   fesd_integrator::ProjectedField projected_;
   fesd_integrator::HeldValues held_;
+  std::vector<int> modes_;  ///< of the last piece
 };
 
 }  // namespace

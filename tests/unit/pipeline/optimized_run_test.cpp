@@ -3,68 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string>
 #include <utility>
 
 #include "ocp_problem.hpp"
-#include "saltus/base/at.hpp"
+#include "optimized_points.hpp"
 
 namespace saltus::pipeline {
 namespace {
 
 using casadi::SX;
 using discretization::OcpSolution;
-using discretization::SolvedElement;
 using Eigen::VectorXd;
 using model::Builder;
 using model::Ocp;
 using result::EventKind;
 
 constexpr double rounding_error = 1e-14;
-
-VectorXd vector(std::initializer_list<double> values) {
-  VectorXd made(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), made.begin());
-  return made;
-}
-
-/// A solution as functions of time.
-struct Exact {
-  std::function<VectorXd(double)> x, selections, lambda;
-};
-
-discretization::ButcherTableau radau() {
-  return *discretization::butcher_tableau(discretization::TableauFamily::radau_iia, 2);
-}
-
-SolvedElement element(double t, double h, const Exact& exact) {
-  const auto tableau = radau();
-  SolvedElement made;
-  made.t = t;
-  made.h = h;
-  made.end = exact.x(t + h);
-  made.states.resize(made.end.size(), 2);
-  made.selections.resize(exact.selections(t).size(), 2);
-  made.lambda.resize(exact.lambda(t).size(), 3);
-  made.lambda.col(0) = exact.lambda(t);
-  for (int m = 0; m < 2; ++m) {
-    const double time = t + tableau.c[m] * h;
-    made.states.col(m) = exact.x(time);
-    made.selections.col(m) = exact.selections(time);
-    made.lambda.col(m + 1) = exact.lambda(time);
-  }
-  return made;
-}
-
-/// lambda_n and lambda_p.
-VectorXd sides(double psi) { return vector({std::max(-psi, 0.0), std::max(psi, 0.0)}); }
-
-OptimizedRun run_of(const Ocp& ocp, const OcpSolution& solution, reformulation::Form form = reformulation::Form::step) {
-  const auto run = optimized_run(ocp, solution, {form, 2}, radau());
-  EXPECT_TRUE(run.has_value()) << (run ? "" : to_text(run.error()));
-  return run ? *run : OptimizedRun{};
-}
 
 void expect_near(const std::vector<double>& found, const std::vector<double>& expected) {
   ASSERT_EQ(found.size(), expected.size());
@@ -225,6 +180,62 @@ TEST(OptimizedRunTest, SlidingWithControls) {
   EXPECT_EQ(run.final.mode, result::Mode{0});
   EXPECT_EQ(run.final.outputs, std::vector<double>{4.0});
   EXPECT_EQ(run.path.controls, solution.controls);
+}
+
+/// x' = 1 - step(x) from -1/2, then x = 0 with alpha = 1: both sides of a pair are zero, but for the solver's error.
+TEST(OptimizedRunTest, OnASurfaceWithTheSelectionAtItsBound) {
+  Builder model("arriving");
+  const SX state = model.state("x", {-0.5});
+  model.dynamics("x", 1 - model.step(state, "above"));
+  const auto x = [](double t) { return vector({std::min(t - 0.5, 0.0)}); };
+  const auto solved = [&](double alpha, double lambda) {
+    return Exact{x, [=](double) { return vector({alpha}); },
+                 [=](double t) {
+                   return vector({std::max(0.5 - t, 0.0), lambda});
+                 }};
+  };
+  OcpSolution solution;
+  solution.horizon = 2.0;
+  solution.controls = {{}};
+  solution.speed_of_time = {1.0};
+  solution.initial_state = {-0.5};
+  solution.elements = {{element(0.0, 0.5, solved(0.0, 0.0)), element(0.5, 0.5, solved(1.0 - 1e-9, 1e-10)),
+                        element(1.0, 0.5, solved(1.0 - 1e-10, 1e-9)), element(1.5, 0.5, solved(1.0 - 1e-9, 1e-10))}};
+  const auto run = run_of(problem_of(model, 2.0), solution);
+  ASSERT_EQ(run.events.size(), 1U);
+  EXPECT_EQ(run.events.front().kind, EventKind::enter_sliding);
+  EXPECT_EQ(run.final.mode, result::Mode{0});
+}
+
+/// Runs that are stopped leave points anywhere, from which tables are drawn all the same.
+TEST(OptimizedRunTest, PointsThatAreNoSolutions) {
+  Builder model("geared car");
+  const SX t = model.time(), v = model.state("v", {0.0}), u = model.control("u", {2.0, -5.0, 5.0});
+  model.dynamics("v", u * (1 + 2 * model.step(v - 1, "gear")) + model.floor(t));
+  model.output("effort", u * u);
+  const Ocp ocp = problem_of(model, 2.0);
+  for (const auto form : {reformulation::Form::step, reformulation::Form::stewart}) {
+    const auto dcs = reformulation::reformulate(ocp.system, {form, 2});
+    ASSERT_TRUE(dcs.has_value());
+    const auto kernel = discretization::OcpKernel::compile(ocp, *dcs, radau(), {});
+    ASSERT_TRUE(kernel.has_value()) << to_text(kernel.error());
+    const auto problem = discretization::OcpProblem::make(*kernel, ocp, *dcs, {3, 3});
+    ASSERT_TRUE(problem.has_value()) << to_text(problem.error());
+    discretization::OcpGuessValues guess;
+    guess.horizon = 2.0;
+    guess.controls = {{2.0}, {-1.0}};
+    guess.initial_state = {0.0};
+    guess.states.assign((*problem)->start_fractions().size(), {0.5});
+    (*problem)->set_start(guess);
+    const Eigen::VectorXd start = (*problem)->start();
+    const auto run = run_of(ocp, (*problem)->read(start), form);
+    EXPECT_EQ(run.elements.t.size(), 6U * 4U);
+    EXPECT_EQ(run.final.t, 2.0);
+    EXPECT_EQ(run.trajectory.u.front(), std::vector<double>{2.0});
+    EXPECT_EQ(run.trajectory.u.back(), std::vector<double>{-1.0});
+    const VectorXd nowhere = VectorXd::Constant(start.size(), std::nan(""));
+    EXPECT_FALSE(run_of(ocp, (*problem)->read(nowhere), form).trajectory.t.empty());
+  }
 }
 
 TEST(OptimizedRunTest, StartsOnASurface) {
