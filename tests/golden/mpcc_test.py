@@ -112,7 +112,7 @@ class Refused(MpccTest):
             "cut.nl": (good[:len(good) // 2], ["cut.nl:", "the file ends", "not complete"]),
             "integer.nl": (good.replace(" 0 0 0 0 0\t# discrete", " 1 0 0 0 0\t# discrete"), ["integer.nl:7", "binary or integer"]),
             "wrong.nl": (good.replace("5 1 1", "5 1 9"), ["expected the variable of a complementarity from 1 to 2, found 9"]),
-            "undefined.nl": (good.replace("O0 0\n", "O0 0\no0\no43\nn-1\n"), ["is not finite"]),
+            "undefined.nl": (good.replace("O0 0\n", "O0 0\no0\no43\nn-1\n"), ["undefined.nl", "the objective is nan at the start"]),
             "list.json": ("[1, 2]", ["neither an AMPL .nl text"]),
             "other.json": ('{"x": 1}', ["NOSBENCH", "MacMPEC"]),
             "cut.json": ('{"f_fun": "abc', ["cut.json:1", "the file ends in the middle"]),

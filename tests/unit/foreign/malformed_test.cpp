@@ -188,7 +188,7 @@ TEST(Malformed, SegmentsThatAreMissing) {
                      {36, 38, "without 2 of the 4 nonzeros of the Jacobian"},
                      {42, 44, "without 2 of the 2 nonzeros of gradients"},
                      {2, 44, "where line 2 of the header"},
-                     {4, 44, "where line 4 of the header"}};
+                     {9, 44, "where line 9 of the header"}};
   for (const auto& one : cases) {
     const auto problem = parse(without(one.first, one.last), "wrong.nl");
     ASSERT_FALSE(problem) << one.message;
