@@ -20,6 +20,8 @@ constexpr double radius = 1e-3;
 constexpr double lpcc_seconds = 60.0;
 /// Branches that a solution may visit: every one is better than the one before, so this is only a guard.
 constexpr int largest_rounds = 200;
+/// Of one branch problem.
+constexpr int branch_iterations = 500;
 /// Flips tried one by one before the linear program decides.
 constexpr int flips_tried = 5;
 
@@ -70,7 +72,7 @@ class Descent {
   /// Takes the branch with the group on its other side if that is better.
   bool take(const std::vector<ActiveSide>& sides, ConstVectorView from, const char* message) {
     if (!visited_.insert(sides).second) return false;
-    crossover::Branch next = run_.solve_branch(sides, from, message);
+    crossover::Branch next = run_.solve_branch(sides, from, branch_iterations, message);
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
     run_.branch = std::move(next);
     return true;
@@ -158,7 +160,7 @@ void rescue(Run& run) {
           proposed[at(pair)] = found.first_is_active[i] ? ActiveSide::G : ActiveSide::H;
         }
       }
-      crossover::Branch branch = run.solve_branch(proposed, w, "proposed by the linear program");
+      crossover::Branch branch = run.solve_branch(proposed, w, branch_iterations, "proposed by the linear program");
       const bool is_better = !run.refused || falls(run.refused->objective, branch.objective);
       if (branch.is_feasible(run.options.tolerance) && is_better) run.refused = std::move(branch);
     }

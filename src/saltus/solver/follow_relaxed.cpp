@@ -18,6 +18,14 @@ constexpr int failures_that_end = 3;
 constexpr double sharp_sigma = 1e-6;
 /// A branch that is feasible only far from where the path has led to is a solution at infinity.
 constexpr double far_away = 1e5;
+constexpr double nearly_feasible = 1e-6;
+/// Optimality error of a branch problem that counts as solved; the certificate has the last word.
+constexpr double stationary = 1e-5;
+/// A branch problem that was infeasible is tried again from a point that is nearer by this.
+constexpr double retry_factor = 0.011;
+/// Iterations of a branch problem that the next sigma may make easier, and of one that it may not.
+constexpr int trial_limit = 150;
+constexpr int whole_limit = 500;
 /// How much worse than the relaxed point a branch may be: relaxed points are better than any feasible one.
 constexpr double objective_slack = 1e-3;
 
@@ -34,20 +42,24 @@ class Path {
   PathEnd follow() {
     const auto& schedule = run_.options.schedule;
     int failures = 0;
+    bool is_behind_last = false;
     for (double sigma = attempt_.sigma_initial;; sigma *= schedule.sigma_factor) {
       // The last factor is cut short; 1.0001 keeps rounding from adding one more problem at nearly the same sigma.
       const bool is_last = sigma <= 1.0001 * schedule.sigma_final;
-      if (is_last) sigma = schedule.sigma_final;
+      if (is_last && !is_behind_last) sigma = schedule.sigma_final;
+      is_behind_last = is_last;
       if (run_.is_over()) return PathEnd::stopped;
       const bool is_solved = solve(sigma);
       failures = is_solved ? 0 : failures + 1;
       if (run_.is_over()) return PathEnd::stopped;
-      if (is_solved && run_.options.crossover && cross_over(sigma)) return PathEnd::crossed_over;
+      // A solver that fails near a solution fails for its last digits only.
+      const bool is_usable = is_solved || has_point_;
+      if (is_usable && run_.options.crossover && cross_over(sigma, is_last)) return PathEnd::crossed_over;
       // Problems of larger sigma are not solved as sharply.
       const bool is_sharp = is_solved && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
       if (is_sharp && !run_.options.crossover) return PathEnd::finished;
       if (failures >= failures_that_end) return PathEnd::failed;
-      if (is_last) return is_solved ? PathEnd::finished : PathEnd::failed;
+      if (is_last && !(is_solved && is_nearly_done(sigma))) return is_solved ? PathEnd::finished : PathEnd::failed;
     }
   }
 
@@ -57,6 +69,13 @@ class Path {
   }
 
   [[nodiscard]] static double norm(const Eigen::VectorXd& w) { return w.size() > 0 ? w.lpNorm<Eigen::Infinity>() : 0.0; }
+
+  /// Where no branch was accepted, and the relaxed point itself is a solution but for a digit or two.
+  [[nodiscard]] bool is_nearly_done(double sigma) const {
+    const double tolerance = run_.options.tolerance;
+    return run_.options.crossover && infeasibility_ > tolerance && infeasibility_ <= 100.0 * tolerance &&
+           sigma > 1e-3 * run_.options.schedule.sigma_final;
+  }
 
   /// With the multipliers of the problem before, where they are wanted and there.
   [[nodiscard]] NlpPoint start(double sigma, NlpOptions& options) {
@@ -102,7 +121,9 @@ class Path {
     const bool stands_still = report.termination == Termination::step_size_too_small &&
                               certificate::scaled_infeasibility(run_.problem, w) <= run_.options.tolerance;
     const bool is_solved = report.termination == Termination::completed || stands_still;
+    has_point_ = false;
     if (is_solved || infeasibility <= infeasibility_) {
+      has_point_ = certificate::scaled_infeasibility(run_.problem, w) <= nearly_feasible;
       w_ = w;
       infeasibility_ = infeasibility;
       has_multipliers_ = is_solved;
@@ -126,31 +147,46 @@ class Path {
   }
 
   /// True if the branch of the smaller sides is good enough.
-  bool cross_over(double sigma) {
+  bool cross_over(double sigma, bool is_last) {
     if (run_.problem.pairs() > 0 && sigma > 1.0001 * crossover_sigma) return false;
     Eigen::VectorXd c(run_.problem.rows());
     run_.problem.functions(w_, c);
     const auto sides = crossover::smaller_sides(run_.problem, run_.groups, c);
-    // The same sides have the same solution: once refused, always refused.
-    if (sides == refused_sides_) return false;
-    crossover::Branch branch = run_.solve_branch(sides, w_);
-    if (run_.is_over() && !branch.is_feasible(run_.options.tolerance)) return false;
-    const double relaxed = run_.problem.objective(w_);
+    // The same sides have the same solution: what was refused for its objective needs no second solution, what was
+    // infeasible deserves one from much nearer only.
+    if (run_.refused && run_.refused->sides == sides) return accept_refused();
+    if (sides == infeasible_sides_ && !is_last && sigma > retry_factor * infeasible_sigma_) return false;
+    crossover::Branch branch = run_.solve_branch(sides, w_, is_last ? whole_limit : trial_limit);
     const bool is_near = norm(branch.w) <= far_away * std::max(1.0, norm(w_));
-    const bool is_feasible = branch.is_feasible(run_.options.tolerance) && std::isfinite(branch.objective) && is_near;
-    if (is_feasible && branch.objective <= relaxed + objective_slack * std::max(1.0, std::abs(relaxed))) {
+    const bool is_feasible = branch.is_feasible(run_.options.tolerance) && std::isfinite(branch.objective) && is_near &&
+                             branch.optimality_error <= stationary;
+    auto& step = run_.solution.homotopy.back();
+    if (!is_feasible) {
+      infeasible_sides_ = sides;
+      infeasible_sigma_ = sigma;
+      const std::string rows = certificate::worst_rows(run_.problem, branch.w, run_.options.tolerance);
+      step.message = fmt::format("refused: {}", !is_near ? "it lies at infinity" : rows.empty() ? "not solved" : rows);
+      return false;
+    }
+    if (is_good(branch)) {
       run_.branch = std::move(branch);
       return true;
     }
-    refused_sides_ = sides;
-    auto& step = run_.solution.homotopy.back();
-    step.message = "refused: ";
-    step.message += is_feasible ? fmt::format("the relaxed objective is {:.6g}", relaxed)
-                    : !is_near  ? "it lies at infinity"
-                                : certificate::worst_rows(run_.problem, branch.w, run_.options.tolerance);
-    const bool is_better = is_feasible && (!run_.refused || branch.objective < run_.refused->objective);
-    if (is_better) run_.refused = std::move(branch);
+    step.message = fmt::format("refused: the relaxed objective is {:.6g}", run_.problem.objective(w_));
+    if (!run_.refused || branch.objective < run_.refused->objective) run_.refused = std::move(branch);
     return false;
+  }
+
+  [[nodiscard]] bool is_good(const crossover::Branch& branch) {
+    const double relaxed = run_.problem.objective(w_);
+    return branch.objective <= relaxed + objective_slack * std::max(1.0, std::abs(relaxed));
+  }
+
+  bool accept_refused() {
+    if (!is_good(*run_.refused)) return false;
+    run_.branch = std::move(run_.refused);
+    run_.refused.reset();
+    return true;
   }
 
   Run& run_;
@@ -158,7 +194,9 @@ class Path {
   Eigen::VectorXd w_;
   double infeasibility_ = 0.0;
   bool has_multipliers_ = false;
-  std::vector<mpcc::ActiveSide> refused_sides_;
+  bool has_point_ = false;  ///< of the last relaxed problem, near enough to feasible ones for a branch
+  std::optional<std::vector<mpcc::ActiveSide>> infeasible_sides_;
+  double infeasible_sigma_ = 0.0;
 };
 
 }  // namespace

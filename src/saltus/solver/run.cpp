@@ -65,9 +65,12 @@ void Run::record(result::HomotopyStep step, const NlpReport* report, double star
   if (options.on_step) options.on_step(solution.homotopy.back());
 }
 
-crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, std::string message) {
+crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, int iteration_limit,
+                                    std::string message) {
   const double started = seconds();
-  crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, nlp_options());
+  NlpOptions limited = nlp_options();
+  limited.iteration_limit = std::min(limited.iteration_limit, iteration_limit);
+  crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, limited);
   result::HomotopyStep step;
   step.phase = result::HomotopyPhase::branch;
   step.sigma = relaxed.sigma;

@@ -32,7 +32,7 @@ class Run {
   void record(result::HomotopyStep step, const NlpReport* report, double started);
   /// Solves a branch problem, counts and records it.
   [[nodiscard]] crossover::Branch solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
-                                               std::string message = {});
+                                               int iteration_limit, std::string message = {});
 
   mpcc::Problem& problem;
   NlpSolver& nlp;

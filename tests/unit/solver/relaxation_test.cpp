@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "../mpcc/counting_problem.hpp"
 #include "../mpcc/derivative_check.hpp"
 #include "../mpcc/polynomial_problem.hpp"
 #include "saltus/solver/homotopy/relaxed_problem.hpp"
+#include "small_problems.hpp"
 
 namespace saltus::solver::homotopy {
 namespace {
@@ -34,6 +36,17 @@ TEST_P(EveryRelaxation, Derivatives) {
       EXPECT_NEAR(phi.ab, slope(&PairFunction::a, 0, 1), tolerance) << a << " " << b;
       EXPECT_NEAR(phi.ab, slope(&PairFunction::b, 1, 0), tolerance) << a << " " << b;
       EXPECT_NEAR(phi.bb, slope(&PairFunction::b, 0, 1), tolerance) << a << " " << b;
+      const auto slope_in_sigma = [&](double PairFunction::*of) {
+        const double change = 1e-6;
+        const auto in = [&](double parameter) { return pair_function(GetParam(), which, a, b, parameter); };
+        return (in(sigma + change).*of - in(sigma - change).*of) / (2.0 * change);
+      };
+      // Third derivatives with respect to sigma are at most of order 1/sigma^(5/2) = 3e3, times change^2, and rounding;
+      // that of phi.s of order 60 phi.ss / sigma^2: 6e-9 phi.ss.
+      EXPECT_NEAR(phi.s, slope_in_sigma(&PairFunction::value), tolerance) << a << " " << b;
+      EXPECT_NEAR(phi.as, slope_in_sigma(&PairFunction::a), tolerance) << a << " " << b;
+      EXPECT_NEAR(phi.bs, slope_in_sigma(&PairFunction::b), tolerance) << a << " " << b;
+      EXPECT_NEAR(phi.ss, slope_in_sigma(&PairFunction::s), tolerance * (2.0 + std::abs(phi.ss))) << a << " " << b;
       if (is_bilinear(GetParam())) {
         EXPECT_EQ(phi.aa, 0.0);
         EXPECT_EQ(phi.bb, 0.0);
@@ -79,11 +92,41 @@ TEST_P(EveryRelaxation, RelaxedProblemHasExactDerivatives) {
   statement.H = {{{{1.0, {1, 1}}}}, {{{1.0, {0, 0, 1}}, {0.3, {0, 1}}}}};
   mpcc::PolynomialProblem problem(statement);
   problem.set_sign(1, mpcc::Sign::implied);
-  RelaxedProblem relaxed(problem, GetParam());
-  relaxed.set_sigma(0.09);
-  EXPECT_EQ(relaxed.constraints(), 1 + 3 + 2 * inequalities(GetParam()));
-  EXPECT_EQ(relaxed.pairs(), 0);
-  mpcc::expect_correct_derivatives(relaxed, Eigen::Vector3d(0.7, 0.9, 0.4));
+  for (const Steering steering : all_steerings) {
+    RelaxedProblem relaxed(problem, GetParam(), steering);
+    relaxed.set_sigma(0.09);
+    EXPECT_EQ(relaxed.constraints(), 1 + 3 + 2 * inequalities(GetParam()));
+    EXPECT_EQ(relaxed.pairs(), 0);
+    Eigen::VectorXd w = relaxed.with_elastic_variables(Eigen::Vector3d(0.7, 0.9, 0.4));
+    ASSERT_EQ(w.size(), 3 + (steering == Steering::direct ? 0 : steering == Steering::l1 ? 2 : 1));
+    for (Eigen::Index i = 3; i < w.size(); ++i) w[i] = 0.09 + 0.02 * static_cast<double>(i);  // off all seams
+    mpcc::expect_correct_derivatives(relaxed, w);
+  }
+}
+
+TEST(RelaxedProblem, OneEvaluationPerPoint) {
+  mpcc::PolynomialProblem inner(small::b_not_strong());
+  mpcc::CountingProblem problem(inner);
+  for (const Steering steering : all_steerings) {
+    RelaxedProblem relaxed(problem, Relaxation::fischer_burmeister, steering);
+    relaxed.set_sigma(0.1);
+    problem.forget_counts();
+    Eigen::VectorXd w = Eigen::VectorXd::Constant(relaxed.variables(), 0.3);
+    Eigen::VectorXd c(relaxed.constraints());
+    Eigen::VectorXd jacobian(relaxed.jacobian_pattern().entries());
+    Eigen::VectorXd hessian(relaxed.hessian_pattern().entries());
+    for (int point = 1; point <= 3; ++point) {
+      w[0] += 0.1;
+      relaxed.functions(w, c);
+      relaxed.jacobian(w, jacobian);
+      relaxed.hessian(w, 1.0, c, hessian);
+      relaxed.functions(w, c);
+      relaxed.jacobian(w, jacobian);
+      EXPECT_EQ(problem.functions_count(), point);
+      EXPECT_EQ(problem.jacobian_count(), point);
+      EXPECT_EQ(problem.hessian_count(), point);
+    }
+  }
 }
 
 TEST(Relaxation, NamesAreDistinct) {

@@ -46,6 +46,7 @@ inline void add_row(PolynomialStatement& to, Polynomial g, double lower, double 
 }
 
 /// Sides that are bounds of variables instead of constraints.
+/// Only for pairs of variables in order.
 inline void imply_signs(PolynomialStatement& to) { to.w_bounds.lower.head(2 * static_cast<int>(to.G.size())).setZero(); }
 inline void imply_signs(PolynomialProblem& of) {
   for (int side = 0; side < 2 * of.pairs(); ++side) of.set_sign(side, mpcc::Sign::implied);

@@ -167,5 +167,97 @@ TEST(Solve, Unbounded) {
   EXPECT_NE(solution.message.find("unbounded"), std::string::npos) << solution.message;
 }
 
+TEST(Solve, ClarkePointOfThePathIsNoSolution) {
+  // min (w0 - 1)^2 + (w1 - 1)^2: on the diagonal the relaxed problems lead to the origin, nu = (-2, -2).
+  mpcc::PolynomialProblem problem(small::statement(2, 1, small::distance(1.0, 1.0)));
+  SolveOptions options;
+  options.crossover = false;
+  options.schedule.sigma_final = 1e-3;
+  options.tolerance = 0.04;  // the sides are sqrt(sigma_final) = 0.032 there
+  const Solution clarke = solved(problem, Eigen::Vector2d(0.5, 0.5), options);
+  EXPECT_EQ(clarke.termination, Termination::not_converged) << log_of(clarke);
+  EXPECT_EQ(clarke.certificate.stationarity_type, StationarityType::C);
+  EXPECT_EQ(clarke.certificate.b_stationary, false);
+  EXPECT_NEAR(clarke.certificate.lpcc_decrease.value_or(0.0), -1.0, 0.05);
+  EXPECT_NE(clarke.message.find("not B-stationary"), std::string::npos) << clarke.message;
+
+  const Solution solution = solved(problem, Eigen::Vector2d(0.5, 0.5));
+  EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
+  EXPECT_NEAR(solution.objective, 1.0, 1e-12);
+}
+
+TEST(Solve, ANonlinearProgramIsAProblemWithoutPairs) {
+  auto statement = small::statement(2, 0, small::distance(2.0, 1.0));
+  small::add_row(statement, {{{1.0, {1}}, {1.0, {0, 1}}}}, -infinity, 1.0);
+  mpcc::PolynomialProblem problem(statement);
+  const Solution solution = solved(problem, Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
+  EXPECT_NEAR(solution.w[0], 1.0, 1e-12);
+  EXPECT_NEAR(solution.multipliers.rows[0], 2.0, 1e-10);
+  EXPECT_EQ(solution.homotopy.size(), 2u);  // one problem and its last digits
+  expect_certified(problem, solution, 1e-10);
+}
+
+TEST(Solve, StopsWhereItIsToldTo) {
+  mpcc::PolynomialProblem problem(small::b_not_strong());
+  const Eigen::Vector3d start(0.0, 1.0, 0.0);
+  SolveOptions options;
+  int asked = 0;
+  options.is_interrupted = [&asked] { return ++asked > 8; };
+  const Solution interrupted = solved(problem, start, options);
+  EXPECT_EQ(interrupted.termination, Termination::stopped_by_user) << log_of(interrupted);
+  EXPECT_LE(interrupted.iterations, 9);
+  EXPECT_TRUE(interrupted.w.allFinite());
+
+  options = {};
+  options.time_limit = 1e-9;
+  EXPECT_EQ(solved(problem, start, options).termination, Termination::time_limit);
+
+  options = {};
+  options.iteration_limit = 10;
+  const Solution limited = solved(problem, start, options);
+  EXPECT_EQ(limited.termination, Termination::iteration_limit) << log_of(limited);
+  EXPECT_LE(limited.iterations, 10);
+}
+
+TEST(Solve, EveryProblemIsReported) {
+  mpcc::PolynomialProblem problem(small::minimum_on_one_axis());
+  SolveOptions options;
+  std::size_t reported = 0;
+  options.on_step = [&reported](const result::HomotopyStep&) { ++reported; };
+  const Solution solution = solved(problem, Eigen::Vector2d(0.0, 5.0), options);
+  EXPECT_EQ(reported, solution.homotopy.size());
+  int iterations = 0;
+  for (const auto& step : solution.homotopy) iterations += step.iterations;
+  EXPECT_EQ(iterations, solution.iterations);
+  EXPECT_GT(solution.evaluation_seconds, 0.0);
+  EXPECT_GT(solution.solver_seconds, 0.0);
+}
+
+TEST(Solve, WarmStartsWithMultipliersReachTheSamePoint) {
+  mpcc::PolynomialProblem problem(small::minimum_on_one_axis());
+  SolveOptions options;
+  options.warm_start = homotopy::WarmStart::primal_dual;
+  const Solution solution = solved(problem, Eigen::Vector2d(0.0, 5.0), options);
+  EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
+  EXPECT_NEAR(solution.w[0], 1.0, 1e-12);
+}
+
+TEST(Solve, RefusesBadInput) {
+  adapters::IpoptSolver ipopt;
+  adapters::HighsLpcc highs;
+  mpcc::PolynomialProblem problem(small::minimum_on_one_axis());
+  SolveOptions options;
+  options.schedule.sigma_factor = 1.0;
+  EXPECT_EQ(solve(problem, ipopt, highs, options).error().code, ErrorCode::invalid_option);
+  auto undefined = small::minimum_on_one_axis();
+  small::add_row(undefined, {{{1.0, {-1}}}}, 0.0, infinity);  // 1 / w0 at 0
+  mpcc::PolynomialProblem singular(undefined);
+  const auto refused = solve(singular, ipopt, highs, {});
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_model);
+  EXPECT_NE(refused.error().message.find("g[0]"), std::string::npos) << refused.error().message;
+}
+
 }  // namespace
 }  // namespace saltus::solver

@@ -8,13 +8,44 @@ namespace {
 
 using result::Termination;
 
-/// A point without free variables has nothing to solve.
-NlpReport evaluate_only(NlpPoint& point, const BranchProblem& problem) {
-  point.y = Eigen::VectorXd::Zero(problem.constraints());
-  point.z_lower = point.z_upper = Eigen::VectorXd(0);
-  NlpReport report;
-  report.termination = Termination::completed;
-  return report;
+/// An error above says that the solver has not found a solution, rather than not all of its digits.
+constexpr double unsolved = 1e-6;
+
+/// Solves from `start`, then refines; without free variables there is nothing to solve.
+void solve_from(const Eigen::VectorXd& start, Branch& branch, NlpSolver& nlp, const NlpOptions& options) {
+  BranchProblem& reduced = *branch.problem;
+  branch.point = {.w = start, .y = {}, .z_lower = {}, .z_upper = {}};
+  const int iterations = branch.report.iterations;
+  const double evaluation_seconds = branch.report.evaluation_seconds;
+  branch.report = {};
+  branch.report.termination = Termination::completed;
+  if (reduced.variables() > 0) branch.report = nlp.solve(reduced, branch.point, options);
+  branch.report.iterations += iterations;
+  branch.report.evaluation_seconds += evaluation_seconds;
+  NlpPoint& point = branch.point;
+  const bool is_whole = point.w.allFinite() && point.y.size() == reduced.constraints() && point.y.allFinite() &&
+                        point.z_lower.size() == reduced.variables() && point.z_upper.size() == reduced.variables();
+  if (!is_whole) {
+    point = {.w = start,
+             .y = Eigen::VectorXd::Zero(reduced.constraints()),
+             .z_lower = Eigen::VectorXd::Zero(reduced.variables()),
+             .z_upper = Eigen::VectorXd::Zero(reduced.variables())};
+  }
+  branch.optimality_error = refine(reduced, point);
+}
+
+/// Leaves out equations that depend on others at v; false if there are none.
+bool drop_dependent(BranchProblem& reduced, const Eigen::VectorXd& v) {
+  const std::vector<int> dependent = dependent_equations(reduced, v);
+  if (!dependent.empty()) reduced.drop_rows(dependent);
+  return !dependent.empty();
+}
+
+bool has_failed(const Branch& branch) {
+  const auto why = branch.report.termination;
+  const bool by_itself = why == Termination::infeasible || why == Termination::not_converged ||
+                         why == Termination::factorization_failed || why == Termination::step_size_too_small;
+  return by_itself && !(branch.optimality_error <= unsolved);
 }
 
 }  // namespace
@@ -27,26 +58,11 @@ Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
   problem.functions(w, c);
   branch.problem = std::make_unique<BranchProblem>(problem, reduce(problem, sides, jacobian_matrix(problem, w), c));
   BranchProblem& reduced = *branch.problem;
-  branch.point.w = reduced.reduced(w);
-  if (reduced.reduction().equations() > reduced.variables() && reduced.variables() > 0) {
-    reduced.drop_rows(dependent_equations(reduced, branch.point.w));
-  }
-  if (reduced.variables() == 0) {
-    branch.report = evaluate_only(branch.point, reduced);
-  } else {
-    const NlpPoint start = branch.point;
-    branch.report = nlp.solve(reduced, branch.point, options);
-    const bool is_whole = branch.point.w.allFinite() && branch.point.y.size() == reduced.constraints() &&
-                          branch.point.y.allFinite() && branch.point.z_lower.size() == reduced.variables();
-    if (is_whole) {
-      branch.optimality_error = refine(reduced, branch.point);
-    } else {
-      branch.point = start;
-      branch.point.y = Eigen::VectorXd::Zero(reduced.constraints());
-      branch.point.z_lower = branch.point.z_upper = Eigen::VectorXd::Zero(reduced.variables());
-      branch.optimality_error = optimality_error(reduced, branch.point);
-    }
-  }
+  const Eigen::VectorXd start = reduced.reduced(w);
+  if (reduced.reduction().equations() > reduced.variables()) drop_dependent(reduced, start);
+  solve_from(start, branch, nlp, options);
+  // Equations that depend on each other at the solution are no reason to fail, but can be one to find no direction.
+  if (has_failed(branch) && drop_dependent(reduced, branch.point.w)) solve_from(start, branch, nlp, options);
   branch.w = reduced.full(branch.point.w);
   branch.objective = problem.objective(branch.w);
   branch.primal_infeasibility = certificate::scaled_infeasibility(problem, branch.w);

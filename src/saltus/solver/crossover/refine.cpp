@@ -186,6 +186,7 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
     // Quadratic until rounding is reached, from where it stands still; a step that makes it worse comes from afar.
     if (!std::isfinite(error) || (step > 3 && error > 0.5 * last)) break;
     last = error;
+    if (active.variables + active.rows == 0) break;
     const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * trial.y;
     Eigen::VectorXd right(active.variables + active.rows);
     for (Eigen::Index i = 0; i < slope.size(); ++i) {
@@ -207,6 +208,7 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
 }
 
 std::vector<int> dependent_equations(mpcc::Problem& nlp, ConstVectorView v) {
+  if (nlp.variables() == 0) return {};
   const RowMatrix jacobian = jacobian_matrix(nlp, v);
   const auto& rows = nlp.constraint_bounds();
   std::vector<int> equations;
@@ -218,6 +220,7 @@ std::vector<int> dependent_equations(mpcc::Problem& nlp, ConstVectorView v) {
     }
     equations.push_back(row);
   }
+  if (equations.empty()) return {};
   Matrix transposed(nlp.variables(), index(equations.size()));
   transposed.setFromTriplets(triplets.begin(), triplets.end());
   transposed.makeCompressed();
