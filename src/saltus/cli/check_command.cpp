@@ -9,6 +9,7 @@
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/model_input.hpp"
+#include "saltus/cli/optimize_text.hpp"
 #include "saltus/cli/progress.hpp"
 #include "saltus/cli/reformulation_text.hpp"
 #include "saltus/cli/terminal.hpp"
@@ -224,10 +225,12 @@ ExitCode run_check(const CheckArguments& arguments) {
   if (!input) return refuse(input.error());
   const auto system = model::build(input->file.description, input->overrides);
   if (!system) return refuse(io::located(system.error(), input->file));
+  const auto optimization = optimize_text(*input);
+  if (!optimization) return refuse(optimization.error());
   ProgressLine progress(ShowProgress::when_terminal);
   const auto text = description_of(*system, input->path, input->file.simulate, watched(progress));
   progress.clear();
-  print(text);
+  print(text + *optimization);
   if (!interrupted()) return ExitCode::done;
   print_error("stopped early: stopped_by_user: the ranks are those until then");
   return ExitCode::stopped_early;
