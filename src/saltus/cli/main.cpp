@@ -50,7 +50,8 @@ Error unknown_command(const std::string& word, const std::vector<Command>& comma
 }
 
 ExitCode run(int argc, char** argv) {
-  CLI::App app("Simulates and optimises nonsmooth dynamical systems: switches and sliding modes, located exactly.", "saltus");
+  CLI::App app("Simulates and optimises nonsmooth dynamical systems: switches and sliding modes, located exactly.",
+               "saltus");
   app.set_version_flag("--version", fmt::format("saltus {}", version));
   app.footer("Example:\n  saltus simulate stick-slip");
   app.get_formatter()->column_width(26);

@@ -53,7 +53,7 @@ Expected<ModelInput> stated_input(const OptimizeArguments& arguments) {
 }
 
 /// What the numerical method does not know: the file's fingerprint, and the problem as it was written.
-void complete_record(const ModelInput& input, result::Result& result) {
+void complete_optimum(const ModelInput& input, result::Result& result) {
   result.model.sha256 = input.file.sha256;
   const auto& problem = *input.file.description.optimize;
   const auto note = [&](std::string_view key, const expression::NodePtr& tree) {
@@ -89,7 +89,7 @@ Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, con
   for (const auto& warning : ocp->warnings) print_error(fmt::format("warning: {}", warning));
   auto result = pipeline::optimize(*ocp, *input.file.optimize, observers_of(arguments.run));
   if (!result) return result;
-  complete_record(input, *result);
+  complete_optimum(input, *result);
   if (outputs.show_surfaces() && result->model.parameters.size() == ocp->system.parameter_values.size()) {
     auto system = ocp->system;  // with the parameters that were found
     for (std::size_t i = 0; i < system.parameter_values.size(); ++i) {

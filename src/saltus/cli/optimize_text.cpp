@@ -29,9 +29,9 @@ std::string lines_of(const std::vector<OcpCounts>& intervals) {
   for (std::size_t first = 0; first < intervals.size();) {
     std::size_t end = first + 1;
     while (end < intervals.size() && same(intervals[first], intervals[end])) ++end;
-    text += counts_line(end - first == 1 ? fmt::format("interval {}", first)
-                                         : fmt::format("each of {} to {}", first, end - 1),
-                        intervals[first]);
+    text += counts_line(
+        end - first == 1 ? fmt::format("interval {}", first) : fmt::format("each of {} to {}", first, end - 1),
+        intervals[first]);
     first = end;
   }
   return text;

@@ -1,5 +1,3 @@
-#include "saltus/io/setting_values_internal.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -12,6 +10,7 @@
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/constant_value_internal.hpp"
 #include "saltus/io/option_text.hpp"
+#include "saltus/io/setting_values_internal.hpp"
 
 namespace saltus::io {
 namespace {

@@ -55,11 +55,12 @@ Expected<void> set_expression(model::Description& description, std::string_view 
     const auto name = std::string(path.substr(0, path.find('.')));
     if (name.size() < path.size() && std::find(known.begin(), known.end(), name) != known.end()) {
       return refused_setting(key, ErrorCode::unknown_name,
-                     fmt::format("'{}' is no part of '{}'", path.substr(name.size() + 1), name),
-                     "states and controls have the parts initial, lower and upper; other names have none");
+                             fmt::format("'{}' is no part of '{}'", path.substr(name.size() + 1), name),
+                             "states and controls have the parts initial, lower and upper; other names have none");
     }
-    return refused_setting(key, ErrorCode::unknown_name, fmt::format("the model has no '{}' there", path),
-                   known.empty() ? "--set changes what the file states and adds nothing" : suggest(name, known));
+    return refused_setting(
+        key, ErrorCode::unknown_name, fmt::format("the model has no '{}' there", path),
+        known.empty() ? "--set changes what the file states and adds nothing" : suggest(name, known));
   }
   auto tree = expression::parse(value, place_of_setting(key), names_of(description.tables));
   if (!tree) return tl::unexpected(tree.error());
@@ -121,7 +122,7 @@ Expected<void> set_model_key(model::Description& description, std::string_view f
     description.inclusion = *inclusion;
   } else {
     return refused_setting(full_key, ErrorCode::unknown_name, fmt::format("[model] has no key '{}'", key),
-                   suggest(std::string(key), {"name", "description", "inclusion"}));
+                           suggest(std::string(key), {"name", "description", "inclusion"}));
   }
   return {};
 }
@@ -142,21 +143,24 @@ constexpr std::array settable{
 };
 
 /// Tables of a model file whose entries have no name of their own, or that --set does not reach for another reason.
-constexpr std::array fixed{"modes", "events", "jumps", "tables", "mechanics", "contacts", "time_freezing", "sensitivity"};
+constexpr std::array fixed{"modes",     "events",   "jumps",         "tables",
+                           "mechanics", "contacts", "time_freezing", "sensitivity"};
 
 tl::unexpected<Error> not_settable(std::string_view key, std::string_view table) {
   if (std::find(fixed.begin(), fixed.end(), table) != fixed.end()) {
-    return refused_setting(key, ErrorCode::invalid_option, fmt::format("nothing in '{}' can be set on the command line", table),
-                   "write a parameter there, and set that: --set NAME=VALUE");
+    return refused_setting(key, ErrorCode::invalid_option,
+                           fmt::format("nothing in '{}' can be set on the command line", table),
+                           "write a parameter there, and set that: --set NAME=VALUE");
   }
   std::vector<std::string> known{"simulate", "optimize"};
   for (const auto& candidate : settable) known.emplace_back(candidate.name);
   return refused_setting(key, ErrorCode::unknown_name, fmt::format("'{}' is no table of a model file", table),
-                 suggest(std::string(table), known));
+                         suggest(std::string(table), known));
 }
 
 Expected<void> set_input_expression(model::Description& description, std::string_view name, std::string_view value) {
-  auto tree = expression::parse(value, place_of_setting(fmt::format("simulate.inputs.{}", name)), names_of(description.tables));
+  auto tree =
+      expression::parse(value, place_of_setting(fmt::format("simulate.inputs.{}", name)), names_of(description.tables));
   if (!tree) return tl::unexpected(tree.error());
   std::erase_if(description.sampled_inputs, [&](const auto& input) { return input.name == name; });
   if (auto* place = place_in(description.inputs, name); place != nullptr) {
@@ -187,7 +191,8 @@ Expected<void> set_input(model::Description& description, std::string_view path,
   const auto source = path.substr(dot + 1);
   if (source == "file" || source == "result") return set_samples(description, path.substr(0, dot), source, value);
   return refused_setting(fmt::format("simulate.inputs.{}", path), ErrorCode::unknown_name,
-                 fmt::format("an input has no key '{}'", source), suggest(std::string(source), {"file", "result"}));
+                         fmt::format("an input has no key '{}'", source),
+                         suggest(std::string(source), {"file", "result"}));
 }
 
 }  // namespace
@@ -196,7 +201,8 @@ Expected<pipeline::SimulateOptions> with_option(pipeline::SimulateOptions option
                                                 std::string_view value) {
   constexpr std::string_view root = "simulate.";
   if (!key.starts_with(root)) {
-    return refused_setting(key, ErrorCode::unknown_name, fmt::format("unknown option {}", key), "options begin with simulate.");
+    return refused_setting(key, ErrorCode::unknown_name, fmt::format("unknown option {}", key),
+                           "options begin with simulate.");
   }
   auto changed = pipeline::with_value(std::move(options), key.substr(root.size()), option_value(value));
   if (!changed) changed.error().location = place_of_setting(key);

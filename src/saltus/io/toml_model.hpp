@@ -39,23 +39,25 @@ struct ModelFile {
 /// Larger files are refused: no model is written by hand at that length.
 inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
 
-/// `--set a.b=value` for any key of the file: options of [simulate], its inputs, options and expressions of [optimize], the
-/// inclusion, and the expressions of [parameters] [states] [controls] [definitions] [switching] [dynamics] [outputs] that the file already has
+/// `--set a.b=value` for any key of the file: options of [simulate], its inputs, options and expressions of [optimize],
+/// the inclusion, and the expressions of [parameters] [states] [controls] [definitions] [switching] [dynamics]
+/// [outputs] that the file already has
 /// ("states.q", "states.q.lower", "dynamics.v").
 /// @param key    dotted path below the file's root
 /// @param value  a number, a list of numbers, an expression, or a bare word
 /// @return the model with that key replaced, or an error that names the nearest known keys.
 [[nodiscard]] Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::string_view value);
 
-/// Changes an option of [simulate] ("simulate.rtol") or [optimize] ("optimize.elements") and notes that it was given at `location`.
+/// Changes an option of [simulate] ("simulate.rtol") or [optimize] ("optimize.elements") and notes that it was given at
+/// `location`.
 [[nodiscard]] Expected<void> set_option(ModelFile& model, std::string_view key, std::string_view value,
                                         const SourceLocation& location);
 
 /// Checks the options of [simulate] against each other (pipeline::find_problem), and tells where the file states them.
 [[nodiscard]] Expected<void> check_options(const ModelFile& model);
 
-/// Checks that the file has [optimize], and its options against each other and the problem (pipeline::find_problem), and
-/// tells where the file states them.
+/// Checks that the file has [optimize], and its options against each other and the problem (pipeline::find_problem),
+/// and tells where the file states them.
 [[nodiscard]] Expected<void> check_optimize_options(const ModelFile& model);
 
 /// Reads the result that `initial_guess` or --start names (OptimizeOptions::start_result) into start_from; does nothing

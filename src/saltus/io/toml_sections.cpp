@@ -40,7 +40,8 @@ Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::ve
     }
   }
   if (quantity.free && quantity.initial) {
-    check_free(reader, fmt::format("'{}'", entry.key), quantity.initial, quantity.lower, quantity.upper, entry.location);
+    check_free(reader, fmt::format("'{}'", entry.key), quantity.initial, quantity.lower, quantity.upper,
+               entry.location);
   }
   return quantity;
 }
@@ -193,8 +194,8 @@ void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
   if (table == nullptr) return;
   for (const auto& field : *table) {
     auto quantity = read_quantity(reader, field, control_keys);
-    model.description.controls.push_back({field.key, std::move(quantity.initial), std::move(quantity.lower),
-                                          std::move(quantity.upper), field.location});
+    model.description.controls.push_back(
+        {field.key, std::move(quantity.initial), std::move(quantity.lower), std::move(quantity.upper), field.location});
   }
 }
 

@@ -46,8 +46,8 @@ void read_option(TomlReader& reader, const std::string& key, const TomlEntry& en
     return;
   }
   // No option is a table or a date; whether there is one of that name is for the option table to say.
-  const bool is_value = !std::holds_alternative<TomlTable>(entry.value.value) &&
-                        !std::holds_alternative<TomlDate>(entry.value.value);
+  const bool is_value =
+      !std::holds_alternative<TomlTable>(entry.value.value) && !std::holds_alternative<TomlDate>(entry.value.value);
   const auto known = pipeline::with_value(pipeline::SimulateOptions{}, key, false);
   const bool unknown = !known && known.error().code == ErrorCode::unknown_name;
   const auto value =

@@ -105,8 +105,8 @@ constexpr std::array fields_of_mpcc{
     MpccField{"tolerance", "a finite number > 0",
               "Of feasibility, complementarity min(|G|, |H|) and stationarity of the answer.",
               set_number<tolerance_of, Range::positive, SolveOptions>, record_number<tolerance_of, SolveOptions>},
-    MpccField{"iteration_limit", "a whole number >= 1", "Of the solver, in all problems together.",
-              set_iteration_limit, record_iteration_limit},
+    MpccField{"iteration_limit", "a whole number >= 1", "Of the solver, in all problems together.", set_iteration_limit,
+              record_iteration_limit},
 };
 
 }  // namespace
@@ -119,8 +119,8 @@ Expected<void> set_mpcc_option(SolveOptions& options, std::string_view key, cons
     if (field.key == key) return field.set(options, key, value);
     known.emplace_back(field.key);
   }
-  return tl::unexpected(
-      Error{ErrorCode::unknown_name, fmt::format("unknown option mpcc.{}", key), suggest(std::string(key), known), {}, {}});
+  return tl::unexpected(Error{
+      ErrorCode::unknown_name, fmt::format("unknown option mpcc.{}", key), suggest(std::string(key), known), {}, {}});
 }
 
 Expected<void> check_mpcc_options(const SolveOptions& options) {

@@ -30,8 +30,7 @@ std::optional<OptionProblem> problem_of_grid(const OptimizeOptions& options) {
   }
   const auto lengths = options.elements.size();
   if (lengths != 1 && lengths != static_cast<std::size_t>(intervals)) {
-    return misfit("elements",
-                  fmt::format("elements has {} entries, control_intervals is {}", lengths, intervals),
+    return misfit("elements", fmt::format("elements has {} entries, control_intervals is {}", lengths, intervals),
                   "write one number for all intervals, or one per interval");
   }
   long elements = 0;
@@ -50,8 +49,8 @@ std::optional<OptionProblem> problem_of_references(const OptimizeOptions& option
                                                    const model::OcpDescription& problem) {
   for (const auto& part : problem.least_squares) {
     const auto rows = part.samples.size();
-    const bool fits = rows == static_cast<std::size_t>(options.control_intervals) ||
-                      (rows == 1 && part.at == model::CostPoints::end);
+    const bool fits =
+        rows == static_cast<std::size_t>(options.control_intervals) || (rows == 1 && part.at == model::CostPoints::end);
     if (rows == 0 || fits) continue;
     auto found = misfit("control_intervals",
                         fmt::format("{} has {} row{}, control_intervals is {}", part.file, rows, rows == 1 ? "" : "s",

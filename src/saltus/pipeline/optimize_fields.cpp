@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto intervals_of = [](auto& o) -> auto& { return o.control_intervals; };
 constexpr auto native_functions_of = [](auto& o) -> auto& { return o.native; };
-constexpr auto start_of = [](auto& o) -> auto& { return o.start; };
+constexpr auto start_values_of = [](auto& o) -> auto& { return o.start; };
 constexpr auto verification_of = [](auto& o) -> auto& { return o.verification_tolerance; };
 
 constexpr Choices<Native, 3> native_words{{"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
@@ -100,8 +100,8 @@ Expected<void> set_solver(OptimizeOptions& options, const OptionValue& value) {
 OptimizeField element_option(std::string_view key, std::string doc = {}) {
   const auto shared_fields = element_fields();
   const auto name = fmt::format("fesd.{}", key);
-  const auto shared = *std::find_if(shared_fields.begin(), shared_fields.end(),
-                                    [&](const auto& field) { return field.key == name; });
+  const auto shared =
+      *std::find_if(shared_fields.begin(), shared_fields.end(), [&](const auto& field) { return field.key == name; });
   return {std::string(key), std::string(shared.expects), doc.empty() ? std::string(shared.doc) : std::move(doc),
           [shared](OptimizeOptions& options, const OptionValue& value) {
             SimulateOptions carrier;
@@ -145,8 +145,7 @@ void append_elements(std::vector<OptimizeField>& list) {
   list.push_back(element_option("stages"));
   list.push_back({"switch_detection", "true, false",
                   "Elements end where the solution switches; false: equal elements, of order 1, to compare.",
-                  set_switch_detection,
-                  [](const OptimizeOptions& options, std::string_view key, OptionRecord& record) {
+                  set_switch_detection, [](const OptimizeOptions& options, std::string_view key, OptionRecord& record) {
                     record.emplace_back(key, options.switch_detection);
                   }});
   list.push_back(element_option("representation"));
@@ -154,8 +153,8 @@ void append_elements(std::vector<OptimizeField>& list) {
   list.push_back(element_option("lifting"));
   list.push_back(element_option("cross_complementarity"));
   list.push_back(element_option("step_equilibration", "Lengths where nothing switches."));
-  list.push_back(
-      element_option("step_bounds", "Lengths of elements are within (1 - this, 1 + this) times the mean of their interval."));
+  list.push_back(element_option(
+      "step_bounds", "Lengths of elements are within (1 - this, 1 + this) times the mean of their interval."));
   list.push_back(element_option("rho"));
   list.push_back(element_option("equilibration_scale"));
 }
@@ -169,14 +168,14 @@ std::vector<OptimizeField> all_fields() {
                   record_choice<native_functions_of, native_words, OptimizeOptions>});
   list.push_back({"start", "neutral, simulated",
                   "What selections and multipliers begin with: middle values, or those of a simulation of the guess.",
-                  without_name<set_choice<start_of, start_words, OptimizeOptions>>,
-                  record_choice<start_of, start_words, OptimizeOptions>});
+                  without_name<set_choice<start_values_of, start_words, OptimizeOptions>>,
+                  record_choice<start_values_of, start_words, OptimizeOptions>});
   list.push_back({"verification_tolerance", "a finite number > 0",
                   "Of the defects of intervals that are simulated again, relative to the range of each state.",
                   without_name<set_number<verification_of, Range::positive, OptimizeOptions>>,
                   record_number<verification_of, OptimizeOptions>});
-  list.push_back({"time_limit", "none, or a number > 0", "Seconds, of all problems together.", set_time_limit,
-                  record_time_limit});
+  list.push_back(
+      {"time_limit", "none, or a number > 0", "Seconds, of all problems together.", set_time_limit, record_time_limit});
   list.push_back({"mpcc.solver", "ipopt", "Of the smooth problems.", set_solver,
                   [](const OptimizeOptions& options, std::string_view key, OptionRecord& record) {
                     record.emplace_back(key, options.solver);
@@ -195,7 +194,8 @@ constexpr std::array keys_of_problem{
     ProblemKey{"path_constraints", "a list of comparisons", "Hold along the solution: \"q <= 3\", \"-1 <= v <= 2\"."},
     ProblemKey{"path_constraints_at", "intervals, elements, stages", "Where they are required; intervals without."},
     ProblemKey{"terminal_constraints", "a list of comparisons", "Hold at the end."},
-    ProblemKey{"path_complementarities", "a list of pairs", "[[\"a\", \"b\"]]: a >= 0, b >= 0, one of them 0, at every stage."},
+    ProblemKey{"path_complementarities", "a list of pairs",
+               "[[\"a\", \"b\"]]: a >= 0, b >= 0, one of them 0, at every stage."},
     ProblemKey{"initial_guess", "a table", "Where to begin: { q = \"t\" }, or { result = \"r.json\" }."},
     ProblemKey{"least_squares", "[[optimize.least_squares]]", "Tables with of, reference, weight and at."},
 };

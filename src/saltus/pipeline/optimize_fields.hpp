@@ -1,5 +1,5 @@
-// The one table of the options of an optimisation: names, ranges and meanings for model files, --set, --help, the record
-// in the result, and docs/options.md.
+// The one table of the options of an optimisation: names, ranges and meanings for model files, --set, --help, the
+// record in the result, and docs/options.md.
 #pragma once
 
 #include <functional>
@@ -17,8 +17,8 @@
 
 namespace saltus::pipeline {
 
-/// One option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = …) and on the
-/// command line (--set optimize.mpcc.sigma_final=…).
+/// One option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = …) and on
+/// the command line (--set optimize.mpcc.sigma_final=…).
 struct OptimizeField {
   std::string key;      ///< dotted, below [optimize]
   std::string expects;  ///< "a number > 0"
@@ -48,7 +48,8 @@ struct ProblemKey {
 /// The options with one of them replaced.
 /// @param key    dotted, below [optimize]: "elements", "mpcc.tolerance"
 /// @param value  as written; integers are taken where numbers are expected
-/// @return the options, or unknown_name (with the nearest known keys, those of the problem among them), invalid_option or
+/// @return the options, or unknown_name (with the nearest known keys, those of the problem among them), invalid_option
+/// or
 ///         not_available, each naming what was expected and what was found, without a location.
 [[nodiscard]] Expected<OptimizeOptions> with_value(OptimizeOptions options, std::string_view key,
                                                    const result::OptionValue& value);
@@ -58,7 +59,8 @@ struct ProblemKey {
 
 /// Checks the options against each other and against the problem: control_intervals given, elements and references of
 /// the right length, nothing that does not fit into memory, sigma falling.
-/// @return the first problem, or nullopt if an optimisation may start. The error has a location where `problem` has one.
+/// @return the first problem, or nullopt if an optimisation may start. The error has a location where `problem` has
+/// one.
 [[nodiscard]] std::optional<OptionProblem> find_problem(const OptimizeOptions& options,
                                                         const model::OcpDescription& problem);
 

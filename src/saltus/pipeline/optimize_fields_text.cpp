@@ -53,7 +53,8 @@ std::string optimize_options_help() {
   }
   for (const auto& field : optimize_fields()) {
     const auto standard = default_of_optimize(field);
-    const auto expects = fmt::format("{}{}", field.expects, standard.empty() ? "" : fmt::format("; default {}", standard));
+    const auto expects =
+        fmt::format("{}{}", field.expects, standard.empty() ? "" : fmt::format("; default {}", standard));
     auto block = wrapped(expects, "                         ");
     block.replace(2, field.key.size(), field.key);
     text += block + wrapped(field.doc, "        ");

@@ -16,8 +16,8 @@ enum class StartValues { neutral, simulated };
 
 /// The numerical keys of [optimize] and [optimize.mpcc]; defaults as in interface.md.
 struct OptimizeOptions {
-  long control_intervals = 0;           ///< >= 1; there is no default
-  std::vector<long> elements{3};        ///< one number, or one per interval
+  long control_intervals = 0;     ///< >= 1; there is no default
+  std::vector<long> elements{3};  ///< one number, or one per interval
   /// scheme, stages, representation, reformulation, lifting, cross_complementarity, step_equilibration, step_bounds,
   /// rho, equilibration_scale; its other members are not used.
   ElementOptions element{.error_limit = std::nullopt,
@@ -27,7 +27,7 @@ struct OptimizeOptions {
   Native native = Native::automatic;
   StartValues start = StartValues::neutral;
   double verification_tolerance = 1e-3;
-  std::optional<std::string> start_result;  ///< file: initial_guess = { result = … } or --start
+  std::optional<std::string> start_result;           ///< file: initial_guess = { result = … } or --start
   std::shared_ptr<const result::Result> start_from;  ///< that file as read, by whoever calls pipeline::optimize
   std::string solver = "ipopt";
   solver::SolveOptions mpcc;  ///< its time limit is that of [optimize] time_limit

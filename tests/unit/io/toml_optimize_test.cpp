@@ -1,9 +1,7 @@
 // [optimize], free quantities and [time_freezing] in model files.
-#include <filesystem>
-#include <fstream>
-
 #include <gtest/gtest.h>
 
+#include "optimize_model.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/toml_model.hpp"
 #include "saltus/pipeline/optimize_fields.hpp"
@@ -12,24 +10,6 @@ namespace saltus::io {
 namespace {
 
 using expression::to_text;
-
-constexpr std::string_view optimize_head =
-    "[model]\nname = 'm'\n[parameters]\nk = { initial = 1, lower = 0.1, upper = 5, free = true, unit = 'N', label = 'k' }\n"
-    "[states]\nq = { initial = 0, lower = -1, upper = 1, free = true }\nv = 0\ntau = 0\n"
-    "[controls]\nu = { lower = -5, upper = 5 }\n[dynamics]\nq = 'v'\nv = 'u - sign(v)'\ntau = 1\n";
-constexpr int head_lines = 14;
-
-const std::string smallest = "[optimize]\nhorizon = 5\ncontrol_intervals = 4\n";
-
-Expected<ModelFile> parsed(const std::string& rest) { return parse_model(std::string(optimize_head) + rest, "m.toml"); }
-
-/// The file of the test, in a folder of its own.
-std::string written(const std::string& name, const std::string& text) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "saltus-toml-optimize";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / name) << text;
-  return (folder / name).string();
-}
 
 TEST(TomlOptimize, TheProblemIsRead) {
   const auto model = parsed(
@@ -95,7 +75,8 @@ TEST(TomlOptimize, OptionsAreRead) {
       "switch_detection = false\nrepresentation = 'differential'\nreformulation = 'stewart'\nlifting = 'off'\n"
       "cross_complementarity = 'stage_stage'\nstep_equilibration = 'none'\nstep_bounds = 0.5\nrho = 2\n"
       "equilibration_scale = 3\nnative = 'off'\nstart = 'simulated'\nverification_tolerance = 1e-4\ntime_limit = 60\n"
-      "[optimize.mpcc]\nsolver = 'ipopt'\nmethod = 'kadrani'\nsteering = 'linf'\nsigma_initial = 0.1\nsigma_factor = 0.2\n"
+      "[optimize.mpcc]\nsolver = 'ipopt'\nmethod = 'kadrani'\nsteering = 'linf'\nsigma_initial = 0.1\nsigma_factor = "
+      "0.2\n"
       "sigma_final = 1e-9\nwarm_start = 'primal_dual'\ncrossover = false\ntolerance = 1e-7\niteration_limit = 500\n");
   ASSERT_TRUE(model.has_value()) << to_text(model.error());
   const auto& options = *model->optimize;
@@ -146,10 +127,11 @@ TEST(TomlOptimize, DefaultsAreThoseOfThePage) {
 
 TEST(TomlOptimize, LeastSquaresAreRead) {
   const auto file = written("ref.csv", "q, v\n1, 2\n# a remark\n3, 4\n");
-  const auto model = parsed("[optimize]\nhorizon = 1\ncontrol_intervals = 2\n"
-                            "[[optimize.least_squares]]\nof = ['q', 'v']\nreference = ['sin(t)', 0]\nweight = [10, 1]\n"
-                            "at = 'stages'\n[[optimize.least_squares]]\nof = ['q', 'v']\nreference = { file = '" +
-                            file + "' }\nweight = [[2, 1], [1, 'k']]\n[[optimize.least_squares]]\nof = ['u']\n");
+  const auto model = parsed(
+      "[optimize]\nhorizon = 1\ncontrol_intervals = 2\n"
+      "[[optimize.least_squares]]\nof = ['q', 'v']\nreference = ['sin(t)', 0]\nweight = [10, 1]\n"
+      "at = 'stages'\n[[optimize.least_squares]]\nof = ['q', 'v']\nreference = { file = '" +
+      file + "' }\nweight = [[2, 1], [1, 'k']]\n[[optimize.least_squares]]\nof = ['u']\n");
   ASSERT_TRUE(model.has_value()) << to_text(model.error());
   const auto& list = model->description.optimize->least_squares;
   ASSERT_EQ(list.size(), 3U);
@@ -246,7 +228,8 @@ TEST(TomlOptimize, MistakesInTheProblemAreFoundWithTheirPlace) {
       {"[optimize]\nhorizon = { free = true, lower = 1, upper = 2 }\n", 2, "no initial value", "initial = 10"},
       {"[optimize]\nhorizon = { free = true, initial = 1, upper = 2 }\n", 2, "no lower bound", "finite"},
       {"[optimize]\nhorizon = { free = true, initial = 1, lower = 0.5, upper = inf }\n", 2, "no upper bound", ""},
-      {"[optimize]\nhorizon = { free = true, initial = 1, lower = 3, upper = 2 }\n", 2, "lower (3) is above upper (2)", ""},
+      {"[optimize]\nhorizon = { free = true, initial = 1, lower = 3, upper = 2 }\n", 2, "lower (3) is above upper (2)",
+       ""},
       {"[optimize]\nhorizon = { free = true, initial = 4, lower = 1, upper = 2 }\n", 2, "above upper (2)", ""},
       {"[optimize]\nhorizon = { free = true, initial = 1, lower = -1, upper = 2 }\n", 2, "> 0, found -1", ""},
       {"[optimize]\nhorizon = { fre = true, initial = 1 }\n", 2, "unknown key 'fre'", "'free'"},
@@ -296,7 +279,8 @@ TEST(TomlOptimize, MistakesInLeastSquaresAreFoundWithTheirPlace) {
 TEST(TomlOptimize, FilesOfReferencesAreChecked) {
   const auto refused = [](const std::string& text) {
     const auto file = written("bad.csv", text);
-    const auto model = parsed(smallest + "[[optimize.least_squares]]\nof = ['q', 'v']\nreference = { file = '" + file + "' }\n");
+    const auto model =
+        parsed(smallest + "[[optimize.least_squares]]\nof = ['q', 'v']\nreference = { file = '" + file + "' }\n");
     EXPECT_FALSE(model.has_value()) << text;
     return model ? Error{} : model.error();
   };
@@ -308,88 +292,6 @@ TEST(TomlOptimize, FilesOfReferencesAreChecked) {
   const auto missing = parsed(smallest + "[[optimize.least_squares]]\nof = ['q']\nreference = { file = 'none.csv' }\n");
   ASSERT_FALSE(missing.has_value());
   EXPECT_EQ(missing.error().code, ErrorCode::io_failure);
-}
-
-TEST(TomlOptimize, WhatIsFreeNeedsBounds) {
-  const std::string head = "[model]\nname = 'm'\n[states]\nx = 0\n[dynamics]\nx = 1\n[parameters]\n";
-  const auto message = [&](const std::string& quantity) {
-    const auto model = parse_model(head + quantity, "m.toml");
-    return model ? std::string("accepted") : model.error().message;
-  };
-  EXPECT_EQ(message("k = { initial = 1, free = true }\n"), "'k' is free and has no lower and no upper bound");
-  EXPECT_EQ(message("k = { initial = 1, lower = 0, free = true }\n"), "'k' is free and has no upper bound");
-  EXPECT_EQ(message("k = { initial = 1, lower = 3, upper = 2, free = true }\n"), "'k': lower (3) is above upper (2)");
-  EXPECT_EQ(message("k = { initial = 1, lower = 2, upper = 3, free = true }\n"), "'k': initial (1) is below lower (2)");
-  EXPECT_EQ(message("k = { initial = 1, lower = 2, upper = 3 }\n"), "accepted");
-  EXPECT_EQ(message("k = { initial = 1, unit = 3 }\n").substr(0, 22), "expected a text in quo");
-}
-
-TEST(TomlOptimize, OptionsThatDoNotFitTogetherAreFoundAfterAllSettings) {
-  const auto file = written("two.csv", "1\n2\n");
-  const auto message = [](const std::string& text) {
-    const auto model = parsed(text);
-    EXPECT_TRUE(model.has_value()) << (model ? "" : to_text(model.error()));
-    const auto fits = model ? check_optimize_options(*model) : Expected<void>{};
-    return fits ? std::string("fits") : fits.error().message;
-  };
-  EXPECT_EQ(message(smallest), "fits");
-  EXPECT_EQ(message("[optimize]\nhorizon = 1\n"), "no number of control intervals");
-  EXPECT_EQ(message("[optimize]\ncontrol_intervals = 1\n"), "no horizon");
-  EXPECT_EQ(message(smallest + "elements = [1, 2]\n"), "elements has 2 entries, control_intervals is 4");
-  EXPECT_EQ(message(smallest + "[optimize.mpcc]\nsigma_initial = 1e-12\n"), "sigma_final (1e-10) is above sigma_initial (1e-12)");
-  EXPECT_EQ(message(smallest + "[[optimize.least_squares]]\nof = ['q']\nreference = { file = '" + file + "' }\n"),
-            file + " has 2 rows, control_intervals is 4");
-}
-
-TEST(TomlOptimize, SettingsReachEveryKey) {
-  auto model = parsed(smallest);
-  ASSERT_TRUE(model.has_value());
-  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
-           {"optimize.elements", "[1,2]"},
-           {"optimize.control_intervals", "2"},
-           {"optimize.mpcc.sigma_final", "1e-8"},
-           {"optimize.scheme", "gauss_legendre"},
-           {"optimize.horizon", "2*k"},
-           {"optimize.minimize_time", "true"},
-           {"optimize.running_cost", "u^2"},
-           {"optimize.initial_guess.result", "r.json"},
-           {"parameters.k.lower", "0.5"},
-           {"parameters.k.initial", "2"},
-           {"states.q.free", "false"}}) {
-    auto changed = with_setting(*model, key, value);
-    ASSERT_TRUE(changed.has_value()) << key << to_text(changed.error());
-    model = std::move(changed);
-  }
-  const auto& problem = *model->description.optimize;
-  EXPECT_EQ(model->optimize->elements, (std::vector<long>{1, 2}));
-  EXPECT_EQ(model->optimize->mpcc.schedule.sigma_final, 1e-8);
-  EXPECT_EQ(model->optimize->element.scheme, pipeline::Scheme::gauss_legendre);
-  EXPECT_EQ(to_text(*problem.horizon.value), "2*k");
-  EXPECT_EQ(to_text(*problem.time_weight), "1");
-  EXPECT_EQ(to_text(*problem.running_cost), "u^2");
-  EXPECT_EQ(model->optimize->start_result, "r.json");
-  EXPECT_EQ(to_text(*model->description.free_parameters[0].lower), "0.5");
-  EXPECT_EQ(to_text(*model->description.parameters[0].expression), "2");
-  EXPECT_FALSE(model->description.states[0].free);
-}
-
-TEST(TomlOptimize, SettingsThatAreWrongAreRefused) {
-  const auto model = parsed(smallest);
-  ASSERT_TRUE(model.has_value());
-  const auto message = [&](const std::string& key, const std::string& value) {
-    const auto changed = with_setting(*model, key, value);
-    return changed ? std::string("accepted") : changed.error().message;
-  };
-  EXPECT_EQ(message("optimize.elements", "0").substr(0, 35), "expected a whole number >= 1, or a ");
-  EXPECT_EQ(message("optimize.elemens", "1"), "unknown option optimize.elemens");
-  EXPECT_EQ(message("optimize.horizon", "0"), "horizon: expected a length of time > 0, found 0");
-  EXPECT_EQ(message("optimize.path_constraints", "q<=1"), "'path_constraints' cannot be set on the command line");
-  EXPECT_EQ(message("states.v.free", "true"), "'v' has no two bounds");
-  const auto without = parse_model("[model]\nname = 'm'\n[states]\nx = 0\n[dynamics]\nx = 1\n", "m.toml");
-  ASSERT_TRUE(without.has_value());
-  const auto changed = with_setting(*without, "optimize.elements", "2");
-  ASSERT_FALSE(changed.has_value());
-  EXPECT_EQ(changed.error().message, "the model has no table [optimize]");
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "saltus/io/optimize/number_rows_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/io/atomic_file.hpp"
+#include "saltus/io/optimize/number_rows_internal.hpp"
 #include "saltus/io/separated_line_internal.hpp"
 
 namespace saltus::io {
@@ -45,10 +44,10 @@ Expected<std::vector<std::vector<double>>> parse_rows(std::string_view text, con
     begins = false;
     if (skipped) continue;
     if (fields.size() != columns) {
-      return tl::unexpected(row_mistake(file, line_number,
-                                        fmt::format("expected {} number{}, found {}", columns, columns == 1 ? "" : "s",
-                                                    fields.size()),
-                                        "a row has one number per expression"));
+      return tl::unexpected(
+          row_mistake(file, line_number,
+                      fmt::format("expected {} number{}, found {}", columns, columns == 1 ? "" : "s", fields.size()),
+                      "a row has one number per expression"));
     }
     auto& row = rows.emplace_back();
     for (const auto field : fields) {
@@ -61,7 +60,8 @@ Expected<std::vector<std::vector<double>>> parse_rows(std::string_view text, con
       row.push_back(*number);
     }
   }
-  if (rows.empty()) return tl::unexpected(row_mistake(file, 0, "the file has no rows of numbers", "write one per line"));
+  if (rows.empty())
+    return tl::unexpected(row_mistake(file, 0, "the file has no rows of numbers", "write one per line"));
   return rows;
 }
 

@@ -11,9 +11,9 @@
 
 namespace saltus::io {
 
-/// Reads rows of as many numbers each, separated by commas, semicolons, tabs or spaces; empty lines and lines that begin
-/// with # are skipped, as is a first line without numbers. Fails with the file's own line: what is no finite number, a
-/// row of another length, no rows at all.
+/// Reads rows of as many numbers each, separated by commas, semicolons, tabs or spaces; empty lines and lines that
+/// begin with # are skipped, as is a first line without numbers. Fails with the file's own line: what is no finite
+/// number, a row of another length, no rows at all.
 /// @param columns  numbers of every row, >= 1
 [[nodiscard]] Expected<std::vector<std::vector<double>>> read_rows(const std::filesystem::path& file,
                                                                    std::size_t columns);

@@ -105,8 +105,7 @@ Expected<void> set_optimize(ModelFile& model, std::string_view key, std::string_
   const auto head = path.substr(0, path.find('.'));
   for (const auto& known : pipeline::problem_keys()) {
     if (known.key != head) continue;
-    return refused_setting(key, ErrorCode::invalid_option,
-                           fmt::format("'{}' cannot be set on the command line", path),
+    return refused_setting(key, ErrorCode::invalid_option, fmt::format("'{}' cannot be set on the command line", path),
                            "write a parameter there, and set that: --set NAME=VALUE");
   }
   return set_optimize_option(model, key, value, place);

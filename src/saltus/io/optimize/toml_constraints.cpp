@@ -44,9 +44,8 @@ constexpr std::array wrong_words{
     Wrong{"not", "turn the comparison round"},
 };
 
-const std::vector<std::pair<std::string, model::ConstraintNorm>> norms{{"l1", model::ConstraintNorm::l1},
-                                                                       {"l2", model::ConstraintNorm::l2},
-                                                                       {"linf", model::ConstraintNorm::linf}};
+const std::vector<std::pair<std::string, model::ConstraintNorm>> norms{
+    {"l1", model::ConstraintNorm::l1}, {"l2", model::ConstraintNorm::l2}, {"linf", model::ConstraintNorm::linf}};
 
 constexpr std::string_view expected_constraint = "a constraint in quotes, e.g. \"q <= 3\"";
 
@@ -102,7 +101,8 @@ class ConstraintReader {
     }
     if (depth > 0) return end;
     for (const auto& wrong : wrong_words) {
-      if (wrong.text == found) fail(fmt::format("a constraint is one comparison, without '{}'", found), wrong.remedy, begin);
+      if (wrong.text == found)
+        fail(fmt::format("a constraint is one comparison, without '{}'", found), wrong.remedy, begin);
     }
     return end;
   }
@@ -128,8 +128,10 @@ class ConstraintReader {
     const auto& found = constraint_.relations;
     if (found.empty()) {
       const bool inside = text_.find_first_of("<>=") != std::string_view::npos;
-      fail(fmt::format("the constraint '{}' has no comparison{}", constraint_.text, inside ? " outside of parentheses" : ""),
-           inside ? "remove the parentheses around the comparison" : "write e.g. \"q <= 3\", \"v == 0\" or \"-1 <= u <= 1\"",
+      fail(fmt::format("the constraint '{}' has no comparison{}", constraint_.text,
+                       inside ? " outside of parentheses" : ""),
+           inside ? "remove the parentheses around the comparison"
+                  : "write e.g. \"q <= 3\", \"v == 0\" or \"-1 <= u <= 1\"",
            0);
     } else if (found.size() > 2) {
       fail(fmt::format("expected one comparison or two, found {} in '{}'", found.size(), constraint_.text),
@@ -182,7 +184,8 @@ class ConstraintReader {
   }
 
   void fail(std::string message, std::string_view remedy, std::size_t offset) {
-    reader_.fail({ErrorCode::parse_failure, std::move(message), std::string(remedy), place_in_string(string_, offset), {}});
+    reader_.fail(
+        {ErrorCode::parse_failure, std::move(message), std::string(remedy), place_in_string(string_, offset), {}});
   }
 
   TomlReader& reader_;

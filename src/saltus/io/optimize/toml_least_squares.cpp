@@ -27,7 +27,8 @@ class LeastSquaresReader {
   model::LeastSquaresDescription read(const TomlTable& table) {
     for (const auto& entry : table) read_key(entry);
     if (part_.of.empty()) {
-      fail("this table has no `of`", "write of = [\"q\", \"v\"]: the expressions that follow a reference", part_.location);
+      fail("this table has no `of`", "write of = [\"q\", \"v\"]: the expressions that follow a reference",
+           part_.location);
     }
     if (!reader_.failed()) check_reference();
     if (!reader_.failed()) check_weight();
@@ -117,8 +118,9 @@ class LeastSquaresReader {
     bool fits = !is_matrix_ || rows.size() == size;
     for (const auto& row : rows) fits = fits && row.size() == size;
     if (!fits) {
-      fail(is_matrix_ ? fmt::format("the weight is no matrix of {0} rows with {0} entries, one per expression", size)
-                      : fmt::format("`of` has {} expression{}, `weight` {}", size, size == 1 ? "" : "s", rows[0].size()),
+      fail(is_matrix_
+               ? fmt::format("the weight is no matrix of {0} rows with {0} entries, one per expression", size)
+               : fmt::format("`of` has {} expression{}, `weight` {}", size, size == 1 ? "" : "s", rows[0].size()),
            "write one weight per expression, or a symmetric matrix", weight_);
       return;
     }

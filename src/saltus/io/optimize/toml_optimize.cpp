@@ -40,7 +40,8 @@ void read_option_of_optimize(TomlReader& reader, const std::string& key, const T
   }
   auto error = options.error();
   error.location = unknown ? entry.location : entry.value.location;
-  if (!unknown && error.code != ErrorCode::not_available) error.message = fmt::format("{}: {}", entry.key, error.message);
+  if (!unknown && error.code != ErrorCode::not_available)
+    error.message = fmt::format("{}: {}", entry.key, error.message);
   reader.fail(std::move(error));
 }
 
@@ -152,8 +153,8 @@ void read_speed(TomlReader& reader, const TomlEntry& entry, model::ClockDescript
     }
   }
   if (!clock.speed_lower || !clock.speed_upper) {
-    reader.fail(problem_mistake("speed needs two bounds", "write speed = { lower = 1, upper = 100 }",
-                                entry.value.location));
+    reader.fail(
+        problem_mistake("speed needs two bounds", "write speed = { lower = 1, upper = 100 }", entry.value.location));
     return;
   }
   const auto lower = constant_value(*clock.speed_lower), upper = constant_value(*clock.speed_upper);
@@ -172,9 +173,12 @@ void check_free(TomlReader& reader, const std::string& what, const expression::N
                 const expression::NodePtr& lower, const expression::NodePtr& upper, const SourceLocation& location) {
   if (reader.failed()) return;
   if (!lower || !upper) {
-    reader.fail(problem_mistake(
-        fmt::format("{} is free and has no {} bound", what, lower ? "upper" : upper ? "lower" : "lower and no upper"),
-        "what is optimised needs finite numbers or expressions for `lower` and `upper`", location));
+    reader.fail(problem_mistake(fmt::format("{} is free and has no {} bound", what,
+                                            lower   ? "upper"
+                                            : upper ? "lower"
+                                                    : "lower and no upper"),
+                                "what is optimised needs finite numbers or expressions for `lower` and `upper`",
+                                location));
     return;
   }
   const auto from = constant_value(*lower), to = constant_value(*upper);
@@ -184,10 +188,10 @@ void check_free(TomlReader& reader, const std::string& what, const expression::N
   }
   const auto begin = initial ? constant_value(*initial) : std::nullopt;
   if (begin && ((from && *begin < *from) || (to && *begin > *to))) {
-    reader.fail(problem_mistake(
-        fmt::format("{}: initial ({}) is {}", what, *begin,
-                    from && *begin < *from ? fmt::format("below lower ({})", *from) : fmt::format("above upper ({})", *to)),
-        "choose lower <= initial <= upper", location));
+    reader.fail(problem_mistake(fmt::format("{}: initial ({}) is {}", what, *begin,
+                                            from && *begin < *from ? fmt::format("below lower ({})", *from)
+                                                                   : fmt::format("above upper ({})", *to)),
+                                "choose lower <= initial <= upper", location));
   }
 }
 
