@@ -51,7 +51,7 @@ std::optional<double> number_of(const Json& json) {
   return std::nullopt;
 }
 
-std::string shown(const Json& json) {
+std::string json_text(const Json& json) {
   const auto text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
   constexpr std::size_t longest = 40;
   return text.size() > longest ? text.substr(0, longest) + "..." : text;
@@ -97,7 +97,7 @@ JsonFile::JsonFile(const std::string& text, std::string file) : file_(std::move(
     error_->location = {file_, static_cast<int>(line), static_cast<int>(column)};
     return;
   }
-  if (!json_.is_object()) fail(fmt::format("expected a JSON object, found {}", shown(json_)));
+  if (!json_.is_object()) fail(fmt::format("expected a JSON object, found {}", json_text(json_)));
 }
 
 void JsonFile::fail(std::string message, std::string remedy, ErrorCode code) {
@@ -117,7 +117,7 @@ std::vector<double> JsonFile::numbers(const char* key, std::optional<std::size_t
   if (json == nullptr) return std::vector<double>(size.value_or(0), 0.0);
   const auto take = [&](const Json& entry) {
     const auto number = number_of(entry);
-    if (!number) fail(fmt::format("{}: expected a number, Infinity or -Infinity, found {}", key, shown(entry)));
+    if (!number) fail(fmt::format("{}: expected a number, Infinity or -Infinity, found {}", key, json_text(entry)));
     values.push_back(number.value_or(0.0));
   };
   if (!json->is_array()) take(*json);
@@ -138,7 +138,7 @@ std::string JsonFile::stream(const char* key, const char* what) {
   constexpr std::int64_t protocol = 3;
   if (bytes.size() < 17 || whole_number_at(bytes, 0) != mark) {
     fail(fmt::format("{}: expected {} serialised by CasADi (a string of letters a to p), found {}", key, what,
-                     shown(*json)));
+                     json_text(*json)));
   } else if (const auto found = whole_number_at(bytes, 8); found != protocol) {
     fail(fmt::format("{}: serialised with protocol {} of CasADi, this version reads protocol {}", key, found, protocol),
          "write the file with CasADi 3.5 to 3.8", ErrorCode::not_available);

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <casadi/core/function.hpp>
 #include <casadi/core/sx.hpp>
 
 #include "saltus/foreign/nl_lines_internal.hpp"

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <casadi/core/function.hpp>
 #include <casadi/core/sx.hpp>
 
 #include "saltus/mpcc/problem.hpp"

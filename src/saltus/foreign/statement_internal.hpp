@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <casadi/core/function.hpp>
 #include <casadi/core/sx.hpp>
 
 namespace saltus::foreign {

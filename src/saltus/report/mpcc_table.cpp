@@ -15,7 +15,7 @@ constexpr std::size_t variables_shown = 12;
 
 std::string residual(double value) { return std::isfinite(value) ? fmt::format("{:.1e}", value) : "not known"; }
 
-std::string remark(const result::HomotopyStep& step) {
+std::string step_remark(const result::HomotopyStep& step) {
   if (!step.message.empty()) return shortened(step.message, 60);
   return step.termination == result::Termination::completed ? "" : std::string(name(step.termination));
 }
@@ -27,7 +27,7 @@ std::string path_table(const std::vector<result::HomotopyStep>& steps) {
     rows.push_back({std::string(name(step.phase)), fmt::format("{:.0e}", step.sigma),
                     fmt::format("{}", step.iterations), fmt::format("{:.9g}", step.objective),
                     residual(step.primal_infeasibility), residual(step.complementarity_residual),
-                    fmt::format("{:.2f}", step.seconds), remark(step)});
+                    fmt::format("{:.2f}", step.seconds), step_remark(step)});
   }
   return "path\n" + aligned(rows);
 }

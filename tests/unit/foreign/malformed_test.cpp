@@ -226,7 +226,9 @@ TEST(Malformed, EveryByteChanged) {
       auto text = whole;
       text[i] = other;
       const auto problem = parse(text, "changed.nl");  // an error or a problem; never anything else
-      if (!problem) EXPECT_FALSE(problem.error().message.empty());
+      if (!problem) {
+        EXPECT_FALSE(problem.error().message.empty());
+      }
     }
   }
 }

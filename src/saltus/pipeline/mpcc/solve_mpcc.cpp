@@ -11,13 +11,13 @@ namespace saltus::pipeline {
 namespace {
 
 /// Without negative zeros, which say nothing.
-std::vector<double> values_of(const Eigen::VectorXd& vector) {
+std::vector<double> list_of(const Eigen::VectorXd& vector) {
   std::vector<double> values;
   for (const double value : vector) values.push_back(value + 0.0);
   return values;
 }
 
-Expected<std::optional<solver::Start>> start_of(const foreign::Problem& problem,
+Expected<std::optional<solver::Start>> start_at(const foreign::Problem& problem,
                                                 const std::optional<std::vector<double>>& x) {
   if (!x) return std::optional<solver::Start>();
   const auto n = problem.file_variables();
@@ -37,15 +37,15 @@ result::MpccResult result_of(const foreign::Problem& problem, const solver::Solu
   result.status.termination = solution.termination;
   result.status.message = solution.message;
   result.objective = problem.in_sense_of_file(solution.objective);
-  result.x = values_of(solution.w.head(n));
+  result.x = list_of(solution.w.head(n));
   result.names = problem.file_names();
   result.certificate = solution.certificate;
   const auto& multipliers = solution.multipliers;
   const auto of_file = [n](const Eigen::VectorXd& all) {
-    return values_of(all.head(std::min<Eigen::Index>(n, all.size())));
+    return list_of(all.head(std::min<Eigen::Index>(n, all.size())));
   };
-  result.multipliers = {values_of(multipliers.rows), of_file(multipliers.lower), of_file(multipliers.upper),
-                        values_of(multipliers.G), values_of(multipliers.H)};
+  result.multipliers = {list_of(multipliers.rows), of_file(multipliers.lower), of_file(multipliers.upper),
+                        list_of(multipliers.G), list_of(multipliers.H)};
   result.homotopy = solution.homotopy;
   for (auto& step : result.homotopy) step.objective = problem.in_sense_of_file(step.objective);
   result.statistics.iterations = solution.iterations;
@@ -61,7 +61,7 @@ result::MpccResult result_of(const foreign::Problem& problem, const solver::Solu
 
 Expected<result::MpccResult> solve_mpcc(foreign::Problem& problem, const solver::SolveOptions& options,
                                         const std::optional<std::vector<double>>& x) {
-  const auto start = start_of(problem, x);
+  const auto start = start_at(problem, x);
   if (!start) return tl::unexpected(start.error());
   const auto began = std::chrono::steady_clock::now();
   adapters::IpoptSolver nlp;
