@@ -32,6 +32,12 @@ std::vector<ActiveSide> flipped(std::vector<ActiveSide> sides, const std::vector
   return sides;
 }
 
+/// A limit of the whole holds for its linear programs, too.
+double seconds_of_lpcc(const Run& run) {
+  const double left = run.options.time_limit ? *run.options.time_limit - run.seconds() : lpcc_seconds;
+  return std::clamp(left, 0.0, lpcc_seconds);
+}
+
 /// Improvements below are rounding.
 bool falls(double before, double after) { return after < before - 1e-11 * std::max(1.0, std::abs(before)); }
 
@@ -104,8 +110,7 @@ class Descent {
     const double started = run_.seconds();
     const auto linear =
         certificate::linearise(run_.problem, branch().w, states_, &branch().problem->reduction(), radius);
-    const double left = run_.options.time_limit ? *run_.options.time_limit - started : lpcc_seconds;
-    const LpccSolution found = run_.lpcc.solve(linear.problem, std::clamp(left, 0.0, lpcc_seconds));
+    const LpccSolution found = run_.lpcc.solve(linear.problem, seconds_of_lpcc(run_));
     result::HomotopyStep step;
     step.phase = result::HomotopyPhase::lpcc;
     step.solver = run_.lpcc.name();
@@ -152,7 +157,7 @@ void rescue(Run& run) {
   const auto states = certificate::pair_states(run.problem, w, sides, undecided);
   const auto linear = certificate::linearise(run.problem, w, states, nullptr, std::max(radius, 10.0 * undecided));
   if (!run.is_over() && !linear.groups.empty()) {
-    const LpccSolution found = run.lpcc.solve(linear.problem, lpcc_seconds);
+    const LpccSolution found = run.lpcc.solve(linear.problem, seconds_of_lpcc(run));
     std::vector<ActiveSide> proposed = sides;
     if (found.termination == Termination::completed) {
       for (std::size_t i = 0; i < linear.groups.size(); ++i) {
@@ -190,8 +195,9 @@ void certify_relaxed(Run& run) {
     if (of.stationarity <= run.options.tolerance) of.b_stationary = true;
     return;
   }
+  if (run.stopped) return;
   const auto linear = certificate::linearise(run.problem, w, states, nullptr, radius);
-  const LpccSolution found = run.lpcc.solve(linear.problem, lpcc_seconds);
+  const LpccSolution found = run.lpcc.solve(linear.problem, seconds_of_lpcc(run));
   if (found.termination != Termination::completed) return;
   of.lpcc_decrease = std::min(found.objective, 0.0) / linear.scale;
   of.b_stationary = *of.lpcc_decrease >= -run.options.tolerance;

@@ -21,7 +21,7 @@ tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   return tl::unexpected(std::move(error));
 }
 
-Expected<void> check(const SolveOptions& options) {
+Expected<void> check_options(const SolveOptions& options) {
   const auto& [initial, factor, last] = options.schedule;
   const auto code = ErrorCode::invalid_option;
   if (!(initial > 0.0 && std::isfinite(initial))) {
@@ -99,7 +99,7 @@ std::string reason(const Run& run) {
   return fmt::format("not B-stationary: a direction of descent has slope {:.3g}", of.lpcc_decrease.value_or(0.0));
 }
 
-void conclude(Run& run) {
+void judge(Run& run) {
   Solution& solution = run.solution;
   const auto& of = solution.certificate;
   const double tolerance = run.options.tolerance;
@@ -124,7 +124,7 @@ void conclude(Run& run) {
 
 Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
                          const std::optional<Start>& start) {
-  if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
+  if (auto checked = check_options(options); !checked) return tl::unexpected(checked.error());
   Start from = start.value_or(Start{.w = problem.start(), .multipliers = {}});
   SALTUS_ASSERT(from.w.size() == problem.variables());
   const auto& bounds = problem.variable_bounds();
@@ -147,7 +147,7 @@ Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpc
     solution.w = run.relaxed.point.w.head(problem.variables());
   }
   solution.objective = problem.objective(solution.w);
-  conclude(run);
+  judge(run);
   return std::move(solution);
 }
 

@@ -14,7 +14,7 @@ using crossover::Hold;
 using mpcc::ActiveSide;
 using mpcc::Sign;
 
-constexpr double no_bound = std::numeric_limits<double>::infinity();
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// Collects rows of A d; variables that cannot move have no entries.
 class Rows {
@@ -37,7 +37,7 @@ class Rows {
   }
   /// sum of rows >= 0; its number.
   int add_sum(const std::vector<int>& rows) {
-    const int own = begin(0.0, no_bound);
+    const int own = begin(0.0, unlimited);
     for (const int row : rows) add_entries(own, row);
     return own;
   }
@@ -127,7 +127,7 @@ void add_constraints(mpcc::Problem& problem, const Eigen::VectorXd& c, const Pai
     if (problem.pair_group(pair) < 0 || problem.signs()[at(side)] == Sign::implied) continue;
     const auto own = side < problem.pairs() ? ActiveSide::G : ActiveSide::H;
     const bool is_zero = !states.is_open[at(pair)] && states.sides[at(pair)] == own;
-    rows.add(n_g + side, is_zero ? 0.0 : c[n_g + side], 0.0, is_zero ? 0.0 : no_bound);
+    rows.add(n_g + side, is_zero ? 0.0 : c[n_g + side], 0.0, is_zero ? 0.0 : unlimited);
   }
 }
 

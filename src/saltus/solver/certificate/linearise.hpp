@@ -16,7 +16,8 @@ struct Linearisation {
   std::vector<std::vector<int>> groups;  ///< pairs of each disjunction
 };
 
-/// @param reduction  of the branch problem that w solves: what its closure holds or makes equal stays so; or null
+/// @param reduction  of the branch problem that w solves: what its closure holds or makes equal stays so; or null.
+///                   LIMIT: other sides may have another closure, with more directions; flips see those, this does not
 [[nodiscard]] Linearisation linearise(mpcc::Problem& problem, ConstVectorView w, const PairStates& states,
                                       const crossover::Reduction* reduction, double radius);
 

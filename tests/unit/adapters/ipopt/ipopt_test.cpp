@@ -89,6 +89,49 @@ TEST(Ipopt, SameProblemTwiceSameBits) {
   EXPECT_EQ(first.y, second.y);
 }
 
+TEST(Ipopt, OtherProblemsBeforeLeaveNoTrace) {
+  auto problem = hock_schittkowski_15();
+  const NlpPoint start{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+  NlpPoint fresh = start;
+  EXPECT_EQ(adapters::IpoptSolver().solve(problem, fresh, {}).termination, Termination::completed);
+
+  PolynomialStatement line;  // of another size, and one that fails: w = 1 and w = 2
+  line.variables = 1;
+  line.f = {{{1.0, {2}}}};
+  line.g = {{{{1.0, {1}}}}};
+  line.g_bounds = {Eigen::VectorXd::Ones(1), Eigen::VectorXd::Constant(1, infinity)};
+  PolynomialProblem other(line);
+  line.g = {{{{1.0, {1}}}}, {{{1.0, {1}}}}};
+  line.g_bounds = {Eigen::Vector2d(1.0, 2.0), Eigen::Vector2d(1.0, 2.0)};
+  PolynomialProblem impossible(line);
+  adapters::IpoptSolver solver;
+  for (PolynomialProblem* before : {&other, &impossible, &other}) {
+    NlpPoint point{.w = Eigen::VectorXd::Zero(1), .y = {}, .z_lower = {}, .z_upper = {}};
+    const NlpReport report = solver.solve(*before, point, {});
+    EXPECT_EQ(report.termination == Termination::completed, before == &other);
+    NlpPoint again = start;
+    EXPECT_EQ(solver.solve(problem, again, {.iteration_limit = 3}).termination, Termination::iteration_limit);
+    again = start;
+    EXPECT_EQ(solver.solve(problem, again, {}).termination, Termination::completed);
+    EXPECT_EQ(again.w, fresh.w);
+    EXPECT_EQ(again.y, fresh.y);
+  }
+}
+
+TEST(Ipopt, StopsBetweenIterations) {
+  auto problem = hock_schittkowski_15();
+  adapters::IpoptSolver solver;
+  NlpPoint point{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+  int asked = 0;
+  NlpOptions options;
+  options.is_interrupted = [&asked] { return ++asked > 3; };
+  const NlpReport report = solver.solve(problem, point, options);
+  EXPECT_EQ(report.termination, Termination::stopped_by_user);
+  EXPECT_LE(report.iterations, 3);
+  EXPECT_GE(report.evaluation_seconds, 0.0);
+  EXPECT_TRUE(point.w.allFinite());
+}
+
 class EveryRelaxation : public testing::TestWithParam<Relaxation> {
  protected:
   homotopy::PathResult follow(mpcc::Problem& problem, const Eigen::VectorXd& start) {
