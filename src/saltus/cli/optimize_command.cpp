@@ -15,7 +15,7 @@
 #include "saltus/cli/terminal.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/optimize.hpp"
+#include "saltus/pipeline/optimal_control/optimize.hpp"
 #include "saltus/pipeline/optimize_fields.hpp"
 #include "saltus/pipeline/surfaces.hpp"
 #include "saltus/report/mpcc_table.hpp"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/describe_ocp.hpp"
+#include "saltus/pipeline/optimal_control/describe_ocp.hpp"
 
 namespace saltus::cli {
 namespace {

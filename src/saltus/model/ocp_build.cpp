@@ -16,9 +16,9 @@ namespace saltus::model {
 namespace {
 
 using expression::NodePtr;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-NodePtr difference(const NodePtr& left, const NodePtr& right) {
+NodePtr subtracted(const NodePtr& left, const NodePtr& right) {
   auto node = std::make_shared<expression::Node>();
   node->value = expression::Binary{expression::BinaryOperator::subtract, left, right};
   node->location = left->location;
@@ -139,7 +139,7 @@ class OcpBuild {
       plan.lower = quantities_.add(small, "the bound of '" + stated.text + "'");
       if (equal) plan.upper = plan.lower;
     } else {
-      if (auto error = plan_middle(difference(small, large), equal ? Curvature::linear : Curvature::convex, plan))
+      if (auto error = plan_middle(subtracted(small, large), equal ? Curvature::linear : Curvature::convex, plan))
         return error;
       plan.at_zero_upper = true;
       plan.at_zero_lower = equal;
@@ -211,7 +211,7 @@ class OcpBuild {
     for (const auto& [planned, list] : {std::pair{&path_, &ocp_.path}, std::pair{&terminals_, &ocp_.terminal}}) {
       for (const auto& plan : *planned) {
         OcpConstraint constraint{.name = plan.stated->text, .output = quantities_.output(plan.middle),
-                                 .lower = -infinity, .upper = infinity, .norm = plan.stated->norm};
+                                 .lower = -unbounded, .upper = unbounded, .norm = plan.stated->norm};
         for (const auto& [quantity, zero, bound] :
              {std::tuple{plan.lower, plan.at_zero_lower, &constraint.lower},
               std::tuple{plan.upper, plan.at_zero_upper, &constraint.upper}}) {
@@ -231,7 +231,7 @@ class OcpBuild {
       }
     }
     for (const int row : slack_rows_) {
-      ocp_.path.push_back({.name = "kink of controls", .output = quantities_.output(row), .lower = -infinity,
+      ocp_.path.push_back({.name = "kink of controls", .output = quantities_.output(row), .lower = -unbounded,
                            .upper = 0.0, .is_slack = true});
     }
     for (const auto& [first, second] : complementarities_) {

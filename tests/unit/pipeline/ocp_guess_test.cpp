@@ -1,5 +1,5 @@
 // Where an optimisation begins.
-#include "saltus/pipeline/ocp_guess.hpp"
+#include "saltus/pipeline/optimal_control/ocp_guess.hpp"
 
 #include <cmath>
 #include <string>

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
-#include "saltus/pipeline/optimized_run.hpp"
+#include "saltus/pipeline/optimal_control/optimized_run.hpp"
 
 namespace saltus::pipeline {
 

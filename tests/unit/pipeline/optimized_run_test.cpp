@@ -1,5 +1,5 @@
 // Optimised points in the columns of a result: exact solutions written down as points.
-#include "saltus/pipeline/optimized_run.hpp"
+#include "saltus/pipeline/optimal_control/optimized_run.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Switches of two trajectories compared.
 #include <gtest/gtest.h>
 
-#include "saltus/pipeline/switch_comparison_internal.hpp"
+#include "saltus/pipeline/optimal_control/switch_comparison_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

@@ -1,5 +1,5 @@
 // Optimised trajectories simulated again: closed forms, falsified in one place each.
-#include "saltus/pipeline/verify.hpp"
+#include "saltus/pipeline/optimal_control/verify.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -99,6 +99,9 @@ struct OcpStructure {
   [[nodiscard]] std::vector<int> end_places(int element_number) const;  ///< t, x, selections of its last stage
 };
 
+/// Variables of the state at the right end of an element.
+[[nodiscard]] std::vector<int> right_state(const OcpStructure& made, const OcpElement& element);
+
 [[nodiscard]] Expected<std::unique_ptr<OcpStructure>> ocp_structure(std::shared_ptr<OcpKernel> kernel,
                                                                     const model::Ocp& ocp,
                                                                     const reformulation::Dcs& dcs,

@@ -6,17 +6,12 @@
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/pipeline/number_list_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
 
 /// Without negative zeros, which say nothing.
-std::vector<double> list_of(const Eigen::VectorXd& vector) {
-  std::vector<double> values;
-  for (const double value : vector) values.push_back(value + 0.0);
-  return values;
-}
-
 Expected<std::optional<solver::Start>> start_at(const foreign::Problem& problem,
                                                 const std::optional<std::vector<double>>& x) {
   if (!x) return std::optional<solver::Start>();

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
-#include "saltus/pipeline/resimulation_internal.hpp"
+#include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

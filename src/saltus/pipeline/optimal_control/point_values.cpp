@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/pipeline/point_values_internal.hpp"
+#include "saltus/pipeline/optimal_control/point_values_internal.hpp"
 
 namespace saltus::pipeline {
 

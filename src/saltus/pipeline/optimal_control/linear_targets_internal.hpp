@@ -6,7 +6,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/point_values_internal.hpp"
+#include "saltus/pipeline/optimal_control/point_values_internal.hpp"
 
 namespace saltus::pipeline {
 

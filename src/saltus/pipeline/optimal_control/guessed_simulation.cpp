@@ -6,7 +6,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/guessed_simulation_internal.hpp"
+#include "saltus/pipeline/optimal_control/guessed_simulation_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

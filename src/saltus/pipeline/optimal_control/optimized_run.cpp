@@ -1,4 +1,4 @@
-#include "saltus/pipeline/optimized_run.hpp"
+#include "saltus/pipeline/optimal_control/optimized_run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/element_recorder.hpp"
 #include "saltus/fesd_integrator/recorder.hpp"
-#include "saltus/pipeline/optimized_pieces_internal.hpp"
+#include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

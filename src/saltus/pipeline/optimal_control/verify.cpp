@@ -1,4 +1,4 @@
-#include "saltus/pipeline/verify.hpp"
+#include "saltus/pipeline/optimal_control/verify.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/pipeline/resimulation_internal.hpp"
-#include "saltus/pipeline/switch_comparison_internal.hpp"
+#include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
+#include "saltus/pipeline/optimal_control/switch_comparison_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

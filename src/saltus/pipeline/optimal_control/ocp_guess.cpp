@@ -1,4 +1,4 @@
-#include "saltus/pipeline/ocp_guess.hpp"
+#include "saltus/pipeline/optimal_control/ocp_guess.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/pipeline/guessed_simulation_internal.hpp"
-#include "saltus/pipeline/linear_targets_internal.hpp"
-#include "saltus/pipeline/point_values_internal.hpp"
+#include "saltus/pipeline/optimal_control/guessed_simulation_internal.hpp"
+#include "saltus/pipeline/optimal_control/linear_targets_internal.hpp"
+#include "saltus/pipeline/optimal_control/point_values_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

@@ -1,4 +1,4 @@
-#include "saltus/pipeline/describe_ocp.hpp"
+#include "saltus/pipeline/optimal_control/describe_ocp.hpp"
 
 #include <cstddef>
 
@@ -7,8 +7,8 @@
 #include "saltus/base/at.hpp"
 #include "saltus/model/ocp_influence.hpp"
 #include "saltus/mpcc/chain.hpp"
-#include "saltus/pipeline/ocp_problem.hpp"
-#include "saltus/pipeline/point_values_internal.hpp"
+#include "saltus/pipeline/optimal_control/ocp_problem.hpp"
+#include "saltus/pipeline/optimal_control/point_values_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

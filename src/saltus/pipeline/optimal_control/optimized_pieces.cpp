@@ -6,7 +6,7 @@
 #include "saltus/base/contracts.hpp"
 #include "saltus/fesd_integrator/held_values.hpp"
 #include "saltus/fesd_integrator/projected_field.hpp"
-#include "saltus/pipeline/optimized_pieces_internal.hpp"
+#include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

@@ -8,7 +8,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/verify.hpp"
+#include "saltus/pipeline/optimal_control/verify.hpp"
 
 namespace saltus::pipeline {
 

@@ -8,7 +8,7 @@
 #include "saltus/discretization/ocp/ocp_problem.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/mpcc/problem.hpp"
-#include "saltus/pipeline/verify.hpp"
+#include "saltus/pipeline/optimal_control/verify.hpp"
 #include "saltus/reformulation/dcs.hpp"
 #include "saltus/result/result.hpp"
 

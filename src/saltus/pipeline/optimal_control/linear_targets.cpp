@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/pipeline/linear_targets_internal.hpp"
+#include "saltus/pipeline/optimal_control/linear_targets_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

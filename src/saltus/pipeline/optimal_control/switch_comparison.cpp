@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/pipeline/switch_comparison_internal.hpp"
+#include "saltus/pipeline/optimal_control/switch_comparison_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -57,7 +57,7 @@ std::vector<std::pair<std::size_t, std::size_t>> paired(const std::vector<Switch
   return pairs;
 }
 
-struct Interval {
+struct TimeSpan {
   double from = 0.0, until = 0.0;
   double tolerance = 0.0;
   [[nodiscard]] bool reaches(double t) const { return t >= from - tolerance && t <= until + tolerance; }
@@ -67,7 +67,7 @@ struct Interval {
 /// The comparison of one place after the other within one interval.
 class OneInterval {
  public:
-  OneInterval(const Interval& interval, const std::vector<Switch>& simulated, const std::vector<Switch>& solution,
+  OneInterval(const TimeSpan& interval, const std::vector<Switch>& simulated, const std::vector<Switch>& solution,
               std::vector<bool>& found, SwitchComparison& comparison)
       : interval_(interval), simulated_(simulated), solution_(solution), found_(found), comparison_(comparison) {}
 
@@ -100,7 +100,7 @@ class OneInterval {
     }
   }
 
-  const Interval interval_;
+  const TimeSpan interval_;
   const std::vector<Switch>& simulated_;
   const std::vector<Switch>& solution_;
   std::vector<bool>& found_;
@@ -136,13 +136,13 @@ SwitchComparison compare_switches(const std::vector<double>& times, const std::v
                                   const std::vector<Switch>& solution, double end_tolerance) {
   SwitchComparison comparison;
   std::vector<bool> found(solution.size(), false);
-  std::vector<Interval> intervals;
+  std::vector<TimeSpan> intervals;
   for (std::size_t k = 0; k + 1 < times.size(); ++k) {
     intervals.push_back({times[k], times[k + 1], end_tolerance * (times[k + 1] - times[k])});
     OneInterval(intervals.back(), simulated[k], solution, found, comparison).compare();
   }
   for (std::size_t i = 0; i < solution.size(); ++i) {
-    const auto inside = [&](const Interval& interval) { return interval.is_inside(solution[i].t); };
+    const auto inside = [&](const TimeSpan& interval) { return interval.is_inside(solution[i].t); };
     if (!found[i] && std::any_of(intervals.begin(), intervals.end(), inside)) ++comparison.extra;
   }
   return comparison;

@@ -1,0 +1,142 @@
+#include "saltus/pipeline/optimal_control/ocp_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/base/at.hpp"
+#include "saltus/pipeline/element_choices_internal.hpp"
+#include "saltus/pipeline/optimal_control/ocp_guess.hpp"
+#include "saltus/pipeline/simulate_elements_internal.hpp"
+#include "saltus/reformulation/dcs.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+Error refusal(std::string message, std::string remedy) {
+  Error error;
+  error.code = ErrorCode::invalid_option;
+  error.message = std::move(message);
+  error.remedy = std::move(remedy);
+  error.context.emplace_back("in [optimize]");
+  return error;
+}
+
+Expected<std::vector<int>> elements_of(const OptimizeOptions& options) {
+  const long intervals = options.control_intervals;
+  if (intervals < 1) return tl::unexpected(refusal("control_intervals is missing", "give a whole number >= 1"));
+  const auto& stated = options.elements;
+  if (stated.size() != 1 && static_cast<long>(stated.size()) != intervals) {
+    return tl::unexpected(refusal(fmt::format("elements lists {} numbers for {} control intervals", stated.size(), intervals),
+                                  "give one number, or one per interval"));
+  }
+  std::vector<int> elements;
+  for (long k = 0; k < intervals; ++k) {
+    elements.push_back(static_cast<int>(stated.size() == 1 ? stated.front() : stated[static_cast<std::size_t>(k)]));
+    if (elements.back() < 1) return tl::unexpected(refusal("elements has to be >= 1", "give whole numbers >= 1"));
+  }
+  return elements;
+}
+
+discretization::FesdOptions discretization_options(const OptimizeOptions& options) {
+  auto chosen = fesd_options(options.element);
+  if (!options.switch_detection) {
+    chosen.cross_complementarity = discretization::CrossComplementarity::same_stage;
+    chosen.step_equilibration = discretization::StepEquilibration::none;
+  }
+  return chosen;
+}
+
+/// Values of a stored trajectory at a time: straight lines between its rows.
+std::vector<double> row_at(const std::vector<double>& t, const std::vector<std::vector<double>>& rows, double time) {
+  const auto behind = std::upper_bound(t.begin(), t.end(), time);
+  if (behind == t.begin()) return rows.front();
+  if (behind == t.end()) return rows.back();
+  const auto i = static_cast<std::size_t>(behind - t.begin());
+  const double length = t[i] - t[i - 1];
+  const double share = length > 0.0 ? (time - t[i - 1]) / length : 1.0;
+  std::vector<double> row = rows[i - 1];
+  for (std::size_t k = 0; k < row.size(); ++k) row[k] += share * (rows[i][k] - rows[i - 1][k]);
+  return row;
+}
+
+/// A start from a stored result of the same model, possibly with another number of intervals.
+Expected<void> take_result(const model::Ocp& ocp, const result::Result& from, int intervals,
+                           const std::vector<double>& fractions, discretization::OcpGuessValues& guess) {
+  const auto names = [](const std::vector<std::string>& list) { return fmt::format("{}", fmt::join(list, ", ")); };
+  const std::vector<std::string> controls(ocp.system.control_names.begin(),
+                                          ocp.system.control_names.begin() + ocp.user_controls);
+  if (from.states != ocp.system.state_names || from.controls != controls) {
+    return tl::unexpected(refusal(fmt::format("the result to start from belongs to another model: it has the states {} "
+                                              "and the controls {}",
+                                              names(from.states), names(from.controls)),
+                                  fmt::format("this model has the states {} and the controls {}",
+                                              names(ocp.system.state_names), names(controls))));
+  }
+  if (from.trajectory.t.empty()) return {};
+  const double begin = from.trajectory.t.front();
+  const double length = from.trajectory.t.back() - begin;
+  if (ocp.horizon.free) guess.horizon = std::clamp(length, ocp.horizon.lower, ocp.horizon.upper);
+  guess.initial_state = from.trajectory.x.front();
+  for (std::size_t i = 0; i < fractions.size(); ++i) {
+    guess.states[i] = row_at(from.trajectory.t, from.trajectory.x, begin + fractions[i] * length);
+  }
+  for (int k = 0; k < intervals && !from.trajectory.u.empty(); ++k) {
+    const double middle = begin + length * (k + 0.5) / intervals;
+    const auto behind = std::upper_bound(from.trajectory.t.begin(), from.trajectory.t.end(), middle);
+    const auto row = static_cast<std::size_t>(std::max<std::ptrdiff_t>(behind - from.trajectory.t.begin() - 1, 0));
+    const auto& u = from.trajectory.u[row];
+    std::copy(u.begin(), u.end(), guess.controls[at(k)].begin());
+  }
+  for (const auto& [name, value] : from.model.parameters) {
+    const auto& known = ocp.system.parameter_names;
+    const auto found = std::find(known.begin(), known.end(), name);
+    const auto i = static_cast<std::size_t>(found - known.begin());
+    if (found != known.end() && ocp.free_parameters[i]) guess.parameters[i] = value;
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptions& options) {
+  auto elements = elements_of(options);
+  if (!elements) return tl::unexpected(elements.error());
+  auto tableau =
+      discretization::butcher_tableau(family(options.element.scheme), static_cast<int>(options.element.stages));
+  if (!tableau) return tl::unexpected(tableau.error());
+  const auto dcs = reformulation::reformulate(ocp.system, reformulation_options(options.element));
+  if (!dcs) return tl::unexpected(dcs.error());
+  auto kernel = discretization::OcpKernel::compile(ocp, *dcs, *tableau, discretization_options(options),
+                                                   native_code(options.native));
+  if (!kernel) return tl::unexpected(kernel.error());
+  auto problem = discretization::OcpProblem::make(*kernel, ocp, *dcs, *elements);
+  if (!problem) return tl::unexpected(problem.error());
+
+  const auto fractions = (*problem)->start_fractions();
+  const int intervals = static_cast<int>(elements->size());
+  auto begin = guess_start(ocp, intervals, fractions);
+  if (!begin) return tl::unexpected(begin.error());
+  discretization::OcpGuessValues guess{.horizon = begin->horizon,
+                                       .parameters = std::move(begin->parameters),
+                                       .controls = std::move(begin->controls),
+                                       .initial_state = std::move(begin->initial_state),
+                                       .states = std::move(begin->states),
+                                       .simulated = options.start == StartValues::simulated};
+  if (options.start_from) {
+    auto taken = take_result(ocp, *options.start_from, intervals, fractions, guess);
+    if (!taken) return tl::unexpected(taken.error());
+  }
+  (*problem)->set_start(guess);
+  if (const auto name = (*problem)->not_finite((*problem)->start()); !name.empty()) {
+    auto error = refusal(fmt::format("{} is not finite at the initial guess", name),
+                         "give an initial_guess at which costs and constraints are defined");
+    error.code = ErrorCode::invalid_model;
+    return tl::unexpected(std::move(error));
+  }
+  return StatedProblem{std::move(*problem), std::move(*tableau), std::move(begin->warnings)};
+}
+
+}  // namespace saltus::pipeline

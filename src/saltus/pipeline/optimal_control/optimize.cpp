@@ -1,0 +1,200 @@
+#include "saltus/pipeline/optimal_control/optimize.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/adapters/highs/highs_lpcc.hpp"
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/base/at.hpp"
+#include "saltus/pipeline/element_choices_internal.hpp"
+#include "saltus/pipeline/number_list_internal.hpp"
+#include "saltus/pipeline/optimal_control/ocp_problem.hpp"
+#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/pipeline/optimal_control/optimized_run.hpp"
+#include "saltus/pipeline/optimal_control/verify.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using result::Termination;
+
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Eigen::VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// What does not depend on how the solution went.
+result::Result result_frame(const model::Ocp& ocp, const OptimizeOptions& options) {
+  const auto& system = ocp.system;
+  result::Result result;
+  result.command = "optimize";
+  result.method = "fesd";
+  result.model.name = system.name;
+  result.model.description = system.description;
+  result.states = system.state_names;
+  result.controls.assign(system.control_names.begin(), system.control_names.begin() + ocp.user_controls);
+  result.outputs.assign(system.output_names.begin(), system.output_names.begin() + ocp.user_outputs);
+  for (const auto& column : system.columns) result.switching_functions.push_back(column.name);
+  for (const auto& group : system.mode_groups) {
+    if (group.first >= 0) result.region_groups.push_back({group.name, group.mode_names});
+  }
+  result.options = option_record(options);
+  return result;
+}
+
+void take_bounds(const model::Ocp& ocp, result::Optimization& found) {
+  const auto& system = ocp.system;
+  found.state_lower = system.state_lower;
+  found.state_upper = system.state_upper;
+  const auto n = ocp.user_controls;
+  found.control_lower.assign(system.control_lower.begin(), system.control_lower.begin() + n);
+  found.control_upper.assign(system.control_upper.begin(), system.control_upper.begin() + n);
+}
+
+void take_solution(const model::Ocp& ocp, const discretization::OcpSolution& solution, result::Optimization& found) {
+  found.horizon = solution.horizon;
+  for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
+    if (ocp.free_parameters[i]) found.parameters.emplace_back(ocp.system.parameter_names[i], solution.parameters[i]);
+  }
+  const std::size_t intervals = solution.controls.size();
+  for (std::size_t k = 0; k <= intervals; ++k) {
+    found.grid.push_back(ocp.from + solution.horizon * static_cast<double>(k) / static_cast<double>(intervals));
+  }
+  found.nodes.push_back(solution.initial_state);
+  for (std::size_t k = 0; k < intervals; ++k) {
+    const auto& u = solution.controls[k];
+    found.u.emplace_back(u.begin(), u.begin() + ocp.user_controls);
+    auto& lengths = found.h.emplace_back();
+    for (const auto& element : solution.elements[k]) lengths.push_back(element.h);
+    found.nodes.push_back(list_of(solution.elements[k].back().end));
+  }
+  if (ocp.clock) found.speed_of_time = solution.speed_of_time;
+}
+
+/// The point that the solver left, in the quantities of the result.
+void take_point(discretization::OcpProblem& problem, const solver::Solution& solution, result::Optimization& found) {
+  found.objective = solution.objective;
+  found.terms = problem.objective_terms(solution.w);
+  found.homotopy = solution.homotopy;
+  found.certificate = solution.certificate;
+  const auto& multipliers = solution.multipliers;
+  if (multipliers.rows.size() == problem.constraints()) {
+    const Eigen::VectorXd bounds = multipliers.upper.size() == problem.variables()
+                                       ? Eigen::VectorXd(multipliers.upper - multipliers.lower)
+                                       : Eigen::VectorXd();
+    found.multipliers = problem.constraint_multipliers(solution.w, multipliers.rows, bounds);
+  }
+  found.primal = list_of(solution.w);
+  found.dual_rows = list_of(multipliers.rows);
+  found.dual_lower = list_of(multipliers.lower);
+  found.dual_upper = list_of(multipliers.upper);
+  auto& statistics = found.statistics;
+  statistics.iterations = solution.iterations;
+  statistics.variables = problem.variables();
+  statistics.equations = problem.constraints();
+  statistics.pairs = problem.pairs();
+  statistics.evaluation_seconds = solution.evaluation_seconds;
+  statistics.linear_algebra_seconds = std::max(solution.solver_seconds - solution.evaluation_seconds, 0.0);
+}
+
+/// completed only if the other engine agrees.
+void judge(const result::Verification& verification, double tolerance, result::Status& status) {
+  if (status.termination != Termination::completed) return;
+  if (verification.interval_defect <= tolerance && verification.message.empty()) return;
+  status.termination = Termination::verification_failed;
+  if (!verification.message.empty() && !(verification.interval_defect <= tolerance)) {
+    status.message = fmt::format("an interval could not be simulated: {}", verification.message);
+    if (!std::isfinite(verification.interval_defect)) return;
+  }
+  if (verification.interval_defect <= tolerance) {
+    status.termination = Termination::completed;
+    return;
+  }
+  const bool missed = verification.switches_missed > 0;
+  status.message = fmt::format(
+      "the event-driven simulation of interval {} differs by {:.3g} of the range of '{}' (verification_tolerance = {:.3g}); "
+      "{}",
+      verification.interval, verification.interval_defect, verification.state, tolerance,
+      missed ? "a switch was missed there: take more elements or more intervals (or fewer stages)"
+             : "take more stages or more elements");
+}
+
+std::optional<solver::Start> same_structure(const discretization::OcpProblem& problem, const OptimizeOptions& options) {
+  if (!options.start_from || !options.start_from->optimization) return std::nullopt;
+  const auto& from = *options.start_from->optimization;
+  if (static_cast<int>(from.primal.size()) != problem.variables() ||
+      static_cast<int>(from.dual_rows.size()) != problem.constraints()) {
+    return std::nullopt;
+  }
+  solver::Start start;
+  start.w = vector_of(from.primal);
+  start.multipliers.rows = vector_of(from.dual_rows);
+  start.multipliers.lower = vector_of(from.dual_lower);
+  start.multipliers.upper = vector_of(from.dual_upper);
+  return start;
+}
+
+}  // namespace
+
+Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& options,
+                                  const OptimizeObservers& observers) {
+  const Stopwatch whole;
+  auto stated = state_problem(ocp, options);
+  if (!stated) return tl::unexpected(stated.error());
+  auto& problem = *stated->problem;
+  result::Result result = result_frame(ocp, options);
+  auto& found = result.optimization.emplace();
+  take_bounds(ocp, found);
+  found.statistics.build_seconds = whole.seconds();
+
+  solver::SolveOptions wanted = options.mpcc;
+  wanted.is_interrupted = observers.is_interrupted;
+  wanted.on_step = observers.on_step;
+  adapters::IpoptSolver ipopt;
+  adapters::HighsLpcc highs;
+  const double build_seconds = found.statistics.build_seconds;
+  auto solution = solver::solve(problem, ipopt, highs, wanted, same_structure(problem, options));
+  if (!solution) return tl::unexpected(solution.error());
+  take_point(problem, *solution, found);
+  found.statistics.build_seconds = build_seconds;
+  result.status.termination = solution->termination;
+  result.status.message = solution->message;
+
+  const auto read = problem.read(solution->w);
+  take_solution(ocp, read, found);
+  for (std::size_t i = 0; i < read.parameters.size(); ++i) {
+    result.model.parameters.emplace_back(ocp.system.parameter_names[i], read.parameters[i]);
+  }
+  result.status.time_reached = found.grid.back();
+  auto run = optimized_run(ocp, read, reformulation_options(options.element), stated->tableau);
+  if (!run) return tl::unexpected(run.error());
+  result.trajectory = std::move(run->trajectory);
+  result.events = std::move(run->events);
+  result.final = std::move(run->final);
+  result.elements = std::move(run->elements);
+  if (result.status.termination != Termination::stopped_by_user && solution->w.allFinite()) {
+    auto verification = verify(ocp, run->path, options.verification_tolerance, observers.is_interrupted);
+    if (!verification) return tl::unexpected(verification.error());
+    judge(*verification, options.verification_tolerance, result.status);
+    found.verification = std::move(*verification);
+  }
+  found.statistics.wall_seconds = whole.seconds();
+  result.statistics.wall_seconds = found.statistics.wall_seconds;
+  return result;
+}
+
+}  // namespace saltus::pipeline

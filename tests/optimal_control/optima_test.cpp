@@ -1,0 +1,58 @@
+// Optima that are known exactly.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "ocp_models.hpp"
+
+namespace saltus::ocp_tests {
+namespace {
+
+using result::Termination;
+
+TEST(OcpOptima, StewartAnitescuFromFiftyStarts) {
+  // By quadrature: V(x0) = -x0^3/9 + (2 + x0/3)^3/3 + (1/3 + x0/3)^2.
+  constexpr double x0 = -1.427572232082767;
+  constexpr double optimum = 1.523772775374957;
+  Stated problem = stated(stewart_anitescu("elements = 25\ncross_complementarity = \"fe_stage\"\n"));
+  for (int i = 0; i < 50; ++i) {
+    problem.ocp.system.initial_state[0] = -2.0 + 1.2 * i / 49.0;
+    const auto result = optimized(problem);
+    ASSERT_EQ(result.status.termination, Termination::completed) << i << ": " << result.status.message;
+    EXPECT_NEAR(result.optimization->objective, optimum, 1e-9) << i;
+    EXPECT_NEAR(result.optimization->nodes.front()[0], x0, 1e-9) << i;
+  }
+}
+
+TEST(OcpOptima, StewartAnitescuWithoutSwitchDetectionStaysNearItsStarts) {
+  Stated problem = stated(stewart_anitescu("elements = 25\nswitch_detection = false\nverification_tolerance = 1\n"));
+  double smallest = 10.0;
+  double largest = -10.0;
+  for (const double start : {-1.9, -1.6, -1.3, -1.0}) {
+    problem.ocp.system.initial_state[0] = start;
+    const auto result = optimized(problem);
+    smallest = std::min(smallest, result.optimization->nodes.front()[0]);
+    largest = std::max(largest, result.optimization->nodes.front()[0]);
+  }
+  EXPECT_GT(largest - smallest, 0.05);
+}
+
+TEST(OcpOptima, TurboCar) {
+  const auto result = optimized(stated(turbo_car(20, 10)));
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.optimization->objective, 40.0 / 3.0, 1e-8);
+  ASSERT_TRUE(result.optimization->verification);
+  EXPECT_LT(result.optimization->verification->interval_defect, 1e-9);
+}
+
+TEST(OcpOptima, TurboCarOnGrids) {
+  // Programs for the switching times of the exact flow.
+  for (const auto& [intervals, optimum] : {std::pair{10, 12.0165871}, std::pair{20, 11.8151023}}) {
+    const auto result = optimized(stated(turbo_car(25, intervals)));
+    EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    EXPECT_NEAR(result.optimization->objective, optimum, 1e-6 * optimum);
+  }
+}
+
+}  // namespace
+}  // namespace saltus::ocp_tests
