@@ -121,7 +121,7 @@ std::string optimize_footer() {
   return fmt::format(
       "Keys of [optimize], for --set optimize.KEY=VALUE:\n{}\nExit code 0: feasible, stationary, and confirmed by an "
       "event-driven simulation of every interval; 3: the table\nsays what is missing.\n\nExample:\n  saltus optimize "
-      "examples/optimize/turbo-car.toml --intervals 10 --out turbo-car.json --report turbo-car.html",
+      "turbo-car --intervals 10 --out turbo-car.json --report turbo-car.html",
       pipeline::optimize_options_help());
 }
 
