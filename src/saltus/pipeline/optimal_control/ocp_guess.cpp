@@ -41,11 +41,12 @@ class StatedGuesses {
     const ModelPoint point{t, ocp_.system.initial_state, ocp_.system.control_initial, parameters};
     const double value = values_.outputs(point)[at(guess.output)];
     if (!std::isfinite(value) && !error_) {
-      error_ = Error{ErrorCode::invalid_model,
-                     fmt::format("the initial guess of '{}' is {} at t = {:.6g}", name(guess), value, t),
-                     "give an expression that is finite over the whole horizon",
-                     {},
-                     {"in optimize.initial_guess"}};
+      // Member by member: g++ 12 takes the aggregate for uninitialised.
+      Error& error = error_.emplace();
+      error.code = ErrorCode::invalid_model;
+      error.message = fmt::format("the initial guess of '{}' is {} at t = {:.6g}", name(guess), value, t);
+      error.remedy = "give an expression that is finite over the whole horizon";
+      error.context.emplace_back("in optimize.initial_guess");
     }
     return value;
   }
