@@ -56,7 +56,7 @@ void require_initial(TomlReader& reader, const TomlEntry& entry, const Quantity&
 }
 
 const std::vector<std::string> quantity_keys{"initial", "lower", "upper", "free", "unit", "label"};
-const std::vector<std::string> control_keys{"initial", "lower", "upper"};
+const std::vector<std::string> control_keys{"initial", "lower", "upper", "unit", "label"};
 
 const std::vector<std::pair<std::string, model::Inclusion>> inclusions{
     {"filippov", model::Inclusion::filippov}, {"aizerman_pyatnitskii", model::Inclusion::aizerman_pyatnitskii}};
