@@ -22,4 +22,10 @@ BranchClosure Problem::close_branch(const std::vector<ActiveSide>& sides) const 
   return {};
 }
 
+std::vector<BranchMove> Problem::equal_branches(const std::vector<ActiveSide>& sides, ConstVectorView w) const {
+  static_cast<void>(sides);
+  static_cast<void>(w);
+  return {};
+}
+
 }  // namespace saltus::mpcc

@@ -58,6 +58,12 @@ struct BranchClosure {
   std::vector<int> dropped_rows;            ///< of g: those of a method, not of the user's problem
 };
 
+/// Another choice of sides, and where to begin to solve it.
+struct BranchMove {
+  std::vector<ActiveSide> sides;
+  Eigen::VectorXd start;
+};
+
 /// min f(w)   subject to   lower_w <= w <= upper_w,   lower_g <= g(w) <= upper_g,   0 <= G(w) _|_ H(w) >= 0.
 ///
 /// All constraint functions together are c(w) = (g, G, H), n_g + 2 n_pairs rows. Patterns are fixed for the life of the
@@ -112,6 +118,10 @@ class Problem {
   [[nodiscard]] virtual int pair_group(int pair) const { return pair; }
   /// What else a branch problem with these zero sides (G or H, one per pair) fixes, makes equal and leaves out.
   [[nodiscard]] virtual BranchClosure close_branch(const std::vector<ActiveSide>& sides) const;
+  /// Other sides with which the same point can be written, although no pair of it is biactive: what a closure keeps apart
+  /// (an element of length zero has the modes of either neighbour). By default none.
+  [[nodiscard]] virtual std::vector<BranchMove> equal_branches(const std::vector<ActiveSide>& sides,
+                                                               ConstVectorView w) const;
 };
 
 }  // namespace saltus::mpcc

@@ -49,8 +49,11 @@ class Descent {
   void descend() {
     for (int round = 0; round < largest_rounds; ++round) {
       certify();
-      if (run_.solution.certificate.b_stationary) return;
       if (run_.is_over()) return;
+      if (run_.solution.certificate.b_stationary) {
+        if (!move()) return;
+        continue;
+      }
       if (flip()) continue;
       if (run_.is_over() || !decide()) return;
     }
@@ -101,6 +104,16 @@ class Descent {
     for (const auto& [multiplier, group] : candidates) {
       if (run_.is_over()) return false;
       if (take(flipped(branch().sides, run_.groups[group]), branch().w, "flip")) return true;
+    }
+    return false;
+  }
+
+  /// The same point written with other sides, from which the objective may fall.
+  bool move() {
+    visited_.insert(branch().sides);
+    for (const auto& candidate : run_.problem.equal_branches(branch().sides, branch().w)) {
+      if (run_.is_over()) return false;
+      if (take(candidate.sides, candidate.start, "the same point with other sides")) return true;
     }
     return false;
   }

@@ -171,38 +171,4 @@ void OcpProblem::with_method_terms(ConstVectorView w) {
 }
 void OcpProblem::without_method_terms() { implementation_->method_scale = 0.0; }
 
-mpcc::BranchClosure OcpProblem::close_branch(const std::vector<mpcc::ActiveSide>& sides) const {
-  const auto& made = *implementation_->structure;
-  const auto& kernel = made.kernel;
-  mpcc::BranchClosure closure;
-  closure.at_lower = made.boundary_own;
-  for (const auto& placed : made.functions) {
-    if (!placed.of_method) continue;
-    for (const auto& one : placed.copies) {
-      for (int i = 0; i < placed.function->equations(); ++i) closure.dropped_rows.push_back(one.first_row + i);
-    }
-  }
-  if (made.chain.elements.empty() || kernel.pairs.empty()) return closure;
-  const int per_element = made.chain.elements.front().pairs.count;
-  const int cross = per_element - kernel.correction_pairs;
-  const int per_selection = cross / static_cast<int>(kernel.pairs.size());
-  const auto side = [&](std::size_t element, std::size_t k) {
-    return sides[at(made.chain.elements[element].pairs.first + static_cast<int>(k) * per_selection)];
-  };
-  for (std::size_t e = 0; e < made.element.size(); ++e) {
-    // Complementarities of the same stage say nothing of the left end.
-    for (std::size_t k = 0; k < kernel.pairs.size() && kernel.options.cross_complementarity == CrossComplementarity::paper; ++k) {
-      const int lambda = made.left_lambda(static_cast<int>(e))[k];
-      if (side(e, k) == mpcc::ActiveSide::H && lambda >= 0) closure.at_lower.push_back(lambda);
-    }
-    if (made.element[e].number == 0 || !kernel.moves || kernel.options.step_equilibration == StepEquilibration::none) {
-      continue;
-    }
-    bool same = true;
-    for (std::size_t k = 0; k < kernel.pairs.size(); ++k) same = same && side(e - 1, k) == side(e, k);
-    if (same) closure.equal.emplace_back(made.element[e - 1].length, made.element[e].length);
-  }
-  return closure;
-}
-
 }  // namespace saltus::discretization

@@ -113,6 +113,10 @@ class OcpProblem final : public mpcc::Problem {
   void without_method_terms() override;
   [[nodiscard]] int pair_group(int pair) const override;
   [[nodiscard]] mpcc::BranchClosure close_branch(const std::vector<mpcc::ActiveSide>& sides) const override;
+  /// A switch at the end of an interval can as well be in the interval before or behind it, in an element that has
+  /// vanished; an element that has vanished can as well have the modes of a neighbour.
+  [[nodiscard]] std::vector<mpcc::BranchMove> equal_branches(const std::vector<mpcc::ActiveSide>& sides,
+                                                             mpcc::ConstVectorView w) const override;
 
  private:
   struct Implementation;

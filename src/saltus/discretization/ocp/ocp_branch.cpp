@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/discretization/ocp/ocp_problem_internal.hpp"
+
+namespace saltus::discretization {
+namespace {
+
+using mpcc::ActiveSide;
+using mpcc::ConstVectorView;
+using Sides = std::vector<ActiveSide>;
+
+/// The share of an interval that an element gets which is to appear: far enough from zero to move.
+constexpr double small_share = 0.02;
+/// Lengths below this share of an interval are zero.
+constexpr double vanished = 1e-6;
+
+/// The modes of elements: sides of their pairs by selection.
+class ElementSides {
+ public:
+  ElementSides(const OcpStructure& made, Sides sides)
+      : made_(made), sides_(std::move(sides)), selections_(made.kernel.pairs.size()) {
+    if (made.chain.elements.empty() || selections_ == 0) return;
+    const int cross = made.chain.elements.front().pairs.count - made.kernel.correction_pairs;
+    per_selection_ = cross / static_cast<int>(selections_);
+  }
+
+  [[nodiscard]] ActiveSide of(std::size_t element, std::size_t selection) const {
+    return sides_[first(element, selection)];
+  }
+  [[nodiscard]] bool are_equal(std::size_t a, std::size_t b) const {
+    for (std::size_t k = 0; k < selections_; ++k) {
+      if (of(a, k) != of(b, k)) return false;
+    }
+    return true;
+  }
+  /// With the modes of element `from` in element `to`, too.
+  [[nodiscard]] Sides copied(std::size_t from, std::size_t to) const {
+    Sides changed = sides_;
+    for (std::size_t k = 0; k < selections_; ++k) {
+      std::fill_n(changed.begin() + static_cast<std::ptrdiff_t>(first(to, k)), per_selection_, of(from, k));
+    }
+    return changed;
+  }
+
+ private:
+  [[nodiscard]] std::size_t first(std::size_t element, std::size_t selection) const {
+    return static_cast<std::size_t>(made_.chain.elements[element].pairs.first) +
+           selection * static_cast<std::size_t>(per_selection_);
+  }
+
+  const OcpStructure& made_;
+  Sides sides_;
+  std::size_t selections_;
+  int per_selection_ = 0;
+};
+
+/// The point with another share of the interval for one element; the others keep their ratios.
+Eigen::VectorXd with_share(const OcpStructure& made, ConstVectorView w, const OcpElement& element, double share) {
+  Eigen::VectorXd changed = w;
+  const auto& lengths = made.interval[at(element.interval)].lengths;
+  const double rest = 1.0 - w[element.length];
+  for (const int h : lengths) {
+    if (h == element.length) {
+      changed[h] = share;
+    } else {
+      changed[h] = rest > vanished ? w[h] * (1.0 - share) / rest : (1.0 - share) / static_cast<double>(lengths.size() - 1);
+    }
+  }
+  return changed;
+}
+
+}  // namespace
+
+mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
+  const auto& made = *implementation_->structure;
+  const auto& kernel = made.kernel;
+  mpcc::BranchClosure closure;
+  closure.at_lower = made.boundary_own;
+  for (const auto& placed : made.functions) {
+    if (!placed.of_method) continue;
+    for (const auto& one : placed.copies) {
+      for (int i = 0; i < placed.function->equations(); ++i) closure.dropped_rows.push_back(one.first_row + i);
+    }
+  }
+  const bool of_stages_only = kernel.options.cross_complementarity == CrossComplementarity::paper;
+  const bool equal_lengths = kernel.moves && kernel.options.step_equilibration != StepEquilibration::none;
+  const ElementSides modes(made, sides);
+  for (std::size_t e = 0; e < made.element.size(); ++e) {
+    // Complementarities of the same stage say nothing of the left end.
+    const auto left = made.left_lambda(static_cast<int>(e));
+    for (std::size_t k = 0; k < kernel.pairs.size() && of_stages_only; ++k) {
+      if (modes.of(e, k) == ActiveSide::H && left[k] >= 0) closure.at_lower.push_back(left[k]);
+    }
+    if (!equal_lengths || made.element[e].number == 0 || !modes.are_equal(e - 1, e)) continue;
+    closure.equal.emplace_back(made.element[e - 1].length, made.element[e].length);
+  }
+  return closure;
+}
+
+std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, ConstVectorView w) const {
+  const auto& made = *implementation_->structure;
+  std::vector<mpcc::BranchMove> moves;
+  if (!made.kernel.moves || made.kernel.pairs.empty()) return moves;
+  const ElementSides modes(made, sides);
+  const auto may_vanish = [&](const OcpElement& element) {
+    return element.length >= 0 && made.w_bounds.lower[element.length] <= small_share;
+  };
+  for (std::size_t e = 1; e < made.element.size(); ++e) {
+    const auto& before = made.element[e - 1];
+    const auto& after = made.element[e];
+    if (modes.are_equal(e - 1, e)) continue;
+    if (after.number == 0) {
+      if (may_vanish(after)) moves.push_back({modes.copied(e - 1, e), with_share(made, w, after, small_share)});
+      if (may_vanish(before)) moves.push_back({modes.copied(e, e - 1), with_share(made, w, before, small_share)});
+      continue;
+    }
+    if (w[after.length] < vanished) moves.push_back({modes.copied(e - 1, e), w});
+    if (w[before.length] < vanished) moves.push_back({modes.copied(e, e - 1), w});
+  }
+  return moves;
+}
+
+}  // namespace saltus::discretization
