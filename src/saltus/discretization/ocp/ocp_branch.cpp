@@ -72,6 +72,54 @@ Eigen::VectorXd with_share(const OcpStructure& made, ConstVectorView w, const Oc
   return changed;
 }
 
+/// Elements of an interval between two changes of modes, first and one behind the last.
+struct Stretch {
+  std::size_t first = 0, end = 0;
+};
+
+/// The stretches of equal modes that end and begin at the boundary before element e, within its interval.
+std::pair<Stretch, Stretch> stretches_at(const OcpStructure& made, const ElementSides& modes, std::size_t e) {
+  const auto& interval = made.interval[at(made.element[e].interval)];
+  const auto begin = static_cast<std::size_t>(interval.first_element);
+  const auto end = begin + static_cast<std::size_t>(interval.elements);
+  Stretch before{e - 1, e};
+  while (before.first > begin && modes.are_equal(before.first - 1, before.first)) --before.first;
+  Stretch after{e, e + 1};
+  while (after.end < end && modes.are_equal(after.end - 1, after.end)) ++after.end;
+  return {before, after};
+}
+
+/// The same total lengths of two stretches, in equal parts, behind their boundary has moved by one element.
+Eigen::VectorXd with_boundary(const OcpStructure& made, ConstVectorView w, const Stretch& before, const Stretch& after,
+                              std::size_t boundary) {
+  Eigen::VectorXd changed = w;
+  const auto total = [&](const Stretch& stretch) {
+    double sum = 0.0;
+    for (std::size_t e = stretch.first; e < stretch.end; ++e) sum += w[made.element[e].length];
+    return sum;
+  };
+  const double first = total(before) / static_cast<double>(boundary - before.first);
+  const double second = total(after) / static_cast<double>(after.end - boundary);
+  for (std::size_t e = before.first; e < after.end; ++e) changed[made.element[e].length] = e < boundary ? first : second;
+  return changed;
+}
+
+/// Where a length is at its upper bound a stretch needs one more element to grow; the other one has to keep one.
+void add_longer_stretches(const OcpStructure& made, const ElementSides& modes, ConstVectorView w, std::size_t e,
+                          std::vector<mpcc::BranchMove>& moves) {
+  const auto [before, after] = stretches_at(made, modes, e);
+  const auto is_longest = [&](std::size_t number) {
+    const int h = made.element[number].length;
+    return h >= 0 && w[h] > made.w_bounds.upper[h] - vanished;
+  };
+  if (is_longest(e - 1) && after.end - after.first > 1) {
+    moves.push_back({modes.copied(e - 1, e), with_boundary(made, w, before, after, e + 1)});
+  }
+  if (is_longest(e) && before.end - before.first > 1) {
+    moves.push_back({modes.copied(e, e - 1), with_boundary(made, w, before, after, e - 1)});
+  }
+}
+
 }  // namespace
 
 mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
@@ -117,6 +165,7 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
       if (may_vanish(before)) moves.push_back({modes.copied(e, e - 1), with_share(made, w, before, small_share)});
       continue;
     }
+    add_longer_stretches(made, modes, w, e, moves);
     if (w[after.length] < vanished) moves.push_back({modes.copied(e - 1, e), w});
     if (w[before.length] < vanished) moves.push_back({modes.copied(e, e - 1), w});
   }
