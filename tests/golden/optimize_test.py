@@ -49,6 +49,37 @@ class OptimizeBadInput(tool.ToolTest):
         self.assertIn("optimal control", text)
 
 
+IDLE = """
+[model]
+name = "idle"
+[states]
+x = 0
+y = { initial = 0, lower = -1, upper = 1 }
+[controls]
+u = { lower = -1, upper = 1, initial = 3 }
+[dynamics]
+x = "-1 - 0.5*sign(x)"
+y = "u"
+[optimize]
+horizon = 1
+control_intervals = 2
+running_cost = "x^2"
+minimize_time = true
+"""
+
+
+class OptimizeCheck(tool.ToolTest):
+    def test_sizes_and_warnings(self):
+        self.write("idle.toml", IDLE)
+        text, _ = self.run_tool("check", "idle.toml", code=0)
+        self.assertRegex(text, r"(?m)^ +variables +equations +pairs +nonzeros$")
+        self.assertRegex(text, r"(?m)^  interval 0 +\d+ +\d+ +\d+ +\d+$")
+        self.assertRegex(text, r"(?m)^  problem +\d+ +\d+ +\d+ +\d+$")
+        for warning in ("the initial state is on the surface x = 0", "moved onto the bounds [-1, 1]",
+                        "minimize_time adds a constant", "influences running_cost"):
+            self.assertIn(warning, text)
+
+
 class Optimize(tool.ToolTest):
     def test_the_car_arrives_in_least_time(self):
         self.write("car.toml", CAR)
