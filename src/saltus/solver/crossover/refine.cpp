@@ -19,6 +19,8 @@ using Matrix = Eigen::SparseMatrix<double>;
 constexpr double regularisation = 1e-9;
 constexpr int largest_steps = 12;
 constexpr int refinements = 5;
+/// Where bounds are weakly active, snapping onto them must not cost more feasibility than this.
+constexpr double allowed_violation = 1e-11;
 
 struct Values {
   Eigen::VectorXd gradient;
@@ -41,6 +43,14 @@ double inequality_error(double x, double lower, double upper, double pressure) {
   const double at_upper = pressure > 0.0 ? std::min(pressure, std::abs(upper - x)) : 0.0;
   const double at_lower = pressure < 0.0 ? std::min(-pressure, std::abs(x - lower)) : 0.0;
   return std::max({violation, at_upper, at_lower});
+}
+
+/// The largest violation of bounds and rows.
+double violation_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values) {
+  const auto largest = [](const Eigen::VectorXd& x, const mpcc::Bounds& bounds) {
+    return x.size() == 0 ? 0.0 : std::max((bounds.lower - x).maxCoeff(), (x - bounds.upper).maxCoeff());
+  };
+  return std::max({largest(point.w, nlp.variable_bounds()), largest(values.c, nlp.constraint_bounds()), 0.0});
 }
 
 double error_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values) {
@@ -167,6 +177,7 @@ double optimality_error(mpcc::Problem& nlp, const NlpPoint& point) { return erro
 double refine(mpcc::Problem& nlp, NlpPoint& point) {
   Values values = evaluate(nlp, point.w);
   double best = error_of(nlp, point, values);
+  double violation = violation_of(nlp, point, values);
   if (nlp.variables() == 0 || !std::isfinite(best)) return best;
   const ActiveSet active = find_active_set(nlp, point, values.c);
   NlpPoint trial = point;
@@ -179,8 +190,11 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
     values = evaluate(nlp, trial.w);
     set_bound_multipliers(trial, values, active, nlp.variable_bounds());
     const double error = error_of(nlp, trial, values);
-    if (error < best && has_right_signs(trial, std::max(1e-9, error))) {
+    const double trial_violation = violation_of(nlp, trial, values);
+    if (error < best && trial_violation <= std::max(violation, allowed_violation) &&
+        has_right_signs(trial, std::max(1e-9, error))) {
       best = error;
+      violation = trial_violation;
       point = trial;
     }
     // Quadratic until rounding is reached, from where it stands still; a step that makes it worse comes from afar.
