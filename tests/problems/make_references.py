@@ -18,6 +18,7 @@ import sys
 
 import catalogue_problems
 import classic_problems
+import controlled_problems
 import intersection_problems
 import higher_order_problems
 import jump_problems
@@ -147,7 +148,7 @@ def main():
         intersection_problems.compare_with_literature(problem, report_on(problem, entries))
     for problem in region_problems.problems():
         report_on(problem, entries)
-    for problem in higher_order_problems.problems():
+    for problem in [*higher_order_problems.problems(), *controlled_problems.problems()]:
         report_on(problem, entries)
     text = dump(entries)
     json.loads(text)

@@ -20,3 +20,11 @@ def sin(x):
     sine.rule = lambda k: sum((i * x[i] * cosine[k - i] for i in range(1, k + 1)), mpf(0)) / k
     cosine.rule = lambda k: -sum((i * x[i] * sine[k - i] for i in range(1, k + 1)), mpf(0)) / k
     return sine
+
+
+def sqrt(x):
+    if not isinstance(x, Series):
+        return mpmath.sqrt(x)
+    root = Series([mpmath.sqrt(x[0])])
+    root.rule = lambda k: (x[k] - mpmath.fdot(root.c[1:k], root.c[k - 1 : 0 : -1])) / (2 * root.c[0])
+    return root
