@@ -14,7 +14,7 @@ namespace {
 /// Everything a problem may have, on a curved surface: free horizon, start and parameter, costs of every kind, soft and
 /// hard constraints at stages, complementarities.
 std::string everything(const std::string& numbers) {
-  return R"(
+  return R"toml(
 [model]
 name = "everything"
 [parameters]
@@ -39,7 +39,7 @@ path_constraints = ["-2 <= x*v + u <= 2", { constraint = "x + v <= 0.1", penalty
 path_constraints_at = "stages"
 terminal_constraints = ["x*v == 0.1", { constraint = "v^2 <= 0.01", penalty = 5, norm = "l2" }]
 path_complementarities = [["x + 4", "v + 4"]]
-)" + numbers + R"(
+)toml" + numbers + R"toml(
 [[optimize.least_squares]]
 of = ["x", "v*k"]
 reference = ["sin(t)", 0.1]
@@ -52,7 +52,7 @@ at = "intervals"
 of = ["v"]
 reference = [0.2]
 at = "end"
-)";
+)toml";
 }
 
 void check(const std::string& numbers) {

@@ -35,7 +35,7 @@ inline result::Result optimized(const Stated& problem) {
 
 /// Stewart and Anitescu: the optimum is known by quadrature.
 inline std::string stewart_anitescu(const std::string& more) {
-  return R"(
+  return R"toml(
 [model]
 name = "stewart-anitescu"
 [states]
@@ -47,12 +47,12 @@ horizon = 2
 control_intervals = 1
 running_cost = "x^2"
 terminal_cost = "(x - 5/3)^2"
-)" + more;
+)toml" + more;
 }
 
 /// Least time with a turbo that triples the acceleration above 10.
 inline std::string turbo_car(int v_max, int intervals, const std::string& more = "") {
-  return fmt::format(R"(
+  return fmt::format(R"toml(
 [model]
 name = "turbo-car"
 [states]
@@ -68,7 +68,7 @@ horizon = {{ free = true, initial = 10, lower = 1, upper = 100 }}
 control_intervals = {1}
 minimize_time = true
 terminal_constraints = ["q == 200", "v == 0"]
-{2})",
+{2})toml",
                      v_max, intervals, more);
 }
 
