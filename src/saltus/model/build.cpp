@@ -37,10 +37,10 @@ class Build {
     statement_.time = recognition_.graph.symbol("t", {.kind = VariableKind::time});
     note_all_names();
     using Step = MaybeError (Build::*)();
-    constexpr Step steps[] = {&Build::names,  &Build::overrides,  &Build::parameters, &Build::controls,
-                              &Build::states, &Build::bounds,     &Build::switching,  &Build::dynamics,
-                              &Build::modes,  &Build::outputs,    &Build::quantities, &Build::events,
-                              &Build::jumps,  &Build::inputs,     &Build::definitions};
+    constexpr Step steps[] = {&Build::names,  &Build::overrides, &Build::parameters, &Build::controls,
+                              &Build::states, &Build::bounds,    &Build::switching,  &Build::dynamics,
+                              &Build::modes,  &Build::outputs,   &Build::quantities, &Build::events,
+                              &Build::jumps,  &Build::inputs,    &Build::definitions};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }
@@ -108,8 +108,7 @@ class Build {
       const VariableKind kind = quantities_ != nullptr && quantities_->varying_parameters.contains(entry.name)
                                     ? VariableKind::control
                                     : VariableKind::parameter;
-      const SXElem symbol =
-          recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++, .value = *value});
+      const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++, .value = *value});
       statement_.parameters.push_back({entry.name, symbol, *value});
     }
     return std::nullopt;
@@ -357,6 +356,32 @@ class Build {
       for (const auto& time : jump.at) scope_.note_names(time);
       for (const auto& entry : jump.set) scope_.note_names(entry.expression);
     }
+    if (description_.optimize) note_names_of(*description_.optimize);
+  }
+
+  void note_names_of(const OcpDescription& problem) {
+    const auto note = [&](const expression::NodePtr& node) {
+      if (node) scope_.note_names(node);
+    };
+    const auto note_all = [&](const std::vector<expression::NodePtr>& nodes) {
+      for (const auto& node : nodes) note(node);
+    };
+    note_all({problem.from, problem.horizon.value, problem.horizon.lower, problem.horizon.upper, problem.running_cost,
+              problem.terminal_cost, problem.time_weight});
+    for (const auto* constraints : {&problem.path_constraints, &problem.terminal_constraints}) {
+      for (const auto& constraint : *constraints) {
+        note_all(constraint.sides);
+        note(constraint.penalty);
+      }
+    }
+    for (const auto& pair : problem.path_complementarities) note_all({pair.first, pair.second});
+    for (const auto& term : problem.least_squares) {
+      note_all(term.of);
+      note_all(term.reference);
+      for (const auto& row : term.weight) note_all(row);
+    }
+    for (const auto& guess : problem.guess) note(guess.expression);
+    for (const auto& parameter : description_.free_parameters) note_all({parameter.lower, parameter.upper});
   }
 
   template <class Entries>
