@@ -40,17 +40,26 @@ def main(readme, tool):
     missing = [link for link in re.findall(r"\]\(([^)#:]+)\)", text) if not (Path(readme).parent / link).exists()]
     if missing:
         sys.exit(f"README.md links to what is not there: {missing}")
-    model = blocks(text, "toml")[0]
+    model, problem = blocks(text, "toml")
     name = re.search(r"Save it as `([^`]+)`", text).group(1)
+    example = re.search(r"\]\((examples/optimize/[^)]+)\) without its remarks", text).group(1)
     commands = [line for block in blocks(text, "") for line in block.splitlines() if line.startswith("saltus ")]
     if not commands:
         sys.exit("README.md shows no saltus command")
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / name).write_text(model, encoding="utf-8")
+        (Path(folder) / Path(example).name).write_text(problem, encoding="utf-8")
         for command in commands:
             run(command, tool, folder)
         run(f"saltus simulate {name} --quiet --out result.json", tool, folder)
         result = json.loads((Path(folder) / "result.json").read_text(encoding="utf-8"))
+        optima = []
+        for file in (Path(example).name, Path(readme).parent.resolve() / example):
+            run(f"saltus optimize {file} --quiet --out optimum.json", tool, folder)
+            optima.append(json.loads((Path(folder) / "optimum.json").read_text(encoding="utf-8"))["horizon"])
+    least = float(re.search(r"It takes ([0-9.]+) time units", text).group(1))
+    if abs(optima[0] - least) > 0.001 or abs(optima[0] - optima[1]) > 1e-9:
+        sys.exit(f"README.md claims a least time of {least}; its problem has {optima[0]}, the example {optima[1]}")
     claimed = float(re.search(r"stops after ([0-9.]+) time units", text).group(1))
     events = result["events"]
     if len(events) != 1 or events[0]["kind"] != "enter_sliding" or abs(events[0]["t"] - claimed) > 0.01:
