@@ -54,12 +54,14 @@ std::string what(const result::Event& event) {
   return text;
 }
 
-std::string remark(const result::Event& event) {
-  if (!event.unique) return "uniqueness not decided";
+/// Of an optimum, one solution that is verified by itself, nobody asks what else is undecided.
+std::string remark(const result::Event& event, const result::Result& result) {
+  if (!event.unique) return result.optimization ? "" : "uniqueness not decided";
   return *event.unique ? "" : "not unique";
 }
 
-Row event_row(std::size_t number, const result::Event& event, std::size_t columns) {
+Row event_row(std::size_t number, const result::Event& event, const result::Result& result) {
+  const std::size_t columns = result.switching_functions.size();
   const bool with_modes = columns > 0 && columns <= most_signs;
   return {fmt::format("{}", number),
           fmt::format("{:.12g}", event.t),
@@ -67,7 +69,7 @@ Row event_row(std::size_t number, const result::Event& event, std::size_t column
           shortened(what(event), 24),
           with_modes ? modes(event) : "",
           shortened(regions(event), 64),
-          remark(event)};
+          remark(event, result)};
 }
 
 std::string event_table(const result::Result& result) {
@@ -79,7 +81,7 @@ std::string event_table(const result::Result& result) {
                          events.front().regions_after ? "regions" : "", ""}};
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (all || i < shown_at_each_end || i + shown_at_each_end >= events.size()) {
-      rows.push_back(event_row(i + 1, events[i], columns));
+      rows.push_back(event_row(i + 1, events[i], result));
     } else if (i == shown_at_each_end) {
       rows.push_back({"…", "", "", "", "", "", ""});
     }

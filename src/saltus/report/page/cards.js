@@ -77,7 +77,7 @@ saltus.banners = (result, select) => {
   const numbered = (wanted) => events.map((_, i) => i).filter((i) => events[i].unique === wanted);
   const no = numbered(false);
   list(no, `The solution is not unique at ${saltus.count(no.length, "event")}.`, "bad");
-  const open = numbered(null);
+  const open = result.optimization ? [] : numbered(null);  // an optimum is one solution, verified by itself
   list(open, `Uniqueness was not decided at ${saltus.count(open.length, "event")}.`, "notice");
   return banners;
 };
