@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `make demo`: installs what is missing, builds the tool, simulates shipped models, ends with a table and a report.
+# `make demo`: installs what is missing, builds the tool, simulates shipped models and optimises one, ends with tables and reports.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export OPENBLAS_NUM_THREADS=1
@@ -22,4 +22,7 @@ for model in rotating-oscillator relay-feedback stick-slip; do
 done
 # Multipliers and lengths of finite elements: its report has a card for them.
 simulate sliding --method fesd --set simulate.fesd.steps=10
-printf '\nReport: %s\n' "$PWD/demo/stick-slip.html"
+# The swing-up of a pole on a cart with dry friction: a quarter of a minute.
+printf '\n$ %s\n' "$tool optimize cart-pole --out demo/cart-pole.json --report demo/cart-pole.html"
+"$tool" optimize cart-pole --out demo/cart-pole.json --report demo/cart-pole.html
+printf '\nReports: %s\n         %s\n' "$PWD/demo/stick-slip.html" "$PWD/demo/cart-pole.html"

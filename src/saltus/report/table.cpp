@@ -63,12 +63,8 @@ std::string remark(const result::Event& event, const result::Result& result) {
 Row event_row(std::size_t number, const result::Event& event, const result::Result& result) {
   const std::size_t columns = result.switching_functions.size();
   const bool with_modes = columns > 0 && columns <= most_signs;
-  return {fmt::format("{}", number),
-          fmt::format("{:.12g}", event.t),
-          std::string(name(event.kind)),
-          shortened(what(event), 24),
-          with_modes ? modes(event) : "",
-          shortened(regions(event), 64),
+  return {fmt::format("{}", number),  fmt::format("{:.12g}", event.t), std::string(name(event.kind)),
+          shortened(what(event), 24), with_modes ? modes(event) : "",  shortened(regions(event), 64),
           remark(event, result)};
 }
 
