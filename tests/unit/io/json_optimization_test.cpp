@@ -87,13 +87,13 @@ TEST(JsonOptimization, AnUnfinishedOneHasNoVerificationAndPerhapsNoControls) {
   EXPECT_FALSE(read->optimization->verification.has_value());
 }
 
-struct Mistake {
+struct Corruption {
   const char* pointer;
   ordered_json value;
   const char* expected;
 };
 
-class MistakenOptimization : public testing::TestWithParam<Mistake> {};
+class MistakenOptimization : public testing::TestWithParam<Corruption> {};
 
 TEST_P(MistakenOptimization, IsRefusedWithItsPlace) {
   auto json = ordered_json::parse(to_json(report_samples::turbo_car()));
@@ -106,21 +106,22 @@ TEST_P(MistakenOptimization, IsRefusedWithItsPlace) {
 INSTANTIATE_TEST_SUITE_P(
     Cases, MistakenOptimization,
     testing::Values(
-        Mistake{"/homotopy/2/phase", "relax", "at /homotopy/2/phase: 'relax' is no phase"},
-        Mistake{"/homotopy/2/iterations", -1, "at /homotopy/2/iterations: expected a number from 0, found -1"},
-        Mistake{"/homotopy/2/iterations", 4000000000, "at /homotopy/2/iterations: expected a number up to 2147483647"},
-        Mistake{"/certificate/stationarity_type", "B", "at /certificate/stationarity_type: 'B' is no type"},
-        Mistake{"/certificate/b_stationary", 1, "at /certificate/b_stationary: expected true or false, found 1"},
-        Mistake{"/verification/open_loop/termination", "fell", "'fell' is no termination"},
-        Mistake{"/verification/open_loop/x/4", {1.0}, "at /verification/open_loop/x/4: expected 2 entries, found 1"},
-        Mistake{"/u/3", {1.0, 2.0}, "at /u/3: expected 1 entries, found 2"},
-        Mistake{"/grid", {0.0, 1.0}, "at /grid: expected 21 entries, found 2"},
-        Mistake{"/h", ordered_json::array(), "at /h: expected 20 entries, found 0"},
-        Mistake{"/speed_of_time", {1.0}, "at /speed_of_time: expected 20 entries, found 1"},
-        Mistake{"/parameters", 3, "at /parameters: expected an object, found 3"},
-        Mistake{"/multipliers/0/value", "x", "at /multipliers/0/value: expected a number or null"},
-        Mistake{"/objective_terms", {{"running", 0.0}}, "at /objective_terms: 'terminal' is missing"},
-        Mistake{"/start_values", ordered_json::object(), "at /start_values: 'nodes' is missing"}),
+        Corruption{"/homotopy/2/phase", "relax", "at /homotopy/2/phase: 'relax' is no phase"},
+        Corruption{"/homotopy/2/iterations", -1, "at /homotopy/2/iterations: expected a number from 0, found -1"},
+        Corruption{"/homotopy/2/iterations", 4000000000,
+                   "at /homotopy/2/iterations: expected a number up to 2147483647"},
+        Corruption{"/certificate/stationarity_type", "B", "at /certificate/stationarity_type: 'B' is no type"},
+        Corruption{"/certificate/b_stationary", 1, "at /certificate/b_stationary: expected true or false, found 1"},
+        Corruption{"/verification/open_loop/termination", "fell", "'fell' is no termination"},
+        Corruption{"/verification/open_loop/x/4", {1.0}, "at /verification/open_loop/x/4: expected 2 entries, found 1"},
+        Corruption{"/u/3", {1.0, 2.0}, "at /u/3: expected 1 entries, found 2"},
+        Corruption{"/grid", {0.0, 1.0}, "at /grid: expected 21 entries, found 2"},
+        Corruption{"/h", ordered_json::array(), "at /h: expected 20 entries, found 0"},
+        Corruption{"/speed_of_time", {1.0}, "at /speed_of_time: expected 20 entries, found 1"},
+        Corruption{"/parameters", 3, "at /parameters: expected an object, found 3"},
+        Corruption{"/multipliers/0/value", "x", "at /multipliers/0/value: expected a number or null"},
+        Corruption{"/objective_terms", {{"running", 0.0}}, "at /objective_terms: 'terminal' is missing"},
+        Corruption{"/start_values", ordered_json::object(), "at /start_values: 'nodes' is missing"}),
     [](const auto& mistake) { return "Number" + std::to_string(mistake.index); });
 
 }  // namespace
