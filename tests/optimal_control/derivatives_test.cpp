@@ -39,7 +39,8 @@ path_constraints = ["-2 <= x*v + u <= 2", { constraint = "x + v <= 0.1", penalty
 path_constraints_at = "stages"
 terminal_constraints = ["x*v == 0.1", { constraint = "v^2 <= 0.01", penalty = 5, norm = "l2" }]
 path_complementarities = [["x + 4", "v + 4"]]
-)toml" + numbers + R"toml(
+)toml" + numbers +
+         R"toml(
 [[optimize.least_squares]]
 of = ["x", "v*k"]
 reference = ["sin(t)", 0.1]
@@ -84,8 +85,8 @@ TEST(OcpDerivatives, EveryMode) {
   for (const char* cross : {"stage_stage", "fe_stage", "stage_fe", "fe_fe", "paper"}) {
     check(fmt::format("elements = [2, 1]\ncross_complementarity = \"{}\"", cross));
   }
-  for (const char* steps : {"none", "heuristic_mean", "heuristic_diff", "l2_relaxed", "l2_relaxed_scaled", "direct",
-                            "mlcp", "paper"}) {
+  for (const char* steps :
+       {"none", "heuristic_mean", "heuristic_diff", "l2_relaxed", "l2_relaxed_scaled", "direct", "mlcp", "paper"}) {
     check(fmt::format("elements = [2, 3]\nstep_equilibration = \"{}\"", steps));
   }
   check("elements = 2\nswitch_detection = false");

@@ -1,0 +1,136 @@
+// What is no optimal control problem of this method, each with the message a person gets; and kinks of controls that
+// are.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "ocp_models.hpp"
+
+namespace saltus::ocp_tests {
+namespace {
+
+/// A double integrator with friction; `tables` and `problem` are added to the tables of the model and to [optimize].
+struct Change {
+  std::string q = "0";
+  std::string v = "0";
+  std::string u = "{ lower = -2, upper = 2 }";
+  std::string acceleration = "u - 0.5*sign(v)";
+  std::string more_states{}, more_dynamics{}, tables{};
+  std::string horizon = "2";
+  std::string intervals = "2";
+  std::string cost = "u^2";
+  std::string problem{};
+};
+
+std::string model_of(const Change& change) {
+  return fmt::format(R"toml([model]
+name = "bad"
+[parameters]
+k = 1
+[states]
+q = {0}
+v = {1}
+{2}
+[controls]
+u = {3}
+[dynamics]
+q = "v"
+v = "{4}"
+{5}
+{6}
+[optimize]
+horizon = {7}
+control_intervals = {8}
+running_cost = "{9}"
+{10}
+)toml",
+                     change.q, change.v, change.more_states, change.u, change.acceleration, change.more_dynamics,
+                     change.tables, change.horizon, change.intervals, change.cost, change.problem);
+}
+
+/// The first error on the way from text to problem.
+std::string refusal_of(const Change& change) {
+  auto file = io::parse_model(model_of(change), "bad.toml");
+  if (!file) return to_text(file.error());
+  if (const auto checked = io::check_optimize_options(*file); !checked) return to_text(checked.error());
+  const auto ocp = model::build_ocp(file->description);
+  if (!ocp) return to_text(ocp.error());
+  const auto made = pipeline::state_problem(*ocp, *file->optimize);
+  return made ? "" : to_text(made.error());
+}
+
+void expect_refused(const Change& change, const std::vector<std::string>& phrases) {
+  const std::string text = refusal_of(change);
+  EXPECT_NE(text, "") << model_of(change);
+  for (const auto& phrase : phrases) {
+    EXPECT_NE(text.find(phrase), std::string::npos) << "'" << phrase << "' is not in\n" << text;
+  }
+}
+
+TEST(OcpBadInput, TheModelItselfIsAccepted) { EXPECT_EQ(refusal_of({}), ""); }
+
+TEST(OcpBadInput, SwitchesOfControls) {
+  expect_refused({.acceleration = "u - 0.5*sign(v - u)"},
+                 {"switching function 'v-u' depends on the control 'u'", "make 'u' a state", "[optimize]"});
+  expect_refused({.cost = "sign(u)"}, {"'sign(u)'", "running_cost", "convex"});
+  expect_refused({.cost = "u^2 + min(u, 0)"}, {"the kink 'min(u,0)' of controls does not enter running_cost convexly"});
+  expect_refused({.cost = "-abs(u)"}, {"'abs(u)'", "convexly"});
+  expect_refused({.cost = "max(u, v)"}, {"'max(u,v)' in running_cost mixes controls with 'v' in one kink"});
+  expect_refused({.cost = "u^2", .problem = "path_constraints = ['abs(u) >= 1']"}, {"'abs(u)'", "convexly"});
+}
+
+TEST(OcpBadInput, JumpsAndDiscreteStates) {
+  expect_refused({.tables = "[[jumps]]\nname = \"bounce\"\nwhen = \"q < -1\"\nset = { v = \"-v\" }"},
+                 {"does not cover [[jumps]]", "[time_freezing]"});
+  expect_refused({.more_states = "gear = 1", .more_dynamics = "gear = 0"},
+                 {"the state 'gear' is discrete: nothing moves it", "make it a parameter"});
+}
+
+TEST(OcpBadInput, BreaksOfTime) {
+  expect_refused({.acceleration = "u + floor(t)", .intervals = "3"},
+                 {"breaks at t = 1, inside control interval 1", "control_intervals = 4"});
+  EXPECT_EQ(refusal_of({.acceleration = "u + floor(t)", .intervals = "4"}), "");
+  expect_refused({.acceleration = "u + floor(t)", .horizon = "{ free = true, initial = 2, lower = 1, upper = 3 }"},
+                 {"breaks in time, and the horizon is free", "fix the horizon"});
+}
+
+TEST(OcpBadInput, LeastSquares) {
+  const std::string head = "[[optimize.least_squares]]\nof = ['q', 'v']\n";
+  expect_refused({.problem = head + "reference = [0]"}, {"`of` has 2 expressions, `reference` 1"});
+  expect_refused({.problem = head + "weight = [[1, 2], [3, 4]]"},
+                 {"the weight is not symmetric: 3 in row 2, column 1, and 2 in row 1, column 2"});
+  expect_refused({.problem = head + "weight = [1, 2, 3]"}, {"weight", "2 expressions"});
+}
+
+TEST(OcpBadInput, BoundsAndGuesses) {
+  expect_refused({.q = "{ initial = 3, lower = -1, upper = 1 }"},
+                 {"state 'q' starts at 3, outside of its bounds [-1, 1]", "or make it free"});
+  expect_refused({.q = "{ initial = 0, free = true }"}, {"'q' is free and has no lower and no upper bound"});
+  expect_refused({.horizon = "{ free = true, initial = 5, lower = 1, upper = 3 }"},
+                 {"the horizon: initial (5) is above upper (3)"});
+  expect_refused({.cost = "u^2 + log(q)"}, {"running_cost", "not finite at the initial guess", "initial_guess"});
+  expect_refused({.problem = "initial_guess = { w = 't' }"},
+                 {"expected the name of a state, a control or a free parameter, found 'w'"});
+  expect_refused({.problem = "initial_guess = { q = 'v*t' }"}, {"the guess of 'q' depends on states or controls"});
+}
+
+/// min int |u| from rest to rest over one unit of length, |u| <= 2, T = 2: as much speed as is needed, for as long as
+/// is needed. u = 2 for s, then 0, then -2: q = 2 s (2 - s) = 1, s = 1 - 1/sqrt(2), cost 4 s. On a grid of five
+/// intervals: the best piecewise constant control is that of a linear program. With v the speed behind interval 1 of
+/// length h = 0.4, and the same at the other end by symmetry: u is 2 in the first interval where s < h, hence |u| = v/h
+/// there, cost 2 v, and q = v (T - h) = 1.6 v = 1: v = 0.625, u = 1.5625 < 2.
+TEST(OcpKinksOfControls, LeastConsumption) {
+  const auto result = optimized(stated(model_of({.acceleration = "u",
+                                                 .intervals = "5",
+                                                 .cost = "abs(u)",
+                                                 .problem = "terminal_constraints = ['q == 1', 'v == 0']"})));
+  ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.optimization->objective, 1.25, 1e-8);
+  EXPECT_NEAR(result.optimization->u.front().front(), 1.5625, 1e-7);
+  EXPECT_EQ(result.controls, std::vector<std::string>{"u"});  // the slack is no control of the result
+  EXPECT_EQ(result.optimization->u.front().size(), 1U);
+}
+
+}  // namespace
+}  // namespace saltus::ocp_tests
