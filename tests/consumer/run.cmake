@@ -46,6 +46,11 @@ if(NOT output MATCHES "t = 1\\.2001[0-9]+  enter_sliding" OR NOT output MATCHES 
   message(FATAL_ERROR "examples/01_first_simulation printed\n${output}")
 endif()
 
+build_and_run(small_mpcc ${source_dir}/examples/02_small_mpcc)
+if(NOT output MATCHES "completed: f = 1 at")
+  message(FATAL_ERROR "examples/02_small_mpcc printed\n${output}")
+endif()
+
 # The installed tool has no other library path than its own, and finds the catalogue and plotly beside itself.
 if(EXISTS ${work_dir}/prefix/bin/saltus)
   set(tool ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH --unset=SALTUS_MODELS --unset=SALTUS_PLOTLY
