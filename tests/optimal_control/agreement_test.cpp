@@ -1,4 +1,5 @@
 // Forms, cross complementarities and equilibrations are different ways to state the same problem: one optimum.
+#include <ostream>
 #include <string>
 #include <vector>
 

@@ -1,0 +1,60 @@
+// Optima of the catalogue's models, as they are shipped, against the numbers in their first lines.
+#include <algorithm>
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "ocp_models.hpp"
+
+namespace saltus::ocp_tests {
+namespace {
+
+struct Shipped {
+  std::string model;
+  double optimum;
+  double tolerance;  ///< relative above 1: half a unit of the last digit of the reference
+};
+
+void PrintTo(const Shipped& shipped, std::ostream* out) { *out << shipped.model; }
+
+result::Result optimum_of(const std::string& model) {
+  const auto file = std::filesystem::path(SALTUS_SOURCE_DIR "/models") / (model + ".toml");
+  auto read = io::read_model(file);
+  EXPECT_TRUE(read) << (read ? "" : to_text(read.error()));
+  auto ocp = model::build_ocp(read->description);
+  EXPECT_TRUE(ocp) << (ocp ? "" : to_text(ocp.error()));
+  return optimized({std::move(*ocp), *read->optimize});
+}
+
+class OcpCatalogue : public testing::TestWithParam<Shipped> {};
+
+TEST_P(OcpCatalogue, HasItsOptimum) {
+  const auto result = optimum_of(GetParam().model);
+  ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.optimization->objective, GetParam().optimum,
+              GetParam().tolerance * std::max(1.0, GetParam().optimum));
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, OcpCatalogue,
+                         testing::Values(Shipped{"stewart-anitescu", 1.523772775374957, 1e-9},
+                                         Shipped{"turbo-car", 40.0 / 3.0, 1e-9}, Shipped{"estimator", 0.0, 1e-15},
+                                         Shipped{"slide-and-hide", 5.3930543536, 1e-10},
+                                         Shipped{"slide-and-hide-rates", 5.5921833, 1e-8},
+                                         Shipped{"tank-cascade", 7.4530531, 1e-8}),
+                         [](const auto& shipped) {
+                           std::string name = shipped.param.model;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(OcpEstimator, FindsTheSpeedsOfItsData) {
+  const auto result = optimum_of("estimator");
+  ASSERT_EQ(result.optimization->parameters.size(), 2U);
+  EXPECT_NEAR(result.optimization->parameters[0].second, 1.0, 1e-9);
+  EXPECT_NEAR(result.optimization->parameters[1].second, 0.4, 1e-9);
+}
+
+}  // namespace
+}  // namespace saltus::ocp_tests
