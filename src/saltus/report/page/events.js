@@ -47,7 +47,7 @@ saltus.eventColumns = (result) => {
     {title: "#", cell: (_, i) => String(i + 1), class: "right"},
     {title: "t", cell: (event) => time(event.t), class: "right digits"},
     {title: "kind", cell: (event) => saltus.kindLabel(event.kind)},
-    {title: "unique", cell: unique},
+    ...(result.optimization ? [] : [{title: "unique", cell: unique}]),
     {title: "surfaces", cell: saltus.eventPlace, class: "fill"},
     ...(result.switching_functions.length > 0 || result.regions.length === 0 ?
             [{title: "mode", cell: (event) => saltus.modeChange(event, "changed")}] :
