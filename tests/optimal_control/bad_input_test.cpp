@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
+#include "saltus/model/build.hpp"
 
 namespace saltus::ocp_tests {
 namespace {
@@ -113,6 +114,20 @@ TEST(OcpBadInput, BoundsAndGuesses) {
   expect_refused({.problem = "initial_guess = { w = 't' }"},
                  {"expected the name of a state, a control or a free parameter, found 'w'"});
   expect_refused({.problem = "initial_guess = { q = 'v*t' }"}, {"the guess of 'q' depends on states or controls"});
+}
+
+TEST(OcpNames, WhatTheProblemAloneUsesIsUsed) {
+  const auto file = io::parse_model(
+      model_of(
+          {.tables = "[definitions]\neffort = \"k*u^2\"\nspeed = \"v\"\nidle = \"q\"",
+           .cost = "effort",
+           .problem = "terminal_constraints = ['q == 1', { constraint = 'speed <= k', penalty = 2, norm = 'l1' }]"}),
+      "names.toml");
+  ASSERT_TRUE(file) << to_text(file.error());
+  const auto system = model::build(file->description);
+  ASSERT_TRUE(system) << to_text(system.error());
+  ASSERT_EQ(system->warnings.size(), 1U);
+  EXPECT_NE(system->warnings[0].find("definition 'idle' is never used"), std::string::npos) << system->warnings[0];
 }
 
 /// min int |u| from rest to rest over one unit of length, |u| <= 2, T = 2: as much speed as is needed, for as long as
