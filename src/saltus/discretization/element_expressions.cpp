@@ -231,6 +231,7 @@ class ElementBuilder {
 
   void take_points() {
     result_.h = h_;
+    result_.left = {result_.depends_on_time ? left_t_ : SX(0.0), left_x_, SX(0, 1)};
     result_.end = {result_.depends_on_time ? variables_.end_time : SX(0.0),
                    result_.layout.end_state.count > 0 ? variables_.end_state : column(variables_.stage, stages() - 1),
                    column(variables_.selection, stages() - 1)};

@@ -88,7 +88,7 @@ struct ElementExpressions {
   LocalExpressions boundary;    ///< step equilibration
   casadi::SX h;                ///< length
   std::vector<ElementPoint> stages;
-  ElementPoint end;
+  ElementPoint left, end;  ///< the left end has no selections
   mpcc::Bounds boundary_own_bounds;
   casadi::SX eta, printed_eta;  ///< of the boundary
   bool depends_on_time = false;

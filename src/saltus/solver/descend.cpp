@@ -137,11 +137,8 @@ class Descent {
     if (found.termination != Termination::completed) return false;
     auto& of = run_.solution.certificate;
     of.lpcc_decrease = std::min(found.objective, 0.0) / linear.scale;
-    if (*of.lpcc_decrease >= -tolerance()) {
-      of.b_stationary = true;
-      return false;
-    }
-    of.b_stationary = false;
+    of.b_stationary = *of.lpcc_decrease >= -tolerance();
+    if (*of.b_stationary) return move();
     std::vector<ActiveSide> sides = branch().sides;
     for (std::size_t i = 0; i < linear.groups.size(); ++i) {
       for (const int pair : linear.groups[i]) sides[at(pair)] = found.first_is_active[i] ? ActiveSide::G : ActiveSide::H;

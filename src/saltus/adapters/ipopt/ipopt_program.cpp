@@ -31,12 +31,31 @@ void write_pattern(const mpcc::Pattern& pattern, Ipopt::Index* row, Ipopt::Index
 
 }  // namespace
 
+void IpoptProgram::find_rows() {
+  const auto& bounds = problem_->constraint_bounds();
+  rows_.clear();
+  own_row_.assign(static_cast<std::size_t>(problem_->constraints()), -1);
+  for (int row = 0; row < problem_->constraints(); ++row) {
+    if (!std::isfinite(bounds.lower[row]) && !std::isfinite(bounds.upper[row])) continue;
+    own_row_[static_cast<std::size_t>(row)] = static_cast<int>(rows_.size());
+    rows_.push_back(row);
+  }
+  entries_.clear();
+  const auto& pattern = problem_->jacobian_pattern();
+  for (int e = 0; e < pattern.entries(); ++e) {
+    const int row = pattern.row[static_cast<std::size_t>(e)];
+    if (own_row_[static_cast<std::size_t>(row)] >= 0) entries_.push_back(e);
+  }
+  c_ = y_ = Eigen::VectorXd::Zero(problem_->constraints());
+  jacobian_ = Eigen::VectorXd::Zero(pattern.entries());
+}
+
 bool IpoptProgram::get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries,
                                 Ipopt::Index& hessian_entries, IndexStyleEnum& index_style) {
   SALTUS_ASSERT(problem_->pairs() == 0);
   n = problem_->variables();
-  m = problem_->constraints();
-  jacobian_entries = problem_->jacobian_pattern().entries();
+  m = static_cast<Ipopt::Index>(rows_.size());
+  jacobian_entries = static_cast<Ipopt::Index>(entries_.size());
   hessian_entries = problem_->hessian_pattern().entries();
   index_style = C_STYLE;
   return true;
@@ -46,8 +65,8 @@ bool IpoptProgram::get_bounds_info(Ipopt::Index n, double* w_lower, double* w_up
                                    double* g_upper) {
   Output(w_lower, n) = problem_->variable_bounds().lower;
   Output(w_upper, n) = problem_->variable_bounds().upper;
-  Output(g_lower, m) = problem_->constraint_bounds().lower;
-  Output(g_upper, m) = problem_->constraint_bounds().upper;
+  Output(g_lower, m) = problem_->constraint_bounds().lower(rows_);
+  Output(g_upper, m) = problem_->constraint_bounds().upper(rows_);
   return true;
 }
 
@@ -60,8 +79,8 @@ bool IpoptProgram::get_starting_point(Ipopt::Index n, bool wants_w, double* w, b
     Output(z_upper, n) = point_->z_upper;
   }
   if (wants_y) {
-    if (point_->y.size() != m) return false;
-    Output(y, m) = point_->y;
+    if (point_->y.size() != problem_->constraints()) return false;
+    Output(y, m) = point_->y(rows_);
   }
   return true;
 }
@@ -80,18 +99,25 @@ bool IpoptProgram::eval_grad_f(Ipopt::Index n, const double* w, bool /*is_new*/,
 
 bool IpoptProgram::eval_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipopt::Index m, double* g) {
   const Timer timer(evaluation_seconds_);
-  problem_->functions(Input(w, n), Output(g, m));
+  problem_->functions(Input(w, n), c_);
+  Output(g, m) = c_(rows_);
   return Input(g, m).allFinite();
 }
 
 bool IpoptProgram::eval_jac_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipopt::Index /*m*/,
                               Ipopt::Index entries, Ipopt::Index* row, Ipopt::Index* column, double* values) {
   if (values == nullptr) {
-    write_pattern(problem_->jacobian_pattern(), row, column);
+    const auto& pattern = problem_->jacobian_pattern();
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      const auto e = static_cast<std::size_t>(entries_[i]);
+      row[i] = own_row_[static_cast<std::size_t>(pattern.row[e])];
+      column[i] = pattern.column[e];
+    }
     return true;
   }
   const Timer timer(evaluation_seconds_);
-  problem_->jacobian(Input(w, n), Output(values, entries));
+  problem_->jacobian(Input(w, n), jacobian_);
+  Output(values, entries) = jacobian_(entries_);
   return Input(values, entries).allFinite();
 }
 
@@ -103,7 +129,8 @@ bool IpoptProgram::eval_h(Ipopt::Index n, const double* w, bool /*is_new*/, doub
     return true;
   }
   const Timer timer(evaluation_seconds_);
-  problem_->hessian(Input(w, n), objective_factor, Input(y, m), Output(values, entries));
+  y_(rows_) = Input(y, m);
+  problem_->hessian(Input(w, n), objective_factor, y_, Output(values, entries));
   return Input(values, entries).allFinite();
 }
 
@@ -120,7 +147,9 @@ void IpoptProgram::finalize_solution(Ipopt::SolverReturn /*status*/, Ipopt::Inde
                                      const double* z_lower, const double* z_upper, Ipopt::Index m, const double* /*g*/,
                                      const double* y, double objective, const Ipopt::IpoptData* /*data*/,
                                      Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
-  *point_ = {.w = Input(w, n), .y = Input(y, m), .z_lower = Input(z_lower, n), .z_upper = Input(z_upper, n)};
+  y_.setZero();
+  y_(rows_) = Input(y, m);
+  *point_ = {.w = Input(w, n), .y = y_, .z_lower = Input(z_lower, n), .z_upper = Input(z_upper, n)};
   objective_ = objective;
 }
 

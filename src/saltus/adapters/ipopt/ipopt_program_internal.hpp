@@ -3,6 +3,7 @@
 
 #include <IpTNLP.hpp>
 #include <functional>
+#include <vector>
 
 #include "saltus/solver/nlp_solver.hpp"
 
@@ -17,6 +18,7 @@ class IpoptProgram final : public Ipopt::TNLP {
     point_ = &point;
     is_interrupted_ = std::move(is_interrupted);
     evaluation_seconds_ = 0.0;
+    find_rows();
   }
   [[nodiscard]] double objective() const { return objective_; }
   [[nodiscard]] double evaluation_seconds() const { return evaluation_seconds_; }
@@ -43,6 +45,13 @@ class IpoptProgram final : public Ipopt::TNLP {
                          const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities) override;
 
  private:
+  /// Rows without bounds are no constraints: Ipopt does not see them.
+  void find_rows();
+
+  std::vector<int> rows_;     ///< of the problem that Ipopt sees
+  std::vector<int> entries_;  ///< of the problem's Jacobian
+  std::vector<int> own_row_;  ///< of each row of the problem; -1 if Ipopt does not see it
+  Eigen::VectorXd c_, y_, jacobian_;
   mpcc::Problem* problem_ = nullptr;
   solver::NlpPoint* point_ = nullptr;
   std::function<bool()> is_interrupted_;

@@ -1,3 +1,4 @@
+#include <limits>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -5,6 +6,8 @@
 
 namespace saltus::discretization {
 namespace {
+
+constexpr double unbounded_row = std::numeric_limits<double>::infinity();
 
 class RowNumbers {
  public:
@@ -50,6 +53,10 @@ class RowNumbers {
     for (std::size_t i = 0; i < placed.copies.size(); ++i) {
       const auto& one = placed.copies[i];
       placed.placed->add(placed.places[i], {one.first_row, one.first_pair, made.n_g, made.n_pairs});
+      if (placed.is_dormant) {
+        made.g_bounds.lower.segment(one.first_row, placed.function->equations()).setConstant(-unbounded_row);
+        made.g_bounds.upper.segment(one.first_row, placed.function->equations()).setConstant(unbounded_row);
+      }
       for (int row = 0; placed.bounds != nullptr && row < static_cast<int>(placed.bounds->size()); ++row) {
         made.g_bounds.lower[one.first_row + row] = (*placed.bounds)[at(row)].lower;
         made.g_bounds.upper[one.first_row + row] = (*placed.bounds)[at(row)].upper;

@@ -120,6 +120,32 @@ void add_longer_stretches(const OcpStructure& made, const ElementSides& modes, C
   }
 }
 
+/// The selection whose sliding ends at the left end of element e, if nothing else happens there; -1 otherwise. A switch or
+/// a beginning of sliding is an equation for the boundary, the end of sliding is none.
+int departing_selection(const OcpStructure& made, const ElementSides& modes, std::size_t e) {
+  const auto& pairs = made.kernel.pairs;
+  int departing = -1;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (pairs[k].is_region) {
+      // A region is active where lambda is zero: sliding ends where one of several becomes inactive.
+      const bool was_active = modes.of(e - 1, k) == ActiveSide::H;
+      const bool is_active = modes.of(e, k) == ActiveSide::H;
+      if (!was_active && is_active) return -1;
+      if (was_active && !is_active && departing < 0) departing = pairs[k].selection;
+      continue;
+    }
+    if (pairs[k].complement) continue;  // looked at together with the row before it
+    const auto slides = [&](std::size_t element) {
+      return modes.of(element, k) == ActiveSide::H && modes.of(element, k + 1) == ActiveSide::H;
+    };
+    const bool differs = modes.of(e - 1, k) != modes.of(e, k) || modes.of(e - 1, k + 1) != modes.of(e, k + 1);
+    if (!differs) continue;
+    if (!slides(e - 1)) return -1;
+    if (departing < 0) departing = pairs[k].selection;
+  }
+  return departing;
+}
+
 }  // namespace
 
 mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
@@ -144,6 +170,13 @@ mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
     }
     if (!equal_lengths || made.element[e].number == 0 || !modes.are_equal(e - 1, e)) continue;
     closure.equal.emplace_back(made.element[e - 1].length, made.element[e].length);
+  }
+  for (const auto& placed : made.functions) {
+    if (!placed.is_dormant) continue;
+    for (const auto& one : placed.copies) {
+      const int selection = departing_selection(made, modes, static_cast<std::size_t>(one.element));
+      if (selection >= 0) closure.activated_rows.push_back(one.first_row + selection);
+    }
   }
   return closure;
 }

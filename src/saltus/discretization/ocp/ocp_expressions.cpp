@@ -43,6 +43,7 @@ class OcpExpressionBuilder {
     add_node_terms();
     add_terminal_terms();
     add_start();
+    add_departure();
     return std::move(made_);
   }
 
@@ -274,6 +275,33 @@ class OcpExpressionBuilder {
       if (stewart && part.count > 0 && !kernel_.start_is_constant[at(part.first)]) made_.start.equation(sum);
       simplex += stewart ? 1 : 0;
     }
+  }
+
+  /// d psi / dt along the field of an element at its left end, where a selection ends to slide: 0, so that it leaves its
+  /// surface tangentially. Of regions d(g_i - theta'g) / dt. Selections there by the polynomial of the stages.
+  void add_departure() {
+    if (!kernel_.moves || dcs_.selection.numel() == 0) return;
+    const auto& tableau = kernel_.tableau;
+    SX selection = SX::zeros(dcs_.selection.numel());
+    for (int m = 0; m < tableau.stages(); ++m) {
+      double weight = 1.0;
+      for (int l = 0; l < tableau.stages(); ++l) {
+        if (l != m) weight *= -tableau.c[l] / (tableau.c[m] - tableau.c[l]);
+      }
+      selection += weight * made_.element.stages[at(m)].selection;
+    }
+    const ElementPoint left{made_.element.left.t, made_.element.left.x, selection};
+    const SX f = field_(std::vector<SX>{left.t, left.x, left.selection, made_.known}).front();
+    const casadi::Function slopes("saltus_slopes", {dcs_.t, dcs_.x, made_.known},
+                                  {SX::jacobian(dcs_.indicator, dcs_.x), SX::jacobian(dcs_.indicator, dcs_.t)});
+    const std::vector<SX> at_left = slopes(std::vector<SX>{left.t, left.x, made_.known});
+    SX rates = SX::mtimes(at_left[0], f) + at_left[1];
+    for (const auto& part : dcs_.parts) {
+      if (part.form != reformulation::Form::stewart) continue;
+      const casadi::Slice range(part.first, part.first + part.count);
+      rates(range) -= SX::dot(selection(range), rates(range));
+    }
+    made_.departure.equation(SX::densify(rates));
   }
 
   [[nodiscard]] std::vector<int> free_states() const {

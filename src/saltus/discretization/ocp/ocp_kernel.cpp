@@ -52,6 +52,7 @@ void compile_functions(const OcpExpressions& made, OcpKernel::Implementation& ke
   kernel.terminal_rows = function("terminal_rows", made.terminal_row_inputs, made.terminal_rows);
   kernel.start = function("start", made.start_inputs, made.start);
   kernel.equilibration = function("equilibration", element.boundary_inputs, element.boundary);
+  kernel.departure = function("departure", element.element_inputs, made.departure);
   kernel.neighbours = function("neighbours", element.boundary_inputs, element.neighbours);
 }
 
@@ -85,7 +86,7 @@ Expected<std::shared_ptr<OcpKernel>> OcpKernel::compile(const model::Ocp& ocp, c
     for (LocalFunction* function :
          {&kernel->element, &kernel->running, &kernel->stage_squares, &kernel->stage_rows, &kernel->node_squares,
           &kernel->node_rows, &kernel->first_rows, &kernel->slack_rows, &kernel->terminal, &kernel->end_squares, &kernel->terminal_rows,
-          &kernel->start, &kernel->equilibration, &kernel->neighbours}) {
+          &kernel->start, &kernel->equilibration, &kernel->neighbours, &kernel->departure}) {
       function->join(kernel->native, functions);
     }
     auto started = kernel->native.start(native, std::move(functions));

@@ -39,7 +39,7 @@ struct OcpKernel::Implementation {
   mpcc::Bounds boundary_bounds;
 
   LocalFunction element, running, stage_squares, stage_rows, node_squares, node_rows, first_rows, slack_rows, terminal,
-      end_squares, terminal_rows, start, equilibration, neighbours;
+      end_squares, terminal_rows, start, equilibration, neighbours, departure;
   std::vector<ConstraintRow> stage_bounds;  ///< of stage_rows: constraint -1 - i is the bound of state i
   std::vector<ConstraintRow> node_bounds, first_bounds, slack_bounds, terminal_bounds;
   int soft_per_point = 0, soft_at_end = 0;
@@ -60,7 +60,7 @@ struct OcpExpressions {
   casadi::SX parameters;  ///< fixed p, 1/N
   ElementExpressions element;
   LocalExpressions running, stage_squares, stage_rows, node_squares, node_rows, first_rows, slack_rows, terminal,
-      end_squares, terminal_rows, start;
+      end_squares, terminal_rows, start, departure;
   casadi::SX stage_inputs;  ///< of the element, and its slacks
   casadi::SX node_inputs, node_row_inputs, terminal_row_inputs, slack_inputs, start_inputs;
 };

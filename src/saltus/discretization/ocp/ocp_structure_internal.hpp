@@ -28,6 +28,7 @@ struct Placed {
   std::string what;  ///< for names of rows
   Term term = Term::none;
   const std::vector<ConstraintRow>* bounds = nullptr;  ///< null: equations
+  bool is_dormant = false;  ///< rows that only a branch problem may make equations
   bool of_method = false;  ///< rows and pairs that steer relaxed problems only
   std::vector<std::vector<int>> places;
   std::vector<Copy> copies;

@@ -54,6 +54,16 @@ class FunctionPlacer {
     add_node_functions();
     add_terminal_functions();
     add_boundaries();
+    add_departures();
+  }
+
+  void add_departures() {
+    if (is_empty(kernel_.departure)) return;
+    Placed& placed = add(kernel_.departure, "end of sliding");
+    placed.is_dormant = true;
+    for (int e = 1; e < static_cast<int>(made_.element.size()); ++e) {
+      if (made_.element[at(e)].number > 0) copy(placed, made_.element_places(e), made_.element[at(e)].interval, e);
+    }
   }
 
   void add_start_function() {

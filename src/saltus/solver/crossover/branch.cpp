@@ -10,6 +10,8 @@ using result::Termination;
 
 /// An error above says that the solver has not found a solution, rather than not all of its digits.
 constexpr double unsolved = 1e-6;
+/// Violations of a branch that has a solution.
+constexpr double solved = 1e-9;
 
 /// Solves from `start`, then refines; without free variables there is nothing to solve.
 void solve_from(const Eigen::VectorXd& start, Branch& branch, NlpSolver& nlp, const NlpOptions& options) {
@@ -50,13 +52,15 @@ bool has_failed(const Branch& branch) {
 
 }  // namespace
 
-Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, NlpSolver& nlp,
-                    const NlpOptions& options) {
+namespace {
+
+Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, NlpSolver& nlp,
+                    const NlpOptions& options, Closing closing) {
   Branch branch;
   branch.sides = sides;
   Eigen::VectorXd c(problem.rows());
   problem.functions(w, c);
-  branch.problem = std::make_unique<BranchProblem>(problem, reduce(problem, sides, jacobian_matrix(problem, w), c));
+  branch.problem = std::make_unique<BranchProblem>(problem, reduce(problem, sides, jacobian_matrix(problem, w), c, closing));
   BranchProblem& reduced = *branch.problem;
   const Eigen::VectorXd start = reduced.reduced(w);
   if (reduced.reduction().equations() > reduced.variables()) drop_dependent(reduced, start);
@@ -68,6 +72,20 @@ Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
   branch.primal_infeasibility = certificate::scaled_infeasibility(problem, branch.w);
   branch.complementarity_residual = certificate::complementarity(problem, branch.w);
   return branch;
+}
+
+}  // namespace
+
+Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, NlpSolver& nlp,
+                    const NlpOptions& options) {
+  Branch closed = solve_closed(problem, sides, w, nlp, options, Closing::whole);
+  const bool is_solved = closed.primal_infeasibility <= solved && closed.optimality_error <= unsolved;
+  if (is_solved || problem.close_branch(sides).activated_rows.empty()) return closed;
+  // Rows that close a branch may leave no solution where its elements are too coarse.
+  Branch open = solve_closed(problem, sides, w, nlp, options, Closing::without_activated);
+  open.report.iterations += closed.report.iterations;
+  open.report.evaluation_seconds += closed.report.evaluation_seconds;
+  return open;
 }
 
 }  // namespace saltus::solver::crossover

@@ -154,7 +154,7 @@ int Reduction::equations() const {
 }
 
 Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& sides, const RowMatrix& jacobian,
-                 const Eigen::VectorXd& c) {
+                 const Eigen::VectorXd& c, Closing closing) {
   const int n_g = problem.constraints();
   const int pairs = problem.pairs();
   const auto& bounds = problem.variable_bounds();
@@ -182,7 +182,13 @@ Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& si
   for (const int row : closure.dropped_rows) is_dropped[at(row)] = true;
   RowList list(jacobian, reduction);
   for (int row = 0; row < n_g; ++row) {
-    if (!is_dropped[at(row)]) list.add(row, problem.constraint_bounds().lower[row], problem.constraint_bounds().upper[row]);
+    const double lower = problem.constraint_bounds().lower[row];
+    const double upper = problem.constraint_bounds().upper[row];
+    const bool is_bounded = std::isfinite(lower) || std::isfinite(upper);
+    if (!is_dropped[at(row)] && is_bounded) list.add(row, lower, upper);
+  }
+  for (const int row : closure.activated_rows) {
+    if (closing == Closing::whole) list.add(row, 0.0, 0.0);
   }
   SeenRows seen;
   for (const int row : zero_rows) {

@@ -32,11 +32,15 @@ struct Reduction {
   [[nodiscard]] int equations() const;
 };
 
+/// Whether rows that close a branch are equations (BranchClosure::activated_rows).
+enum class Closing { whole, without_activated };
+
 /// @param sides     of each pair: which is zero; `biactive` both, `none` leaves the pair out, as group -1 does
 /// @param jacobian  dc/dw at a point: signs of implied sides, and which constrained sides are one and the same
 /// @param c         values of (g, G, H) at that point
 [[nodiscard]] Reduction reduce(const mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides,
-                               const RowMatrix& jacobian, const Eigen::VectorXd& c);
+                               const RowMatrix& jacobian, const Eigen::VectorXd& c,
+                               Closing closing = Closing::whole);
 
 /// Whether side G (or H) of the pair is a zero one.
 [[nodiscard]] inline bool is_zero_side(mpcc::ActiveSide side, mpcc::ActiveSide which) {
