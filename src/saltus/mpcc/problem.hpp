@@ -56,9 +56,12 @@ struct BranchClosure {
   std::vector<int> at_upper;                ///< and upper ones
   std::vector<std::pair<int, int>> equal;   ///< variables of equal value
   std::vector<int> dropped_rows;            ///< of g: those of a method, not of the user's problem
-  /// Rows of g without bounds that are equations here, g = 0: what closes the branch, not what the user asks for. A
-  /// solver may do without them where they leave no solution.
-  std::vector<int> activated_rows;
+  /// What the branch leaves open, not what the user asks for: variables fixed at a bound, and rows of g without bounds
+  /// that are equations here, g = 0. A solver may do without them where they leave no solution.
+  struct Freedom {
+    std::vector<int> at_lower, at_upper, rows;
+    [[nodiscard]] bool is_empty() const { return at_lower.empty() && at_upper.empty() && rows.empty(); }
+  } freedom;
 };
 
 /// Another choice of sides, and where to begin to solve it.

@@ -22,6 +22,8 @@ constexpr double lpcc_seconds = 60.0;
 constexpr int largest_rounds = 200;
 /// Of one branch problem.
 constexpr int branch_iterations = 500;
+/// Of one that begins at a point which is equal to the last: where it is better, that shows soon.
+constexpr int move_iterations = 80;
 /// Flips tried one by one before the linear program decides.
 constexpr int flips_tried = 5;
 
@@ -79,9 +81,10 @@ class Descent {
   }
 
   /// Takes the branch with the group on its other side if that is better.
-  bool take(const std::vector<ActiveSide>& sides, ConstVectorView from, const char* message) {
+  bool take(const std::vector<ActiveSide>& sides, ConstVectorView from, const char* message,
+            int iterations = branch_iterations) {
     if (!visited_.insert(sides).second) return false;
-    crossover::Branch next = run_.solve_branch(sides, from, branch_iterations, message);
+    crossover::Branch next = run_.solve_branch(sides, from, iterations, message);
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
     run_.branch = std::move(next);
     return true;
@@ -113,7 +116,7 @@ class Descent {
     visited_.insert(branch().sides);
     for (const auto& candidate : run_.problem.equal_branches(branch().sides, branch().w)) {
       if (run_.is_over()) return false;
-      if (take(candidate.sides, candidate.start, "the same point with other sides")) return true;
+      if (take(candidate.sides, candidate.start, "the same point with other sides", move_iterations)) return true;
     }
     return false;
   }

@@ -24,7 +24,7 @@ constexpr double stationary = 1e-5;
 /// A branch problem that was infeasible is tried again from a point that is nearer by this.
 constexpr double retry_factor = 0.011;
 /// Iterations of a branch problem that the next sigma may make easier, and of one that it may not.
-constexpr int trial_limit = 150;
+constexpr int trial_limit = 100;
 constexpr int whole_limit = 500;
 /// How much worse than the relaxed point a branch may be: relaxed points are better than any feasible one.
 constexpr double objective_slack = 1e-3;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -120,18 +121,24 @@ void add_longer_stretches(const OcpStructure& made, const ElementSides& modes, C
   }
 }
 
-/// The selection whose sliding ends at the left end of element e, if nothing else happens there; -1 otherwise. A switch or
-/// a beginning of sliding is an equation for the boundary, the end of sliding is none.
-int departing_selection(const OcpStructure& made, const ElementSides& modes, std::size_t e) {
+/// A selection that reaches its bound at the end of sliding.
+struct Departure {
+  int selection = 0;
+  bool at_upper = false;
+};
+
+/// The one at the left end of element e, if nothing else happens there. A switch or a beginning of sliding is an equation
+/// for the boundary, the end of sliding is none.
+std::optional<Departure> departure_at(const OcpStructure& made, const ElementSides& modes, std::size_t e) {
   const auto& pairs = made.kernel.pairs;
-  int departing = -1;
+  std::optional<Departure> departure;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (pairs[k].is_region) {
       // A region is active where lambda is zero: sliding ends where one of several becomes inactive.
       const bool was_active = modes.of(e - 1, k) == ActiveSide::H;
       const bool is_active = modes.of(e, k) == ActiveSide::H;
-      if (!was_active && is_active) return -1;
-      if (was_active && !is_active && departing < 0) departing = pairs[k].selection;
+      if (!was_active && is_active) return std::nullopt;
+      if (was_active && !is_active && !departure) departure = {.selection = pairs[k].selection, .at_upper = false};
       continue;
     }
     if (pairs[k].complement) continue;  // looked at together with the row before it
@@ -140,10 +147,32 @@ int departing_selection(const OcpStructure& made, const ElementSides& modes, std
     };
     const bool differs = modes.of(e - 1, k) != modes.of(e, k) || modes.of(e - 1, k + 1) != modes.of(e, k + 1);
     if (!differs) continue;
-    if (!slides(e - 1)) return -1;
-    if (departing < 0) departing = pairs[k].selection;
+    if (!slides(e - 1)) return std::nullopt;
+    const bool to_upper = modes.of(e, k + 1) == ActiveSide::G;
+    if (!departure) departure = {.selection = pairs[k].selection, .at_upper = to_upper};
   }
-  return departing;
+  return departure;
+}
+
+/// Where the right end is a stage, the selection has its bound there; elsewhere it leaves its surface tangentially.
+mpcc::BranchClosure::Freedom freedom_of(const OcpStructure& made, const ElementSides& modes) {
+  mpcc::BranchClosure::Freedom freedom;
+  const auto& layout = made.kernel.layout;
+  for (const auto& placed : made.functions) {
+    if (!placed.is_dormant) continue;
+    for (const auto& one : placed.copies) {
+      const auto departure = departure_at(made, modes, static_cast<std::size_t>(one.element));
+      if (!departure) continue;
+      if (layout.has_end_point) {
+        freedom.rows.push_back(one.first_row + departure->selection);
+        continue;
+      }
+      const int local = layout.selection.at(layout.stages - 1, departure->selection);
+      const int variable = made.element[at(one.element - 1)].variable(local);
+      (departure->at_upper ? freedom.at_upper : freedom.at_lower).push_back(variable);
+    }
+  }
+  return freedom;
 }
 
 }  // namespace
@@ -171,13 +200,7 @@ mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
     if (!equal_lengths || made.element[e].number == 0 || !modes.are_equal(e - 1, e)) continue;
     closure.equal.emplace_back(made.element[e - 1].length, made.element[e].length);
   }
-  for (const auto& placed : made.functions) {
-    if (!placed.is_dormant) continue;
-    for (const auto& one : placed.copies) {
-      const int selection = departing_selection(made, modes, static_cast<std::size_t>(one.element));
-      if (selection >= 0) closure.activated_rows.push_back(one.first_row + selection);
-    }
-  }
+  closure.freedom = freedom_of(made, modes);
   return closure;
 }
 

@@ -80,9 +80,9 @@ Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
                     const NlpOptions& options) {
   Branch closed = solve_closed(problem, sides, w, nlp, options, Closing::whole);
   const bool is_solved = closed.primal_infeasibility <= solved && closed.optimality_error <= unsolved;
-  if (is_solved || problem.close_branch(sides).activated_rows.empty()) return closed;
-  // Rows that close a branch may leave no solution where its elements are too coarse.
-  Branch open = solve_closed(problem, sides, w, nlp, options, Closing::without_activated);
+  if (is_solved || problem.close_branch(sides).freedom.is_empty()) return closed;
+  // A closed branch may have no solution where its elements are too coarse.
+  Branch open = solve_closed(problem, sides, w, nlp, options, Closing::with_freedom);
   open.report.iterations += closed.report.iterations;
   open.report.evaluation_seconds += closed.report.evaluation_seconds;
   return open;

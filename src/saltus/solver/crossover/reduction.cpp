@@ -162,6 +162,9 @@ Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& si
   Holding holding(problem);
   for (const int i : closure.at_lower) holding.set(i, Hold::closure, bounds.lower[i]);
   for (const int i : closure.at_upper) holding.set(i, Hold::closure, bounds.upper[i]);
+  const auto freedom = closing == Closing::whole ? closure.freedom : mpcc::BranchClosure::Freedom{};
+  for (const int i : freedom.at_lower) holding.set(i, Hold::closure, bounds.lower[i]);
+  for (const int i : freedom.at_upper) holding.set(i, Hold::closure, bounds.upper[i]);
   for (const auto& [i, j] : closure.equal) holding.make_equal(i, j);
 
   std::vector<int> zero_rows;
@@ -187,9 +190,7 @@ Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& si
     const bool is_bounded = std::isfinite(lower) || std::isfinite(upper);
     if (!is_dropped[at(row)] && is_bounded) list.add(row, lower, upper);
   }
-  for (const int row : closure.activated_rows) {
-    if (closing == Closing::whole) list.add(row, 0.0, 0.0);
-  }
+  for (const int row : freedom.rows) list.add(row, 0.0, 0.0);
   SeenRows seen;
   for (const int row : zero_rows) {
     if (seen.is_new(jacobian, c, row)) list.add(row, 0.0, 0.0);

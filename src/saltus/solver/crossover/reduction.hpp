@@ -32,8 +32,8 @@ struct Reduction {
   [[nodiscard]] int equations() const;
 };
 
-/// Whether rows that close a branch are equations (BranchClosure::activated_rows).
-enum class Closing { whole, without_activated };
+/// Whether what a branch leaves open is fixed (BranchClosure::Freedom).
+enum class Closing { whole, with_freedom };
 
 /// @param sides     of each pair: which is zero; `biactive` both, `none` leaves the pair out, as group -1 does
 /// @param jacobian  dc/dw at a point: signs of implied sides, and which constrained sides are one and the same
