@@ -105,20 +105,38 @@ Eigen::VectorXd with_boundary(const OcpStructure& made, ConstVectorView w, const
   return changed;
 }
 
-/// Where a length is at its upper bound a stretch needs one more element to grow; the other one has to keep one.
-void add_longer_stretches(const OcpStructure& made, const ElementSides& modes, ConstVectorView w, std::size_t e,
-                          std::vector<mpcc::BranchMove>& moves) {
-  const auto [before, after] = stretches_at(made, modes, e);
+/// The same point with one more element for a stretch next to the boundary before element e: where a length is at its upper
+/// bound a stretch needs one to grow. The stretch that it is taken from has to keep one.
+std::optional<mpcc::BranchMove> with_longer_stretch(const OcpStructure& made, const mpcc::BranchMove& point, std::size_t e) {
   const auto is_longest = [&](std::size_t number) {
     const int h = made.element[number].length;
-    return h >= 0 && w[h] > made.w_bounds.upper[h] - vanished;
+    return h >= 0 && point.start[h] > made.w_bounds.upper[h] - vanished;
   };
+  if (made.element[e].number == 0 || (!is_longest(e - 1) && !is_longest(e))) return std::nullopt;
+  const ElementSides modes(made, point.sides);
+  if (modes.are_equal(e - 1, e)) return std::nullopt;
+  const auto [before, after] = stretches_at(made, modes, e);
   if (is_longest(e - 1) && after.end - after.first > 1) {
-    moves.push_back({modes.copied(e - 1, e), with_boundary(made, w, before, after, e + 1)});
+    return mpcc::BranchMove{modes.copied(e - 1, e), with_boundary(made, point.start, before, after, e + 1)};
   }
   if (is_longest(e) && before.end - before.first > 1) {
-    moves.push_back({modes.copied(e, e - 1), with_boundary(made, w, before, after, e - 1)});
+    return mpcc::BranchMove{modes.copied(e, e - 1), with_boundary(made, point.start, before, after, e - 1)};
   }
+  return std::nullopt;
+}
+
+/// First all stretches together: with a free horizon one boundary can often move only if the others do.
+void add_longer_stretches(const OcpStructure& made, const Sides& sides, ConstVectorView w,
+                          std::vector<mpcc::BranchMove>& moves) {
+  const mpcc::BranchMove here{sides, w};
+  mpcc::BranchMove all = here;
+  std::vector<mpcc::BranchMove> single;
+  for (std::size_t e = 1; e < made.element.size(); ++e) {
+    if (auto move = with_longer_stretch(made, all, e)) all = std::move(*move);
+    if (auto move = with_longer_stretch(made, here, e)) single.push_back(std::move(*move));
+  }
+  if (single.size() > 1) moves.push_back(std::move(all));
+  for (auto& move : single) moves.push_back(std::move(move));
 }
 
 /// A selection that reaches its bound at the end of sliding.
@@ -209,6 +227,7 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
   std::vector<mpcc::BranchMove> moves;
   if (!made.kernel.moves || made.kernel.pairs.empty()) return moves;
   const ElementSides modes(made, sides);
+  add_longer_stretches(made, sides, w, moves);
   const auto may_vanish = [&](const OcpElement& element) {
     return element.length >= 0 && made.w_bounds.lower[element.length] <= small_share;
   };
@@ -221,7 +240,6 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
       if (may_vanish(before)) moves.push_back({modes.copied(e, e - 1), with_share(made, w, before, small_share)});
       continue;
     }
-    add_longer_stretches(made, modes, w, e, moves);
     if (w[after.length] < vanished) moves.push_back({modes.copied(e - 1, e), w});
     if (w[before.length] < vanished) moves.push_back({modes.copied(e, e - 1), w});
   }
