@@ -29,7 +29,14 @@ void write_pattern(const mpcc::Pattern& pattern, Ipopt::Index* row, Ipopt::Index
   std::copy(pattern.column.begin(), pattern.column.end(), column);
 }
 
+/// Steps below do not move the point any more.
+constexpr double standstill = 1e-8;
+/// Such steps in a row after which the solver is stopped: at a singular point it would go on to its limit.
+constexpr int patience = 12;
+
 }  // namespace
+
+bool IpoptProgram::stands_still() const { return standing_ >= patience; }
 
 void IpoptProgram::find_rows() {
   const auto& bounds = problem_->constraint_bounds();
@@ -136,11 +143,12 @@ bool IpoptProgram::eval_h(Ipopt::Index n, const double* w, bool /*is_new*/, doub
 
 bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Ipopt::Index /*iteration*/,
                                          double /*objective*/, double /*primal_infeasibility*/,
-                                         double /*dual_infeasibility*/, double /*mu*/, double /*step_norm*/,
-                                         double /*regularisation*/, double /*dual_step*/, double /*primal_step*/,
+                                         double /*dual_infeasibility*/, double /*mu*/, double step_norm,
+                                         double /*regularisation*/, double /*dual_step*/, double primal_step,
                                          Ipopt::Index /*trials*/, const Ipopt::IpoptData* /*data*/,
                                          Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
-  return !(is_interrupted_ && is_interrupted_());
+  standing_ = primal_step * step_norm <= standstill ? standing_ + 1 : 0;
+  return !stands_still() && !(is_interrupted_ && is_interrupted_());
 }
 
 void IpoptProgram::finalize_solution(Ipopt::SolverReturn /*status*/, Ipopt::Index n, const double* w,

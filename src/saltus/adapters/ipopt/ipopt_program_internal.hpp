@@ -18,8 +18,11 @@ class IpoptProgram final : public Ipopt::TNLP {
     point_ = &point;
     is_interrupted_ = std::move(is_interrupted);
     evaluation_seconds_ = 0.0;
+    standing_ = 0;
     find_rows();
   }
+  /// Whether the last problem was stopped because its point did not move any more.
+  [[nodiscard]] bool stands_still() const;
   [[nodiscard]] double objective() const { return objective_; }
   [[nodiscard]] double evaluation_seconds() const { return evaluation_seconds_; }
 
@@ -57,6 +60,7 @@ class IpoptProgram final : public Ipopt::TNLP {
   std::function<bool()> is_interrupted_;
   double objective_ = 0.0;
   double evaluation_seconds_ = 0.0;
+  int standing_ = 0;  ///< iterations in a row without a step
 };
 
 }  // namespace saltus::adapters

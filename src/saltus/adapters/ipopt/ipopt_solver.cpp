@@ -1,8 +1,11 @@
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 
+#include <dlfcn.h>
+
 #include <IpIpoptApplication.hpp>
 #include <IpSolveStatistics.hpp>
 #include <algorithm>
+#include <cstdlib>
 
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
 #include "saltus/base/contracts.hpp"
@@ -56,6 +59,15 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status) {
   return {Termination::not_converged, "Ipopt ended with an internal error"};
 }
 
+/// OpenBLAS spins with as many threads as there are cores, which only costs here: fronts are small.
+void use_one_thread() {
+  using SetThreads = void (*)(int);
+  if (std::getenv("OPENBLAS_NUM_THREADS") != nullptr) return;
+  if (auto* found = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"); found != nullptr) {
+    reinterpret_cast<SetThreads>(found)(1);
+  }
+}
+
 /// Whether the application still has what it needs to be used again: a problem that was not solved takes nothing from it.
 bool keeps_structures(Ipopt::ApplicationReturnStatus status) {
   switch (status) {
@@ -80,9 +92,12 @@ struct IpoptSolver::Implementation {
   bool has_structures = false;  ///< it has solved a problem; the sizes of the next are its own
 
   Implementation() {
+    use_one_thread();
     auto options = application->Options();
     const bool are_set = options->SetIntegerValue("print_level", 0) && options->SetStringValue("sb", "yes") &&
                          options->SetStringValue("linear_solver", "mumps") &&
+                         // Permutations by values make factors dense where the equations depend on each other.
+                         options->SetIntegerValue("mumps_permuting_scaling", 0) &&
                          // Relaxed bounds would let lambda and alpha become negative, and with them products of pairs.
                          options->SetNumericValue("bound_relax_factor", 0.0) &&
                          options->SetStringValue("mu_oracle", "quality-function") &&
@@ -134,7 +149,9 @@ solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point
   const auto status = has_structures ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
   has_structures = keeps_structures(status);
 
-  const Outcome outcome = outcome_of(status);
+  const Outcome outcome = status == Ipopt::User_Requested_Stop && program->stands_still()
+                              ? outcome_of(Ipopt::Search_Direction_Becomes_Too_Small)
+                              : outcome_of(status);
   solver::NlpReport report;
   report.termination = outcome.termination;
   report.acceptable_only = status == Ipopt::Solved_To_Acceptable_Level;
