@@ -48,6 +48,52 @@ INSTANTIATE_TEST_SUITE_P(Models, OcpCatalogue,
                            return name;
                          });
 
+/// Problems with many optima: no worse than what others report, and as true as they are shipped.
+struct Bounded {
+  std::string model;
+  double largest;
+};
+
+void PrintTo(const Bounded& bounded, std::ostream* out) { *out << bounded.model; }
+
+class OcpCatalogueBound : public testing::TestWithParam<Bounded> {};
+
+TEST_P(OcpCatalogueBound, IsReachedAndTrue) {
+  const auto result = optimum_of(GetParam().model);
+  ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+  EXPECT_LE(result.optimization->objective, GetParam().largest * (1.0 + 1e-6));
+  ASSERT_TRUE(result.optimization->verification);
+  EXPECT_LE(result.optimization->verification->interval_defect, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, OcpCatalogueBound,
+                         testing::Values(Bounded{"cart-pole", 71.6794895}, Bounded{"voice-coil-time", 0.0764043593}),
+                         [](const auto& bounded) {
+                           std::string name = bounded.param.model;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+/// Sliding begins and ends inside intervals here: with open boundaries the defect would not fall with the stages.
+TEST(OcpDefect, FallsWithTheOrderOfTheScheme) {
+  const auto file = std::filesystem::path(SALTUS_SOURCE_DIR "/models/slide-and-hide-rates.toml");
+  auto read = io::read_model(file);
+  ASSERT_TRUE(read);
+  auto ocp = model::build_ocp(read->description);
+  ASSERT_TRUE(ocp);
+  Stated problem{std::move(*ocp), *read->optimize};
+  problem.options.elements = {3};
+  double before = 1e-5;
+  for (const int stages : {2, 3, 4}) {
+    problem.options.element.stages = stages;
+    const auto result = optimized(problem);
+    ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+    const double defect = result.optimization->verification->interval_defect;
+    EXPECT_LT(defect, before) << stages;
+    before = std::max(defect / 100.0, 1e-14);
+  }
+}
+
 TEST(OcpEstimator, FindsTheSpeedsOfItsData) {
   const auto result = optimum_of("estimator");
   ASSERT_EQ(result.optimization->parameters.size(), 2U);

@@ -57,7 +57,7 @@ TEST(OcpOptima, TurboCar) {
 
 TEST(OcpOptima, TurboCarOnGrids) {
   // Programs for the switching times of the exact flow.
-  for (const auto& [intervals, optimum] : {std::pair{10, 12.0165871}, std::pair{20, 11.8151023}}) {
+  for (const auto& [intervals, optimum] : {std::pair{10, 12.0165871}, std::pair{20, 11.8151023}, std::pair{40, 11.8071442}}) {
     const auto result = optimized(stated(turbo_car(25, intervals)));
     EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
     EXPECT_NEAR(result.optimization->objective, optimum, 1e-6 * optimum);

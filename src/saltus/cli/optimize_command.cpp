@@ -75,6 +75,7 @@ pipeline::OptimizeObservers observers_of(const RunArguments& arguments) {
   catch_interrupt();
   pipeline::OptimizeObservers observers;
   observers.is_interrupted = interrupted;
+  observers.on_warning = [](const std::string& warning) { print_error(fmt::format("warning: {}", warning)); };
   if (!arguments.quiet && ::isatty(STDERR_FILENO) == 1) {
     observers.on_step = [](const result::HomotopyStep& step) { print_error(report::to_line(step)); };
   }

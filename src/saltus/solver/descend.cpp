@@ -200,10 +200,14 @@ void certify_relaxed(Run& run) {
   of.stationarity = std::numeric_limits<double>::quiet_NaN();
   of.biactive = static_cast<int>(std::count(states.biactive.begin(), states.biactive.end(), true));
   if (run.relaxed.point.y.size() != run.relaxed.problem->constraints()) return;
+  const bool is_feasible =
+      of.primal_infeasibility <= run.options.tolerance && of.complementarity_residual <= run.options.tolerance;
   auto& multipliers = run.solution.multipliers;
   multipliers = certificate::multipliers_of_relaxed(run.problem, *run.relaxed.problem, run.relaxed.point, states);
   of.stationarity = certificate::stationarity(run.problem, w, multipliers, nullptr);
   of.stationarity_type = certificate::stationarity_type(multipliers, states.biactive, run.options.tolerance);
+  // Directions from a point that is not feasible say nothing of the problem.
+  if (!is_feasible) return;
   if (of.stationarity_type == StationarityType::S) {
     if (of.stationarity <= run.options.tolerance) of.b_stationary = true;
     return;

@@ -155,6 +155,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   const Stopwatch whole;
   auto stated = state_problem(ocp, options);
   if (!stated) return tl::unexpected(stated.error());
+  for (const auto& warning : stated->warnings) observers.on_warning(warning);
   auto& problem = *stated->problem;
   result::Result result = result_frame(ocp, options);
   auto& found = result.optimization.emplace();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "saltus/base/error.hpp"
 #include "saltus/model/ocp.hpp"
@@ -12,6 +13,7 @@ namespace saltus::pipeline {
 
 struct OptimizeObservers {
   std::function<bool()> is_interrupted = [] { return false; };
+  std::function<void(const std::string&)> on_warning = [](const std::string&) {};
   std::function<void(const result::HomotopyStep&)> on_step = [](const result::HomotopyStep&) {};
 };
 
