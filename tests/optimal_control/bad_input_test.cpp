@@ -114,6 +114,7 @@ TEST(OcpBadInput, BoundsAndGuesses) {
   expect_refused({.problem = "initial_guess = { w = 't' }"},
                  {"expected the name of a state, a control or a free parameter, found 'w'"});
   expect_refused({.problem = "initial_guess = { q = 'v*t' }"}, {"the guess of 'q' depends on states or controls"});
+  expect_refused({.problem = "initial_guess = { q = 'min(v, 1)' }"}, {"the guess of 'q' has kinks or jumps"});
 }
 
 TEST(OcpNames, WhatTheProblemAloneUsesIsUsed) {

@@ -49,9 +49,9 @@ class OcpBuild {
     ocp_.user_outputs = quantities_.user_outputs();
     ocp_.user_controls = slacks_.user_controls();
     using Step = std::optional<Error> (OcpBuild::*)();
-    constexpr Step steps[] = {&OcpBuild::take_horizon,     &OcpBuild::take_costs, &OcpBuild::take_constraints,
-                              &OcpBuild::take_least_squares, &OcpBuild::take_guess, &OcpBuild::take_free,
-                              &OcpBuild::take_clock};
+    constexpr Step steps[] = {&OcpBuild::take_horizon,       &OcpBuild::take_costs, &OcpBuild::take_constraints,
+                              &OcpBuild::take_least_squares, &OcpBuild::take_clock, &OcpBuild::take_guess,
+                              &OcpBuild::take_free};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }

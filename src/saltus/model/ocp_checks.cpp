@@ -125,8 +125,17 @@ Error unknown_guess(const GuessDescription& stated, const Ocp& ocp) {
 
 std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& stated, const Ocp& ocp) {
   const auto& system = ocp.system;
-  const SX moving = SX::vertcat({system.x, system.u, system.alpha});
-  if (!SX::depends_on(system.outputs(guess.output), moving)) return std::nullopt;
+  const SX expression = system.outputs(guess.output);
+  if (SX::depends_on(expression, system.alpha)) {
+    return mistake(fmt::format("the guess of '{}' has kinks or jumps", stated.name),
+                   "give a smooth expression of t, or the name of a stored result", stated.location);
+  }
+  SX moving = system.u;
+  for (int i = 0; i < static_cast<int>(system.state_names.size()); ++i) {
+    // A clock is the time.
+    if (!ocp.clock || ocp.clock->state != i) moving = SX::vertcat({moving, system.x(i)});
+  }
+  if (!SX::depends_on(expression, moving)) return std::nullopt;
   return mistake(fmt::format("the guess of '{}' depends on states or controls", stated.name),
                  "a guess is an expression of t and parameters", stated.location);
 }

@@ -54,6 +54,19 @@ TEST(OcpGuessTest, ExpressionsOfTime) {
   EXPECT_EQ(start.warnings[1], "the initial guess of 'q' is 200 and was moved onto the bounds [0, 150]");
 }
 
+TEST(OcpGuessTest, ClocksAreTheTime) {
+  Builder model = geared_car();
+  const SX clock = model.state("clock", {0.0, -infinity, infinity});
+  model.dynamics("clock", SX(1));
+  model.output("q_guess", 3 * clock);
+  Ocp ocp = problem_of(model, 4.0);
+  ocp.clock = model::OcpClock{.state = 2, .speed_lower = 1.0, .speed_upper = 2.0};
+  ocp.guess = {{OcpGuess::Kind::state, 0, 0}};
+  const auto start = started(ocp, 2, {0.0, 0.5, 1.0});
+  ASSERT_EQ(start.states.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(start.states[i][0], 6.0 * static_cast<double>(i));
+}
+
 TEST(OcpGuessTest, SimulationOfTheGuessedControls) {
   // v' = 6 until v = 10 at 5/3, then 2.
   Builder model = geared_car();

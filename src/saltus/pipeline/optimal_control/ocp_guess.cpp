@@ -38,7 +38,8 @@ class StatedGuesses {
   }
 
   [[nodiscard]] double value(const OcpGuess& guess, double t, const std::vector<double>& parameters) {
-    const ModelPoint point{t, ocp_.system.initial_state, ocp_.system.control_initial, parameters};
+    ModelPoint point{t, ocp_.system.initial_state, ocp_.system.control_initial, parameters};
+    if (ocp_.clock) point.x[at(ocp_.clock->state)] = t;
     const double value = values_.outputs(point)[at(guess.output)];
     if (!std::isfinite(value) && !error_) {
       // Member by member: g++ 12 takes the aggregate for uninitialised.
