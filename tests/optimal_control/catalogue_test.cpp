@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Models, OcpCatalogueBound,
                            return name;
                          });
 
-/// Sliding begins and ends inside intervals here: with open boundaries the defect would not fall with the stages.
+/// Sliding begins and ends inside intervals here.
 TEST(OcpDefect, FallsWithTheOrderOfTheScheme) {
   const auto file = std::filesystem::path(SALTUS_SOURCE_DIR "/models/slide-and-hide-rates.toml");
   auto read = io::read_model(file);

@@ -1,6 +1,7 @@
 // Optima that are known exactly.
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -44,6 +45,32 @@ TEST(OcpOptima, StewartAnitescuWithoutSwitchDetectionStopsAtFalseOptima) {
     }
     EXPECT_EQ(largest - smallest > 0.05, !is_smoothed);
     EXPECT_EQ(largest - smallest < 1e-9, is_smoothed);
+  }
+}
+
+/// x slides at 0 until t = 1 and leaves tangentially: x(1.5) = 1/8, whatever the control. An optimiser that may choose where
+/// sliding ends leaves early, and finds 0.12 with a defect of 4 %.
+TEST(OcpOptima, SlidingEndsWhereItHasTo) {
+  for (const std::string form : {"scheme = \"radau_iia\"", "scheme = \"gauss_legendre\"", "reformulation = \"stewart\""}) {
+    const auto result = optimized(stated(R"toml(
+[model]
+name = "leaving"
+[states]
+x = 0
+[controls]
+u = { lower = -1, upper = 1 }
+[dynamics]
+x = "t - sign(x)"
+[optimize]
+horizon = 1.5
+control_intervals = 1
+running_cost = "u^2"
+terminal_cost = "x"
+)toml" + form));
+    EXPECT_EQ(result.status.termination, Termination::completed) << form << ": " << result.status.message;
+    EXPECT_NEAR(result.optimization->objective, 0.125, 1e-10) << form;
+    ASSERT_TRUE(result.optimization->verification) << form;
+    EXPECT_LT(result.optimization->verification->interval_defect, 1e-10) << form;
   }
 }
 

@@ -63,18 +63,6 @@ void PlacedFunction::add_patterns(mpcc::Pattern& jacobian, mpcc::Pattern& hessia
   }
 }
 
-int PlacedFunction::jacobian_entries() const {
-  std::size_t sum = 0;
-  for (const auto& copy : copies_) sum += copy.jacobian.size();
-  return static_cast<int>(sum);
-}
-
-int PlacedFunction::hessian_entries() const {
-  std::size_t sum = 0;
-  for (const auto& copy : copies_) sum += copy.hessian.size();
-  return static_cast<int>(sum);
-}
-
 const std::vector<double>& PlacedFunction::gather(int copy, ConstVectorView w, const Eigen::VectorXd& constants) {
   const auto& places = copies_[at(copy)].places;
   for (std::size_t i = 0; i < places.size(); ++i) z_[i] = value_at(places[i], w, constants);

@@ -34,9 +34,6 @@ class PlacedFunction {
   void add_patterns(mpcc::Pattern& jacobian, mpcc::Pattern& hessian) const;
 
   [[nodiscard]] int copies() const { return static_cast<int>(copies_.size()); }
-  /// Entries that all copies add to the patterns.
-  [[nodiscard]] int jacobian_entries() const;
-  [[nodiscard]] int hessian_entries() const;
   /// Rows of a copy in the problem: its equations, then G, then H.
   [[nodiscard]] const std::vector<int>& rows_of(int copy) const { return copies_[static_cast<std::size_t>(copy)].rows; }
   [[nodiscard]] const std::vector<int>& places_of(int copy) const {

@@ -41,17 +41,20 @@ bool IpoptProgram::stands_still() const { return standing_ >= patience; }
 void IpoptProgram::find_rows() {
   const auto& bounds = problem_->constraint_bounds();
   rows_.clear();
-  own_row_.assign(static_cast<std::size_t>(problem_->constraints()), -1);
+  std::vector<int> own_row(static_cast<std::size_t>(problem_->constraints()), -1);
   for (int row = 0; row < problem_->constraints(); ++row) {
     if (!std::isfinite(bounds.lower[row]) && !std::isfinite(bounds.upper[row])) continue;
-    own_row_[static_cast<std::size_t>(row)] = static_cast<int>(rows_.size());
+    own_row[static_cast<std::size_t>(row)] = static_cast<int>(rows_.size());
     rows_.push_back(row);
   }
   entries_.clear();
+  jacobian_pattern_ = {};
   const auto& pattern = problem_->jacobian_pattern();
   for (int e = 0; e < pattern.entries(); ++e) {
-    const int row = pattern.row[static_cast<std::size_t>(e)];
-    if (own_row_[static_cast<std::size_t>(row)] >= 0) entries_.push_back(e);
+    const int row = own_row[static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(e)])];
+    if (row < 0) continue;
+    entries_.push_back(e);
+    jacobian_pattern_.add(row, pattern.column[static_cast<std::size_t>(e)]);
   }
   c_ = y_ = Eigen::VectorXd::Zero(problem_->constraints());
   jacobian_ = Eigen::VectorXd::Zero(pattern.entries());
@@ -114,12 +117,7 @@ bool IpoptProgram::eval_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipop
 bool IpoptProgram::eval_jac_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipopt::Index /*m*/,
                               Ipopt::Index entries, Ipopt::Index* row, Ipopt::Index* column, double* values) {
   if (values == nullptr) {
-    const auto& pattern = problem_->jacobian_pattern();
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-      const auto e = static_cast<std::size_t>(entries_[i]);
-      row[i] = own_row_[static_cast<std::size_t>(pattern.row[e])];
-      column[i] = pattern.column[e];
-    }
+    write_pattern(jacobian_pattern_, row, column);
     return true;
   }
   const Timer timer(evaluation_seconds_);

@@ -53,7 +53,7 @@ class IpoptProgram final : public Ipopt::TNLP {
 
   std::vector<int> rows_;     ///< of the problem that Ipopt sees
   std::vector<int> entries_;  ///< of the problem's Jacobian
-  std::vector<int> own_row_;  ///< of each row of the problem; -1 if Ipopt does not see it
+  mpcc::Pattern jacobian_pattern_;
   Eigen::VectorXd c_, y_, jacobian_;
   mpcc::Problem* problem_ = nullptr;
   solver::NlpPoint* point_ = nullptr;

@@ -175,19 +175,18 @@ std::optional<Departure> departure_at(const OcpStructure& made, const ElementSid
 /// Where the right end is a stage, the selection has its bound there; elsewhere it leaves its surface tangentially.
 mpcc::BranchClosure::Freedom freedom_of(const OcpStructure& made, const ElementSides& modes) {
   mpcc::BranchClosure::Freedom freedom;
-  const auto& layout = made.kernel.layout;
+  const auto& kernel = made.kernel;
+  for (std::size_t e = 1; e < made.element.size() && kernel.moves && !kernel.layout.has_end_point; ++e) {
+    const auto departure = made.element[e].number > 0 ? departure_at(made, modes, e) : std::nullopt;
+    if (!departure) continue;
+    const int local = kernel.layout.selection.at(kernel.layout.stages - 1, departure->selection);
+    (departure->at_upper ? freedom.at_upper : freedom.at_lower).push_back(made.element[e - 1].variable(local));
+  }
   for (const auto& placed : made.functions) {
     if (!placed.is_dormant) continue;
     for (const auto& one : placed.copies) {
       const auto departure = departure_at(made, modes, static_cast<std::size_t>(one.element));
-      if (!departure) continue;
-      if (layout.has_end_point) {
-        freedom.rows.push_back(one.first_row + departure->selection);
-        continue;
-      }
-      const int local = layout.selection.at(layout.stages - 1, departure->selection);
-      const int variable = made.element[at(one.element - 1)].variable(local);
-      (departure->at_upper ? freedom.at_upper : freedom.at_lower).push_back(variable);
+      if (departure) freedom.rows.push_back(one.first_row + departure->selection);
     }
   }
   return freedom;

@@ -278,9 +278,10 @@ class OcpExpressionBuilder {
   }
 
   /// d psi / dt along the field of an element at its left end, where a selection ends to slide: 0, so that it leaves its
-  /// surface tangentially. Of regions d(g_i - theta'g) / dt. Selections there by the polynomial of the stages.
+  /// surface tangentially. Of regions d(g_i - theta'g) / dt. Selections there by the polynomial of the stages. Where the
+  /// right end is a stage, branches fix a selection there instead.
   void add_departure() {
-    if (!kernel_.moves || dcs_.selection.numel() == 0) return;
+    if (!kernel_.moves || dcs_.selection.numel() == 0 || !made_.element.layout.has_end_point) return;
     const auto& tableau = kernel_.tableau;
     SX selection = SX::zeros(dcs_.selection.numel());
     for (int m = 0; m < tableau.stages(); ++m) {

@@ -125,10 +125,6 @@ void OcpProblem::functions(ConstVectorView w, VectorView c) {
   auto& made = *implementation_->structure;
   for (const auto& placed : made.functions) {
     if (placed.function->equations() + placed.function->pairs() == 0) continue;
-    if (implementation_->leaves_out(placed)) {
-      for (const auto& one : placed.copies) c.segment(one.first_row, placed.function->equations()).setZero();
-      continue;
-    }
     placed.placed->rows(w, made.constants, made.local_parameters, c);
   }
   for (std::size_t i = 0; i < made.linear.size(); ++i) {
@@ -143,10 +139,6 @@ void OcpProblem::jacobian(ConstVectorView w, VectorView values) {
   double* next = values.data();
   for (const auto& placed : made.functions) {
     if (placed.function->jacobian_pattern().entries() == 0) continue;
-    if (implementation_->leaves_out(placed)) {
-      next = std::fill_n(next, placed.placed->jacobian_entries(), 0.0);
-      continue;
-    }
     next = placed.placed->jacobian(w, made.constants, made.local_parameters, next);
   }
   for (const auto& row : made.linear) {
@@ -160,10 +152,6 @@ void OcpProblem::hessian(ConstVectorView w, double objective_factor, ConstVector
   double* next = values.data();
   for (const auto& placed : made.functions) {
     if (placed.function->hessian_pattern().entries() == 0) continue;
-    if (own.leaves_out(placed)) {
-      next = std::fill_n(next, placed.placed->hessian_entries(), 0.0);
-      continue;
-    }
     next = placed.placed->hessian(w, made.constants, made.local_parameters, objective_factor * own.factor(placed), y, next);
   }
   for (const auto& penalty : made.penalties) {

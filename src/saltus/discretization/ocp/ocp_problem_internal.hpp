@@ -13,8 +13,6 @@ struct OcpProblem::Implementation {
   Eigen::VectorXd start;
   double time_weight = 0.0;
   double method_scale = 0.0;  ///< 0: without the method's terms
-  /// Relaxed problems do not see dormant rows: they are not evaluated there.
-  [[nodiscard]] bool leaves_out(const Placed& placed) const { return placed.is_dormant && method_scale != 0.0; }
   std::vector<int> mean_lengths;  ///< of heuristic_mean: variables; their mean is 1 over the number of their interval
   std::vector<double> mean_values;
   std::vector<std::string> path_names, terminal_names, state_names;

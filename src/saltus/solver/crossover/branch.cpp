@@ -50,10 +50,6 @@ bool has_failed(const Branch& branch) {
   return by_itself && !(branch.optimality_error <= unsolved);
 }
 
-}  // namespace
-
-namespace {
-
 Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, NlpSolver& nlp,
                     const NlpOptions& options, Closing closing) {
   Branch branch;

@@ -160,11 +160,13 @@ Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& si
   const auto& bounds = problem.variable_bounds();
   const mpcc::BranchClosure closure = problem.close_branch(sides);
   Holding holding(problem);
-  for (const int i : closure.at_lower) holding.set(i, Hold::closure, bounds.lower[i]);
-  for (const int i : closure.at_upper) holding.set(i, Hold::closure, bounds.upper[i]);
   const auto freedom = closing == Closing::whole ? closure.freedom : mpcc::BranchClosure::Freedom{};
-  for (const int i : freedom.at_lower) holding.set(i, Hold::closure, bounds.lower[i]);
-  for (const int i : freedom.at_upper) holding.set(i, Hold::closure, bounds.upper[i]);
+  for (const auto* at_lower : {&closure.at_lower, &freedom.at_lower}) {
+    for (const int i : *at_lower) holding.set(i, Hold::closure, bounds.lower[i]);
+  }
+  for (const auto* at_upper : {&closure.at_upper, &freedom.at_upper}) {
+    for (const int i : *at_upper) holding.set(i, Hold::closure, bounds.upper[i]);
+  }
   for (const auto& [i, j] : closure.equal) holding.make_equal(i, j);
 
   std::vector<int> zero_rows;
