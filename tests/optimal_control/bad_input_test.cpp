@@ -104,6 +104,13 @@ TEST(OcpBadInput, LeastSquares) {
   expect_refused({.problem = head + "weight = [1, 2, 3]"}, {"weight", "2 expressions"});
 }
 
+TEST(OcpBadInput, MoreEquationsThanFreedom) {
+  expect_refused({.problem = "terminal_constraints = ['q == 1', 'v == 0', 'q + v == 2']"},
+                 {"there are 3 equality constraints and only 2 values to choose", "'q == 1', 'v == 0', 'q + v == 2'"});
+  expect_refused({.problem = "path_constraints = ['q == 0']\nterminal_constraints = ['v == 0']"},
+                 {"there are 3 equality constraints", "'q == 0' at 2 points"});
+}
+
 TEST(OcpBadInput, BoundsAndGuesses) {
   expect_refused({.q = "{ initial = 3, lower = -1, upper = 1 }"},
                  {"state 'q' starts at 3, outside of its bounds [-1, 1]", "or make it free"});

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "saltus/discretization/element_expressions_internal.hpp"
@@ -96,6 +97,26 @@ mpcc::Bounds boundary_bounds(StepEquilibration mode, int pairs) {
   mpcc::Bounds bounds{Eigen::VectorXd::Zero(5 * pairs + 3), Eigen::VectorXd::Constant(5 * pairs + 3, infinity)};
   bounds.upper.segment(2 * pairs, 3 * pairs).setOnes();  // multipliers of minima
   return bounds;
+}
+
+Eigen::VectorXd boundary_values(const Eigen::VectorXd& first_sides, double difference) {
+  const Eigen::Index pairs = (first_sides.size() - 2) / 5;
+  Eigen::VectorXd own = Eigen::VectorXd::Zero(5 * pairs + 3);
+  Eigen::Index smallest = 0;
+  double minimum = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < pairs; ++k) {
+    const auto sums = first_sides.segment(5 * k, 4).cwiseMax(0.0);
+    own[k] = std::min(sums[0], sums[1]);
+    own[pairs + k] = std::min(sums[2], sums[3]);
+    own[2 * pairs + k] = sums[0] <= sums[1] ? 1.0 : 0.0;
+    own[3 * pairs + k] = sums[2] <= sums[3] ? 1.0 : 0.0;
+    if (own[k] + own[pairs + k] >= minimum) continue;
+    minimum = own[k] + own[pairs + k];
+    smallest = k;
+  }
+  own[4 * pairs + smallest] = 1.0;
+  own.tail(3) << minimum, std::max(difference, 0.0), std::max(-difference, 0.0);
+  return own;
 }
 
 void add_step_equilibration(const FesdOptions& options, const std::vector<SelectionPair>& kinds,

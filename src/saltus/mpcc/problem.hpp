@@ -124,6 +124,9 @@ class Problem {
   [[nodiscard]] virtual int pair_group(int pair) const { return pair; }
   /// What else a branch problem with these zero sides (G or H, one per pair) fixes, makes equal and leaves out.
   [[nodiscard]] virtual BranchClosure close_branch(const std::vector<ActiveSide>& sides) const;
+  /// Gives variables that only the rows of a method ask for the values that these rows have at w, a solution of a branch
+  /// problem. By default there are none.
+  virtual void complete(VectorView w) { static_cast<void>(w); }
   /// Other sides with which the same point can be written, although no pair of it is biactive: what a closure keeps apart
   /// (an element of length zero has the modes of either neighbour). By default none.
   [[nodiscard]] virtual std::vector<BranchMove> equal_branches(const std::vector<ActiveSide>& sides,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/discretization/element_expressions_internal.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
 
 namespace saltus::discretization {
@@ -219,6 +220,23 @@ mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
   }
   closure.freedom = freedom_of(made, modes);
   return closure;
+}
+
+void OcpProblem::complete(mpcc::VectorView w) {
+  const auto& made = *implementation_->structure;
+  if (made.boundary_own.empty()) return;
+  for (const int i : made.boundary_own) w[i] = 0.0;
+  Eigen::VectorXd c(rows());
+  functions(w, c);
+  const int equations = made.kernel.equilibration.equations();
+  for (const auto& placed : made.functions) {
+    if (placed.function != &made.kernel.equilibration) continue;
+    auto own = made.boundary_own.begin();
+    for (const auto& one : placed.copies) {
+      const auto first_sides = c.segment(made.n_g + one.first_pair, placed.function->pairs());
+      for (const double value : boundary_values(first_sides, c[one.first_row + equations - 1])) w[*own++] = value;
+    }
+  }
 }
 
 std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, ConstVectorView w) const {

@@ -113,6 +113,7 @@ class OcpProblem final : public mpcc::Problem {
   void without_method_terms() override;
   [[nodiscard]] int pair_group(int pair) const override;
   [[nodiscard]] mpcc::BranchClosure close_branch(const std::vector<mpcc::ActiveSide>& sides) const override;
+  void complete(mpcc::VectorView w) override;
   /// A switch at the end of an interval can as well be in the interval before or behind it, in an element that has
   /// vanished; an element that has vanished can as well have the modes of a neighbour; between two elements of equal
   /// modes and others a switch can be written with one element more on the side whose lengths are at their bound.

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -38,6 +41,34 @@ Expected<std::vector<int>> elements_of(const OptimizeOptions& options) {
     if (elements.back() < 1) return tl::unexpected(refusal("elements has to be >= 1", "give whole numbers >= 1"));
   }
   return elements;
+}
+
+/// More equations than there are choices have no solution, or depend on each other: no method can tell which.
+std::optional<Error> check_freedom(const model::Ocp& ocp, const std::vector<int>& elements, const OptimizeOptions& options) {
+  const auto count = [](const std::vector<bool>& is_free) { return std::count(is_free.begin(), is_free.end(), true); };
+  const auto intervals = std::ssize(elements);
+  const auto freedom = intervals * ocp.user_controls + count(ocp.free_states) + count(ocp.free_parameters) +
+                       (ocp.horizon.free ? 1 : 0) + (ocp.clock && ocp.clock->speed_lower < ocp.clock->speed_upper ? intervals : 0);
+  std::vector<std::string> named;
+  const auto add = [&](const std::vector<model::OcpConstraint>& constraints, std::ptrdiff_t points) {
+    std::ptrdiff_t rows = 0;
+    for (const auto& constraint : constraints) {
+      if (constraint.norm != model::ConstraintNorm::hard || constraint.lower != constraint.upper) continue;
+      named.push_back(points == 1 ? fmt::format("'{}'", constraint.name)
+                                  : fmt::format("'{}' at {} points", constraint.name, points));
+      rows += points;
+    }
+    return rows;
+  };
+  auto points = intervals;
+  if (ocp.path_at != model::ConstraintPoints::intervals) points = std::accumulate(elements.begin(), elements.end(), 0);
+  if (ocp.path_at == model::ConstraintPoints::stages) points *= options.element.stages;
+  const auto equations = add(ocp.terminal, 1) + add(ocp.path, points);
+  if (equations <= freedom) return std::nullopt;
+  return refusal(fmt::format("there are {} equality constraints and only {} values to choose (controls, what is free): {}",
+                             equations, freedom, fmt::join(named, ", ")),
+                 "leave some out, state them as inequalities, soften them ({ constraint = ..., norm = \"l1\" }), or use more "
+                 "control_intervals");
 }
 
 discretization::FesdOptions discretization_options(const OptimizeOptions& options) {
@@ -104,6 +135,7 @@ Expected<void> take_result(const model::Ocp& ocp, const result::Result& from, in
 Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptions& options) {
   auto elements = elements_of(options);
   if (!elements) return tl::unexpected(elements.error());
+  if (auto error = check_freedom(ocp, *elements, options)) return tl::unexpected(std::move(*error));
   auto tableau =
       discretization::butcher_tableau(family(options.element.scheme), static_cast<int>(options.element.stages));
   if (!tableau) return tl::unexpected(tableau.error());

@@ -196,7 +196,6 @@ OptimizedPath path_of(const OcpSolution& solution, const std::vector<double>& ti
   path.parameters = solution.parameters;
   path.times = times;
   path.controls = solution.controls;
-  path.amplification = std::numeric_limits<double>::quiet_NaN();
   path.nodes.push_back(solution.initial_state);
   path.state_max = path.state_min = solution.initial_state;
   const auto include = [&](const auto& x) {

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
+
+#include <Eigen/SVD>
 
 #include "saltus/base/at.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
@@ -23,6 +26,8 @@ constexpr long most_resimulated_events = 20'000;
 constexpr std::size_t rows_per_interval = 50;
 /// Of the open loop, which is drawn: a page shows no more.
 constexpr std::size_t most_drawn_rows = 1000;
+/// Of the range of a state: differences of runs to 1e-10 are then known to 1e-5.
+constexpr double difference_step = 1e-5;
 /// Of an interval: switches so near to its start are there, to what switching times are found to.
 constexpr double at_start = 1e-6;
 
@@ -129,6 +134,37 @@ Resimulation::Segment Resimulation::interval(std::size_t k, const std::function<
 Resimulation::Segment Resimulation::open_loop(const std::function<bool()>& is_interrupted) {
   const std::size_t rows = std::clamp(20 * path_->controls.size(), std::size_t{200}, most_drawn_rows);
   return from_node(0, resimulation_options(path_->times.front(), path_->times.back(), rows), is_interrupted);
+}
+
+Eigen::VectorXd Resimulation::end_of(std::size_t k, std::vector<double> start,
+                                     const std::function<bool()>& is_interrupted) {
+  const auto n = index(start.size());
+  system_.initial_state = std::move(start);
+  const double until = path_->times[k + 1];
+  const auto ended = run(resimulation_options(path_->times[k], until, 1), is_interrupted);
+  if (ended.status.termination == Termination::stopped_by_user || !(ended.status.time_reached >= until)) {
+    return Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  }
+  return Eigen::Map<const Eigen::VectorXd>(ended.final.x.data(), n);
+}
+
+double Resimulation::amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted) {
+  const auto n = index(scales.size());
+  Eigen::MatrixXd product = Eigen::MatrixXd::Identity(n, n), derivative(n, n);
+  for (std::size_t k = 0; k < path_->controls.size(); ++k) {
+    for (std::size_t j = 0; j < scales.size(); ++j) {
+      auto above = path_->nodes[k], below = path_->nodes[k];
+      above[j] += difference_step * scales[j];
+      below[j] -= difference_step * scales[j];
+      const double width = above[j] - below[j];
+      const Eigen::VectorXd at_above = end_of(k, std::move(above), is_interrupted);
+      derivative.col(index(j)) = (at_above - end_of(k, std::move(below), is_interrupted)) / width;
+      if (!derivative.col(index(j)).allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    }
+    product = derivative * product;
+  }
+  return product.allFinite() ? Eigen::JacobiSVD<Eigen::MatrixXd>(product).singularValues()(0)
+                             : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace saltus::pipeline

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/ocp.hpp"
@@ -28,6 +30,9 @@ class Resimulation {
   [[nodiscard]] Segment interval(std::size_t k, const std::function<bool()>& is_interrupted);
   /// From the first node over the whole horizon, likewise.
   [[nodiscard]] Segment open_loop(const std::function<bool()>& is_interrupted);
+  /// The 2-norm of d x(T) / d x(from), the product of the derivatives of all intervals, by central differences in steps of
+  /// 1e-5 `scales`; NaN if a simulation does not come to its end.
+  [[nodiscard]] double amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted);
 
  private:
   Resimulation(model::System system, evaluation::ModelKernel kernel, const OptimizedPath& path);
@@ -35,6 +40,9 @@ class Resimulation {
                                   const std::function<bool()>& is_interrupted);
   [[nodiscard]] event_integrator::Integration run(const event_integrator::IntegrationOptions& options,
                                                   const std::function<bool()>& is_interrupted);
+  /// NaN if the run from `start` does not come to the end of interval k.
+  [[nodiscard]] Eigen::VectorXd end_of(std::size_t k, std::vector<double> start,
+                                       const std::function<bool()>& is_interrupted);
   [[nodiscard]] std::vector<std::pair<int, int>> wanted_mode(const event_integrator::Integration& run,
                                                              std::size_t k) const;
 

@@ -80,6 +80,12 @@ class Scales {
     return scale;
   }
 
+  [[nodiscard]] std::vector<double> all() const {
+    std::vector<double> scales;
+    for (std::size_t i = 0; i < low_.size(); ++i) scales.push_back(of(i));
+    return scales;
+  }
+
  private:
   const model::System& system_;
   std::vector<double> low_, high_;
@@ -185,7 +191,6 @@ result::OpenLoop open_loop_of(const Ocp& ocp, const OptimizedPath& path, const S
   result::OpenLoop open_loop;
   open_loop.termination = run.status.termination;
   open_loop.message = run.status.message;
-  open_loop.amplification = path.amplification;
   open_loop.end_state_error = open_loop.terminal_violation = not_known;
   if (segment.is_complete) {
     open_loop.end_state_error = 0.0;
@@ -210,14 +215,15 @@ Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, double 
   IntervalChecks checks(ocp, path, verification);
   if (!checks.simulate(*resimulation, is_interrupted)) {
     verification.interval_defect = verification.path_violation = not_known;
-    verification.open_loop.end_state_error = verification.open_loop.terminal_violation = not_known;
-    verification.open_loop.amplification = path.amplification;
-    verification.open_loop.termination = Termination::stopped_by_user;
+    auto& open_loop = verification.open_loop;
+    open_loop.end_state_error = open_loop.terminal_violation = open_loop.amplification = not_known;
+    open_loop.termination = Termination::stopped_by_user;
     verification.message = "stopped before all intervals were simulated";
     return verification;
   }
   checks.compare();
   verification.open_loop = open_loop_of(ocp, path, checks.scales(), resimulation->open_loop(is_interrupted));
+  verification.open_loop.amplification = resimulation->amplification(checks.scales().all(), is_interrupted);
   return verification;
 }
 

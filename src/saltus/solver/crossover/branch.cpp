@@ -64,6 +64,7 @@ Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
   // Equations that depend on each other at the solution are no reason to fail, but can be one to find no direction.
   if (has_failed(branch) && drop_dependent(reduced, branch.point.w)) solve_from(start, branch, nlp, options);
   branch.w = reduced.full(branch.point.w);
+  problem.complete(branch.w);
   branch.objective = problem.objective(branch.w);
   branch.primal_infeasibility = certificate::scaled_infeasibility(problem, branch.w);
   branch.complementarity_residual = certificate::complementarity(problem, branch.w);
