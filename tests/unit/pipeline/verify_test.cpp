@@ -39,7 +39,6 @@ OptimizedPath path_of(double horizon, std::vector<std::vector<double>> nodes,
   }
   path.nodes = std::move(nodes);
   path.controls = std::move(controls);
-  path.amplification = 7.0;
   return path;
 }
 
@@ -85,7 +84,8 @@ TEST(VerifyTest, ExactTrajectories) {
   EXPECT_EQ(found.open_loop.termination, Termination::completed);
   EXPECT_LT(found.open_loop.end_state_error, exact);
   EXPECT_NEAR(found.open_loop.terminal_violation, 2.0 / 3.0 - 0.5, exact);
-  EXPECT_EQ(found.open_loop.amplification, 7.0);
+  // d x(T)/d x(0) = f(after)/f(before); differences of runs to 1e-10 in steps of 1e-5 are known to 1e-5.
+  EXPECT_NEAR(found.open_loop.amplification, 1.0 / 3.0, 1e-5);
   ASSERT_GE(found.open_loop.t.size(), 200U);
   EXPECT_EQ(found.open_loop.t.size(), found.open_loop.x.size());
   EXPECT_EQ(found.open_loop.t.front(), 0.0);
