@@ -12,7 +12,8 @@
 # nlohmann-json   >= 3.11  MIT       nlohmann-json3-dev; result files
 # CLI11           >= 2.1   BSD-3     libcli11-dev; command line
 # GoogleTest      >= 1.12  BSD-3     libgtest-dev; tests, developer mode only
-# plotly.js       7.1      MIT       wheel of PyPI's plotly in .venv; pictures of the report, read at run time
+# zlib            >= 1.2   Zlib      zlib1g-dev; numbers of reports, deflated
+# plotly.js       4.1.1    MIT       third_party/plotly, made by scripts/make_plotly.sh; pictures of the report, read at run time
 
 # The wheels of the tree's own virtual environment, whatever Python made it.
 file(GLOB SALTUS_SITE_PACKAGES ${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages)
@@ -36,6 +37,7 @@ saltus_require(casadi "scripts/install.sh makes .venv with the wheel of PyPI" CO
 saltus_require(tomlplusplus "apt-get install libtomlplusplus-dev")
 saltus_require(nlohmann_json "apt-get install nlohmann-json3-dev" 3.11)
 saltus_require(CLI11 "apt-get install libcli11-dev" 2.1)
+saltus_require(ZLIB "apt-get install zlib1g-dev")
 if(casadi_FOUND)
   include(cmake/ipopt.cmake)
   if(NOT TARGET saltus_wheel::ipopt)

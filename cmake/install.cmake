@@ -31,12 +31,9 @@ endif()
 
 install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus/models
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")
-find_file(SALTUS_PLOTLY_JS plotly/package_data/plotly.min.js PATHS ${SALTUS_SITE_PACKAGES} NO_DEFAULT_PATH
-  DOC "plotly.min.js of PyPI's plotly package")
-if(SALTUS_PLOTLY_JS)
-  install(FILES ${SALTUS_PLOTLY_JS} DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus)
-endif()
+install(FILES third_party/plotly/plotly.min.js DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus)
+install(FILES third_party/plotly/NOTICES.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus RENAME plotly-notices.txt)
 
 # All that an installation contains, without the tests.
 add_custom_target(saltus_libraries)

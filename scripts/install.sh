@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Installs what is missing to build and test Saltus, and only that: Debian packages with apt-get (as root), CasADi and
-# plotly into ./.venv. Safe to repeat; done in a fraction of a second when there is nothing to do.
+# Installs what is missing to build and test Saltus, and only that: Debian packages with apt-get (as root), CasADi
+# into ./.venv. Safe to repeat; done in a fraction of a second when there is nothing to do.
 #   scripts/install.sh              what `make demo` and `make test` need
 #   scripts/install.sh developer    also clang-format and clang-tidy
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 packages=(g++ cmake make ninja-build libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
-  libexpected-dev libgtest-dev libbenchmark-dev)
+  libexpected-dev zlib1g-dev libgtest-dev libbenchmark-dev)
 optional_packages=(ccache)
 if [[ "${1:-}" == developer ]]; then
   packages+=(clang-format clang-tidy)
@@ -76,7 +76,6 @@ wheel_is_complete() {
     [[ -f "$site/$name-$version.dist-info/RECORD" ]] || continue
     case "$name" in
       casadi) [[ -f "$site/casadi/cmake/casadi-config.cmake" ]] && return 0 ;;
-      plotly) [[ -f "$site/plotly/package_data/plotly.min.js" ]] && return 0 ;;
       *) return 0 ;;
     esac
   done
@@ -90,7 +89,7 @@ install_wheels() {
   done < <(grep -v '^#' scripts/requirements.txt)
   [[ $complete == yes ]] && return 0
 
-  say "Installing CasADi and plotly into .venv …"
+  say "Installing CasADi into .venv …"
   # A virtual environment whose Python has gone (a moved tree, an upgraded system) cannot be repaired, only made anew.
   .venv/bin/python3 -m pip --version >/dev/null 2>&1 || { rm -rf .venv && python3 -m venv .venv; }
   retry .venv/bin/python3 -m pip install --quiet --disable-pip-version-check --retries 5 --timeout 60 \

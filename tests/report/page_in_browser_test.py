@@ -185,7 +185,7 @@ class Branches(Page):
         self.assertAlmostEqual(come[0], 0.5223 / (0.5223 + 1.7734), 9)
         self.assertEqual(come[1], 0)
         size = self.value("(() => { const data = " + square + ".data, p = data.at(-1);"
-                          " return saltus.normalComponents(JSON.parse(document.getElementById('result').textContent)"
+                          " return saltus.normalComponents(saltus.result"
                           ".events.find((e) => e.intersection).intersection, [p.x[0], p.y[0]]).map(Math.abs); })()")
         self.assertLess(max(size), 1e-9)
 

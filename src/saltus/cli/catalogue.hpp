@@ -22,8 +22,7 @@ struct CatalogueEntry {
 /// @return the file, or unknown_name with the nearest names.
 [[nodiscard]] Expected<std::filesystem::path> find_model(const std::string& model);
 
-/// The text of plotly.min.js, from $SALTUS_PLOTLY, then <executable>/../share/saltus, then the virtual environment of
-/// the source tree.
+/// The text of plotly.min.js, from $SALTUS_PLOTLY, then <executable>/../share/saltus, then third_party of the sources.
 [[nodiscard]] Expected<std::string> plotly_source();
 
 }  // namespace saltus::cli

@@ -8,6 +8,7 @@
 
 #include "report_script.hpp"
 #include "report_style.hpp"
+#include "saltus/report/packing_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
 
 namespace saltus::report {
@@ -66,11 +67,14 @@ std::uint64_t fingerprint(std::string_view text) {
 }  // namespace
 
 std::string to_html(const result::Result& result, std::string_view plotly_source) {
-  const std::string data = to_script_text(page_data(result));
-  const std::string nonce = fmt::format("{:016x}", fingerprint(data));
+  Packed packed = pack(page_data(result));
+  const std::string data = to_script_text(packed.skeleton);
+  const std::string numbers = deflated_base64(shuffled_bytes(packed.numbers));
+  const std::string plotly = deflated_base64(plotly_source);
+  const std::string nonce = fmt::format("{:016x}", fingerprint(data) ^ fingerprint(numbers));
   const std::string title = escape_html(result.model.name.empty() ? "simulation" : result.model.name);
   std::string page;
-  page.reserve(data.size() + plotly_source.size() + 200000);
+  page.reserve(data.size() + numbers.size() + plotly.size() + 300000);
   page += "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   // Nothing may be fetched from anywhere; plotly needs style attributes and pictures made in the page.
   page += fmt::format(
@@ -85,14 +89,14 @@ std::string to_html(const result::Result& result, std::string_view plotly_source
                       result::name(result.status.termination), escape_html(result.status.message));
   page += "<main id=\"report\"></main>\n";
   page += fmt::format("<script type=\"application/json\" id=\"result\">{}</script>\n", data);
-  const auto add_script = [&](std::string_view script) {
-    page += fmt::format("<script nonce=\"{}\">\n", nonce);
-    page += escape_script(script);
-    page += "\n</script>\n";
+  const auto add_bytes = [&](std::string_view name, std::string_view text) {
+    page += fmt::format("<script type=\"application/octet-stream\" id=\"{}\">{}</script>\n", name, text);
   };
-  add_script(plotly_source);
-  add_script(embedded::report_script);
-  page += "</body>\n</html>\n";
+  add_bytes("numbers", numbers);
+  add_bytes("plotly", plotly);
+  page += fmt::format("<script nonce=\"{}\">\n", nonce);
+  page += escape_script(embedded::report_script);
+  page += "\n</script>\n</body>\n</html>\n";
   return page;
 }
 

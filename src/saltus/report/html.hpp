@@ -8,6 +8,7 @@
 
 namespace saltus::report {
 
+/// Numbers and plotly are deflated in it; the page inflates them.
 /// @param plotly_source  the text of plotly.min.js, embedded into the page
 /// @return a complete HTML document; depends on the result only.
 [[nodiscard]] std::string to_html(const result::Result& result, std::string_view plotly_source);

@@ -38,7 +38,7 @@ saltus.eventSection = (result, parts) => {
 };
 
 saltus.start = () => {
-  const result = JSON.parse(document.getElementById("result").textContent);
+  const result = saltus.result = saltus.readPage();
   const main = document.getElementById("report");
   const holder = saltus.element("div", {class: "timeline"});
   const frame = saltus.element("div", {class: "timeline-frame"}, holder);

@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <new>
+#include <utility>
+#include <zlib.h>
+
+#include "saltus/report/packing_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+using nlohmann::json;
+
+bool is_number(const json& value) { return value.is_number() || value.is_null(); }
+
+bool all_numbers(const json& list) { return std::all_of(list.begin(), list.end(), is_number); }
+
+double number(const json& value) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+json put_away(const json& list, std::vector<double>& numbers) {
+  const std::size_t first = numbers.size();
+  for (const json& value : list) numbers.push_back(number(value));
+  return {{"$n", {first, list.size()}}};
+}
+
+/// Whether all are arrays of numbers and as long as the first.
+bool is_table(const json::array_t& values) {
+  return std::all_of(values.begin(), values.end(), [&](const json& value) {
+    return value.is_array() && value.size() == values.front().size() && all_numbers(value);
+  });
+}
+
+/// Each value once, and which of them stands where; null if there are too many.
+json coded(const json::array_t& values, std::vector<double>& numbers) {
+  std::map<std::string, std::size_t> codes;
+  json list = json::array(), which = json::array();
+  for (const json& value : values) {
+    const auto [place, is_new] = codes.emplace(value.dump(), codes.size());
+    if (is_new) list.push_back(value);
+    if (codes.size() > 1000) return nullptr;
+    which.push_back(place->second);
+  }
+  return {{"$codes", put_away(which, numbers)}, {"of", std::move(list)}};
+}
+
+json column(json::array_t values, std::vector<double>& numbers) {
+  if (std::all_of(values.begin(), values.end(), is_number)) return put_away(values, numbers);
+  if (json codes = coded(values, numbers); !codes.is_null()) return codes;
+  if (!is_table(values)) return values;
+  json::array_t flat;
+  for (const json& row : values) flat.insert(flat.end(), row.begin(), row.end());
+  return {{"$table", values.front().size()}, {"of", put_away(flat, numbers)}};
+}
+
+bool are_alike(const json& list) {
+  return std::all_of(list.begin(), list.end(), [&](const json& entry) {
+    return entry.is_object() && entry.size() == list.front().size() &&
+           std::equal(entry.items().begin(), entry.items().end(), list.front().items().begin(),
+                      [](const auto& a, const auto& b) { return a.key() == b.key(); });
+  });
+}
+
+json by_columns(json list, std::vector<double>& numbers) {
+  json columns = json::object();
+  std::vector<std::string> keys;
+  for (const auto& item : list.front().items()) keys.push_back(item.key());
+  for (const auto& key : keys) {
+    json::array_t values;
+    values.reserve(list.size());
+    for (json& entry : list) values.push_back(std::move(entry[key]));
+    columns[key] = column(std::move(values), numbers);
+  }
+  return {{"$rows", list.size()}, {"columns", std::move(columns)}};
+}
+
+json taken_out(json value, std::vector<double>& numbers) {
+  if (value.is_array() && value.size() >= least_packed) {
+    if (all_numbers(value)) return put_away(value, numbers);
+    if (value.front().is_object() && are_alike(value)) return by_columns(std::move(value), numbers);
+  }
+  if (value.is_structured()) {
+    for (json& part : value) part = taken_out(std::move(part), numbers);
+  }
+  return value;
+}
+
+std::string deflated(std::string_view bytes) {
+  z_stream stream{};
+  // Negative: raw deflate, without the header and the checksum of zlib.
+  if (deflateInit2(&stream, 6, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
+  std::string packed;
+  std::vector<char> buffer(std::size_t{1} << 20U);
+  std::size_t read = 0;
+  int state = Z_OK;
+  while (state != Z_STREAM_END) {
+    if (stream.avail_in == 0) {
+      const std::size_t part = std::min<std::size_t>(bytes.size() - read, std::size_t{1} << 30U);
+      // zlib does not write into its input; its type is from times without const.
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + read));
+      stream.avail_in = static_cast<uInt>(part);
+      read += part;
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(buffer.data());
+    stream.avail_out = static_cast<uInt>(buffer.size());
+    state = deflate(&stream, read == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
+    packed.append(buffer.data(), buffer.size() - stream.avail_out);
+  }
+  deflateEnd(&stream);
+  return packed;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = (group << 8U) | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? letters[(group >> (18 - 6 * k)) & 63U] : '=';
+  }
+  return text;
+}
+
+}  // namespace
+
+Packed pack(json data) {
+  Packed packed;
+  packed.skeleton = taken_out(std::move(data), packed.numbers);
+  return packed;
+}
+
+std::string shuffled_bytes(const std::vector<double>& numbers) {
+  std::string bytes(8 * numbers.size(), '\0');
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    auto bits = std::bit_cast<std::uint64_t>(numbers[i]);
+    for (std::size_t k = 0; k < 8; ++k, bits >>= 8U) bytes[k * numbers.size() + i] = static_cast<char>(bits & 255U);
+  }
+  return bytes;
+}
+
+std::string deflated_base64(std::string_view bytes) { return base64(deflated(bytes)); }
+
+}  // namespace saltus::report
