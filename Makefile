@@ -1,12 +1,13 @@
 # Two commands for everybody; everything else is a CMake preset (CMakePresets.json) or a script (scripts/).
 .DEFAULT_GOAL := help
-.PHONY: help demo test install format clean
+.PHONY: help demo test install wheel format clean
 export OPENBLAS_NUM_THREADS := 1
 
 help:
 	@echo "make demo     install what is missing, build, simulate shipped models, write their reports into demo/"
 	@echo "make test     install what is missing, build, run every test (release and sanitizers)"
 	@echo "make install  build and install to PREFIX (default /usr/local)"
+	@echo "make wheel    build the Python package into build/wheel"
 	@echo "make format   clang-format every source"
 	@echo "make clean    remove build/ and demo/"
 
@@ -23,6 +24,14 @@ install:
 	cmake --build --preset demo
 	cmake --build build/release --target saltus_libraries
 	cmake --install build/release --prefix "$(PREFIX)"
+
+# The libraries of the release build, made once for the tool, the tests and the wheel.
+wheel:
+	@scripts/install.sh python
+	cmake --preset release --log-level=NOTICE
+	cmake --build build/release --target saltus_python
+	.venv/bin/python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps python/ \
+	  --wheel-dir build/wheel --config-settings=build-dir=../build/release
 
 format:
 	@scripts/format.sh

@@ -14,12 +14,17 @@
 # GoogleTest      >= 1.12  BSD-3     libgtest-dev; tests, developer mode only
 # zlib            >= 1.2   Zlib      zlib1g-dev; numbers of reports, deflated
 # plotly.js       4.1.1    MIT       third_party/plotly, made by scripts/make_plotly.sh; pictures of the report, read at run time
+# nanobind        >= 2.4   BSD-3     wheel of PyPI in .venv; the Python package only
 
 # The wheels of the tree's own virtual environment, whatever Python made it.
 file(GLOB SALTUS_SITE_PACKAGES ${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages)
 foreach(folder IN LISTS SALTUS_SITE_PACKAGES)
   list(APPEND CMAKE_PREFIX_PATH ${folder}/casadi/cmake)
 endforeach()
+# Its Python is that of the Python package, too, unless a wheel is made for another one.
+if(NOT DEFINED Python_EXECUTABLE AND EXISTS ${PROJECT_SOURCE_DIR}/.venv/bin/python3)
+  set(Python_EXECUTABLE ${PROJECT_SOURCE_DIR}/.venv/bin/python3)
+endif()
 
 set(saltus_missing "")
 # saltus_require(PACKAGE "how to get it" arguments of find_package…): collects what is missing, so that it is said at once.

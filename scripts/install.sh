@@ -3,6 +3,7 @@
 # into ./.venv. Safe to repeat; done in a fraction of a second when there is nothing to do.
 #   scripts/install.sh              what `make demo` and `make test` need
 #   scripts/install.sh developer    also clang-format and clang-tidy
+#   scripts/install.sh python       also what the Python package needs, as far as it can be had
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -82,18 +83,19 @@ wheel_is_complete() {
   return 1
 }
 
+# Of one file of requirements.
 install_wheels() {
   local requirement complete=yes
   while read -r requirement; do
     wheel_is_complete "$requirement" || complete=no
-  done < <(grep -v '^#' scripts/requirements.txt)
+  done < <(grep -v '^#' "$1")
   [[ $complete == yes ]] && return 0
 
-  say "Installing CasADi into .venv …"
+  say "Installing $1 into .venv …"
   # A virtual environment whose Python has gone (a moved tree, an upgraded system) cannot be repaired, only made anew.
   .venv/bin/python3 -m pip --version >/dev/null 2>&1 || { rm -rf .venv && python3 -m venv .venv; }
   retry .venv/bin/python3 -m pip install --quiet --disable-pip-version-check --retries 5 --timeout 60 \
-    --no-deps --requirement scripts/requirements.txt >&2 || fail "pip could not install scripts/requirements.txt"
+    --no-deps --requirement "$1" >&2
 }
 
 if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
@@ -101,4 +103,10 @@ if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
 elif ! python_can_make_venv; then
   fail "this is not Debian: install python3 with venv, and what cmake/dependencies.cmake lists, by hand"
 fi
-install_wheels
+install_wheels scripts/requirements.txt || fail "pip could not install scripts/requirements.txt"
+if [[ "${1:-}" == python ]]; then
+  if [[ ! -e $(python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h && $(id -u) -eq 0 ]]; then
+    apt-get install -y -qq --no-install-recommends python3-dev >&2 || say "going on without python3-dev"
+  fi
+  install_wheels scripts/requirements-python.txt || say "going on without the Python package"
+fi

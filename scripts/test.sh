@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS=1
 presets=("$@")
 [[ ${#presets[@]} -gt 0 ]] || presets=(release sanitize)
 
-scripts/install.sh
+scripts/install.sh python
 reports=()
 for preset in "${presets[@]}"; do
   report="$PWD/build/$preset/ctest.xml"

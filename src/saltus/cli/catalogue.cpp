@@ -13,8 +13,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+fs::path& chosen_folder() {
+  static fs::path folder;
+  return folder;
+}
+
 /// <executable>/../share/saltus of an installation.
 fs::path shared_folder() {
+  if (!chosen_folder().empty()) return chosen_folder();
   std::error_code unknown;
   const auto executable = fs::read_symlink("/proc/self/exe", unknown);
   return unknown ? fs::path() : executable.parent_path().parent_path() / "share" / "saltus";
@@ -30,6 +36,8 @@ std::vector<fs::path> model_folders() {
 }
 
 }  // namespace
+
+void set_shared_folder(const fs::path& folder) { chosen_folder() = folder; }
 
 std::vector<CatalogueEntry> catalogue() {
   std::map<std::string, fs::path> found;

@@ -14,6 +14,10 @@ struct CatalogueEntry {
   std::filesystem::path file;
 };
 
+/// Where models and plotly.min.js are, if not in <executable>/../share/saltus: beside a library that is no program of
+/// its own.
+void set_shared_folder(const std::filesystem::path& folder);
+
 /// All models of the catalogue by name, from $SALTUS_MODELS, then <executable>/../share/saltus/models, then the source
 /// tree; the first of a name counts.
 [[nodiscard]] std::vector<CatalogueEntry> catalogue();

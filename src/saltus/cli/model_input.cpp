@@ -6,11 +6,10 @@
 
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/pipeline/option_effects.hpp"
 
 namespace saltus::cli {
-namespace {
-
-Expected<void> apply(ModelInput& input, const std::string& setting) {
+Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
   const auto equal = setting.find('=');
   if (equal == std::string::npos || equal == 0 || equal + 1 == setting.size()) {
     return tl::unexpected(Error{ErrorCode::parse_failure,
@@ -30,8 +29,6 @@ Expected<void> apply(ModelInput& input, const std::string& setting) {
   return {};
 }
 
-}  // namespace
-
 Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings) {
   const auto path = find_model(model);
   if (!path) return tl::unexpected(path.error());
@@ -39,9 +36,30 @@ Expected<ModelInput> read_input(const std::string& model, const std::vector<std:
   if (!file) return tl::unexpected(file.error());
   ModelInput input{path->string(), std::move(*file), {}};
   for (const auto& setting : settings) {
-    if (auto done = apply(input, setting); !done) return tl::unexpected(done.error());
+    if (auto done = apply_setting(input, setting); !done) return tl::unexpected(done.error());
   }
   return input;
+}
+
+std::vector<std::string> options_without_effect(const io::ModelFile& file) {
+  std::vector<std::string> warnings;
+  for (const auto& [key, location] : file.option_locations) {
+    const bool meant = location.line == 0 || pipeline::is_of_method(file.simulate, key);
+    const auto reason = meant ? pipeline::without_effect(file.simulate, key) : std::string();
+    if (reason.empty()) continue;
+    const auto place =
+        location.line == 0 ? location.file : fmt::format("{}:{}: simulate.{}", location.file, location.line, key);
+    warnings.push_back(fmt::format("{} has no effect: {}", place, reason));
+  }
+  return warnings;
+}
+
+void complete_record(const ModelInput& input, result::Result& result) {
+  result.model.sha256 = input.file.sha256;
+  for (const auto& value : input.file.description.inputs) {
+    result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));
+  }
+  for (auto& branch : result.branches) complete_record(input, branch);
 }
 
 }  // namespace saltus::cli

@@ -7,6 +7,7 @@
 #include "saltus/base/error.hpp"
 #include "saltus/io/toml_model.hpp"
 #include "saltus/model/description.hpp"
+#include "saltus/result/result.hpp"
 
 namespace saltus::cli {
 
@@ -20,5 +21,15 @@ struct ModelInput {
 /// @param settings  NAME=VALUE each; dotted names reach any key of the file, others replace a parameter, an initial
 ///                  value or a control's constant value
 [[nodiscard]] Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings);
+
+/// One of these settings.
+[[nodiscard]] Expected<void> apply_setting(ModelInput& input, const std::string& setting);
+
+/// Which given options say nothing to the method that runs, as warnings. A file may hold the tables of several methods;
+/// what is typed, and what stands in the table of this one, is meant.
+[[nodiscard]] std::vector<std::string> options_without_effect(const io::ModelFile& file);
+
+/// What a simulation cannot know: the file's fingerprint, and the inputs as they were written.
+void complete_record(const ModelInput& input, result::Result& result);
 
 }  // namespace saltus::cli

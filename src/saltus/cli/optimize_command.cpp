@@ -10,14 +10,13 @@
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/model_input.hpp"
+#include "saltus/cli/optimum_record.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/run_command.hpp"
 #include "saltus/cli/terminal.hpp"
-#include "saltus/expression/parser.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/optimize.hpp"
 #include "saltus/pipeline/optimize_fields.hpp"
-#include "saltus/pipeline/surfaces.hpp"
 #include "saltus/report/mpcc_table.hpp"
 #include "saltus/report/table.hpp"
 
@@ -52,25 +51,6 @@ Expected<ModelInput> stated_input(const OptimizeArguments& arguments) {
   return input;
 }
 
-/// What the numerical method does not know: the file's fingerprint, and the problem as it was written.
-void complete_optimum(const ModelInput& input, result::Result& result) {
-  result.model.sha256 = input.file.sha256;
-  const auto& problem = *input.file.description.optimize;
-  const auto note = [&](std::string_view key, const expression::NodePtr& tree) {
-    if (tree) result.options.emplace_back(fmt::format("optimize.{}", key), expression::to_text(*tree));
-  };
-  note("from", problem.from);
-  note(problem.horizon.free ? "horizon.initial" : "horizon", problem.horizon.value);
-  note("horizon.lower", problem.horizon.lower);
-  note("horizon.upper", problem.horizon.upper);
-  note("running_cost", problem.running_cost);
-  note("terminal_cost", problem.terminal_cost);
-  note("minimize_time", problem.time_weight);
-  if (input.file.optimize->start_result) {
-    result.options.emplace_back("optimize.initial_guess.result", *input.file.optimize->start_result);
-  }
-}
-
 pipeline::OptimizeObservers observers_of(const RunArguments& arguments) {
   catch_interrupt();
   pipeline::OptimizeObservers observers;
@@ -91,13 +71,7 @@ Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, con
   auto result = pipeline::optimize(*ocp, *input.file.optimize, observers_of(arguments.run));
   if (!result) return result;
   complete_optimum(input, *result);
-  if (outputs.show_surfaces() && result->model.parameters.size() == ocp->system.parameter_values.size()) {
-    auto system = ocp->system;  // with the parameters that were found
-    for (std::size_t i = 0; i < system.parameter_values.size(); ++i) {
-      system.parameter_values[i] = result->model.parameters[i].second;
-    }
-    result->surfaces = pipeline::surfaces(system, *result);
-  }
+  if (outputs.show_surfaces()) add_surfaces(*ocp, *result);
   return result;
 }
 

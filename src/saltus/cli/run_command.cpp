@@ -8,9 +8,7 @@
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/progress.hpp"
 #include "saltus/cli/terminal.hpp"
-#include "saltus/expression/parser.hpp"
 #include "saltus/model/build.hpp"
-#include "saltus/pipeline/option_effects.hpp"
 #include "saltus/pipeline/surfaces.hpp"
 #include "saltus/report/table.hpp"
 
@@ -24,28 +22,6 @@ Expected<void> apply_shortcuts(const RunArguments& arguments, io::ModelFile& fil
     if (auto done = io::set_option(file, shortcut.key, *value, typed); !done) return done;
   }
   return {};
-}
-
-/// Tells which given options say nothing to the method that runs. A file may hold the tables of several methods; what
-/// is typed, and what stands in the table of this one, is meant.
-void note_options_without_effect(const io::ModelFile& file) {
-  for (const auto& [key, location] : file.option_locations) {
-    const bool meant = location.line == 0 || pipeline::is_of_method(file.simulate, key);
-    const auto reason = meant ? pipeline::without_effect(file.simulate, key) : std::string();
-    if (reason.empty()) continue;
-    const auto place =
-        location.line == 0 ? location.file : fmt::format("{}:{}: simulate.{}", location.file, location.line, key);
-    print_error(fmt::format("warning: {} has no effect: {}", place, reason));
-  }
-}
-
-/// What a simulation cannot know: the file's fingerprint, and the inputs as they were written.
-void complete_record(const ModelInput& input, result::Result& result) {
-  result.model.sha256 = input.file.sha256;
-  for (const auto& value : input.file.description.inputs) {
-    result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));
-  }
-  for (auto& branch : result.branches) complete_record(input, branch);
 }
 
 Expected<result::Result> compute_all(const RunArguments& arguments, const ModelInput& input, const Outputs& outputs,
@@ -149,7 +125,8 @@ ExitCode run_model(const RunArguments& arguments, Compute compute) {
   const auto outputs = Outputs::make(arguments.outputs, arguments.report, input->path, arguments.output_suffixes);
   if (!outputs) return refuse(outputs.error());
 
-  if (arguments.methods == RunMethods::chosen) note_options_without_effect(input->file);
+  if (arguments.methods == RunMethods::chosen)
+    for (const auto& warning : options_without_effect(input->file)) print_error(fmt::format("warning: {}", warning));
   auto result = compute_all(arguments, *input, *outputs, compute);
   if (!result) return refuse(io::located(result.error(), input->file));
 

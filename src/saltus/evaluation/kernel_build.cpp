@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/field_split_internal.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 #include "saltus/evaluation/root_limits_internal.hpp"
@@ -136,6 +137,7 @@ void ModelKernel::Implementation::compile_conditions(const model::System& system
 }
 
 Expected<ModelKernel> ModelKernel::compile(const model::System& system, NativeCode native) {
+  const SymbolicLock lock;
   try {
     auto implementation = std::make_unique<Implementation>(system);
     if (auto started = implementation->start_native(native); !started) return tl::unexpected(started.error());

@@ -5,6 +5,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 #include "saltus/evaluation/root_limits_internal.hpp"
 
@@ -20,6 +21,7 @@ int ModelKernel::with_limited_roots(int function) const {
   auto& self = *implementation_;
   const auto [known, is_new] = self.rootless_numbers.try_emplace(function, 0);
   if (is_new) {
+    const SymbolicLock lock;
     const std::vector<double> fixed(self.parameters.begin(),
                                     self.parameters.begin() + static_cast<std::ptrdiff_t>(self.fixed_parameters));
     const SX psi = self.phi(casadi::Slice(0, self.n_psi));
@@ -67,6 +69,7 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
     return;
   }
   if (gradient.function.is_null()) {
+    const SymbolicLock lock;
     const SX phi = self.phi_row(function);
     gradient.function = ModelFunction("gradient", {self.t, self.x, self.p, self.alpha},
                                       {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
@@ -80,6 +83,7 @@ double ModelKernel::lie_derivative(int function, int order, double t, const doub
   auto& self = *implementation_;
   auto& compiled = self.motion->lie_derivatives[{function, order}];
   if (compiled.is_null()) {
+    const SymbolicLock lock;
     compiled =
         ModelFunction("lie_derivative", {self.t, self.x, self.p, self.alpha}, {self.lie_expression(function, order)});
   }
@@ -94,6 +98,7 @@ void ModelKernel::lie_gradient(int function, int order, double t, const double* 
   auto& self = *implementation_;
   auto& compiled = self.motion->lie_gradients[{function, order}];
   if (compiled.is_null()) {
+    const SymbolicLock lock;
     const SX derivative = self.lie_expression(function, order);
     compiled = ModelFunction("lie_gradient", {self.t, self.x, self.p, self.alpha},
                              {SX::jacobian(derivative, self.x), SX::jacobian(derivative, self.t)});
@@ -110,6 +115,7 @@ bool ModelKernel::lie_row(int function, FixedState fixed, const double* alpha, A
   auto& self = *implementation_;
   const auto [entry, is_new] = self.motion->lie_rows.try_emplace({function, fixed.component});
   if (is_new) {
+    const SymbolicLock lock;
     entry->second = AffineRowFunction(self.lie_expression(function, 1), self.symbols(), fixed.component);
   }
   if (!entry->second.is_affine()) return false;
@@ -121,7 +127,10 @@ const ode::LinearField* ModelKernel::linear_field(const double* alpha, ode::Line
   auto& self = *implementation_;
   auto& motion = *self.motion;
   if (motion.linear_always) return &*motion.linear_always;
-  if (!motion.linear) motion.linear.emplace(motion.f, self.symbols());
+  if (!motion.linear) {
+    const SymbolicLock lock;
+    motion.linear.emplace(motion.f, self.symbols());
+  }
   if (!motion.linear->is_affine()) return nullptr;
   const double* p = self.parameters.data();
   // Cells and references change constants among the parameters.

@@ -4,6 +4,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 
 namespace saltus::evaluation {
@@ -63,6 +64,7 @@ Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
   for (const auto& hold : holds) functions.push_back(hold.function);
   auto known = self.held.find(functions);
   if (known == self.held.end()) {
+    const SymbolicLock lock;
     auto motion = self.compile_held(functions);
     if (!motion) return tl::unexpected(motion.error());
     known = self.held.emplace(functions, std::move(*motion)).first;

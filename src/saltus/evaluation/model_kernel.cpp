@@ -5,13 +5,21 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 
 namespace saltus::evaluation {
 ModelKernel::ModelKernel(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 ModelKernel::ModelKernel(ModelKernel&&) noexcept = default;
-ModelKernel& ModelKernel::operator=(ModelKernel&&) noexcept = default;
-ModelKernel::~ModelKernel() = default;
+ModelKernel& ModelKernel::operator=(ModelKernel&& other) noexcept {
+  std::swap(implementation_, other.implementation_);
+  return *this;
+}
+ModelKernel::~ModelKernel() {
+  if (!implementation_) return;
+  const SymbolicLock lock;
+  implementation_.reset();
+}
 
 int ModelKernel::states() const { return static_cast<int>(implementation_->x.numel()); }
 int ModelKernel::switching_functions() const { return implementation_->n_psi; }

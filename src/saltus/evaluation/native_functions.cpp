@@ -4,6 +4,8 @@
 
 #include <casadi/core/code_generator.hpp>
 
+#include "saltus/base/symbolic_lock.hpp"
+
 namespace saltus::evaluation {
 namespace {
 
@@ -17,6 +19,7 @@ constexpr double compile_after_per_operation = 2e4;
 
 void NativeFunctions::write_source() {
   if (!source_.empty()) return;
+  const SymbolicLock lock;
   casadi::CodeGenerator generator("saltus_model.c", {{"with_header", false}});
   for (const auto* function : functions_) generator.add(function->function());
   source_ = generator.dump() + appended_;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/event_integrator/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -39,6 +40,7 @@ std::vector<bool> discrete_guards(const model::System& system, const model::Jump
 }  // namespace
 
 std::optional<std::string> compared_at_jumps_only(const model::System& system, int state) {
+  const SymbolicLock lock;
   const casadi::SX symbol = system.x(state);
   for (const auto& function : system.switching) {
     if (function.role == model::SwitchingRole::discrete && casadi::SX::depends_on(function.psi, symbol)) {
@@ -63,6 +65,7 @@ Jumps::Jumps(const evaluation::ModelKernel& kernel, const model::System& system,
       discrete_guard_(at(kernel.event_functions()), false),
       values_(at(kernel.event_functions())),
       next_time_(never) {
+  const SymbolicLock lock;
   for (std::size_t k = 0; k < system.jumps.size(); ++k) {
     const auto discrete = discrete_guards(system, system.jumps[k]);
     for (std::size_t g = 0; g < discrete.size(); ++g) {

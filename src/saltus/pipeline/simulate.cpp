@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
@@ -168,6 +169,12 @@ class Integrand {
  public:
   explicit Integrand(const model::System& system) : system_(&system) {}
   explicit Integrand(smoothed::Regularisation regularisation) : regularisation_(std::move(regularisation)) {}
+  Integrand(Integrand&&) = default;
+  ~Integrand() {
+    if (!regularisation_) return;
+    const SymbolicLock lock;
+    regularisation_.reset();
+  }
 
   [[nodiscard]] const model::System& system() const { return regularisation_ ? regularisation_->system : *system_; }
   [[nodiscard]] event_integrator::ThinLayers layers() const {
@@ -210,6 +217,7 @@ class Integrand {
 
 Expected<Integrand> integrand(const model::System& system, const SimulateOptions& options) {
   if (options.method != Method::smoothed) return Integrand(system);
+  const SymbolicLock lock;
   return smoothed::regularise(system, options.smoothed.epsilon).map([](auto regularisation) {
     return Integrand(std::move(regularisation));
   });
@@ -241,6 +249,7 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   if (options.method == Method::fesd || options.method == Method::timestepping) {
+    const SymbolicLock lock;  // its problems are made while it runs
     return simulate_elements(system, options, std::move(integration_or->output.times),
                              std::move(integration_or->initial_mode), frame(system, options), observers);
   }

@@ -1,0 +1,59 @@
+"""Exceptions and warnings."""
+
+from __future__ import annotations
+
+import typing
+
+if typing.TYPE_CHECKING:
+    from ._result import Result
+
+
+class ModelError(ValueError):
+    """Bad input: a model, a setting or an option that states nothing, with its place and a remedy.
+
+    The text is that of the tool. ``message`` says what was expected and found, ``remedy`` what to do, ``file``,
+    ``line`` and ``column`` where (counted from 1; 0 or empty: unknown), ``code`` which kind of mistake it is.
+
+    >>> import saltus
+    >>> try:
+    ...     saltus.Model.from_text('[model]\\nname = "m"\\n[states]\\nx = "1 +"\\n', "m.toml")
+    ... except saltus.ModelError as error:
+    ...     print(error.line, error.column)
+    4 9
+    """
+
+    def __init__(
+        self,
+        text: str,
+        message: str = "",
+        remedy: str = "",
+        file: str = "",
+        line: int = 0,
+        column: int = 0,
+        code: str = "",
+    ) -> None:
+        super().__init__(text, message, remedy, file, line, column, code)
+        self.message = message or text
+        self.remedy = remedy
+        self.file = file
+        self.line = line
+        self.column = column
+        self.code = code
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class Stopped(RuntimeError):
+    """Raised by :meth:`Result.require` for a run that stopped early; ``result`` has what was computed."""
+
+    def __init__(self, text: str, result: Result | None = None) -> None:
+        super().__init__(text, result)
+        self.result = result
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class ModelWarning(UserWarning):
+    """What the tool prints as a warning: unused names, options without effect."""

@@ -1,0 +1,238 @@
+"""Models: read, simulated, optimised."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pathlib
+import sys
+import tempfile
+import typing
+import warnings
+
+from . import _core
+from ._errors import ModelWarning
+from ._progress import progress_line
+from ._result import Result
+from ._settings import Value, check_path, optimize_options, settings_of, simulate_options
+
+Settings = typing.Mapping[str, Value]
+
+
+class Model:
+    """A model file: equations, parameters, initial values, and the options it was written with.
+
+    >>> m = saltus.Model.from_text('''
+    ... [model]
+    ... name = "brake"
+    ... [states]
+    ... x = 0
+    ... v = 3
+    ... [dynamics]
+    ... x = "v"
+    ... v = "-0.4*x - 2*sign(v)"
+    ... ''')
+    >>> r = m.simulate(until=6)
+    >>> r.status, [e.kind for e in r.events]
+    ('completed', ['enter_sliding'])
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """Reads a model file. Raises :class:`ModelError` with file, line and column where it states no model."""
+        check_path(path, "saltus.Model")
+        self._core = _core.Model(os.fspath(path))
+        self._made: tuple[typing.Any, ...] = (Model, (os.path.abspath(self._core.path),))
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "model.toml") -> Model:
+        """A model from the text of a file. `name` is used in messages, and its folder to find files it names."""
+        model = cls.__new__(cls)
+        model._core = _core.Model(text, name)
+        model._made = (Model.from_text, (text, name))
+        return model
+
+    @property
+    def name(self) -> str:
+        """The name that the file states."""
+        return self._core.name
+
+    @property
+    def description(self) -> str:
+        """One sentence of the file, or an empty text."""
+        return self._core.description
+
+    @property
+    def path(self) -> str:
+        """The file it was read from."""
+        return self._core.path
+
+    def simulate(
+        self,
+        until: float | None = None,
+        *,
+        set: Settings | None = None,
+        progress: bool = False,
+        **options: Value,
+    ) -> Result:
+        """Simulates the model and returns everything that was computed.
+
+        `until` is the end of the simulation; without it that of the file holds. `set` changes parameters, initial
+        values and constant inputs (``{"mu": 0.5}``), and by dotted names any key of the file
+        (``{"dynamics.v": "-x"}``). `options` are the keys of [simulate] (docs/options.md): ``rtol=1e-10``,
+        ``integrator="dop853"``, ``points=200``, ``fesd={"stages": 3}``; ``inputs={"u": "sin(t)"}``.
+
+        A run that stops early is no exception: see ``status`` and :meth:`Result.require`. Ctrl-C raises
+        KeyboardInterrupt, whose ``result`` is what was computed. Other threads run meanwhile.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=3, set={"belt": 0.3}, integrator="dop853").final.t
+        3.0
+        """
+        with progress_line(self.name, progress) as tell:
+            return Result(self._run("simulate", until, set, options, tell))
+
+    def compare(self, until: float | None = None, *, set: Settings | None = None, **options: Value) -> Result:
+        """Simulates the model by every engine; ``comparison`` of the result has a row for each.
+
+        >>> rows = saltus.catalogue("stick-slip").compare(until=2).comparison["runs"]
+        >>> rows[0]["method"]
+        'event'
+        """
+        return Result(self._run("compare", until, set, options, None))
+
+    def order(
+        self,
+        until: float | None = None,
+        *,
+        schemes: typing.Iterable[tuple[str, int]] = (),
+        steps: typing.Iterable[int] = (),
+        set: Settings | None = None,
+        **options: Value,
+    ) -> Result:
+        """Measures how errors fall with the step; ``order`` of the result has a series for every scheme."""
+        more = (",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps))
+        return Result(self._run("order", until, set, options, None, more))
+
+    def optimize(
+        self,
+        *,
+        set: Settings | None = None,
+        start: str | os.PathLike[str] | Result | None = None,
+        progress: bool = False,
+        **options: Value,
+    ) -> Result:
+        """Finds the controls, times and parameters that [optimize] of the file asks for, and verifies them.
+
+        `options` are the keys of [optimize] (docs/optimal-control.md): ``control_intervals=20``, ``time_limit=60``,
+        ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file. ``optimization`` of the result
+        has costs, parameters, multipliers and what was verified.
+        """
+        typed, chosen = optimize_options(options)
+        warned: list[str] = []
+        with _started_at(start) as file, _own_results():
+            run = self._core.optimize(
+                [*settings_of(set), *typed], chosen, file, _print_line if progress else None, warned
+            )
+        _warn(warned)
+        return Result(run)
+
+    def check(self, *, set: Settings | None = None) -> str:
+        """What `saltus check` prints: states, switching functions and their kinds, methods, warnings.
+
+        >>> "slip: " in saltus.catalogue("stick-slip").check()
+        True
+        """
+        return self._core.check(settings_of(set))
+
+    def _run(
+        self,
+        command: str,
+        until: float | None,
+        set: Settings | None,
+        options: Settings,
+        tell: typing.Callable[..., None] | None,
+        more: tuple[str, ...] = (),
+    ) -> _core.Run:
+        typed, chosen = simulate_options({"until": until, **options}, self._core.method)
+        warned: list[str] = []
+        with _own_results():
+            run = getattr(self._core, command)([*settings_of(set), *typed], chosen, tell, warned, *more)
+        _warn(warned)
+        return run
+
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        return self._made
+
+    def __repr__(self) -> str:
+        return f"<saltus.Model {self.name!r}>"
+
+
+@contextlib.contextmanager
+def _own_results() -> typing.Iterator[None]:
+    """What an exception (Ctrl-C) carries of an interrupted run becomes a result."""
+    try:
+        yield
+    except BaseException as stopped:
+        run = getattr(stopped, "result", None)
+        if isinstance(run, _core.Run):
+            stopped.result = Result(run)  # type: ignore[attr-defined]
+        raise
+
+
+class _started_at:
+    """The file of a result to start at; one in memory is written for as long as it is needed."""
+
+    def __init__(self, start: str | os.PathLike[str] | Result | None) -> None:
+        self._start = start
+        self._written: pathlib.Path | None = None
+
+    def __enter__(self) -> str:
+        if self._start is None:
+            return ""
+        if not isinstance(self._start, Result):
+            return os.fspath(self._start)
+        handle, name = tempfile.mkstemp(suffix=".json")
+        os.close(handle)
+        self._written = pathlib.Path(name)
+        self._start.save(name)
+        return name
+
+    def __exit__(self, *_: object) -> None:
+        if self._written is not None:
+            self._written.unlink(missing_ok=True)
+
+
+def _print_line(line: str) -> None:
+    print(line, file=sys.stderr)
+
+
+def _warn(messages: list[str]) -> None:
+    for message in messages:
+        warnings.warn(message, ModelWarning, stacklevel=4)
+
+
+def models() -> list[str]:
+    """Names of the shipped models.
+
+    >>> "stick-slip" in saltus.models()
+    True
+    """
+    return _core.models()
+
+
+def catalogue(name: str) -> Model:
+    """A shipped model.
+
+    >>> saltus.catalogue("stick-slip")
+    <saltus.Model 'stick-slip'>
+    """
+    return Model(_core.find_catalogue(name))
+
+
+def compare(model: Model, until: float | None = None, **options: Value) -> Result:
+    """:meth:`Model.compare` as a function."""
+    return model.compare(until, **options)
+
+
+def order(model: Model, until: float | None = None, **options: Value) -> Result:
+    """:meth:`Model.order` as a function."""
+    return model.order(until, **options)

@@ -1,0 +1,332 @@
+"""Results: what a run computed."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+import typing
+
+import numpy as np
+
+from . import _core
+from ._errors import Stopped
+
+Array = np.ndarray
+Event = _core.Event
+
+
+_OF_OPTIMUM = (
+    "objective objective_terms horizon parameters u grid h speed_of_time multipliers homotopy certificate "
+    "verification statistics"
+).split()
+
+
+class Status(str):
+    """Why a run ended, as a text: ``"completed"``, ``"iteration_limit"``, …; with the reason and what to try.
+
+    ``done`` says whether it did what was asked, ``time_reached`` how far it came.
+    """
+
+    message: str
+    time_reached: float
+    done: bool
+
+    @classmethod
+    def of(cls, run: _core.Run) -> Status:
+        status = cls(run.termination)
+        status.message, status.time_reached, status.done = run.message, run.time_reached, run.done
+        return status
+
+
+class Final:
+    """The end of a run: ``t``, ``x``, ``mode``, ``alpha``, and every value by its name, ``final["v"]``."""
+
+    def __init__(self, run: _core.Run) -> None:
+        values = run.final
+        self.t: float = values["t"]
+        self.x: Array = values["x"]
+        self.mode: list[int] = values["mode"]
+        self.alpha: Array = values["alpha"]
+        self.outputs: Array = values["outputs"]
+        self.regions: list[list[str]] = values["regions"]
+        self._named = dict(zip(run.output_names, self.outputs.tolist()))
+        self._named.update(zip(run.states, self.x.tolist()))
+
+    def __getitem__(self, name: str) -> float:
+        if name not in self._named:
+            raise _unknown(name, list(self._named))
+        return self._named[name]
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value:.6g}" for name, value in self._named.items())
+        return f"<t = {self.t:.6g}: {values}>"
+
+
+class Events(list[_core.Event]):
+    """The events of a run, in their order."""
+
+    def table(self) -> typing.Any:
+        """A table of pandas: a row for every event."""
+        pandas = _needed("pandas", "data")
+        return pandas.DataFrame(
+            {
+                "t": [event.t for event in self],
+                "kind": [event.kind for event in self],
+                "name": [event.name for event in self],
+                "surfaces": [", ".join(event.surfaces) for event in self],
+                "unique": [event.unique for event in self],
+                "reason": [event.reason for event in self],
+            }
+        )
+
+
+class Sensitivities(typing.NamedTuple):
+    """Derivatives of the end state by the initial state (``x0``) and by parameters (``p``); rows are states."""
+
+    x0: Array
+    p: Array
+    parameters: list[str]
+
+
+class Result:
+    """What a run computed: rows, events, the end, and why it ended.
+
+    Arrays are read-only views of what the library holds. Every event has two rows of one time, before and behind it.
+
+    >>> r = saltus.catalogue("stick-slip").simulate(until=10)
+    >>> r["v"] is not None and r["v"].shape == r.t.shape
+    True
+    >>> r.x.flags.writeable
+    False
+    """
+
+    def __init__(self, run: _core.Run) -> None:
+        self._run = run
+
+    # What was computed ---------------------------------------------------------------------------------------------
+
+    @property
+    def t(self) -> Array:
+        """Times of all rows, ascending; two of one value at every event."""
+        return self._run.t
+
+    @property
+    def x(self) -> Array:
+        """States, (rows, n_x), in the order of ``states``."""
+        return self._run.x
+
+    @property
+    def u(self) -> Array:
+        """Controls, (rows, n_u)."""
+        return self._run.u
+
+    @property
+    def alpha(self) -> Array:
+        """Step selections, (rows, n_psi), in the order of ``switching_functions``; NaN where one is not determined."""
+        return self._run.alpha
+
+    @property
+    def mode(self) -> Array:
+        """Signs of the switching functions, (rows, n_psi); 0 while the solution slides on the surface."""
+        return self._run.mode
+
+    @property
+    def outputs(self) -> Array:
+        """[outputs] of the model, (rows, n_y)."""
+        return self._run.outputs
+
+    @property
+    def states(self) -> list[str]:
+        """Names of the states."""
+        return self._run.states
+
+    @property
+    def controls(self) -> list[str]:
+        """Names of the controls."""
+        return self._run.controls
+
+    @property
+    def switching_functions(self) -> list[str]:
+        """Names of the switching functions."""
+        return self._run.switching_functions
+
+    @property
+    def output_names(self) -> list[str]:
+        """Names of the outputs."""
+        return self._run.output_names
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Parameters and the values they had."""
+        return dict(self._run.parameters)
+
+    @property
+    def model(self) -> str:
+        """The name of the model."""
+        return self._run.model
+
+    @property
+    def method(self) -> str:
+        """The method that ran."""
+        return self._run.method
+
+    def __getitem__(self, name: str) -> Array:
+        """A column by its name: ``"t"``, a state, a control, an output, ``"alpha(slip)"`` or ``"mode(slip)"``."""
+        columns = self._columns
+        if name not in columns:
+            raise _unknown(name, list(columns))
+        block, index = columns[name]
+        return self.t if index is None else getattr(self._run, block)[:, index]
+
+    @functools.cached_property
+    def _columns(self) -> dict[str, tuple[str, int | None]]:
+        columns: dict[str, tuple[str, int | None]] = {}
+        for block, names in (
+            ("mode", [f"mode({name})" for name in self.switching_functions]),
+            ("alpha", [f"alpha({name})" for name in self.switching_functions]),
+            ("theta", [f"theta({name})" for name in self._run.regions]),
+            ("outputs", self.output_names),
+            ("u", self.controls),
+            ("x", self.states),
+        ):
+            columns.update({name: (block, index) for index, name in enumerate(names)})
+        columns["t"] = ("t", None)
+        return columns
+
+    @functools.cached_property
+    def events(self) -> Events:
+        """All events, in their order; ``events.table()`` is a table of pandas."""
+        return Events(self._run.events)
+
+    @functools.cached_property
+    def status(self) -> Status:
+        """Why the run ended."""
+        return Status.of(self._run)
+
+    @functools.cached_property
+    def final(self) -> Final:
+        """The end of the run."""
+        return Final(self._run)
+
+    @functools.cached_property
+    def branches(self) -> list[Result]:
+        """Other motions that were followed (``branches="all"``), each with its own branches."""
+        return [Result(branch) for branch in self._run.branches]
+
+    @functools.cached_property
+    def sensitivities(self) -> Sensitivities | None:
+        """Derivatives of the end state, if they were asked for (``method="fesd", sensitivities=True``)."""
+        found = self._run.sensitivities
+        if found is None:
+            return None
+        rows = len(self.states)
+        return Sensitivities(
+            np.array(found["x0"]).reshape(rows, -1), np.array(found["p"]).reshape(rows, -1), found["parameters"]
+        )
+
+    @functools.cached_property
+    def _stored(self) -> dict[str, typing.Any]:
+        return json.loads(self._run.json(False))
+
+    def to_dict(self) -> dict[str, typing.Any]:
+        """Everything, as :meth:`save` writes it (docs/result-file.md)."""
+        return json.loads(self._run.json(True))
+
+    @property
+    def optimization(self) -> dict[str, typing.Any] | None:
+        """What an optimisation found beside the trajectory (docs/result-file.md); None of a simulation.
+
+        ``objective``, ``horizon``, ``parameters``, ``u`` (rows are control intervals), ``grid``, ``multipliers``,
+        ``homotopy``, ``certificate``, ``verification``, …
+        """
+        if self._run.command != "optimize":
+            return None
+        return {key: self._stored[key] for key in _OF_OPTIMUM if key in self._stored}
+
+    @property
+    def comparison(self) -> dict[str, typing.Any] | None:
+        """The runs of :meth:`Model.compare`."""
+        return self._stored.get("comparison")
+
+    @property
+    def order(self) -> dict[str, typing.Any] | None:
+        """The series of :meth:`Model.order`."""
+        return self._stored.get("order")
+
+    # What to do with it --------------------------------------------------------------------------------------------
+
+    def require(self) -> Result:
+        """The result itself, if the run did what was asked; else raises :class:`Stopped`.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).require().status
+        'completed'
+        """
+        if self.status.done:
+            return self
+        place = "" if "t = " in self.status.message else f" at t = {self.status.time_reached:.17g}"
+        reason = f": {self.status.message}" if self.status.message else ""
+        raise Stopped(f"stopped early: {self.status}{place}{reason}", self)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the result: ``.json`` all of it, ``.csv`` the trajectory."""
+        self._run.save(os.fspath(path))
+
+    def report(self, path: str | os.PathLike[str] | None = None) -> Page | None:
+        """Writes the page with all pictures, which works offline; without a path shows it in the notebook."""
+        page = self._run.page()
+        if path is None:
+            return Page(page)
+        _core.write_file(os.fspath(path), page)
+        return None
+
+    def __repr__(self) -> str:
+        return (
+            f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, "
+            f"{len(self.events)} events, {len(self.t)} rows>"
+        )
+
+    def __str__(self) -> str:
+        """The table of the tool."""
+        return self._run.table()
+
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        return _restored, (self._run.json(True),)
+
+
+class Page:
+    """The page of a result, shown by a notebook."""
+
+    def __init__(self, html: str) -> None:
+        self.html = html
+
+    def _repr_html_(self) -> str:
+        import html
+
+        return f'<iframe srcdoc="{html.escape(self.html)}" style="width:100%;height:720px;border:0"></iframe>'
+
+
+def load(path: str | os.PathLike[str]) -> Result:
+    """A result that was saved as .json."""
+    return Result(_core.load(os.fspath(path)))
+
+
+def _restored(text: str) -> Result:
+    return Result(_core.parse_result(text))
+
+
+def _unknown(name: str, known: list[str]) -> KeyError:
+    import difflib
+
+    near = difflib.get_close_matches(name, known, 3)
+    hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(known)}"
+    return KeyError(f"the result has no {name!r}; {hint}")
+
+
+def _needed(package: str, extra: str) -> typing.Any:
+    import importlib
+
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(f"this needs {package}: pip install 'saltus[{extra}]'") from error

@@ -1,0 +1,193 @@
+#include <memory>
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "errors.hpp"
+#include "parts.hpp"
+#include "result.hpp"
+#include "saltus/cli/check_text.hpp"
+#include "saltus/cli/model_input.hpp"
+#include "saltus/cli/optimum_record.hpp"
+#include "saltus/io/toml_model.hpp"
+#include "saltus/model/build.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/pipeline/compare.hpp"
+#include "saltus/pipeline/optimal_control/optimize.hpp"
+#include "saltus/pipeline/option_effects.hpp"
+#include "saltus/pipeline/order.hpp"
+#include "saltus/pipeline/simulate.hpp"
+#include "saltus/report/mpcc_table.hpp"
+#include "watch.hpp"
+
+namespace nb = nanobind;
+
+namespace saltus::python {
+namespace {
+
+/// An option, as the tool spells it, its value as text, and what was written in Python: for messages.
+using Option = std::tuple<std::string, std::string, std::string>;
+
+/// What a call of Python asks for beside the model file.
+struct Request {
+  std::vector<std::string> settings;  ///< NAME=VALUE, as behind --set
+  std::vector<Option> options;
+};
+
+/// A model file, read once, and the system it was last built into.
+class Model {
+ public:
+  explicit Model(const std::string& model) : input_(value_or_raise(cli::read_input(model, {}))) {}
+  Model(const std::string& text, const std::string& name)
+      : input_{name, value_or_raise(io::parse_model(text, name)), {}} {}
+
+  [[nodiscard]] const cli::ModelInput& input() const { return input_; }
+
+  [[nodiscard]] cli::ModelInput stated(const Request& request) const {
+    auto input = input_;
+    for (const auto& setting : request.settings) value_or_raise(cli::apply_setting(input, setting));
+    for (const auto& [key, value, written] : request.options) {
+      value_or_raise(io::set_option(input.file, key, value, {written, 0, 0}));
+    }
+    return input;
+  }
+
+  /// The system of a request. Options change nothing of it: one that is asked for with the same settings again is
+  /// there.
+  [[nodiscard]] std::shared_ptr<const model::System> system(const cli::ModelInput& input, const Request& request) {
+    if (built_ && settings_ == request.settings) return built_;
+    auto system = model::build(input.file.description, input.overrides);
+    if (!system) raise(io::located(system.error(), input.file));
+    built_ = std::make_shared<const model::System>(std::move(*system));
+    settings_ = request.settings;
+    return built_;
+  }
+
+ private:
+  cli::ModelInput input_;
+  std::shared_ptr<const model::System> built_;
+  std::vector<std::string> settings_;
+};
+
+void append(nb::list& warnings, const std::vector<std::string>& more) {
+  for (const auto& warning : more) warnings.append(warning);
+}
+
+/// The run as an object of Python; raises what came during it.
+nb::object finished(Expected<result::Result> result, const cli::ModelInput& input,
+                    std::shared_ptr<const model::System> system, Watch& watch) {
+  if (!result) raise(io::located(result.error(), input.file));
+  auto shared = std::make_shared<result::Result>(std::move(*result));
+  nb::object run = nb::cast(Run{std::move(shared), std::move(system), {}, {}, {}, {}, {}, {}});
+  watch.raise_what_came(run);
+  return run;
+}
+
+/// One of the commands that simulate: what it computes from a system and options.
+template <class Compute>
+nb::object run_simulation(Model& model, const Request& request, nb::object progress, nb::list warnings,
+                          Compute compute) {
+  const auto input = model.stated(request);
+  value_or_raise(io::check_options(input.file));
+  const auto system = model.system(input, request);
+  append(warnings, system->warnings);
+  Watch watch(std::move(progress));
+  const auto result = [&] {
+    const nb::gil_scoped_release released;
+    auto computed = compute(*system, input.file.simulate, watch.observers());
+    if (computed) cli::complete_record(input, *computed);
+    return computed;
+  }();
+  return finished(std::move(result), input, system, watch);
+}
+
+nb::object simulate(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
+                    nb::list warnings) {
+  const Request request{std::move(settings), std::move(options)};
+  if (!request.options.empty() || !request.settings.empty()) {
+    append(warnings, cli::options_without_effect(model.stated(request).file));
+  }
+  return run_simulation(model, request, std::move(progress), std::move(warnings), pipeline::simulate);
+}
+
+nb::object compare(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
+                   nb::list warnings) {
+  return run_simulation(model, {std::move(settings), std::move(options)}, std::move(progress), std::move(warnings),
+                        pipeline::compare);
+}
+
+nb::object order(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
+                 nb::list warnings, const std::string& schemes, const std::string& steps) {
+  pipeline::OrderOptions what;
+  if (!schemes.empty()) what.schemes = value_or_raise(pipeline::parse_schemes(schemes));
+  if (!steps.empty()) what.steps = value_or_raise(pipeline::parse_steps(steps));
+  return run_simulation(model, {std::move(settings), std::move(options)}, std::move(progress), std::move(warnings),
+                        [&](const auto& system, const auto& simulate, const auto& observers) {
+                          return pipeline::order(system, simulate, what, observers);
+                        });
+}
+
+nb::object optimize(Model& model, std::vector<std::string> settings, std::vector<Option> options,
+                    const std::string& start, nb::object on_step, nb::list warnings) {
+  auto input = model.stated({std::move(settings), std::move(options)});
+  value_or_raise(io::check_optimize_options(input.file));
+  if (!start.empty()) input.file.optimize->start_result = start;
+  value_or_raise(io::read_start_result(input.file));
+  const auto ocp = model::build_ocp(input.file.description, input.overrides);
+  if (!ocp) raise(io::located(ocp.error(), input.file));
+  append(warnings, ocp->system.warnings);
+  append(warnings, ocp->warnings);
+  Watch watch{nb::none()};
+  pipeline::OptimizeObservers observers;
+  observers.is_interrupted = [&] { return watch.look(); };
+  observers.on_warning = [&](const std::string& warning) { warnings.append(warning); };
+  if (!on_step.is_none()) {
+    observers.on_step = [&](const result::HomotopyStep& step) { watch.call(on_step, report::to_line(step)); };
+  }
+  // Its expressions are made, and dropped, while it runs: it keeps the interpreter's lock.
+  auto result = pipeline::optimize(*ocp, *input.file.optimize, observers);
+  if (result) {
+    cli::complete_optimum(input, *result);
+    cli::add_surfaces(*ocp, *result);
+  }
+  return finished(std::move(result), input, nullptr, watch);
+}
+
+std::string check(Model& model, std::vector<std::string> settings) {
+  const auto input = model.stated({std::move(settings), {}});
+  Watch watch{nb::none()};
+  auto text = cli::check_text(input, watch.observers());
+  watch.raise_what_came(nb::none());
+  if (!text) raise(io::located(text.error(), input.file));
+  return *text;
+}
+
+}  // namespace
+
+void add_model(nb::module_& module) {
+  nb::class_<Model>(module, "Model", "A model file.")
+      .def(nb::init<const std::string&>())
+      .def(nb::init<const std::string&, const std::string&>())
+      .def_prop_ro("name", [](const Model& self) { return self.input().file.description.name; })
+      .def_prop_ro("description", [](const Model& self) { return self.input().file.description.description; })
+      .def_prop_ro("path", [](const Model& self) { return self.input().path; })
+      .def_prop_ro("method",
+                   [](const Model& self) { return std::string(pipeline::name(self.input().file.simulate.method)); })
+      .def_prop_ro("can_optimize", [](const Model& self) { return self.input().file.optimize.has_value(); })
+      .def("simulate", simulate, nb::arg("settings"), nb::arg("options"), nb::arg("progress").none(),
+           nb::arg("warnings"))
+      .def("compare", compare, nb::arg("settings"), nb::arg("options"), nb::arg("progress").none(), nb::arg("warnings"))
+      .def("order", order, nb::arg("settings"), nb::arg("options"), nb::arg("progress").none(), nb::arg("warnings"),
+           nb::arg("schemes"), nb::arg("steps"))
+      .def("optimize", optimize, nb::arg("settings"), nb::arg("options"), nb::arg("start"), nb::arg("on_step").none(),
+           nb::arg("warnings"))
+      .def("check", check, nb::arg("settings"));
+}
+
+}  // namespace saltus::python

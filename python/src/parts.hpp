@@ -1,0 +1,15 @@
+// The parts of the extension module.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace saltus::python {
+
+/// The lock of symbolic expressions is the interpreter's, as it is for the package casadi in the same process.
+void lock_symbols_by_interpreter();
+
+void add_result(nanobind::module_& module);
+void add_model(nanobind::module_& module);
+void add_tool(nanobind::module_& module);
+
+}  // namespace saltus::python

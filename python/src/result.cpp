@@ -1,0 +1,224 @@
+#include "result.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "errors.hpp"
+#include "parts.hpp"
+#include "saltus/base/at.hpp"
+#include "saltus/cli/catalogue.hpp"
+#include "saltus/io/atomic_file.hpp"
+#include "saltus/io/json_result.hpp"
+#include "saltus/pipeline/surfaces.hpp"
+#include "saltus/report/html.hpp"
+#include "saltus/report/table.hpp"
+
+namespace nb = nanobind;
+
+namespace saltus::python {
+namespace {
+
+using result::Event;
+
+/// A read-only array that keeps its owner alive.
+template <class T>
+nb::ndarray<nb::numpy, const T> look_at(const T* data, std::size_t rows, nb::handle owner) {
+  return {data, {rows}, owner};
+}
+
+/// A read-only view of all rows of one kind: (rows, width), columns contiguous.
+template <class T>
+nb::ndarray<nb::numpy, const T> block_array(Block<T>& block, const std::vector<std::vector<T>>& rows, std::size_t width,
+                                            nb::handle owner) {
+  if (!block.made) {
+    block.rows = rows.size();
+    block.columns.resize(block.rows * width);
+    for (std::size_t i = 0; i < block.rows; ++i) {
+      for (std::size_t k = 0; k < width; ++k) block.columns[k * block.rows + i] = rows[i][k];
+    }
+    block.made = true;
+  }
+  return nb::ndarray<nb::numpy, const T>(block.columns.data(), {block.rows, width}, owner,
+                                         {1, static_cast<std::int64_t>(block.rows)});
+}
+
+/// Which rows of a trajectory one property shows, and where they are kept.
+template <class T, auto block, auto rows, auto names>
+void add_block(nb::class_<Run>& type, const char* name) {
+  type.def_prop_ro(name, [](nb::handle self) {
+    auto& run = nb::cast<Run&>(self);
+    const auto& trajectory = run.result->trajectory;
+    return block_array<T>(run.*block, trajectory.*rows, ((*run.result).*names).size(), self);
+  });
+}
+
+nb::object array_of(const std::vector<double>& values) {
+  auto* copy = new std::vector<double>(values);
+  const nb::capsule owner(copy, [](void* memory) noexcept { delete static_cast<std::vector<double>*>(memory); });
+  return nb::cast(nb::ndarray<nb::numpy, const double>(copy->data(), {copy->size()}, owner));
+}
+nb::object array_of(const std::optional<std::vector<double>>& values) {
+  return values ? array_of(*values) : nb::none();
+}
+
+std::string text_of(std::string_view view) { return std::string(view); }
+
+void add_event(nb::module_& module) {
+  nb::class_<result::Alternative>(module, "Alternative", "A continuation that was possible at an event.")
+      .def_ro("mode", &result::Alternative::mode)
+      .def_prop_ro("alpha", [](const result::Alternative& self) { return array_of(self.alpha); })
+      .def_ro("regions", &result::Alternative::regions);
+  nb::class_<Event>(module, "Event", "A change of mode, a jump, or an event of the user.")
+      .def_ro("t", &Event::t)
+      .def_prop_ro("kind", [](const Event& self) { return text_of(name(self.kind)); })
+      .def_ro("name", &Event::name)
+      .def_ro("surfaces", &Event::surfaces)
+      .def_ro("mode_before", &Event::mode_before)
+      .def_ro("mode_after", &Event::mode_after)
+      .def_prop_ro("alpha_before", [](const Event& self) { return array_of(self.alpha_before); })
+      .def_prop_ro("alpha_after", [](const Event& self) { return array_of(self.alpha_after); })
+      .def_ro("regions_before", &Event::regions_before)
+      .def_ro("regions_after", &Event::regions_after)
+      .def_prop_ro("x", [](const Event& self) { return array_of(self.x); })
+      .def_prop_ro("x_after", [](const Event& self) { return array_of(self.x_after); })
+      .def_ro("unique", &Event::unique)
+      .def_ro("alternatives", &Event::alternatives)
+      .def_ro("reason", &Event::reason);
+}
+
+/// The surfaces are looked for when the first report or file wants them.
+void want_surfaces(Run& run) {
+  if (run.system && run.result->surfaces.empty()) run.result->surfaces = pipeline::surfaces(*run.system, *run.result);
+}
+
+nb::object sensitivities(const Run& run) {
+  const auto& found = run.result->sensitivities;
+  if (!found) return nb::none();
+  const auto matrix = [](const std::vector<std::vector<double>>& rows) {
+    nb::list list;
+    for (const auto& row : rows) list.append(array_of(row));
+    return list;
+  };
+  nb::dict entries;
+  entries["x0"] = matrix(found->x0);
+  entries["p"] = matrix(found->p);
+  entries["parameters"] = found->parameters;
+  return std::move(entries);
+}
+
+nb::list branches(const Run& run) {
+  nb::list list;
+  for (auto& branch : run.result->branches) {
+    list.append(nb::cast(Run{std::shared_ptr<result::Result>(run.result, &branch), nullptr, {}, {}, {}, {}, {}, {}}));
+  }
+  return list;
+}
+
+nb::dict final_of(const Run& run) {
+  const auto& last = run.result->final;
+  nb::dict entries;
+  entries["t"] = last.t;
+  entries["x"] = array_of(last.x);
+  entries["mode"] = last.mode;
+  entries["alpha"] = array_of(last.alpha);
+  entries["outputs"] = array_of(last.outputs);
+  entries["regions"] = last.regions;
+  return entries;
+}
+
+std::string page_of(Run& run) {
+  want_surfaces(run);
+  return report::to_html(*run.result, value_or_raise(cli::plotly_source()));
+}
+
+void save(Run& run, const std::string& path) {
+  const bool csv = path.ends_with(".csv");
+  if (!csv && !path.ends_with(".json")) {
+    raise({ErrorCode::io_failure,
+           path + ": the name must end in .json or .csv",
+           "the suffix says what is written",
+           {},
+           {}});
+  }
+  if (!csv) want_surfaces(run);
+  value_or_raise(io::write_file(path, csv ? io::to_csv(*run.result) : io::to_json(*run.result)));
+}
+
+Run load(const std::string& path) {
+  return {std::make_shared<result::Result>(value_or_raise(io::read_result(path))), nullptr, {}, {}, {}, {}, {}, {}};
+}
+Run parse(const std::string& text) {
+  return {std::make_shared<result::Result>(value_or_raise(io::parse_result(text, "<memory>"))),
+          nullptr,
+          {},
+          {},
+          {},
+          {},
+          {},
+          {}};
+}
+
+void add_names(nb::class_<Run>& type) {
+  type.def_prop_ro("model", [](const Run& self) { return self.result->model.name; })
+      .def_prop_ro("description", [](const Run& self) { return self.result->model.description; })
+      .def_prop_ro("parameters", [](const Run& self) { return self.result->model.parameters; })
+      .def_prop_ro("command", [](const Run& self) { return self.result->command; })
+      .def_prop_ro("method", [](const Run& self) { return self.result->method; })
+      .def_prop_ro("states", [](const Run& self) { return self.result->states; })
+      .def_prop_ro("controls", [](const Run& self) { return self.result->controls; })
+      .def_prop_ro("output_names", [](const Run& self) { return self.result->outputs; })
+      .def_prop_ro("switching_functions", [](const Run& self) { return self.result->switching_functions; })
+      .def_prop_ro("regions", [](const Run& self) { return result::region_labels(self.result->region_groups); })
+      .def_prop_ro("termination", [](const Run& self) { return text_of(name(self.result->status.termination)); })
+      .def_prop_ro("done", [](const Run& self) { return is_done(self.result->status.termination); })
+      .def_prop_ro("message", [](const Run& self) { return self.result->status.message; })
+      .def_prop_ro("time_reached", [](const Run& self) { return self.result->status.time_reached; });
+}
+
+}  // namespace
+
+void add_result(nb::module_& module) {
+  add_event(module);
+  nb::class_<Run> type(module, "Run", "A result of the library.");
+  add_names(type);
+  type.def_prop_ro("t", [](nb::handle self) {
+    const auto& t = nb::cast<Run&>(self).result->trajectory.t;
+    return look_at(t.data(), t.size(), self);
+  });
+  using result::Result;
+  using result::Trajectory;
+  add_block<double, &Run::x, &Trajectory::x, &Result::states>(type, "x");
+  add_block<double, &Run::u, &Trajectory::u, &Result::controls>(type, "u");
+  add_block<double, &Run::alpha, &Trajectory::alpha, &Result::switching_functions>(type, "alpha");
+  add_block<int, &Run::mode, &Trajectory::mode, &Result::switching_functions>(type, "mode");
+  add_block<double, &Run::outputs, &Trajectory::outputs, &Result::outputs>(type, "outputs");
+  type.def_prop_ro("theta",
+                   [](nb::handle self) {
+                     auto& run = nb::cast<Run&>(self);
+                     const auto width = run.result->region_groups.empty()
+                                            ? 0
+                                            : result::region_labels(run.result->region_groups).size();
+                     return block_array<double>(run.theta, run.result->trajectory.theta, width, self);
+                   })
+      .def_prop_ro("events", [](const Run& self) { return self.result->events; })
+      .def_prop_ro("final", final_of)
+      .def_prop_ro("branches", branches)
+      .def_prop_ro("sensitivities", sensitivities)
+      .def("table", [](const Run& self) { return report::to_table(*self.result); })
+      .def("json",
+           [](Run& self, bool surfaces) {
+             if (surfaces) want_surfaces(self);
+             return io::to_json(*self.result);
+           })
+      .def("page", page_of)
+      .def("save", save);
+  module.def("load", load);
+  module.def("parse_result", parse);
+}
+
+}  // namespace saltus::python

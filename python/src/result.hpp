@@ -1,0 +1,29 @@
+// A result as Python sees it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "saltus/model/system.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::python {
+
+/// Rows of numbers as one block that arrays of Python look at.
+template <class T>
+struct Block {
+  std::vector<T> columns;  ///< one after the other
+  std::size_t rows = 0;
+  bool made = false;
+};
+
+/// A result, or one of its branches, and the arrays that were asked for. Lives in Python, under the interpreter's lock.
+struct Run {
+  std::shared_ptr<result::Result> result;       ///< of a branch: into that of its root
+  std::shared_ptr<const model::System> system;  ///< null for one that was loaded, and for branches
+  Block<double> x, u, alpha, outputs, theta;
+  Block<int> mode;
+};
+
+}  // namespace saltus::python

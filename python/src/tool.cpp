@@ -1,0 +1,60 @@
+#include "saltus/cli/tool.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "errors.hpp"
+#include "parts.hpp"
+#include "saltus/base/version.hpp"
+#include "saltus/cli/catalogue.hpp"
+#include "saltus/io/atomic_file.hpp"
+#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/pipeline/option_fields.hpp"
+
+namespace nb = nanobind;
+
+namespace saltus::python {
+namespace {
+
+int run_tool(std::vector<std::string> arguments) {
+  std::vector<char*> pointers;
+  for (auto& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  const nb::gil_scoped_release released;
+  return cli::run_tool(static_cast<int>(arguments.size()), pointers.data());
+}
+
+std::vector<std::string> models() {
+  std::vector<std::string> names;
+  for (const auto& entry : cli::catalogue()) names.push_back(entry.name);
+  return names;
+}
+
+/// The file of a shipped model, whatever files of that name there are.
+std::string find_catalogue(const std::string& name) {
+  const auto entries = cli::catalogue();
+  for (const auto& entry : entries) {
+    if (entry.name == name) return entry.file.string();
+  }
+  raise({ErrorCode::unknown_name, "'" + name + "' is no model of the catalogue", suggest(name, models()), {}, {}});
+}
+
+}  // namespace
+
+void add_tool(nb::module_& module) {
+  module.attr("version") = nb::str(std::string(version).c_str());
+  module.def("run_tool", run_tool);
+  module.def("models", models);
+  module.def("set_shared_folder", [](const std::string& folder) { cli::set_shared_folder(folder); });
+  module.def("find_catalogue", find_catalogue);
+  module.def("write_file", [](const std::string& path, const std::string& content) {
+    value_or_raise(io::check_writable(path));
+    value_or_raise(io::write_file(path, content));
+  });
+  module.def("plotly_source", [] { return value_or_raise(cli::plotly_source()); });
+  module.def("simulate_keys", [] { return pipeline::simulate_keys(); });
+  module.def("optimize_keys", [] { return pipeline::optimize_keys(); });
+}
+
+}  // namespace saltus::python

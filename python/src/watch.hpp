@@ -1,0 +1,36 @@
+// What Python hears of a run: Ctrl-C and progress.
+#pragma once
+
+#include <chrono>
+#include <nanobind/nanobind.h>
+#include <optional>
+#include <string>
+
+#include "saltus/pipeline/simulate.hpp"
+
+namespace saltus::python {
+
+/// Looks for signals, and tells progress, some ten times a second. The interpreter's lock need not be held.
+class Watch {
+ public:
+  /// @param progress  None, or called with (t, from, until, steps, events)
+  explicit Watch(nanobind::object progress) : progress_(std::move(progress)) {}
+
+  [[nodiscard]] pipeline::Observers observers();
+  /// Whether a handler of signals or `progress` has raised an exception: then the run is to end.
+  [[nodiscard]] bool look(const pipeline::StepRecord* step = nullptr);
+  /// Calls `function` with a line of text; what it raises ends the run.
+  void call(const nanobind::object& function, const std::string& line);
+  /// Raises that exception, with `result` as its attribute.
+  void raise_what_came(const nanobind::object& result);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto interval = std::chrono::milliseconds(50);
+
+  nanobind::object progress_;
+  std::optional<nanobind::python_error> came_;
+  Clock::time_point next_ = Clock::now() + interval;
+};
+
+}  // namespace saltus::python

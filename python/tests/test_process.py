@@ -1,0 +1,133 @@
+"""The package in its process: libraries, threads, signals."""
+
+import concurrent.futures
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import pytest
+
+import saltus
+
+
+def run_python(code):
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("order", ["casadi, saltus", "saltus, casadi"])
+def test_casadi_is_there_once_whoever_comes_first(order):
+    out = run_python(f"""
+        import {order}
+        x = casadi.SX.sym("x")
+        solver = casadi.nlpsol("s", "ipopt", {{"x": x, "f": (x - 1) ** 2}}, {{"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": 0}})
+        print(float(solver(x0=0)["x"]))
+        print(saltus.catalogue("stick-slip").simulate(until=5).status)
+        print(saltus.catalogue("stick-slip").simulate(until=2, method="fesd", step_equilibration="none", steps=5).status)
+        print(float(solver(x0=3)["x"]))
+        maps = open("/proc/self/maps").read()
+        for name in ("libcasadi.so", "libipopt.so", "libhighs.so"):
+            print(name, len({{line.split()[-1] for line in maps.splitlines() if name in line}}))
+    """).split("\n")
+    assert abs(float(out[0]) - 1) < 1e-6
+    assert out[1:3] == ["completed", "completed"]
+    assert abs(float(out[3]) - 1) < 1e-6
+    assert out[4:7] == ["libcasadi.so 1", "libipopt.so 1", "libhighs.so 1"]
+
+
+def test_another_casadi_is_refused_in_one_sentence():
+    out = run_python("""
+        import importlib.metadata
+        importlib.metadata.version = lambda name: "3.6.7"
+        try:
+            import saltus
+        except ImportError as error:
+            print(error)
+    """)
+    assert out.startswith("saltus was built with casadi 3.8 and found casadi 3.6.7: pip install")
+    assert out.count("\n") == 1
+
+
+def test_many_runs_in_four_threads_equal_those_in_one():
+    """Kernels of all of them are made and dropped while others run."""
+    names = ["stick-slip", "bouncing-ball", "relay-feedback", "two-belts"]
+    models = {name: saltus.catalogue(name) for name in names}
+    tasks = [(names[i % 4], 1.0 + 0.01 * (i // 4)) for i in range(1000)]
+
+    def run(task):
+        name, until = task
+        r = models[name].simulate(until=until)
+        return r.x.tobytes(), [e.t for e in r.events]
+
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(run, tasks))
+    assert found == [run(task) for task in tasks]
+
+
+LONG = """
+[model]
+name = "long"
+[states]
+x = 1
+v = 0
+[dynamics]
+x = "v"
+v = "-x - 0.01*sign(v - cos(3*t))"
+"""
+
+
+def test_control_c():
+    model = saltus.Model.from_text(LONG)
+    sent = []
+
+    def interrupt():
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Timer(0.3, interrupt).start()
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        model.simulate(until=1e7, max_steps=10**9, max_events=10**9)
+    assert time.perf_counter() - sent[0] < 0.5
+    r = stopped.value.result
+    assert r.status == "stopped_by_user"
+    assert 0 < r.status.time_reached < 1e7
+    assert r.t[-1] == r.status.time_reached
+
+
+def test_other_threads_run_meanwhile():
+    model = saltus.Model.from_text(LONG)
+    ticks = 0
+    done = threading.Event()
+
+    def run():
+        model.simulate(until=3000, points=2, max_events=10**9)
+        done.set()
+
+    threading.Thread(target=run).start()
+    while not done.is_set():
+        ticks += 1
+        time.sleep(0.001)
+    assert ticks >= 20
+
+
+def test_progress_and_what_it_raises():
+    model = saltus.Model.from_text(LONG)
+    heard = []
+
+    def tell(*what):
+        heard.append(what)
+        if len(heard) == 3:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough") as stopped:
+        model._core.simulate([], [("simulate.until", "1e7", "until"), ("simulate.max_events", "1000000000", "e"),
+                                  ("simulate.max_steps", "1000000000", "s")], tell, [])
+    assert len(heard) == 3
+    times = [what[0] for what in heard]
+    assert times == sorted(times)
+    assert saltus._core.Run is type(stopped.value.result)

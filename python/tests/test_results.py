@@ -1,0 +1,143 @@
+"""Results: what was computed, and what becomes of it."""
+
+import json
+import pickle
+import subprocess
+
+import numpy as np
+import pytest
+
+import saltus
+
+
+@pytest.fixture(scope="module")
+def slip():
+    return saltus.catalogue("stick-slip").simulate(until=20)
+
+
+def without_clock(text):
+    """A stored result without the time it took."""
+    stored = json.loads(text)
+    stored["statistics"].pop("wall_seconds")
+    return stored
+
+
+def test_arrays_are_views_that_cannot_be_written(slip):
+    assert slip.x.shape == (len(slip.t), len(slip.states))
+    assert np.shares_memory(slip.x, slip.x)
+    assert np.shares_memory(slip["v"], slip.x)
+    assert np.shares_memory(slip.t, slip.t)
+    for array in (slip.t, slip.x, slip.alpha, slip.mode, slip["v"]):
+        assert not array.flags.writeable
+        with pytest.raises(ValueError):
+            array[0] = 1
+    t = slip.t
+    v = slip["v"]
+    first = t[0], v[0], t[-1], v[-1]
+    other = saltus.catalogue("stick-slip").simulate(until=1)
+    column = other["v"]
+    end = other.final["v"]
+    del other
+    assert column[-1] == end  # the array keeps its result
+    assert (t[0], v[0], t[-1], v[-1]) == first
+
+
+def test_names(slip):
+    assert slip["t"].tolist() == slip.t.tolist()
+    assert slip["alpha(slip)"].tolist() == slip.alpha[:, 0].tolist()
+    assert set(slip["mode(slip)"].tolist()) == {-1, 0}
+    with pytest.raises(KeyError, match="alpha"):
+        slip["alpha"]
+
+
+def test_it_is_what_the_tool_writes(source, tool, tmp_path):
+    for name in ("stick-slip", "relay-feedback", "bouncing-ball", "two-belts", "quadrants", "quarter-car"):
+        subprocess.run([tool, "simulate", name, "--quiet", "--out", "r.json", "--out", "r.csv"], cwd=tmp_path, check=False)
+        r = saltus.catalogue(name).simulate()
+        r.save(tmp_path / "p.json")
+        r.save(tmp_path / "p.csv")
+        assert without_clock((tmp_path / "p.json").read_text()) == without_clock((tmp_path / "r.json").read_text())
+        assert (tmp_path / "p.csv").read_bytes() == (tmp_path / "r.csv").read_bytes()
+        header, *rows = (tmp_path / "r.csv").read_text().splitlines()
+        assert len(rows) == len(r.t)
+        assert [float(row.split(",")[0]) for row in rows] == r.t.tolist()
+
+
+def test_saved_and_loaded(slip, tmp_path):
+    slip.save(tmp_path / "r.json")
+    again = saltus.load(tmp_path / "r.json")
+    for one in (again, pickle.loads(pickle.dumps(slip))):
+        assert one.x.tolist() == slip.x.tolist()
+        assert [e.t for e in one.events] == [e.t for e in slip.events]
+        assert one.status == slip.status
+    with pytest.raises(saltus.ModelError, match="json"):
+        slip.save(tmp_path / "r.txt")
+    with pytest.raises(saltus.ModelError):
+        saltus.load(tmp_path / "none.json")
+
+
+def test_the_page(slip, tmp_path):
+    slip.report(tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text()
+    assert page.startswith("<!DOCTYPE html>")
+    assert "stick-slip" in page
+    assert "<iframe" in slip.report()._repr_html_()
+    with pytest.raises(saltus.ModelError):
+        slip.report(tmp_path / "no-such-folder" / "r.html")
+
+
+def test_events(slip):
+    assert {e.kind for e in slip.events} >= {"enter_sliding", "leave_sliding"}
+    for event in slip.events:
+        row = int(np.searchsorted(slip.t, event.t))
+        assert slip.x[row] == pytest.approx(event.x, abs=1e-14)
+    assert slip.events[0].surfaces == ["slip"]
+
+
+def test_jumps_have_two_sides():
+    r = saltus.catalogue("bouncing-ball").simulate()
+    bounce = next(e for e in r.events if e.kind == "jump")
+    assert bounce.x.tolist() != bounce.x_after.tolist()
+    at = np.flatnonzero(r.t == bounce.t)
+    assert r.x[at[0]].tolist() == bounce.x.tolist()
+    assert r.x[at[-1]].tolist() == bounce.x_after.tolist()
+
+
+def test_branches():
+    r = saltus.catalogue("stay-or-leave").simulate(branches="all")
+    assert r.branches
+    assert {branch.final["x"] for branch in r.branches if "x" in branch.states} or r.branches[0].x.shape[0] > 1
+
+
+def test_a_run_that_stops_early(brake):
+    r = brake.simulate(max_steps=3)
+    assert r.status == "iteration_limit"
+    assert not r.status.done
+    assert r.status.time_reached < 6
+    with pytest.raises(saltus.Stopped, match="iteration_limit") as stopped:
+        r.require()
+    assert stopped.value.result is r
+    assert brake.simulate().require().status == "completed"
+
+
+def test_optimal_control(source):
+    r = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(control_intervals=6)
+    assert r.status == "completed"
+    assert r.final["q"] == pytest.approx(1.0, abs=1e-6)
+    assert r.optimization["objective"] == pytest.approx(r.t[-1], rel=1e-6)
+    assert r.u.shape == (len(r.t), 1)
+    again = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start=r, control_intervals=6)
+    assert again.optimization["objective"] == pytest.approx(r.optimization["objective"], rel=1e-5)
+    with pytest.raises(saltus.ModelError, match="control_interval"):
+        saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(control_interval=6)
+    with pytest.raises(saltus.ModelError, match="optimize"):
+        saltus.catalogue("stick-slip").optimize(control_intervals=3)
+
+
+def test_methods_compared():
+    r = saltus.compare(saltus.catalogue("stick-slip"), until=3)
+    assert {run["method"] for run in r.comparison["runs"]} >= {"event", "fesd", "smoothed"}
+    study = saltus.order(saltus.catalogue("stick-slip"), until=2, schemes=[("radau_iia", 2)], steps=[20, 40, 80])
+    assert study.order["series"]
+    with pytest.raises(saltus.ModelError, match="ascending"):
+        saltus.order(saltus.catalogue("stick-slip"), until=2, steps=[40, 20])

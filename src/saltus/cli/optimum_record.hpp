@@ -1,0 +1,16 @@
+// What an optimisation leaves to its caller to add to the result.
+#pragma once
+
+#include "saltus/cli/model_input.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::cli {
+
+/// What the numerical method does not know: the file's fingerprint, and the problem as it was written.
+void complete_optimum(const ModelInput& input, result::Result& result);
+
+/// The surfaces of the model with the parameters that were found.
+void add_surfaces(const model::Ocp& ocp, result::Result& result);
+
+}  // namespace saltus::cli

@@ -1,0 +1,97 @@
+#include "saltus/cli/tool.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "saltus/base/version.hpp"
+#include "saltus/cli/commands.hpp"
+#include "saltus/cli/exit_code.hpp"
+#include "saltus/cli/terminal.hpp"
+
+namespace saltus::cli {
+namespace {
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const auto* option : app.get_options()) {
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// What CLI11 did not understand, in our words: the first argument nobody expected, and what it may have meant.
+Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
+  Error error{ErrorCode::parse_failure, failure.what(), "saltus --help shows how it is used", {}, {}};
+  std::replace(error.message.begin(), error.message.end(), '\n', ' ');
+  const auto chosen = app.get_subcommands();
+  const auto& reader = chosen.empty() ? app : *chosen.front();
+  if (!chosen.empty()) error.remedy = fmt::format("saltus {} --help shows how it is used", reader.get_name());
+  for (const auto& argument : app.remaining(true)) {
+    if (argument == "--") continue;
+    const auto name = argument.substr(0, argument.find('='));
+    error.message = fmt::format("unexpected argument '{}'", argument);
+    if (name.starts_with("--")) error.remedy = suggest(name, option_names(reader));
+    break;
+  }
+  return error;
+}
+
+Error unknown_command(const std::string& word, const std::vector<Command>& commands) {
+  std::vector<std::string> known;
+  for (const auto& command : commands) {
+    if (command.name != "options-page") known.push_back(command.name);
+  }
+  return {ErrorCode::unknown_name, fmt::format("'{}' is no command of saltus", word), suggest(word, known), {}, {}};
+}
+
+ExitCode run(int argc, char** argv) {
+  CLI::App app("Simulates and optimises nonsmooth dynamical systems: switches and sliding modes, located exactly.",
+               "saltus");
+  app.set_version_flag("--version", fmt::format("saltus {}", version));
+  app.footer("Example:\n  saltus simulate stick-slip");
+  app.get_formatter()->column_width(26);
+  const std::vector<Command> commands{add_simulate(app), add_optimize(app), add_compare(app),
+                                      add_order(app),    add_check(app),    add_mpcc(app),
+                                      add_models(app),   add_report(app),   add_options_page(app)};
+  const auto chosen = [&](const Command& command) { return argc > 1 && command.name == argv[1]; };
+  const auto command = std::find_if(commands.begin(), commands.end(), chosen);
+  if (command == commands.end() && argc > 1 && argv[1][0] != '-') return refuse(unknown_command(argv[1], commands));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& failure) {
+    if (failure.get_exit_code() != 0) return refuse(unexpected_argument(app, failure));
+    app.exit(failure);  // prints the help or the version that was asked for
+    return ExitCode::done;
+  }
+  if (command != commands.end()) {
+    const ExitCode code = command->run();
+    const auto unwritten = lost_output();
+    return unwritten ? refuse(*unwritten) : code;
+  }
+  print_error(app.help());
+  return ExitCode::bad_input;
+}
+
+}  // namespace
+
+/// A violated contract has said what it is and calls std::abort: its exit code is that of an internal error, too.
+extern "C" void end_as_internal_error(int) { std::_Exit(static_cast<int>(ExitCode::internal_error)); }
+
+int run_tool(int argc, char** argv) {
+  std::signal(SIGABRT, end_as_internal_error);
+  try {
+    return static_cast<int>(run(argc, argv));
+  } catch (const std::exception& failure) {
+    print_error(fmt::format("internal error: {}\n  please report this with the model file", failure.what()));
+    return static_cast<int>(ExitCode::internal_error);
+  }
+}
+
+}  // namespace saltus::cli
