@@ -77,7 +77,11 @@ TEST(OcpBadInput, SwitchesOfControls) {
   expect_refused({.cost = "sign(u)"}, {"'sign(u)'", "running_cost", "convex"});
   expect_refused({.cost = "u^2 + min(u, 0)"}, {"the kink 'min(u,0)' of controls does not enter running_cost convexly"});
   expect_refused({.cost = "-abs(u)"}, {"'abs(u)'", "convexly"});
-  expect_refused({.cost = "max(u, v)"}, {"'max(u,v)' in running_cost mixes controls with 'v' in one kink"});
+  expect_refused({.cost = "u^2", .problem = "terminal_cost = 'max(u, v)'"},
+                 {"'max(u,v)' in terminal_cost mixes controls with 'v' in one kink"});
+  expect_refused({.cost = "u^2", .problem = "path_constraints = [{ constraint = 'abs(u - v) <= 1', penalty = 10 }]"},
+                 {"'abs(u - v) <= 1' is soft and has a kink that mixes states and controls"});
+  expect_refused({.cost = "-abs(u - v)"}, {"'abs(u-v)'", "convexly"});
   expect_refused({.cost = "u^2", .problem = "path_constraints = ['abs(u) >= 1']"}, {"'abs(u)'", "convexly"});
 }
 
@@ -153,6 +157,37 @@ TEST(OcpKinksOfControls, LeastConsumption) {
   EXPECT_NEAR(result.optimization->u.front().front(), 1.5625, 1e-7);
   EXPECT_EQ(result.controls, std::vector<std::string>{"u"});  // the slack is no control of the result
   EXPECT_EQ(result.optimization->u.front().size(), 1U);
+}
+
+/// x' = u from 1 over one interval of length 1, so that x = 1 + u t.
+std::string mixed_kinks(const std::string& problem) {
+  return "[model]\nname = \"mixed\"\n[states]\nx = 1\n[controls]\nu = { lower = -2, upper = 2 }\n[dynamics]\nx = "
+         "\"u\"\n"
+         "[optimize]\nhorizon = 1\ncontrol_intervals = 1\n" +
+         problem;
+}
+
+/// For u < 1 is u < x behind the start, so that int |u - x| dt = 1 - u/2: with 0.6 u^2 the optimum is u = 5/12.
+TEST(OcpKinksOfControls, OfStatesAndControlsInACost) {
+  for (const std::string cost : {"abs(u - x) + 0.6*u^2", "max(x - u, u - x) + 0.6*u^2", "0.6*u^2 - min(u - x, 0)"}) {
+    const auto result = optimized(stated(mixed_kinks("running_cost = \"" + cost + "\"\n")));
+    ASSERT_EQ(result.status.termination, result::Termination::completed) << cost << ": " << result.status.message;
+    EXPECT_NEAR(result.optimization->objective, 43.0 / 48.0, 1e-8) << cost;
+    EXPECT_NEAR(result.optimization->u.front().front(), 5.0 / 12.0, 1e-7) << cost;
+    EXPECT_EQ(result.optimization->u.front().size(), 1U);
+    EXPECT_TRUE(result.optimization->multipliers.empty()) << cost;
+  }
+}
+
+/// At the start x = 1, so that the least u is -1/2; at the end |u - x| = 1.
+TEST(OcpKinksOfControls, OfStatesAndControlsInConstraints) {
+  for (const std::string constraint : {"abs(u - x) <= 1.5", "abs(u - x) + abs(u) <= 2",
+                                       "2 >= max(max(x - u, u - x), 0) - min(u, x)", "-1.5 <= -abs(x - u)"}) {
+    const auto result =
+        optimized(stated(mixed_kinks("running_cost = \"u\"\npath_constraints = [\"" + constraint + "\"]\n")));
+    ASSERT_EQ(result.status.termination, result::Termination::completed) << constraint << ": " << result.status.message;
+    EXPECT_NEAR(result.optimization->objective, -0.5, 1e-8) << constraint;
+  }
 }
 
 }  // namespace

@@ -21,15 +21,16 @@ struct OcpConstraint {
   double lower = 0.0, upper = 0.0;
   ConstraintNorm norm = ConstraintNorm::hard;
   double penalty = 0.0;
-  bool is_slack = false;  ///< of a kink of controls: holds with every control, in no result
+  bool is_slack = false;   ///< of a kink of controls: holds with every control, or at every stage; in no result
+  bool at_stages = false;  ///< of a slack: its slack is one of `stage_slacks`
 };
 
 /// r'W r, r = y_of - reference.
 struct OcpLeastSquares {
   std::vector<int> of;
-  std::vector<int> reference;    ///< outputs of t and p; empty: 0, or samples
-  Eigen::MatrixXd samples;       ///< one row per interval; 0 x 0 without
-  Eigen::MatrixXd weight;        ///< symmetric
+  std::vector<int> reference;  ///< outputs of t and p; empty: 0, or samples
+  Eigen::MatrixXd samples;     ///< one row per interval; 0 x 0 without
+  Eigen::MatrixXd weight;      ///< symmetric
   CostPoints at = CostPoints::intervals;
 };
 
@@ -57,8 +58,11 @@ struct OcpClock {
 /// over u_k (one per interval), free T, free x_i(from) and free p, subject to xdot = f(t, x, u, p, alpha), bounds,
 /// path and terminal constraints and complementarities. Every expression is an output of `system`: L, E, constraints.
 struct Ocp {
-  System system;  ///< controls: the user's, then one per kink of controls; outputs: the user's, then those of the problem
+  System
+      system;  ///< controls: the user's, then one per kink of controls; outputs: the user's, then those of the problem
   int user_controls = 0, user_outputs = 0;
+  /// Controls that are slacks of kinks of states and controls in the running cost: a value per stage.
+  std::vector<int> stage_slacks;
   double from = 0.0;
   OcpHorizon horizon;
   std::optional<int> running_cost, terminal_cost;  ///< outputs
@@ -67,8 +71,8 @@ struct Ocp {
   ConstraintPoints path_at = ConstraintPoints::intervals;
   std::vector<std::pair<int, int>> complementarities;  ///< outputs
   std::vector<OcpLeastSquares> least_squares;
-  std::vector<bool> free_states;                       ///< one per state
-  std::vector<bool> free_parameters;                   ///< one per parameter
+  std::vector<bool> free_states;                         ///< one per state
+  std::vector<bool> free_parameters;                     ///< one per parameter
   std::vector<double> parameter_lower, parameter_upper;  ///< of free ones; else the value
   std::vector<OcpGuess> guess;
   std::optional<OcpClock> clock;

@@ -28,7 +28,7 @@ NodePtr subtracted(const NodePtr& left, const NodePtr& right) {
 /// A constraint before its numbers are known: quantities of its bounds, -1 for none.
 struct PlannedConstraint {
   const ConstraintDescription* stated = nullptr;
-  int middle = 0;
+  std::vector<int> middles{};  ///< all of them are bounded
   int lower = -1, upper = -1;
   bool at_zero_lower = false, at_zero_upper = false;  ///< instead: 0
   int penalty = -1;
@@ -38,7 +38,9 @@ struct PlannedConstraint {
 class OcpBuild {
  public:
   OcpBuild(const Description& description, const std::vector<Override>& overrides)
-      : stated_(*description.optimize), slacks_(description), overrides_(overrides),
+      : stated_(*description.optimize),
+        slacks_(description),
+        overrides_(overrides),
         quantities_(slacks_.description()) {}
 
   [[nodiscard]] Expected<Ocp> run() {
@@ -48,6 +50,7 @@ class OcpBuild {
     ocp_.system = std::move(*system);
     ocp_.user_outputs = quantities_.user_outputs();
     ocp_.user_controls = slacks_.user_controls();
+    ocp_.stage_slacks = slacks_.stage_slacks();
     using Step = std::optional<Error> (OcpBuild::*)();
     constexpr Step steps[] = {&OcpBuild::take_horizon,       &OcpBuild::take_costs, &OcpBuild::take_constraints,
                               &OcpBuild::take_least_squares, &OcpBuild::take_clock, &OcpBuild::take_guess,
@@ -84,16 +87,20 @@ class OcpBuild {
                                       quantities_.add(pair.second, "path_complementarities"));
     }
     for (const auto& term : stated_.least_squares) plan_least_squares(term);
-    for (const auto& guess : stated_.guess) guesses_.push_back(quantities_.add(guess.expression, "initial_guess." + guess.name));
+    for (const auto& guess : stated_.guess)
+      guesses_.push_back(quantities_.add(guess.expression, "initial_guess." + guess.name));
     for (const auto& parameter : description().free_parameters) {
-      parameter_bounds_.emplace_back(quantities_.add(parameter.lower, fmt::format("the lower bound of {}", parameter.name)),
-                                     quantities_.add(parameter.upper, fmt::format("the upper bound of {}", parameter.name)));
+      parameter_bounds_.emplace_back(
+          quantities_.add(parameter.lower, fmt::format("the lower bound of {}", parameter.name)),
+          quantities_.add(parameter.upper, fmt::format("the upper bound of {}", parameter.name)));
     }
     if (description().clock && description().clock->speed_lower) {
       speed_ = {quantities_.add(description().clock->speed_lower, "speed.lower"),
                 quantities_.add(description().clock->speed_upper, "speed.upper")};
     }
-    for (const auto& row : slacks_.rows()) slack_rows_.push_back(quantities_.add(row, "kink of controls"));
+    for (const auto& row : slacks_.rows()) {
+      slack_rows_.emplace_back(quantities_.add(row.expression, "kink of controls"), row.at_stages);
+    }
     return std::nullopt;
   }
 
@@ -101,7 +108,7 @@ class OcpBuild {
   std::optional<Error> plan_cost(const NodePtr& cost, const std::string& name, int& quantity) {
     quantity = -1;
     if (!cost) return std::nullopt;
-    auto smooth = slacks_.replace(cost, Curvature::convex, name);
+    auto smooth = &quantity == &running_ ? slacks_.in_running_cost(cost, name) : slacks_.in_terminal_cost(cost, name);
     if (!smooth) return smooth.error();
     quantity = quantities_.add(*smooth, name);
     return std::nullopt;
@@ -144,15 +151,26 @@ class OcpBuild {
       plan.at_zero_upper = true;
       plan.at_zero_lower = equal;
     }
-    if (stated.norm != ConstraintNorm::hard) plan.penalty = quantities_.add(stated.penalty, "penalty of '" + stated.text + "'");
+    if (stated.norm != ConstraintNorm::hard)
+      plan.penalty = quantities_.add(stated.penalty, "penalty of '" + stated.text + "'");
     list.push_back(plan);
     return std::nullopt;
   }
 
+  static Error soft_kink(const ConstraintDescription& stated) {
+    return {ErrorCode::not_available,
+            fmt::format("'{}' is soft and has a kink that mixes states and controls", stated.text),
+            "state it hard, or soften a constraint for each side of the kink",
+            stated.location,
+            {"in [optimize]"}};
+  }
+
   std::optional<Error> plan_middle(const NodePtr& expression, Curvature curvature, PlannedConstraint& plan) {
-    auto smooth = slacks_.replace(expression, curvature, "'" + plan.stated->text + "'");
+    const std::string place = "'" + plan.stated->text + "'";
+    auto smooth = slacks_.in_constraint(expression, curvature, place);
     if (!smooth) return smooth.error();
-    plan.middle = quantities_.add(*smooth, "'" + plan.stated->text + "'");
+    if (smooth->size() > 1 && plan.stated->norm != ConstraintNorm::hard) return soft_kink(*plan.stated);
+    for (const auto& node : *smooth) plan.middles.push_back(quantities_.add(node, place));
     return std::nullopt;
   }
 
@@ -165,7 +183,8 @@ class OcpBuild {
     PlannedSquares plan;
     plan.stated = &stated;
     for (const auto& node : stated.of) plan.of.push_back(quantities_.add(node, "least_squares of"));
-    for (const auto& node : stated.reference) plan.reference.push_back(quantities_.add(node, "least_squares reference"));
+    for (const auto& node : stated.reference)
+      plan.reference.push_back(quantities_.add(node, "least_squares reference"));
     for (const auto& row : stated.weight) {
       plan.weight.emplace_back();
       for (const auto& node : row) plan.weight.back().push_back(quantities_.add(node, "a weight of least_squares"));
@@ -210,11 +229,10 @@ class OcpBuild {
     ocp_.path_at = stated_.path_constraints_at;
     for (const auto& [planned, list] : {std::pair{&path_, &ocp_.path}, std::pair{&terminals_, &ocp_.terminal}}) {
       for (const auto& plan : *planned) {
-        OcpConstraint constraint{.name = plan.stated->text, .output = quantities_.output(plan.middle),
-                                 .lower = -unbounded, .upper = unbounded, .norm = plan.stated->norm};
-        for (const auto& [quantity, zero, bound] :
-             {std::tuple{plan.lower, plan.at_zero_lower, &constraint.lower},
-              std::tuple{plan.upper, plan.at_zero_upper, &constraint.upper}}) {
+        OcpConstraint constraint{
+            .name = plan.stated->text, .output = 0, .lower = -unbounded, .upper = unbounded, .norm = plan.stated->norm};
+        for (const auto& [quantity, zero, bound] : {std::tuple{plan.lower, plan.at_zero_lower, &constraint.lower},
+                                                    std::tuple{plan.upper, plan.at_zero_upper, &constraint.upper}}) {
           if (zero) *bound = 0.0;
           if (quantity < 0) continue;
           const auto value = quantities_.value(quantity);
@@ -227,12 +245,19 @@ class OcpBuild {
           constraint.penalty = *penalty;
         }
         if (auto error = check_constraint(constraint, plan.stated->location)) return error;
-        list->push_back(std::move(constraint));
+        for (const int middle : plan.middles) {
+          constraint.output = quantities_.output(middle);
+          list->push_back(constraint);
+        }
       }
     }
-    for (const int row : slack_rows_) {
-      ocp_.path.push_back({.name = "kink of controls", .output = quantities_.output(row), .lower = -unbounded,
-                           .upper = 0.0, .is_slack = true});
+    for (const auto& [row, at_stages] : slack_rows_) {
+      ocp_.path.push_back({.name = "kink of controls",
+                           .output = quantities_.output(row),
+                           .lower = -unbounded,
+                           .upper = 0.0,
+                           .is_slack = true,
+                           .at_stages = at_stages});
     }
     for (const auto& [first, second] : complementarities_) {
       ocp_.complementarities.emplace_back(quantities_.output(first), quantities_.output(second));
@@ -251,7 +276,8 @@ class OcpBuild {
       term.samples.resize(static_cast<Eigen::Index>(samples.size()), samples.empty() ? 0 : n);
       for (std::size_t row = 0; row < samples.size(); ++row) {
         if (static_cast<Eigen::Index>(samples[row].size()) != n) return wrong_sample_width(*plan.stated, row);
-        for (Eigen::Index i = 0; i < n; ++i) term.samples(static_cast<Eigen::Index>(row), i) = samples[row][static_cast<std::size_t>(i)];
+        for (Eigen::Index i = 0; i < n; ++i)
+          term.samples(static_cast<Eigen::Index>(row), i) = samples[row][static_cast<std::size_t>(i)];
       }
       term.weight = Eigen::MatrixXd::Identity(n, n);
       const bool diagonal = plan.weight.size() == 1 && n != 1;
@@ -356,7 +382,8 @@ class OcpBuild {
   std::vector<PlannedConstraint> path_, terminals_;
   std::vector<std::pair<int, int>> complementarities_, parameter_bounds_;
   std::vector<PlannedSquares> squares_;
-  std::vector<int> guesses_, slack_rows_;
+  std::vector<int> guesses_;
+  std::vector<std::pair<int, bool>> slack_rows_;  ///< quantity; whether at stages
   std::pair<int, int> speed_{-1, -1};
 };
 
@@ -373,11 +400,12 @@ Expected<Ocp> build_ocp(const Description& description, const std::vector<Overri
   try {
     return OcpBuild(description, overrides).run();
   } catch (const std::exception& exception) {
-    return tl::unexpected(Error{ErrorCode::invalid_model,
-                                fmt::format("CasADi refused the problem of '{}': {}", description.name, exception.what()),
-                                "simplify the expression it names",
-                                {description.file, 0, 0},
-                                {}});
+    return tl::unexpected(
+        Error{ErrorCode::invalid_model,
+              fmt::format("CasADi refused the problem of '{}': {}", description.name, exception.what()),
+              "simplify the expression it names",
+              {description.file, 0, 0},
+              {}});
   }
 }
 

@@ -1,5 +1,3 @@
-#include "saltus/model/with_slacks_internal.hpp"
-
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -7,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/with_slacks_internal.hpp"
 
 namespace saltus::model {
 namespace {
@@ -20,6 +19,9 @@ using expression::NodePtr;
 using expression::Number;
 using expression::Unary;
 using expression::UnaryOperator;
+
+/// Of a constraint with kinks that mix states and controls: each is a row at every point.
+constexpr std::size_t most_branches = 64;
 
 template <class Value>
 NodePtr made(Value value, const SourceLocation& location) {
@@ -155,6 +157,57 @@ std::string ControlSlacks::not_of_controls(const Node& node) const {
   return found;
 }
 
+bool ControlSlacks::has_mixed_kink(const Node& node) const {
+  if (const auto* name = std::get_if<Name>(&node.value)) {
+    const auto* meaning = definition(name->name);
+    return meaning != nullptr && has_mixed_kink(**meaning);
+  }
+  if (const auto* call = std::get_if<Call>(&node.value); call != nullptr && is_kink(*call)) {
+    if (speaks_of_controls(node) && !not_of_controls(node).empty()) return true;
+  }
+  bool found = false;
+  for_each_operand(node, [&](const Node& operand) { found = found || has_mixed_kink(operand); });
+  return found;
+}
+
+Expected<NodePtr> ControlSlacks::in_running_cost(const NodePtr& expression, const std::string& place) {
+  mixed_ = Mixed::slack_per_stage;
+  return replace(expression, Curvature::convex, place);
+}
+
+Expected<NodePtr> ControlSlacks::in_terminal_cost(const NodePtr& expression, const std::string& place) {
+  mixed_ = Mixed::refused;
+  return replace(expression, Curvature::convex, place);
+}
+
+Expected<std::vector<NodePtr>> ControlSlacks::in_constraint(const NodePtr& expression, Curvature curvature,
+                                                            const std::string& place) {
+  mixed_ = has_mixed_kink(*expression) ? Mixed::branch : Mixed::refused;
+  chosen_.clear();
+  std::vector<NodePtr> all;
+  for (;;) {
+    kinks_seen_ = 0;
+    choices_.clear();
+    auto one = replace(expression, curvature, place);
+    if (!one) return tl::unexpected(one.error());
+    all.push_back(*one);
+    if (all.size() > most_branches) {
+      return tl::unexpected(
+          Error{ErrorCode::not_available,
+                fmt::format("the kinks of controls in {} have more than {} branches", place, most_branches),
+                "state parts of it as constraints of their own",
+                expression->location,
+                {"in [optimize]"}});
+    }
+    // The next combination: the last kink that has another argument takes it, those behind it begin anew.
+    std::size_t last = choices_.size();
+    while (last > 0 && chosen_[last - 1] + 1 == choices_[last - 1]) --last;
+    if (last == 0) return all;
+    chosen_.resize(last);
+    ++chosen_[last - 1];
+  }
+}
+
 Expected<NodePtr> ControlSlacks::replace(const NodePtr& node, Curvature curvature, const std::string& place) {
   if (!has_kink_of_controls(*node)) return node;
   if (const auto* name = std::get_if<Name>(&node->value)) return replace(*definition(name->name), curvature, place);
@@ -201,7 +254,10 @@ Expected<NodePtr> ControlSlacks::slack(const NodePtr& node, Curvature curvature,
   const bool from_above = (call.function == "abs" || call.function == "max") && curvature == Curvature::convex;
   const bool from_below = call.function == "min" && curvature == Curvature::concave;
   if (!from_above && !from_below) return tl::unexpected(not_convex(*node, place));
-  if (const auto other = not_of_controls(*node); !other.empty()) {
+  if (mixed_ == Mixed::branch) return branch(node, curvature, place);
+  const std::string other = not_of_controls(*node);
+  const bool at_stages = !other.empty();
+  if (at_stages && mixed_ == Mixed::refused) {
     return tl::unexpected(
         Error{ErrorCode::not_available,
               fmt::format("'{}' in {} mixes controls with '{}' in one kink", expression::to_text(*node), place, other),
@@ -209,19 +265,38 @@ Expected<NodePtr> ControlSlacks::slack(const NodePtr& node, Curvature curvature,
               node->location,
               {"in [optimize]"}});
   }
-  const std::string name = fmt::format("saltus_slack_{}", static_cast<int>(description_.controls.size()) - user_controls_ + 1);
+  const std::string name =
+      fmt::format("saltus_slack_{}", static_cast<int>(description_.controls.size()) - user_controls_ + 1);
   const NodePtr symbol = made(Name{name}, node->location);
   ControlDescription control;
   control.name = name;
   control.location = node->location;
+  if (at_stages) {
+    // Its values are those of the stages: the one of the interval stays at 0.
+    control.lower = control.upper = made(Number{0.0}, node->location);
+    stage_slacks_.push_back(static_cast<int>(description_.controls.size()));
+  }
   description_.controls.push_back(std::move(control));
   for (const auto& argument : call.arguments) {
     auto inner = replace(argument, call.function == "abs" ? Curvature::linear : curvature, place);
     if (!inner) return inner;
-    rows_.push_back(from_above ? less(*inner, symbol) : less(symbol, *inner));
-    if (call.function == "abs") rows_.push_back(less(negative(*inner), symbol));
+    rows_.push_back({from_above ? less(*inner, symbol) : less(symbol, *inner), at_stages});
+    if (call.function == "abs") rows_.push_back({less(negative(*inner), symbol), at_stages});
   }
   return symbol;
+}
+
+/// The argument of a kink that is chosen now; abs(a) is max(a, -a).
+Expected<NodePtr> ControlSlacks::branch(const NodePtr& node, Curvature curvature, const std::string& place) {
+  const auto& call = std::get<Call>(node->value);
+  const bool is_abs = call.function == "abs";
+  const std::size_t kink = kinks_seen_++;
+  if (kink == chosen_.size()) chosen_.push_back(0);
+  choices_.push_back(is_abs ? 2 : call.arguments.size());
+  const std::size_t argument = chosen_[kink];
+  auto inner = replace(call.arguments[is_abs ? 0 : argument], is_abs ? Curvature::linear : curvature, place);
+  if (!inner || !is_abs || argument == 0) return inner;
+  return negative(*inner);
 }
 
 }  // namespace saltus::model

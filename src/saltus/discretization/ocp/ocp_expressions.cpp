@@ -60,16 +60,13 @@ class OcpExpressionBuilder {
     made_.horizon = SX::sym("T");
     made_.speed = SX::sym("s");
     made_.samples = SX::sym("samples", samples);
-    made_.shared =
-        SX::vertcat({dcs_.u, picked(dcs_.p, free), dcs_.held, made_.horizon, made_.speed, made_.samples});
+    made_.shared = SX::vertcat({dcs_.u, picked(dcs_.p, free), dcs_.held, made_.horizon, made_.speed, made_.samples});
     made_.parameters = SX::vertcat({picked(dcs_.p, fixed), inverse_});
     kernel_.shared = {static_cast<int>(dcs_.u.numel()), static_cast<int>(free.size()),
                       static_cast<int>(dcs_.held.numel()), samples};
   }
 
-  [[nodiscard]] bool needs_time() const {
-    return dcs_.outputs.numel() > 0 && SX::depends_on(dcs_.outputs, dcs_.t);
-  }
+  [[nodiscard]] bool needs_time() const { return dcs_.outputs.numel() > 0 && SX::depends_on(dcs_.outputs, dcs_.t); }
 
   [[nodiscard]] SX without_lifting() const {
     SX f = dcs_.f;
@@ -120,10 +117,24 @@ class OcpExpressionBuilder {
   }
 
   void add_running_terms() {
+    const auto slacks = static_cast<casadi_int>(ocp_.stage_slacks.size());
+    const SX slack = SX::sym("kink", slacks, kernel_.tableau.stages());
+    made_.running_inputs = SX::vertcat({made_.element.element_inputs, SX::vec(slack)});
+    const casadi_int first_control = made_.known.numel() - dcs_.u.numel();
     for (int m = 0; m < kernel_.tableau.stages(); ++m) {
       const ElementPoint& point = made_.element.stages[at(m)];
       const SX weight = made_.element.h * kernel_.tableau.b[m] * clock_rate(point);
-      if (ocp_.running_cost) made_.running.objective += weight * output_at(point, *ocp_.running_cost);
+      SX known = made_.known;
+      for (casadi_int i = 0; i < slacks; ++i) known(first_control + ocp_.stage_slacks[at(i)]) = slack(i, m);
+      const auto value = [&](int row) {
+        return outputs_(std::vector<SX>{point.t, point.x, point.selection, known}).front()(row);
+      };
+      if (ocp_.running_cost) made_.running.objective += weight * value(*ocp_.running_cost);
+      for (std::size_t i = 0; i < ocp_.path.size(); ++i) {
+        if (!ocp_.path[i].at_stages) continue;
+        made_.running.equation(SX::densify(value(ocp_.path[i].output)));
+        kernel_.running_bounds.push_back({static_cast<int>(i), ocp_.path[i].lower, ocp_.path[i].upper, -1});
+      }
       made_.stage_squares.objective += weight * squares(CostPoints::stages, point);
     }
   }
@@ -217,7 +228,7 @@ class OcpExpressionBuilder {
     add_rows(ocp_.path, node_, soft, 0, made_.first_rows, kernel_.first_bounds, at_start);
     made_.slack_inputs = made_.node_inputs;
     for (std::size_t i = 0; i < ocp_.path.size(); ++i) {
-      if (!ocp_.path[i].is_slack) continue;
+      if (!ocp_.path[i].is_slack || ocp_.path[i].at_stages) continue;
       made_.slack_rows.equation(output_at(node_, ocp_.path[i].output));
       kernel_.slack_bounds.push_back({static_cast<int>(i), ocp_.path[i].lower, ocp_.path[i].upper, -1});
     }
@@ -254,7 +265,8 @@ class OcpExpressionBuilder {
     const SX t = SX::sym("t_start");
     made_.start_inputs = SX::vertcat({t, x, made_.shared, lambda, mu, theta});
     const SX indicator = casadi::Function("saltus_start", {dcs_.t, dcs_.x, made_.known},
-                                          {dcs_.indicator})(std::vector<SX>{t, x, made_.known}).front();
+                                          {dcs_.indicator})(std::vector<SX>{t, x, made_.known})
+                             .front();
     int next = 0;
     int simplex = 0;
     for (const auto& part : dcs_.parts) {
@@ -277,9 +289,9 @@ class OcpExpressionBuilder {
     }
   }
 
-  /// d psi / dt along the field of an element at its left end, where a selection ends to slide: 0, so that it leaves its
-  /// surface tangentially. Of regions d(g_i - theta'g) / dt. Selections there by the polynomial of the stages. Where the
-  /// right end is a stage, branches fix a selection there instead.
+  /// d psi / dt along the field of an element at its left end, where a selection ends to slide: 0, so that it leaves
+  /// its surface tangentially. Of regions d(g_i - theta'g) / dt. Selections there by the polynomial of the stages.
+  /// Where the right end is a stage, branches fix a selection there instead.
   void add_departure() {
     if (!kernel_.moves || dcs_.selection.numel() == 0 || !made_.element.layout.has_end_point) return;
     const auto& tableau = kernel_.tableau;

@@ -25,8 +25,10 @@ void take_sizes(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation
   kernel.pairs = selection_pairs(dcs);
   kernel.moves = kernel.options.cross_complementarity != CrossComplementarity::same_stage;
   for (std::size_t i = 0; i < ocp.free_parameters.size(); ++i) {
-    if (ocp.free_parameters[i]) kernel.free_parameters.push_back(static_cast<int>(i));
-    else kernel.fixed_parameters.push_back(ocp.system.parameter_values[i]);
+    if (ocp.free_parameters[i])
+      kernel.free_parameters.push_back(static_cast<int>(i));
+    else
+      kernel.fixed_parameters.push_back(ocp.system.parameter_values[i]);
   }
   for (const auto& part : dcs.parts) {
     if (part.form == reformulation::Form::stewart) kernel.simplex_parts.emplace_back(part.first, part.count);
@@ -40,7 +42,7 @@ void compile_functions(const OcpExpressions& made, OcpKernel::Implementation& ke
     return LocalFunction(std::string("saltus_ocp_") + name, inputs, made.parameters, expressions);
   };
   kernel.element = function("element", element.element_inputs, element.element);
-  kernel.running = function("running", element.element_inputs, made.running);
+  kernel.running = function("running", made.running_inputs, made.running);
   kernel.stage_squares = function("stage_squares", element.element_inputs, made.stage_squares);
   kernel.stage_rows = function("stage_rows", made.stage_inputs, made.stage_rows);
   kernel.node_squares = function("node_squares", made.node_inputs, made.node_squares);
@@ -85,8 +87,8 @@ Expected<std::shared_ptr<OcpKernel>> OcpKernel::compile(const model::Ocp& ocp, c
     std::vector<model::ModelFunction*> functions;
     for (LocalFunction* function :
          {&kernel->element, &kernel->running, &kernel->stage_squares, &kernel->stage_rows, &kernel->node_squares,
-          &kernel->node_rows, &kernel->first_rows, &kernel->slack_rows, &kernel->terminal, &kernel->end_squares, &kernel->terminal_rows,
-          &kernel->start, &kernel->equilibration, &kernel->neighbours, &kernel->departure}) {
+          &kernel->node_rows, &kernel->first_rows, &kernel->slack_rows, &kernel->terminal, &kernel->end_squares,
+          &kernel->terminal_rows, &kernel->start, &kernel->equilibration, &kernel->neighbours, &kernel->departure}) {
       function->join(kernel->native, functions);
     }
     auto started = kernel->native.start(native, std::move(functions));

@@ -42,6 +42,7 @@ struct OcpKernel::Implementation {
       end_squares, terminal_rows, start, equilibration, neighbours, departure;
   std::vector<ConstraintRow> stage_bounds;  ///< of stage_rows: constraint -1 - i is the bound of state i
   std::vector<ConstraintRow> node_bounds, first_bounds, slack_bounds, terminal_bounds;
+  std::vector<ConstraintRow> running_bounds;  ///< of rows of `running`: kinks of states and controls at stages
   int soft_per_point = 0, soft_at_end = 0;
   int correction_pairs = 0;  ///< behind those of the cross complementarity, per element
   bool has_start_pairs = false;
@@ -61,7 +62,8 @@ struct OcpExpressions {
   ElementExpressions element;
   LocalExpressions running, stage_squares, stage_rows, node_squares, node_rows, first_rows, slack_rows, terminal,
       end_squares, terminal_rows, start, departure;
-  casadi::SX stage_inputs;  ///< of the element, and its slacks
+  casadi::SX stage_inputs;    ///< of the element, and its slacks
+  casadi::SX running_inputs;  ///< of the element, and slacks of kinks: Ocp::stage_slacks of each stage
   casadi::SX node_inputs, node_row_inputs, terminal_row_inputs, slack_inputs, start_inputs;
 };
 

@@ -12,8 +12,8 @@ using mpcc::ConstVectorView;
 
 namespace {
 
-SolvedElement read_element(const OcpStructure& made, int number, ConstVectorView w,
-                           double t, double h, const Eigen::VectorXd& left) {
+SolvedElement read_element(const OcpStructure& made, int number, ConstVectorView w, double t, double h,
+                           const Eigen::VectorXd& left) {
   const auto& kernel = made.kernel;
   const auto& layout = kernel.layout;
   const auto& element = made.element[at(number)];
@@ -97,7 +97,10 @@ std::vector<result::ConstraintMultiplier> OcpProblem::constraint_multipliers(Con
     return one.t + one.h;
   };
   for (const auto& placed : made.functions) {
-    if (placed.bounds == nullptr) continue;
+    // Rows of slacks are none of the user's.
+    if (placed.bounds == nullptr || placed.bounds == &made.kernel.slack_bounds ||
+        placed.bounds == &made.kernel.running_bounds)
+      continue;
     const bool terminal = placed.function == &made.kernel.terminal_rows;
     for (const auto& one : placed.copies) {
       for (std::size_t i = 0; i < placed.bounds->size(); ++i) {
@@ -105,8 +108,8 @@ std::vector<result::ConstraintMultiplier> OcpProblem::constraint_multipliers(Con
         const auto& name = constraint < 0 ? own.state_names[at(-1 - constraint)]
                            : terminal     ? own.terminal_names[at(constraint)]
                                           : own.path_names[at(constraint)];
-        if (placed.function == &made.kernel.slack_rows) continue;
-        found.push_back({name, one.element < 0 ? made.from : end_of(one.element), rows[one.first_row + static_cast<int>(i)]});
+        found.push_back(
+            {name, one.element < 0 ? made.from : end_of(one.element), rows[one.first_row + static_cast<int>(i)]});
       }
     }
   }
@@ -146,13 +149,15 @@ std::string OcpProblem::name(int variable) const {
   const auto where = [&](const VariableBlock& block) { return local >= block.first && local < block.end(); };
   const auto text = [&](const VariableBlock& block, const std::string& what) {
     const int offset = local - block.first;
-    return fmt::format("{} at point {} of element {},{}", what, offset / block.size + 1, element.interval, element.number);
+    return fmt::format("{} at point {} of element {},{}", what, offset / block.size + 1, element.interval,
+                       element.number);
   };
   const auto component = [&](const VariableBlock& block) { return (local - block.first) % block.size; };
   if (where(layout.stage)) return text(layout.stage, implementation_->state_names[at(component(layout.stage))]);
   if (where(layout.selection)) return text(layout.selection, fmt::format("selection {}", component(layout.selection)));
   if (where(layout.lambda)) return text(layout.lambda, fmt::format("lambda {}", component(layout.lambda)));
-  if (where(layout.end_state)) return text(layout.end_state, implementation_->state_names[at(component(layout.end_state))]);
+  if (where(layout.end_state))
+    return text(layout.end_state, implementation_->state_names[at(component(layout.end_state))]);
   return fmt::format("variable {} of element {},{}", local, element.interval, element.number);
 }
 

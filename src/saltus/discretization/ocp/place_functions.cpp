@@ -79,12 +79,21 @@ class FunctionPlacer {
 
   void add_element_functions() {
     const int count = static_cast<int>(made_.element.size());
-    for (const auto& [function, what, term] :
-         {std::tuple{&kernel_.element, "element", Term::none}, std::tuple{&kernel_.running, "running_cost", Term::running},
-          std::tuple{&kernel_.stage_squares, "least_squares", Term::least_squares}}) {
+    const auto slacks = at(kernel_.tableau.stages()) * ocp_.stage_slacks.size();
+    for (const auto& [function, what, term, own] :
+         {std::tuple{&kernel_.element, "element", Term::none, std::size_t{0}},
+          std::tuple{&kernel_.running, "running_cost", Term::running, slacks},
+          std::tuple{&kernel_.stage_squares, "least_squares", Term::least_squares, std::size_t{0}}}) {
       if (is_empty(*function)) continue;
-      Placed& placed = add(*function, what, term);
-      for (int e = 0; e < count; ++e) copy(placed, made_.element_places(e), made_.element[at(e)].interval, e);
+      Placed& placed = add(*function, what, term, own > 0 ? &kernel_.running_bounds : nullptr);
+      for (int e = 0; e < count; ++e) {
+        auto places = made_.element_places(e);
+        for (std::size_t i = 0; i < own; ++i) {
+          constexpr double unbounded = std::numeric_limits<double>::infinity();
+          places.push_back(variables_.variable(-unbounded, unbounded, fmt::format("kink of element {}", e)));
+        }
+        copy(placed, std::move(places), made_.element[at(e)].interval, e);
+      }
     }
   }
 
@@ -97,7 +106,8 @@ class FunctionPlacer {
       for (int m = 0; m < kernel_.tableau.stages() && with_soft && kernel_.soft_per_point > 0; ++m) {
         // The last stage has its slacks at the end of the element.
         const bool at_end = m == kernel_.tableau.stages() - 1 && kernel_.tableau.ends_at_last_stage();
-        const auto soft = at_end ? std::vector<int>(at(kernel_.soft_per_point), variables_.zero()) : variables_.slacks(ocp_.path, largest_path_);
+        const auto soft = at_end ? std::vector<int>(at(kernel_.soft_per_point), variables_.zero())
+                                 : variables_.slacks(ocp_.path, largest_path_);
         places.insert(places.end(), soft.begin(), soft.end());
       }
       copy(placed, std::move(places), made_.element[at(e)].interval, e);
@@ -160,7 +170,8 @@ class FunctionPlacer {
   void add_terminal_functions() {
     const int last = static_cast<int>(made_.element.size()) - 1;
     const int k = made_.intervals - 1;
-    if (!is_empty(kernel_.terminal)) copy(add(kernel_.terminal, "terminal_cost", Term::terminal), node_places(last), k, last);
+    if (!is_empty(kernel_.terminal))
+      copy(add(kernel_.terminal, "terminal_cost", Term::terminal), node_places(last), k, last);
     if (!is_empty(kernel_.end_squares)) {
       copy(add(kernel_.end_squares, "least_squares", Term::least_squares), node_places(last), k, last);
     }
@@ -200,8 +211,9 @@ class FunctionPlacer {
       if (made_.element[at(e)].number == 0) continue;
       auto places = boundary_places(e);
       for (int i = 0; i < own; ++i) {
-        made_.boundary_own.push_back(variables_.variable(kernel_.boundary_bounds.lower[i], kernel_.boundary_bounds.upper[i],
-                                               fmt::format("step equilibration[{},{}]", e, i)));
+        made_.boundary_own.push_back(variables_.variable(kernel_.boundary_bounds.lower[i],
+                                                         kernel_.boundary_bounds.upper[i],
+                                                         fmt::format("step equilibration[{},{}]", e, i)));
         places.push_back(made_.boundary_own.back());
       }
       copy(placed, std::move(places), made_.element[at(e)].interval, e);
@@ -221,8 +233,10 @@ class FunctionPlacer {
                     ocp_.from,
                     fmt::format("clock at the end of interval {}", k)};
       const double share = (k + 1.0) / made_.intervals;
-      if (made_.horizon >= 0) row.entries.emplace_back(made_.horizon, -share);
-      else row.value += share * ocp_.horizon.value;
+      if (made_.horizon >= 0)
+        row.entries.emplace_back(made_.horizon, -share);
+      else
+        row.value += share * ocp_.horizon.value;
       made_.linear.push_back(std::move(row));
     }
   }

@@ -165,7 +165,7 @@ class Guess {
       ModelPoint point{time((k + 0.5) / intervals_), start_.initial_state, start_.controls[at(k)], start_.parameters};
       for (std::size_t pass = first; pass < n; ++pass) {  // slacks may hold others
         for (const auto& row : ocp_.path) {
-          if (row.is_slack) raise_slack(row, point);
+          if (row.is_slack && !row.at_stages) raise_slack(row, point);
         }
       }
       start_.controls[at(k)] = std::move(point.u);

@@ -1,0 +1,51 @@
+"""Every optimal control problem of the catalogue, as it is shipped, from outside: argv is the tool and the source tree.
+
+What is `completed` has small residuals, is B-stationary, and was confirmed by the simulation of its controls."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOL = sys.argv[1]
+MODELS = pathlib.Path(sys.argv[2]) / "models"
+# LIMIT: from their own guesses these do not end within the time; they say so.
+UNSOLVED = {"hysteresis-car", "block-train"}
+SECONDS, SECONDS_OF_UNSOLVED = 240, 10
+
+
+def problems():
+    return sorted(path.stem for path in MODELS.glob("*.toml") if "\n[optimize]" in path.read_text(encoding="utf-8"))
+
+
+class Catalogue(unittest.TestCase):
+    def check(self, name):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "r.json"
+            limit = SECONDS_OF_UNSOLVED if name in UNSOLVED else SECONDS
+            done = subprocess.run([TOOL, "optimize", name, "--quiet", "--time-limit", str(limit), "--out", str(file)],
+                                  capture_output=True, text=True, timeout=600)
+            result = json.loads(file.read_text(encoding="utf-8"))
+        status = result["status"]["termination"]
+        self.assertEqual(done.returncode, 0 if status == "completed" else 3, done.stderr)
+        if name not in UNSOLVED:
+            self.assertEqual(status, "completed", result["status"]["message"])
+        if status != "completed":
+            return
+        certificate = result["certificate"]
+        for residual in ("primal_infeasibility", "complementarity_residual", "stationarity"):
+            self.assertLessEqual(certificate[residual], 1e-8)
+        self.assertIs(certificate["b_stationary"], True)
+        self.assertLessEqual(result["verification"]["interval_defect"], result["verification"]["tolerance"])
+
+    def test_problems(self):
+        names = problems()
+        self.assertGreaterEqual(len(names), 12)
+        for name in names:
+            with self.subTest(name):
+                self.check(name)
+
+
+unittest.main(argv=[sys.argv[0], "-v"])
