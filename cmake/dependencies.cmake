@@ -13,7 +13,7 @@
 # CLI11           >= 2.1   BSD-3     libcli11-dev; command line
 # GoogleTest      >= 1.12  BSD-3     libgtest-dev; tests, developer mode only
 # zlib            >= 1.2   Zlib      zlib1g-dev; numbers of reports, deflated
-# plotly.js       4.1.1    MIT       third_party/plotly, made by scripts/make_plotly.sh; pictures of the report, read at run time
+# plotly.js       4.1      MIT       scripts/make_plotly.sh by npm, or the wheel of PyPI's plotly in .venv; pictures of the report, read at run time
 # nanobind        >= 2.4   BSD-3     wheel of PyPI in .venv; the Python package only
 
 # The wheels of the tree's own virtual environment, whatever Python made it.

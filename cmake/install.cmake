@@ -31,9 +31,14 @@ endif()
 
 install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus/models
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")
-install(FILES third_party/plotly/plotly.min.js DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus)
+find_file(SALTUS_PLOTLY_JS NAMES plotly.min.js plotly/package_data/plotly.min.js
+  PATHS ${PROJECT_SOURCE_DIR}/.venv/plotly ${SALTUS_SITE_PACKAGES} NO_DEFAULT_PATH DOC "plotly.min.js of the reports")
+if(SALTUS_PLOTLY_JS)
+  install(FILES ${SALTUS_PLOTLY_JS} DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus)
+endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus)
-install(FILES third_party/plotly/NOTICES.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus RENAME plotly-notices.txt)
+install(FILES ${PROJECT_SOURCE_DIR}/.venv/plotly/NOTICES.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus
+  RENAME plotly-notices.txt OPTIONAL)
 
 # All that an installation contains, without the tests.
 add_custom_target(saltus_libraries)

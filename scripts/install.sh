@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing to build and test Saltus, and only that: Debian packages with apt-get (as root), CasADi
-# into ./.venv. Safe to repeat; done in a fraction of a second when there is nothing to do.
+# Installs what is missing to build and test Saltus, and only that: Debian packages with apt-get (as root), CasADi and
+# plotly into ./.venv. Safe to repeat; done in a fraction of a second when there is nothing to do.
 #   scripts/install.sh              what `make demo` and `make test` need
 #   scripts/install.sh developer    also clang-format and clang-tidy
 #   scripts/install.sh python       also what the Python package needs, as far as it can be had
@@ -77,6 +77,7 @@ wheel_is_complete() {
     [[ -f "$site/$name-$version.dist-info/RECORD" ]] || continue
     case "$name" in
       casadi) [[ -f "$site/casadi/cmake/casadi-config.cmake" ]] && return 0 ;;
+      plotly) [[ -f "$site/plotly/package_data/plotly.min.js" ]] && return 0 ;;
       *) return 0 ;;
     esac
   done
@@ -109,4 +110,10 @@ if [[ "${1:-}" == python ]]; then
     apt-get install -y -qq --no-install-recommends python3-dev >&2 || say "going on without python3-dev"
   fi
   install_wheels scripts/requirements-python.txt || say "going on without the Python package"
+fi
+
+# A plotly with what reports need, a third of the wheel's, where npm can make it.
+if [[ ! -f .venv/plotly/plotly.min.js ]] && command -v npm >/dev/null && command -v node >/dev/null; then
+  say "Making a small plotly …"
+  timeout 180 scripts/make_plotly.sh >/dev/null 2>&1 || say "npm's registry does not answer: reports carry the whole plotly of PyPI"
 fi

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes third_party/plotly: plotly.js with the kinds of drawing that reports use (scatter, scatter3d, mesh3d, heatmap),
-# a third of the whole library. A developer's tool; needs npm and its registry. The files are committed, so that
-# building and using Saltus needs neither.
+# Makes .venv/plotly: plotly.js with the kinds of drawing that reports use (scatter, scatter3d, mesh3d, heatmap), a third
+# of the whole library, and the licences of all that is in it. Needs npm and its registry; where they are not there,
+# reports carry the whole library of PyPI's wheel.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -9,7 +9,7 @@ plotly=4.1.1
 esbuild=0.28.2
 day=2026-11-20  # packages that these need are taken as they were on this day
 
-target=$PWD/third_party/plotly
+target=$PWD/.venv/plotly
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -24,10 +24,9 @@ JS
 banner="/* plotly.js v$plotly, scatter, scatter3d, mesh3d and heatmap only. Copyright Plotly, Inc. MIT licence; NOTICES.txt has all of them. */"
 node_modules/.bin/esbuild entry.js --bundle --minify --format=iife --global-name=Plotly --target=es2018 --define:global=window \
   --legal-comments=none --banner:js="$banner" --outfile=plotly.min.js --metafile=meta.json --log-level=warning
-cp plotly.min.js "$target/plotly.min.js"
 
 # The licences of all packages of which something is in the bundle.
-node - > "$target/NOTICES.txt" <<'JS'
+node - > NOTICES.txt <<'JS'
 const fs = require("fs");
 const [output] = Object.entries(JSON.parse(fs.readFileSync("meta.json")).outputs).find(([name]) => name.endsWith(".js")).slice(1);
 const names = Object.entries(output.inputs).filter(([file, part]) => file.startsWith("node_modules/") && part.bytesInOutput > 0)
@@ -40,4 +39,5 @@ for (const name of [...new Set(names)].sort()) {
   if (file !== undefined) console.log(`${fs.readFileSync(`${folder}/${file}`, "utf8").trim()}\n`);
 }
 JS
-ls -l "$target"
+mkdir -p "$target"
+cp NOTICES.txt plotly.min.js "$target"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 ALWAYS_ALLOWED = {"base", "linalg"}
 SOURCE_SUFFIXES = {".cpp", ".hpp", ".h", ".py", ".sh", ".cmake", ".js", ".css"}
-SKIPPED_FOLDERS = {".git", ".venv", "build", "demo", "__pycache__", "third_party"}
+SKIPPED_FOLDERS = {".git", ".venv", "build", "demo", "__pycache__"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 FORBIDDEN_WORD = re.compile(r"\b(" + "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "HA" + "CK")) + r")\b")
 CITATION = re.compile(r"\[([a-z]+(?:[a-z-]*[a-z])?(?:19|20)\d\d[a-z]?)\]")

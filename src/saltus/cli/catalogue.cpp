@@ -35,6 +35,16 @@ std::vector<fs::path> model_folders() {
   return folders;
 }
 
+std::vector<fs::path> plotly_places() {
+  const fs::path environment = fs::path(SALTUS_SOURCE_DIR) / ".venv";
+  std::vector<fs::path> places{shared_folder() / "plotly.min.js", environment / "plotly" / "plotly.min.js"};
+  std::error_code none;
+  for (fs::directory_iterator python(environment / "lib", none), end; !none && python != end; python.increment(none)) {
+    places.push_back(python->path() / "site-packages" / "plotly" / "package_data" / "plotly.min.js");
+  }
+  return places;
+}
+
 }  // namespace
 
 void set_shared_folder(const fs::path& folder) { chosen_folder() = folder; }
@@ -77,14 +87,13 @@ Expected<std::string> plotly_source() {
     if (!source) return tl::unexpected(with_context(source.error(), "which $SALTUS_PLOTLY names"));
     return source;
   }
-  for (const auto& place :
-       {shared_folder() / "plotly.min.js", fs::path(SALTUS_SOURCE_DIR) / "third_party" / "plotly" / "plotly.min.js"}) {
+  for (const auto& place : plotly_places()) {
     std::error_code ignored;
     if (fs::exists(place, ignored)) return io::read_file(place);
   }
   return tl::unexpected(Error{ErrorCode::io_failure,
                               "a report needs plotly.min.js, and it is nowhere to be found",
-                              "set SALTUS_PLOTLY to third_party/plotly/plotly.min.js of Saltus's sources",
+                              "install PyPI's plotly and set SALTUS_PLOTLY to its package_data/plotly.min.js",
                               {},
                               {}});
 }

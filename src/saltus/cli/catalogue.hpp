@@ -26,7 +26,8 @@ void set_shared_folder(const std::filesystem::path& folder);
 /// @return the file, or unknown_name with the nearest names.
 [[nodiscard]] Expected<std::filesystem::path> find_model(const std::string& model);
 
-/// The text of plotly.min.js, from $SALTUS_PLOTLY, then <executable>/../share/saltus, then third_party of the sources.
+/// The text of plotly.min.js, from $SALTUS_PLOTLY, then <executable>/../share/saltus, then the virtual environment of
+/// the source tree: the small one, or the one of the wheel.
 [[nodiscard]] Expected<std::string> plotly_source();
 
 }  // namespace saltus::cli
