@@ -7,7 +7,7 @@ import vm from "node:vm";
 const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
-      "format.js", "series.js", "panels.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
+      "format.js", "series.js", "panels.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
       "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
@@ -430,4 +430,134 @@ test("options of other methods are told from those of the one that ran", () => {
     assert.ok(!saltus.isOfOtherMethod(name, "event"), name);
   for (const name of ["simulate.event.integrator", "simulate.timestepping.steps", "simulate.smoothed.epsilon"])
     assert.ok(saltus.isOfOtherMethod(name, "fesd"), name);
+});
+
+/** A result with states that rest, move and jump, an output and a switching function. */
+const mixed = () => {
+  const t = [0, 1, 2, 2, 3];
+  const x = [[1, 1, 1, 1, 1], [0, 0, 0, 1, 1], [0, 1, 2, 2, 3]];
+  return {
+    states: ["rest", "count", "move"],
+    output_names: ["power"],
+    controls: [],
+    switching_functions: ["s"],
+    regions: [],
+    surfaces: [],
+    branches: [],
+    events: [{t: 2, kind: "jump", x: [1, 0, 2], x_after: [1, 1, 2], unique: true}],
+    trajectory: {
+      t,
+      x,
+      u: [],
+      outputs: [[5, 6, 7, 7, 8]],
+      alpha: [[0, 0, 0, 1, 1]],
+      theta: [],
+      modes: [{edges: [0, 2, 3], values: [-1, 1]}],
+      regions: [],
+    },
+  };
+};
+
+test("at first what moves is drawn, discrete states last, and what rests waits", () => {
+  const result = mixed();
+  const names = saltus.stackPanels(result, 600).panels.filter(({kind}) => kind === "curves")
+                    .map(({curves}) => curves.map(({name}) => name));
+  assert.deepEqual(names, [["move"], ["power"], ["s"], ["count"]]);
+  assert.deepEqual(saltus.firstChoice(result, 2), [0, 2]);
+  assert.deepEqual(saltus.axes(result).map(saltus.columnLabel), ["rest", "count", "move", "power", "α(s)", "t"]);
+});
+
+test("of very many states those that move most are drawn, the last one too", () => {
+  const t = [0, 1, 2];
+  const x = Array.from({length: 300}, (_, i) => (i < 200 ? [i, i, i] : [0, i, 0]));
+  const states = x.map((_, i) => `x${i}`);
+  const result = {states, output_names: [], controls: [], switching_functions: [], regions: [], trajectory: {t, x}};
+  const drawn = saltus.firstPanels({...result, trajectory: {...result.trajectory, modes: [], regions: []}});
+  const curves = drawn.panels.flatMap((panel) => panel.curves);
+  assert.equal(curves.length, saltus.firstCurves);
+  assert.ok(curves.includes(299));
+  assert.ok(curves.every((i) => i >= 200));
+});
+
+test("panels are moved, joined, split, hidden and shown", () => {
+  const choice = {panels: [0, 1, 2].map((i) => ({curves: [i], log: false})), bands: [0]};
+  const curves = ({panels}) => panels.map((panel) => panel.curves);
+  assert.deepEqual(curves(saltus.movePanel(choice, 2, 0)), [[2], [0], [1]]);
+  assert.deepEqual(saltus.movePanel(choice, 0, 3), choice);
+  const joined = saltus.joinPanels(choice, 2, 0);
+  assert.deepEqual(curves(joined), [[0, 2], [1]]);
+  assert.deepEqual(curves(saltus.splitPanel(joined, 0)), [[0], [2], [1]]);
+  assert.deepEqual(curves(saltus.showColumn(joined, 1, false)), [[0, 2]]);
+  assert.deepEqual(curves(saltus.showColumn(joined, 7, true)), [[0, 2], [1], [7]]);
+  assert.deepEqual(saltus.showBand(choice, 0, false).bands, []);
+});
+
+test("a choice in the address is read again, and one that does not fit is not", () => {
+  const result = mixed();
+  const choice = {panels: [{curves: [0, 3], log: false}, {curves: [2], log: true}], bands: [0]};
+  const text = saltus.panelsText(choice);
+  assert.equal(text, "0+3,l2;0");
+  assert.deepEqual(saltus.panelsFromText(result, text), choice);
+  assert.deepEqual(saltus.panelsFromText(result, ";"), {panels: [], bands: []});
+  for (const wrong of [null, "", "99;", "0;7", "x;", "0+;"]) {
+    assert.equal(saltus.panelsFromText(result, wrong), null, String(wrong));
+  }
+  assert.deepEqual(saltus.axesFromText(result, "5,3"), [5, 3]);
+  for (const wrong of [null, "1", "1,6", "1,a"]) assert.equal(saltus.axesFromText(result, wrong), null);
+});
+
+test("an event stands on the axes of time, outputs and states", () => {
+  const result = mixed();
+  assert.deepEqual([5, 3, 1].map((axis) => saltus.eventCoordinate(result, 0, axis)), [2, 7, 1]);
+});
+
+test("over time a surface that moves is a line of its own", () => {
+  const surface = {...affine([0], [1], -1), depends_on_time: true};
+  surface.affine.rate = 2;
+  const parts = saltus.surfaceInPlane(surface, [5, 0], {t: 3, x: [0], timeAxis: 5});
+  // x + 2 t - 1 = 0, over (t, x).
+  assert.deepEqual(parts, {kind: "exact", lines: [[2, 1, -1]], curves: []});
+});
+
+/** A value that jumps between -1 and 2 a thousand times from t = 0 to 1, a third of the time above, then rests. */
+const chattering = () => {
+  const [t, values] = [[], []];
+  for (let i = 0; i < 1000; i += 1) {
+    t.push(i / 1000, (i + 1 / 3) / 1000, (i + 1 / 3) / 1000, (i + 1) / 1000);
+    values.push(2, 2, -1, -1);
+  }
+  t.push(10);
+  values.push(-1);
+  return {t, values};
+};
+
+test("where a curve chatters its envelope and its mean are drawn instead of lines", () => {
+  const {t, values} = chattering();
+  const {x, y, jumps, envelope} = saltus.points(t, values, [0, 10], 100);
+  assert.ok(envelope.x.length >= 10 && envelope.x.length <= 11, String(envelope.x.length));
+  assert.ok(envelope.low.every((value) => value === -1) && envelope.high.every((value) => value === 2));
+  for (const mean of envelope.mean.slice(0, 10)) assert.ok(Math.abs(mean) < 0.02, String(mean));
+  assert.ok(jumps.x.length < 30);
+  assert.deepEqual([x.at(-1), y.at(-1)], [10, -1]);
+  // Near enough every jump is a line of its own again.
+  const near = saltus.points(t, values, [0, 0.01], 400);
+  assert.equal(near.envelope.x.length, 0);
+  assert.ok(near.jumps.x.length >= 3 * 19);
+});
+
+test("intervals of modes below a pixel keep their parts of the time", () => {
+  const edges = [0];
+  const values = [];
+  for (let i = 0; i < 1000; i += 1) {
+    edges.push((i + 0.25) / 1000, (i + 1) / 1000);
+    values.push(1, -1);
+  }
+  edges.push(10);
+  values.push(0);
+  const cells = saltus.modeCells({edges, values}, [0, 10], 100);
+  assert.ok(cells.length >= 10 && cells.length <= 13, String(cells.length));
+  const {share, count} = cells[3];
+  assert.ok(Math.abs(share.plus - 0.25) < 0.02 && Math.abs(share.minus - 0.75) < 0.02);
+  assert.equal(count > 100, true);
+  assert.deepEqual(cells.at(-1), {from: 1, to: 10, share: {minus: 0, sliding: 1, plus: 0}, count: 1});
 });

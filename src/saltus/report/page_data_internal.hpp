@@ -14,8 +14,8 @@ namespace saltus::report {
 /// Numbers of the trajectory that a page holds at most (about 18 characters each); a longer one is thinned. As many for
 /// the values of all events.
 inline constexpr std::size_t numbers_in_page = 1500000;
-/// States, controls, switching functions and outputs that a page shows at most of each; nobody looks at more panels.
-inline constexpr std::size_t columns_in_page = 40;
+/// States, controls, switching functions and outputs that a page holds at most of each: more than anybody chooses from.
+inline constexpr std::size_t columns_in_page = 2000;
 /// Values of every sort that an event keeps however many events there are.
 inline constexpr std::size_t least_values_of_event = 4;
 

@@ -2,9 +2,7 @@
 "use strict";
 
 /** The column of a branch that belongs to a curve of the drawing. */
-saltus.branchColumn = (branch, curve) =>
-    branch.trajectory[{state: "x", output: "outputs", input: "u", alpha: "alpha", theta: "theta"}
-                          [curve.sort]][curve.index];
+saltus.branchColumn = (branch, curve) => saltus.columnOf(branch.trajectory, curve);
 
 /** One path for the given columns of all branches, cut between them; `columns(branch)` gives one list for each axis. */
 saltus.branchPath = (branches, columns, window, buckets) => {
@@ -43,7 +41,7 @@ saltus.branchTraces = (result, chosen, columns, view, trace) => {
 saltus.branchOrbits = (result, choice, view, palette, type) =>
     saltus
         .branchTraces(
-            result, view.branch, (branch) => choice.map((state) => branch.trajectory.x[state]), view,
+            result, view.branch, (branch) => choice.map((i) => saltus.columnOf(branch.trajectory, saltus.axes(result)[i])), view,
             ([x, y, z]) => ({
               type,
               mode: "lines",

@@ -164,8 +164,9 @@ saltus.notes = (result) => {
   ].join(" ");
   const drawn = [
     "Curves are drawn with the least and greatest value per pixel and, up to 2,000 events in view, both rows",
-    "of every event; zoom in for every row. With more than 400 events in view one line per stretch is drawn, and",
-    "intervals of modes below a pixel are merged, sliding first. Jumps are dotted lines."
+    "of every event; zoom in for every row. With more than 400 events in view one line per stretch is drawn. Where modes",
+    "change more than once per pixel their lanes are as full as their part of the time, the middle is hatched, and curves",
+    "that jump are drawn by their envelope and mean. Jumps are dotted lines."
   ].join(" ");
   const names = {
     states: result.states,

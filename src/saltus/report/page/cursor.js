@@ -18,7 +18,7 @@ saltus.nearestShownEvent = (result, shown, t) => {
 };
 
 /** Names and values at a row; at the two rows of an event both, if they differ. */
-saltus.readoutValues = (result, row) => {
+saltus.readoutValues = (result, row, stack, pixel) => {
   const {trajectory} = result;
   const [first, last] = saltus.rowsAtOneTime(trajectory.t, row);
   const values = [];
@@ -26,16 +26,21 @@ saltus.readoutValues = (result, row) => {
     const [before, after] = [saltus.brief(column[first], 8), saltus.brief(column[last], 8)];
     return before === after ? after : `${before} → ${after}`;
   };
-  const add = (names, columns) => names.forEach((name, i) => values.push([name, change(columns[i])]));
-  add(result.states, trajectory.x);
-  add(result.output_names, trajectory.outputs);
-  add(result.controls, trajectory.u);
+  // What is drawn; a selection stands with its mode.
+  for (const curve of stack.panels.flatMap((panel) => panel.curves ?? [])) {
+    if (!saltus.isFraction(curve.sort)) values.push([curve.name, change(curve.values)]);
+  }
+  const bands = new Set(stack.panels.flatMap((panel) => panel.bands ?? []));
   result.switching_functions.forEach((name, i) => {
+    if (!bands.has(i)) return 0;
     const mode = saltus.valueAt(trajectory.modes[i], trajectory.t[row]);
+    const changes = saltus.changesNear(trajectory.modes[i], trajectory.t[row], pixel);
+    if (changes > 2) return values.push([name, `chattering, ${changes} per pixel`]);
     const alpha = mode === 0 ? `, α = ${saltus.brief(trajectory.alpha[i][last], 6)}` : "";
-    values.push([name, `${saltus.modeWord(mode)}${alpha}`]);
+    return values.push([name, `${saltus.modeWord(mode)}${alpha}`]);
   });
   result.regions.forEach((name, i) => {
+    if (!bands.has(result.switching_functions.length + i)) return;
     const active = saltus.valueAt(trajectory.regions[i], trajectory.t[row]);
     const word = active === null ? "not active" :
         active === 1             ? "active" :
@@ -93,7 +98,9 @@ saltus.cursor = (result, frame, holder, timeline, select) => {
   };
 
   const drawReadout = (x, found, clientY) => {
-    const values = saltus.readoutValues(result, found.row);
+    const [from, to] = timeline.window();
+    const pixel = (to - from) / holder._fullLayout._size.w;
+    const values = saltus.readoutValues(result, found.row, timeline.panels(), pixel);
     const cells = values.slice(0, saltus.readoutRows)
                       .flatMap(
                           ([name, value]) =>

@@ -12,48 +12,43 @@ saltus.fullWindow = (result) => {
 saltus.axisName = (panel) => (panel === 0 ? "y" : `y${panel + 1}`);
 saltus.axisKey = (panel) => (panel === 0 ? "yaxis" : `yaxis${panel + 1}`);
 
-/** Modes of one switching function: -1 the lower part of its row, +1 the upper part, sliding all of it. */
-saltus.modeTrace = (intervals, row, axis, palette) => {
-  const cells = {"-1": [-1, null, null], 0: [0, 0, 0], 1: [null, null, 1]};
-  const z = [0, 1, 2].map((part) => intervals.values.map((mode) => (mode === null ? null : cells[mode][part])));
-  return {
-    type: "heatmap",
+/**
+ * Modes of one switching function as rectangles: psi < 0 the lower lane of its row, psi > 0 the upper one, sliding all of
+ * it. Where it chatters each lane is as full as its part of the time, and the middle is hatched.
+ */
+saltus.modeTraces = (cells, row, axis, palette) => {
+  const paths = {"-1": [[], []], 0: [[], []], 1: [[], []], chattering: [[], []]};
+  const add = ([x, y], {from, to}, low, high) => {
+    x.push(from, to, to, from, from, null);
+    y.push(row + low, row + low, row + high, row + high, row + low, null);
+  };
+  for (const cell of cells) {
+    const {minus, sliding, plus} = cell.share;
+    if (cell.count > 1) add(paths.chattering, cell, -0.1, 0.1);
+    if (minus > 0) add(paths[-1], cell, -0.1 - 0.32 * minus, -0.1);
+    if (plus > 0) add(paths[1], cell, 0.1, 0.1 + 0.32 * plus);
+    // Sliding must be seen, however short it is.
+    if (sliding > 0) add(paths[0], cell, sliding === 1 ? -0.42 : -0.1, sliding === 1 ? 0.42 : 0.1);
+  }
+  const looks = {
+    chattering: {fillcolor: palette.panel, fillpattern: {shape: "/", fgcolor: palette.text, size: 4, solidity: 0.25}},
+    "-1": {fillcolor: palette.minus},
+    1: {fillcolor: palette.plus},
+    0: {fillcolor: palette.sliding},
+  };
+  return Object.entries(looks).filter(([kind]) => paths[kind][0].length > 0).map(([kind, look]) => ({
+    type: "scatter",
+    mode: "lines",
     xaxis: "x",
     yaxis: axis,
-    x: intervals.edges,
-    z,
+    x: paths[kind][0],
+    y: paths[kind][1],
+    fill: "toself",
     hoverinfo: "none",
-    hoverongaps: false,
-    y: [row - 0.42, row - 0.1, row + 0.1, row + 0.42],
-    zmin: -1.5,
-    zmax: 1.5,
-    showscale: false,
-    colorscale: [
-      [0, palette.minus], [1 / 3, palette.minus], [1 / 3, palette.sliding], [2 / 3, palette.sliding],
-      [2 / 3, palette.plus], [1, palette.plus]
-    ],
-  };
-};
-
-/** Many short intervals: those of one pixel become one, sliding first because it must be seen. */
-saltus.thinIntervals = ({edges, values}, [from, to], pixels) => {
-  if (values.length <= 4 * pixels) return {edges, values};
-  const thin = {edges: [], values: []};
-  const step = (to - from) / pixels;
-  let i = Math.max(0, saltus.lowerBound(edges, from) - 1);
-  while (i < values.length && edges[i] <= to) {
-    let k = i + 1;
-    let mode = values[i];
-    while (k < values.length && edges[k + 1] < edges[i] + step) {
-      if (values[k] === 0) mode = 0;
-      k += 1;
-    }
-    thin.edges.push(edges[i]);
-    thin.values.push(mode);
-    i = k;
-  }
-  thin.edges.push(edges[Math.min(i, edges.length - 1)]);
-  return thin;
+    meta: `mode ${kind}`,
+    line: {width: 0, simplify: false},
+    ...look,
+  }));
 };
 
 saltus.curveColour = (panel, i, palette) => {
@@ -91,19 +86,47 @@ saltus.lineOverTime = (axis, x, y) => ({
   y,
 });
 
+/** A colour of the palette, see-through. */
+saltus.faint = (colour, part) => `${colour}${Math.round(255 * part).toString(16).padStart(2, "0")}`;
+
+/** Where a curve jumps to and fro within pixels: between which values, and its mean there. */
+saltus.envelopeTraces = ({x, low, high, mean}, axis, color) => {
+  if (x.length === 0) return [];
+  const box = {x: [], y: []};
+  const line = {x: [], y: []};
+  x.forEach(([from, to], i) => {
+    box.x.push(from, to, to, from, from, null);
+    box.y.push(low[i], low[i], high[i], high[i], low[i], null);
+    line.x.push(from, to, ...(x[i + 1]?.[0] === to ? [] : [null]));
+    line.y.push(mean[i], mean[i], ...(x[i + 1]?.[0] === to ? [] : [null]));
+  });
+  return [
+    {
+      ...saltus.lineOverTime(axis, box.x, box.y),
+      fill: "toself",
+      fillcolor: saltus.faint(color, 0.3),
+      meta: "envelope",
+      line: {width: 0, simplify: false},
+    },
+    {...saltus.lineOverTime(axis, line.x, line.y), meta: "mean", line: {simplify: false, color, width: 1.6}}
+  ];
+};
+
 saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve, i) => {
   const color = saltus.curveColour(panel, i, view.palette);
-  const {x, y, jumps} = saltus.controlSteps(result, curve) ??
-      saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
+  const steps = saltus.controlSteps(result, curve);
+  const {x, y, jumps, envelope} =
+      steps ?? saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
   const line = {
     ...saltus.lineOverTime(axis, x, y),
     // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
-    line: {simplify: false, color, width: 1.6, shape: curve.stepwise || saltus.controlSteps(result, curve) !== null ? "hv" : "linear"},
+    line: {simplify: false, color, width: 1.6, shape: curve.stepwise || steps !== null ? "hv" : "linear"},
   };
   const jumpTraces = jumps.x.length === 0 ? [] : [saltus.jumpTrace(curve, jumps, axis, color)];
   return [
-    ...saltus.boundLines(result, curve, axis, view), ...saltus.branchCurves(result, curve, axis, color, view), line,
-    ...jumpTraces, ...saltus.simulatedCurve(result, curve, axis, view)
+    ...saltus.boundLines(result, curve, axis, view), ...saltus.branchCurves(result, curve, axis, color, view),
+    ...(envelope === undefined ? [] : saltus.envelopeTraces(envelope, axis, color)), line, ...jumpTraces,
+    ...saltus.simulatedCurve(result, curve, axis, view)
   ];
 });
 
@@ -111,8 +134,11 @@ saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) =
   const axis = saltus.axisName(i);
   if (panel.kind === "events") return [saltus.markTrace(result, view.marks, view.selected, view.palette)];
   if (panel.kind === "modes") {
-    const rows = saltus.bandIntervals(result).map((mode) => saltus.thinIntervals(mode, view.window, view.pixels));
-    return rows.map((mode, row) => saltus.modeTrace(mode, rows.length - 1 - row, axis, view.palette));
+    const intervals = saltus.bandIntervals(result);
+    return panel.bands.flatMap((band, row) => {
+      const cells = saltus.modeCells(intervals[band], view.window, view.pixels);
+      return saltus.modeTraces(cells, panel.bands.length - 1 - row, axis, view.palette);
+    });
   }
   return saltus.curveTraces(result, panel, axis, view);
 });
@@ -120,12 +146,12 @@ saltus.figureTraces = (result, stack, view) => stack.panels.flatMap((panel, i) =
 saltus.panelDomain =
     (panel, stack) => [Math.max(0, 1 - (panel.top + panel.height) / stack.height), 1 - panel.top / stack.height];
 
-saltus.panelAxis = (panel, stack, palette, result) => {
+saltus.panelAxis = (panel, stack, palette) => {
   const domain = saltus.panelDomain(panel, stack);
   const bare = {domain, fixedrange: true, showgrid: false, zeroline: false, showticklabels: false, ticks: ""};
   if (panel.kind === "events") return {...bare, range: [0, 1]};
-  if (panel.kind === "modes") return {...bare, range: [-0.5, saltus.bands(result).length - 0.5]};
-  const alpha = saltus.isFraction(panel.sort) ? {range: [-0.06, 1.06], tickvals: [0, 0.5, 1], fixedrange: true} : {};
+  if (panel.kind === "modes") return {...bare, range: [-0.5, panel.bands.length - 0.5]};
+  const alpha = panel.fractions ? {range: [-0.06, 1.06], tickvals: [0, 0.5, 1], fixedrange: true} : {};
   return {
     domain,
     gridcolor: palette.grid,
@@ -136,6 +162,7 @@ saltus.panelAxis = (panel, stack, palette, result) => {
     exponentformat: "power",
     minexponent: 5,
     tickfont: {size: 11},
+    ...(panel.log ? {type: "log"} : {}),
     ...alpha,
   };
 };
@@ -159,15 +186,14 @@ saltus.panelLabels = (panel, stack, palette, result) => {
   if (panel.kind === "events") return [label("events", panel.height / 2, palette.quiet)];
   if (panel.kind === "modes") {
     const bands = saltus.bands(result);
-    const row = panel.height / bands.length;
-    return bands.map((name, i) => label(name, (i + 0.5) * row, palette.text));
+    const row = panel.height / panel.bands.length;
+    return panel.bands.map((band, i) => label(bands[band], (i + 0.5) * row, palette.text));
   }
   const step = Math.min(17, panel.height / panel.curves.length);
   const first = panel.height / 2 - ((panel.curves.length - 1) / 2) * step;
   return panel.curves.map((curve, i) => {
-    const sign = {alpha: "α", theta: "θ"}[curve.sort];
-    const name = sign === undefined ? curve.name : `${sign}(${curve.name})`;
-    return label(name, first + i * step, saltus.curveColour(panel, i, palette));
+    const colour = saltus.curveColour(panel, i, palette);
+    return label(saltus.columnLabel(curve), first + i * step, colour);
   });
 };
 
@@ -219,7 +245,7 @@ saltus.figureLayout = (result, stack, view) => {
     annotations: stack.panels.flatMap((panel) => saltus.panelLabels(panel, stack, palette, result)),
   };
   stack.panels.forEach((panel, i) => {
-    layout[saltus.axisKey(i)] = {...saltus.panelAxis(panel, stack, palette, result), ...view.ranges[i]};
+    layout[saltus.axisKey(i)] = {...saltus.panelAxis(panel, stack, palette), ...view.ranges[i]};
   });
   return layout;
 };

@@ -87,51 +87,89 @@ saltus.dynamicTables = (reader) => {
   return [saltus.huffmanTable(lengths.slice(0, literals)), saltus.huffmanTable(lengths.slice(literals))];
 };
 
+/** Bytes that grow. */
+saltus.byteSink = (room) => {
+  const sink = {bytes: new Uint8Array(room), size: 0};
+  sink.reserve = (more) => {
+    if (sink.size + more <= sink.bytes.length) return;
+    const larger = new Uint8Array(2 * (sink.size + more));
+    larger.set(sink.bytes.subarray(0, sink.size));
+    sink.bytes = larger;
+  };
+  return sink;
+};
+
+/** One compressed block. The state of the reader is held in variables: this loop is most of the time of opening. */
+saltus.inflateBlock = (input, reader, sink, [literals, distances]) => {
+  let {at, held, count} = reader;
+  let {bytes, size} = sink;
+  const {base, bits} = saltus.inflateLengths;
+  const far = saltus.inflateDistances;
+  const fill = (wanted) => {
+    while (count < wanted) {
+      held |= (at < input.length ? input[at] : 0) << count;
+      at += 1;
+      count += 8;
+    }
+  };
+  const take = (wanted) => {
+    fill(wanted);
+    const value = held & ((1 << wanted) - 1);
+    held >>>= wanted;
+    count -= wanted;
+    return value;
+  };
+  for (;;) {
+    if (count < 15) fill(15);
+    const entry = literals.table[held & literals.mask];
+    held >>>= entry & 15;
+    count -= entry & 15;
+    const symbol = entry >> 4;
+    if (symbol === 256) break;
+    if (size + 258 > bytes.length) {
+      if (at > input.length + 4) throw new Error("the deflated numbers of this page are cut off");
+      sink.size = size;
+      sink.reserve(258);
+      bytes = sink.bytes;
+    }
+    if (symbol < 256) {
+      bytes[size] = symbol;
+      size += 1;
+      continue;
+    }
+    const length = base[symbol - 257] + take(bits[symbol - 257]);
+    fill(15);
+    const step = distances.table[held & distances.mask];
+    held >>>= step & 15;
+    count -= step & 15;
+    const from = size - far.base[step >> 4] - take(far.bits[step >> 4]);
+    for (let k = 0; k < length; k += 1) bytes[size + k] = bytes[from + k];
+    size += length;
+  }
+  Object.assign(reader, {at, held, count});
+  sink.size = size;
+};
+
 /** Raw deflate (RFC 1951). Written here because DecompressionStream is missing in browsers before 2023. */
 saltus.inflate = (input) => {
   const reader = saltus.bitReader(input);
-  let output = new Uint8Array(Math.max(1024, 4 * input.length));
-  let size = 0;
-  const room = (more) => {
-    if (size + more <= output.length) return;
-    const larger = new Uint8Array(2 * (size + more));
-    larger.set(output.subarray(0, size));
-    output = larger;
-  };
-  const block = ([literals, distances]) => {
-    for (let symbol = reader.symbol(literals); symbol !== 256; symbol = reader.symbol(literals)) {
-      if (reader.at > input.length + 4) throw new Error("the deflated numbers of this page are cut off");
-      room(258);
-      if (symbol < 256) {
-        output[size] = symbol;
-        size += 1;
-        continue;
-      }
-      const {base, bits} = saltus.inflateLengths;
-      const length = base[symbol - 257] + reader.take(bits[symbol - 257]);
-      const far = reader.symbol(distances);
-      const from = size - saltus.inflateDistances.base[far] - reader.take(saltus.inflateDistances.bits[far]);
-      for (let k = 0; k < length; k += 1) output[size + k] = output[from + k];
-      size += length;
-    }
-  };
-  const stored = () => {
-    reader.align();
-    const length = input[reader.at] | (input[reader.at + 1] << 8);
-    room(length);
-    output.set(input.subarray(reader.at + 4, reader.at + 4 + length), size);
-    reader.at += 4 + length;
-    size += length;
-  };
+  const sink = saltus.byteSink(Math.max(1024, 3 * input.length));
   for (let last = 0; last === 0;) {
+    if (reader.at > input.length + 4) throw new Error("the deflated numbers of this page are cut off");
     last = reader.take(1);
     const kind = reader.take(2);
-    if (kind === 0)
-      stored();
-    else
-      block(kind === 1 ? saltus.fixedTables() : saltus.dynamicTables(reader));
+    if (kind !== 0) {
+      saltus.inflateBlock(input, reader, sink, kind === 1 ? saltus.fixedTables() : saltus.dynamicTables(reader));
+      continue;
+    }
+    reader.align();
+    const length = input[reader.at] | (input[reader.at + 1] << 8);
+    sink.reserve(length);
+    sink.bytes.set(input.subarray(reader.at + 4, reader.at + 4 + length), sink.size);
+    reader.at += 4 + length;
+    sink.size += length;
   }
-  return output.subarray(0, size);
+  return sink.bytes.subarray(0, sink.size);
 };
 
 /** The bytes of an element that holds them deflated, in base64. */
@@ -166,13 +204,17 @@ saltus.unpack = (packed, numbers) => {
   if (packed === null || typeof packed !== "object") return packed;
   if (packed.$n !== undefined) {
     const [first, count] = packed.$n;
-    return Array.from(numbers.subarray(first, first + count), (value) => (Number.isFinite(value) ? value : null));
+    const list = new Array(count);
+    for (let i = 0; i < count; i += 1) list[i] = Number.isFinite(numbers[first + i]) ? numbers[first + i] : null;
+    return list;
   }
   if (packed.$rows !== undefined) {
-    const keys = Object.keys(packed.columns);
-    const columns = keys.map((key) => saltus.unpackColumn(packed.columns[key], numbers));
-    return Array.from(
-        {length: packed.$rows}, (_, i) => Object.fromEntries(keys.map((key, k) => [key, columns[k][i]])));
+    const rows = Array.from({length: packed.$rows}, () => ({}));
+    for (const [key, column] of Object.entries(packed.columns)) {
+      const values = saltus.unpackColumn(column, numbers);
+      for (let i = 0; i < rows.length; i += 1) rows[i][key] = values[i];
+    }
+    return rows;
   }
   if (Array.isArray(packed)) return packed.map((part) => saltus.unpack(part, numbers));
   return Object.fromEntries(Object.entries(packed).map(([key, part]) => [key, saltus.unpack(part, numbers)]));

@@ -43,7 +43,9 @@ saltus.simulatedCurve = (result, curve, axis, view) => {
 saltus.simulatedOrbit = (result, choice, view, palette, type) => {
   const simulated = result.optimization?.open_loop ?? null;
   if (simulated === null) return [];
-  const lists = choice.map((state) => simulated.x[state]);
+  const chosen = choice.map((i) => saltus.axes(result)[i]);
+  if (chosen.some(({sort}) => sort !== "state" && sort !== "time")) return [];
+  const lists = chosen.map((column) => saltus.columnOf(simulated, column));
   const rows = saltus.rowsToDraw(simulated.t, lists, saltus.rowsInWindow(simulated.t, view.window), view.pixels);
   const [x, y, z] = lists.map((list) => rows.map((i) => list[i]));
   return [{

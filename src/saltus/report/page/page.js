@@ -1,11 +1,12 @@
 // Puts the parts together.
 "use strict";
 
-saltus.legend = (result, holder, timeline) => {
+saltus.legend = (result, holder, timeline, chooser) => {
   const swatch = (kind, text) => saltus.element("span", {class: "swatch"}, saltus.element("i", {class: kind}), text);
   const modes = result.switching_functions.length === 0 ? [] : [
     saltus.element("span", {class: "quiet"}, "mode"), swatch("mode mode-minus", "− ψ<0"),
-    swatch("mode mode-sliding", "0 sliding"), swatch("mode mode-plus", "+ ψ>0")
+    swatch("mode mode-sliding", "0 sliding"), swatch("mode mode-plus", "+ ψ>0"),
+    ...(saltus.chatters(result) ? [swatch("mode mode-chattering", "chattering")] : [])
   ];
   const regions = result.regions.length === 0 ? [] : [
     saltus.element("span", {class: "quiet"}, "regions"), swatch("mode mode-plus", "active"),
@@ -17,9 +18,9 @@ saltus.legend = (result, holder, timeline) => {
       ...saltus.optimizationSwatches(result, swatch),
       ...(result.branches.length > 0 ? [swatch("branch-line", "branches")] : []),
       saltus.element(
-          "span", {class: "quiet help", title: "A click on the line of an event shows the event."},
-          "drag: zoom · double click: all"),
-      saltus.element("button", {onclick: () => timeline().reset()}, "whole time"),
+          "span", {class: "quiet help", title: "A double click shows the whole time again; a click on the line of an event shows the event."},
+          "drag: zoom"),
+      saltus.element("button", {onclick: () => timeline().reset()}, "whole time"), chooser.button,
       ...saltus.saveButtons(result, holder, "trajectory"));
 };
 
@@ -40,6 +41,7 @@ saltus.eventSection = (result, parts) => {
 saltus.start = () => {
   const result = saltus.result = saltus.readPage();
   const main = document.getElementById("report");
+  const address = saltus.address();
   const holder = saltus.element("div", {class: "timeline"});
   const frame = saltus.element("div", {class: "timeline-frame"}, holder);
   let timeline = null;
@@ -65,6 +67,7 @@ saltus.start = () => {
     table.render();
   };
   const layout = saltus.element("div", {class: "layout"});
+  const chooser = saltus.chooser(result, () => timeline);
   const parts = {
     table,
     inspector,
@@ -80,7 +83,7 @@ saltus.start = () => {
       redraw();
     },
   };
-  const theme = saltus.followTheme(redraw);
+  const theme = saltus.followTheme(redraw, address);
   main.append(saltus.pageHeader(result, theme.toggle), ...saltus.banners(result, select));
   const comparison = saltus.comparisonCard(result);
   if (comparison !== null) main.append(comparison);
@@ -90,13 +93,15 @@ saltus.start = () => {
     main.append(saltus.element("div", {class: "cards two orders"}, ...orders.map((order) => order.element)));
   main.append(layout);
   layout.append(
-      saltus.element("section", {class: "card drawing"}, saltus.legend(result, holder, () => timeline), frame),
+      saltus.element(
+          "section", {class: "card drawing"}, saltus.legend(result, holder, () => timeline, chooser), chooser.element,
+          frame),
       saltus.eventSection(result, parts));
   timeline = saltus.timeline(result, holder, {
     windowChanged: drawPhases,
     // Beside the drawing the table is as tall as it, but never taller than the window.
     resized: (height) => layout.style.setProperty("--drawing-height", `${height + 92}px`),
-  });
+  }, address);
   saltus.cursor(result, frame, holder, timeline, select);
   const cards = saltus.element("div", {class: "cards"});
   const branches = saltus.branchCard(result, {
@@ -111,9 +116,9 @@ saltus.start = () => {
   const sensitivities = saltus.sensitivityCard(result);
   const sections = [saltus.verdictCard(result), branches, families, cards, sensitivities];
   main.append(...sections.filter((section) => section !== null), saltus.notes(result));
-  if (result.states.length > 1 && result.trajectory.t.length > 0) {
-    phases.push(saltus.phasePlane(result, timeline, select));
-    if (result.states.length > 2) phases.push(saltus.phasePortrait(result, timeline, select));
+  if (saltus.columns(result).length > 1 && result.states.length > 0 && result.trajectory.t.length > 0) {
+    phases.push(saltus.phasePlane(result, timeline, select, address));
+    if (result.states.length > 2) phases.push(saltus.phasePortrait(result, timeline, select, address));
   }
   const multipliers = saltus.multiplierPicture(result, timeline);
   if (multipliers !== null) phases.push(multipliers);
@@ -136,8 +141,8 @@ saltus.start = () => {
     pending = setTimeout(redraw, 120);
   });
   saltus.followPrinting(theme, table, redraw);
-  const asked = /event=(\d+)/.exec(window.location.hash);
-  if (asked !== null && result.events[asked[1] - 1] !== undefined) select(asked[1] - 1);
+  const asked = Number(address.get("event")) - 1;
+  if (result.events[asked] !== undefined) select(asked);
 };
 
 saltus.start();

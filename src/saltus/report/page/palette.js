@@ -28,7 +28,7 @@ saltus.palette = () => {
 saltus.currentTheme = () => document.documentElement.dataset.theme;
 
 /** #dark or #light in the address, else what the system prefers. `changed` is called after every change. */
-saltus.followTheme = (changed) => {
+saltus.followTheme = (changed, address) => {
   const system = window.matchMedia("(prefers-color-scheme: dark)");
   const asked = /[#&](dark|light)\b/.exec(window.location.hash);
   const apply = (theme) => {
@@ -37,5 +37,11 @@ saltus.followTheme = (changed) => {
   };
   document.documentElement.dataset.theme = asked ? asked[1] : system.matches ? "dark" : "light";
   system.addEventListener("change", () => apply(system.matches ? "dark" : "light"));
-  return {apply, toggle: () => apply(saltus.currentTheme() === "dark" ? "light" : "dark")};
+  const toggle = () => {
+    const [before, after] = saltus.currentTheme() === "dark" ? ["dark", "light"] : ["light", "dark"];
+    address.set(before, null);
+    address.set(after, "");
+    apply(after);
+  };
+  return {apply, toggle};
 };

@@ -21,25 +21,24 @@ saltus.scaleRatio = 20;
 saltus.groupCurves = (curves) => {
   if (curves.length <= saltus.singlePanels) return curves.map((curve) => [curve]);
   const groups = [];
-  let spans = [];
-  let hull = [];
   for (const curve of curves) {
     const [least, greatest] = saltus.range(curve.values);
-    const candidate = [Math.min(hull[0] ?? least, least), Math.max(hull[1] ?? greatest, greatest)];
-    const smallest = Math.min(...spans.filter((span) => span > 0), greatest > least ? greatest - least : Infinity);
-    const fits = smallest === Infinity || candidate[1] - candidate[0] <= saltus.scaleRatio * smallest;
-    const group = groups[groups.length - 1];
-    if (group !== undefined && group.length < saltus.perPanel && fits) {
-      group.push(curve);
-      spans.push(greatest - least);
-      hull = candidate;
+    const span = greatest > least ? greatest - least : Infinity;
+    const fits = ({members, hull, smallest}) => {
+      const together = Math.max(hull[1], greatest) - Math.min(hull[0], least);
+      const finest = Math.min(smallest, span);
+      return members.length < saltus.perPanel && (finest === Infinity || together <= saltus.scaleRatio * finest);
+    };
+    const group = groups.find(fits);
+    if (group === undefined) {
+      groups.push({members: [curve], hull: [least, greatest], smallest: span});
     } else {
-      groups.push([curve]);
-      spans = [greatest - least];
-      hull = [least, greatest];
+      group.members.push(curve);
+      group.hull = [Math.min(group.hull[0], least), Math.max(group.hull[1], greatest)];
+      group.smallest = Math.min(group.smallest, span);
     }
   }
-  return groups;
+  return groups.map(({members}) => members);
 };
 
 /** Rows of the bands: switching functions, then modes by `indicator` (alone: 1, with others: 0, not active: null). */
@@ -49,46 +48,30 @@ saltus.bandIntervals = (result) => [...result.trajectory.modes, ...result.trajec
 /** Selections and weights are between 0 and 1. */
 saltus.isFraction = (sort) => sort === "alpha" || sort === "theta";
 
-/** Panels of curves, top to bottom: states, outputs, inputs, alpha, theta. */
-saltus.curvePanels = (result) => {
-  const {trajectory} = result;
-  const curves = (names, columns, sort) =>
-      names.map((name, i) => ({
-                  name,
-                  sort,
-                  index: i,
-                  values: columns[i],
-                  stepwise: sort === "input" && saltus.isStepwise(columns[i]),
-                  discrete: sort === "state" && saltus.isDiscrete(trajectory.t, columns[i]),
-                }));
-  const panels = [
-    ...saltus.groupCurves(curves(result.states, trajectory.x, "state")),
-    ...saltus.groupCurves(curves(result.output_names, trajectory.outputs, "output")),
-    ...saltus.groupCurves(curves(result.controls, trajectory.u, "input")),
-  ].map((group) => ({kind: "curves", sort: group[0].sort, curves: group}));
-  const fractions = (names, columns, sort) => {
-    const all = curves(names, columns, sort);
-    for (let i = 0; i < all.length; i += saltus.perPanel) {
-      panels.push({kind: "curves", sort, curves: all.slice(i, i + saltus.perPanel)});
-    }
-  };
-  fractions(result.switching_functions, trajectory.alpha, "alpha");
-  fractions(result.regions, trajectory.theta, "theta");
-  return panels;
+/** The panels of a choice with their curves. */
+saltus.curvePanels = (result, choice) => {
+  const columns = saltus.columns(result);
+  return choice.panels.map(({curves, log}) => ({
+                             kind: "curves",
+                             sort: columns[curves[0]].sort,
+                             log,
+                             curves: curves.map((i) => columns[i]),
+                             fractions: !log && curves.every((i) => saltus.isFraction(columns[i].sort)),
+                           }));
 };
 
 /**
  * All panels with their place in pixels from the top of the drawing: the strip of events, the bands of modes, the
  * curves. They fill `height` if that leaves every curve enough room, otherwise the drawing becomes taller.
  */
-saltus.stackPanels = (result, height) => {
-  const bands = saltus.bands(result).length;
-  const curves = saltus.curvePanels(result);
+saltus.stackPanels = (result, height, choice = saltus.firstPanels(result)) => {
+  const bands = choice.bands.length;
+  const curves = saltus.curvePanels(result, choice);
   const panels = [{kind: "events", height: 22}];
-  if (bands > 0) panels.push({kind: "modes", height: bands === 1 ? 26 : 20 * bands});
+  if (bands > 0) panels.push({kind: "modes", bands: choice.bands, height: bands === 1 ? 26 : 20 * bands});
   const gap = 12;
   const fixed = panels.reduce((sum, panel) => sum + panel.height + gap, 0);
-  const weights = curves.map((panel) => (saltus.isFraction(panel.sort) ? 0.65 : 1));
+  const weights = curves.map((panel) => (panel.fractions ? 0.65 : 1));
   const total = weights.reduce((sum, weight) => sum + weight, 0);
   const least = curves.length > 5 ? 92 : 110;
   const free = height - fixed - gap * (curves.length - 1);

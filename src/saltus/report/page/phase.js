@@ -44,18 +44,20 @@ saltus.roomyRange = (values, room = 0.06) => {
 /** Where slices of surfaces are taken: the flagged event, or the end of the window. */
 saltus.slicePlace = (result, selected, rows) => {
   const event = selected === null ? null : result.events[selected];
-  if (event !== null && event.x_after.length === result.states.length) return {t: event.t, x: event.x_after};
+  const timeAxis = saltus.axes(result).length - 1;
+  if (event !== null && event.x_after.length === result.states.length) return {t: event.t, x: event.x_after, timeAxis};
   // Events of very many keep a few of their states only: the row of the trajectory next to it.
   const {t} = result.trajectory;
   const last = event === null ? rows[rows.length - 1] : saltus.rowsAtOneTime(t, saltus.nearestRow(t, event.t))[1];
-  return {t: result.trajectory.t[last], x: result.trajectory.x.map((column) => column[last])};
+  return {t: result.trajectory.t[last], x: result.trajectory.x.map((column) => column[last]), timeAxis};
 };
 
 /** What a drawing in phase space shows: rows of the window, parts of the curve, events, the box around it. */
 saltus.phaseView = (result, timeline, choice, sliding, buckets) => {
-  const {t, x} = result.trajectory;
+  const {t} = result.trajectory;
   const window_ = timeline.window();
-  const columns = choice.map((i) => x[i]);
+  const chosen = choice.map((i) => saltus.axes(result)[i]);
+  const columns = chosen.map(({values}) => values);
   const rows = saltus.rowsToDraw(t, columns, saltus.rowsInWindow(t, window_), buckets)
                    .filter((i) => t[i] >= window_[0] && t[i] <= window_[1]);
   if (rows.length === 0) return null;
@@ -71,7 +73,7 @@ saltus.phaseView = (result, timeline, choice, sliding, buckets) => {
     parts: saltus.phaseParts(result, columns, rows, sliding),
     box: columns.map((column, axis) => saltus.roomyRange([
       ...rows.map((i) => column[i]),
-      ...(saltus.branchPath(result.branches, (branch) => [branch.trajectory.x[choice[axis]]], window_, buckets)[0] ??
+      ...(saltus.branchPath(result.branches, (branch) => [saltus.columnOf(branch.trajectory, chosen[axis])], window_, buckets)[0] ??
           [])
     ])),
     at: saltus.slicePlace(result, selected, rows),
@@ -105,24 +107,45 @@ saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
  */
 saltus.firstChoice = (result, size) => {
   const {t, x} = result.trajectory;
-  const moves = (state) => !saltus.isDiscrete(t, x[state]);
+  const moves = (state) => saltus.moves(x[state]) && !saltus.isDiscrete(t, x[state]);
   const first = result.surfaces.find((surface) => surface.states.every(moves));
   const states = x.map((_, i) => i);
   const ranked = [...(first?.states ?? []), ...states.filter(moves), ...states];
   return [...new Set(ranked)].slice(0, size).sort((a, b) => a - b);
 };
 
-/** A choice of one state per axis; `changed` is called after every change of `choice`. */
-saltus.statePickers = (result, choice, changed) => choice.map(
-    (_, axis) => saltus.element(
+/** Where an event stands on an axis: behind it. */
+saltus.eventCoordinate = (result, i, axis) => {
+  const {sort, index, values} = saltus.axes(result)[axis];
+  const event = result.events[i];
+  if (sort === "time") return event.t;
+  if (sort === "state" && index < event.x_after.length) return event.x_after[index];
+  const {t} = result.trajectory;
+  return values[saltus.rowsAtOneTime(t, saltus.nearestRow(t, event.t))[1]];
+};
+
+saltus.axisLabel = (result, axis) => saltus.columnLabel(saltus.axes(result)[axis]);
+
+/** A choice of one column per axis; `changed` is called after every change of `choice`. */
+saltus.axisPickers = (result, choice, changed) => {
+  const axes = saltus.axes(result);
+  const sorts = {state: "states", output: "outputs", input: "inputs", alpha: "selections", theta: "weights", time: "time"};
+  return choice.map((_, axis) => {
+    const option = (k) => saltus.element(
+        "option", {value: String(k), ...(k === choice[axis] ? {selected: ""} : {})},
+        saltus.shorten(saltus.columnLabel(axes[k]), 30));
+    const groups = Object.entries(sorts).map(([sort, label]) => {
+      const numbers = axes.map((_column, k) => k).filter((k) => axes[k].sort === sort);
+      return numbers.length === 0 ? null : saltus.element("optgroup", {label}, ...numbers.map(option));
+    });
+    return saltus.element(
         "select", {
-          "aria-label": `state on axis ${axis + 1}`,
+          "aria-label": `axis ${axis + 1}`,
           onchange: (e) => {
             choice[axis] = Number(e.target.value);
             changed();
           }
         },
-        ...result.states.map(
-            (name, k) => saltus.element(
-                "option", {value: String(k), ...(k === choice[axis] ? {selected: ""} : {})},
-                saltus.shorten(name, 30)))));
+        ...groups);
+  });
+};

@@ -4,23 +4,24 @@
 /** More surfaces than this have one entry of the legend together. */
 saltus.maximumLegendSurfaces = 8;
 
-saltus.planeSurfaces = (result, choice, view, palette) => {
+saltus.planeSurfaces = (result, choice, view, palette, logs = [false, false]) => {
   // Wider than what is shown at first: lines still reach the border when one zooms out or moves.
   const [x, y] = view.box.map(([from, to]) => [from - 2 * (to - from), to + 2 * (to - from)]);
   const drawn = [];
   result.surfaces.forEach((surface, index) => {
     const parts = saltus.surfaceInPlane(surface, choice, view.at, view.window);
     if (parts === null) return;
-    const path = saltus.surfacePath(parts, {x, y});
+    const path = saltus.surfacePath(parts, {x, y}, logs.includes(true) ? 200 : 1);
     if (path.x.length > 0) drawn.push({surface, index, kind: parts.kind, path});
   });
-  const single = drawn.length <= saltus.maximumLegendSurfaces;
-  const seen = new Set();
+  const labels = new Set(drawn.map(({surface}) => saltus.surfaceLabel(surface)));
+  const single = labels.size <= saltus.maximumLegendSurfaces;
+  const seen = new Map();
   const traces = drawn.map(({surface, index, kind, path}, n) => {
     const style = saltus.surfaceStyle(index, surface, palette);
     const label = saltus.surfaceLabel(surface);
     const first = !seen.has(label);
-    seen.add(label);
+    if (first) seen.set(label, style.color);
     return {
       type: "scatter",
       mode: "lines",
@@ -31,7 +32,7 @@ saltus.planeSurfaces = (result, choice, view, palette) => {
       hoverinfo: "name",
       line: {
         simplify: false,
-        color: style.color,
+        color: seen.get(label),
         width: 1.3,
         dash: style.jump ? "dashdot" : {exact: "solid", cut: "dash", moving: "dot"}[kind]
       },
@@ -69,8 +70,8 @@ saltus.planeTraces = (result, choice, view, palette) => {
     name: "event",
     showlegend: events.length > 0,
     customdata: events,
-    x: events.map((i) => event(i).x_after[choice[0]]),
-    y: events.map((i) => event(i).x_after[choice[1]]),
+    x: events.map((i) => saltus.eventCoordinate(result, i, choice[0])),
+    y: events.map((i) => saltus.eventCoordinate(result, i, choice[1])),
     text: events.map(
         (i) => saltus.plain(`${i + 1}. ${saltus.kindLabel(event(i).kind)}, t = ${saltus.brief(event(i).t, 8)}`)),
     hovertemplate: "%{text}<extra></extra>",
@@ -86,8 +87,8 @@ saltus.planeTraces = (result, choice, view, palette) => {
     mode: "markers",
     name: `event ${selected + 1}`,
     hoverinfo: "skip",
-    x: [event(selected).x_after[choice[0]]],
-    y: [event(selected).x_after[choice[1]]],
+    x: [saltus.eventCoordinate(result, selected, choice[0])],
+    y: [saltus.eventCoordinate(result, selected, choice[1])],
     marker: {symbol: "circle-open", size: 17, color: palette.select, line: {width: 2.5}},
   }];
   return [
@@ -103,10 +104,17 @@ saltus.planeTraces = (result, choice, view, palette) => {
   ];
 };
 
-saltus.planeLayout = (result, choice, view, holder, palette, equal) => {
+/** An axis with its range; a logarithmic one from the least positive value on, which plotly wants as a logarithm. */
+saltus.scaleOf = (range, values, log) => {
+  const positive = log ? values.filter((value) => value > 0) : [];
+  if (positive.length === 0) return {range};
+  return {type: "log", range: saltus.roomyRange(positive.map(Math.log10))};
+};
+
+saltus.planeLayout = (result, choice, view, holder, palette, {equal, logs}) => {
   const axis = (i) => ({
-    title: {text: saltus.plain(saltus.shorten(result.states[choice[i]], 30)), standoff: 6},
-    range: view.box[i],
+    title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 30)), standoff: 6},
+    ...saltus.scaleOf(view.box[i], view.rows.map((row) => view.columns[i][row]), logs[i]),
     gridcolor: palette.grid,
     zerolinecolor: palette.axis,
     linecolor: palette.axis,
@@ -123,7 +131,7 @@ saltus.planeLayout = (result, choice, view, holder, palette, equal) => {
     hovermode: "closest",
     separators: ".",
     // What the reader has zoomed to stays until other states or another time are chosen.
-    uirevision: JSON.stringify([choice, view.box, equal]),
+    uirevision: JSON.stringify([choice, view.box, equal, logs]),
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: palette.panel,
     font: {family: "system-ui, sans-serif", size: 12, color: palette.text},
@@ -133,30 +141,39 @@ saltus.planeLayout = (result, choice, view, holder, palette, equal) => {
   };
 };
 
-saltus.phasePlane = (result, timeline, select) => {
+saltus.phasePlane = (result, timeline, select, address) => {
   const holder = saltus.element("div", {class: "phase-plot"});
   const note = saltus.element("p", {class: "quiet note"});
-  const choice = saltus.firstChoice(result, 2);
+  const choice = saltus.axesFromText(result, address.get("plane")) ?? saltus.firstChoice(result, 2);
   const sliding = saltus.slidingIntervals(saltus.bandIntervals(result));
-  const equal = saltus.element("input", {type: "checkbox", onchange: () => draw()});
+  const chosen = () => {
+    address.set("plane", choice.join(","));
+    draw();
+  };
+  const box = (text, title) => {
+    const input = saltus.element("input", {type: "checkbox", onchange: () => draw()});
+    return {input, label: saltus.element("label", {class: "controls", title}, input, text)};
+  };
+  const equal = box("equal scales", "one unit is as long on both axes");
+  const logs = ["log x", "log y"].map((text) => box(text, "a logarithmic axis; shows what is positive"));
   const draw = () => {
     const palette = saltus.palette();
     const view = saltus.phaseView(result, timeline, choice, sliding, 1500);
     if (view === null) return Plotly.purge(holder);
-    const surfaces = saltus.planeSurfaces(result, choice, view, palette);
+    const scales = {equal: equal.input.checked, logs: logs.map(({input}) => input.checked)};
+    const surfaces = saltus.planeSurfaces(result, choice, view, palette, scales.logs);
     note.textContent = saltus.surfaceNote({...surfaces, absent: saltus.surfacesNotDrawn(result, choice)}, view.at);
     return Plotly.react(
         holder, [...surfaces.traces, ...saltus.planeTraces(result, choice, view, palette)],
-        saltus.planeLayout(result, choice, view, holder, palette, equal.checked), saltus.plotConfig);
+        saltus.planeLayout(result, choice, view, holder, palette, scales), saltus.plotConfig);
   };
-  const [first, second] = saltus.statePickers(result, choice, draw);
+  const [first, second] = saltus.axisPickers(result, choice, chosen);
   const element = saltus.element(
       "section", {class: "card phase"},
       saltus.element(
           "header", {}, saltus.element("h2", {title: "within the time shown above"}, "Phase plane"),
-          saltus.element("span", {class: "controls"}, second, " over ", first),
-          saltus.element(
-              "label", {class: "controls grow", title: "one unit is as long on both axes"}, equal, "equal scales"),
+          saltus.element("span", {class: "controls"}, second, " over ", first), ...logs.map(({label}) => label),
+          equal.label, saltus.element("span", {class: "controls grow"}),
           ...saltus.saveButtons(result, holder, "phase-plane")),
       holder, note);
   const start = () => {

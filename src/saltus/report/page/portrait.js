@@ -31,7 +31,7 @@ saltus.portraitTraces = (result, choice, view, palette) => {
     marker,
     ...more,
   });
-  const place = (i) => choice.map((state) => result.events[i].x_after[state]);
+  const place = (i) => choice.map((axis) => saltus.eventCoordinate(result, i, axis));
   const row = (i) => columns.map((column) => column[i]);
   const alarming = (i) => saltus.isAlarming(result.events[i]);
   return [
@@ -61,20 +61,25 @@ saltus.portraitTraces = (result, choice, view, palette) => {
 saltus.portraitSurfaces = (result, choice, view, palette) => {
   const cuts = [];
   const traces = [];
+  const seen = new Map();
   result.surfaces.forEach((surface, index) => {
     const sheet = saltus.surfaceInSpace(surface, choice, view.at, view.box);
     if (sheet === null) return;
-    if (!saltus.isExact(surface, choice)) cuts.push(surface);
+    if (!saltus.isExact(surface, choice, view.at.timeAxis)) cuts.push(surface);
+    const label = saltus.surfaceLabel(surface);
+    const isFirst = !seen.has(label);
+    if (isFirst) seen.set(label, saltus.surfaceStyle(index, surface, palette).color);
     traces.push({
       type: "mesh3d",
       ...sheet,
-      name: saltus.plain(saltus.surfaceLabel(surface)),
-      showlegend: result.surfaces.length <= saltus.maximumLegendSurfaces,
+      name: saltus.plain(label),
+      legendgroup: label,
+      showlegend: isFirst && seen.size <= saltus.maximumLegendSurfaces,
       hoverinfo: "skip",
       opacity: 0.22,
       flatshading: true,
       lighting: {ambient: 1, diffuse: 0, specular: 0},
-      color: saltus.surfaceStyle(index, surface, palette).color,
+      color: seen.get(label),
     });
   });
   return {traces, cuts};
@@ -82,7 +87,7 @@ saltus.portraitSurfaces = (result, choice, view, palette) => {
 
 saltus.portraitLayout = (result, choice, view, holder, palette) => {
   const axis = (i) => ({
-    title: {text: saltus.plain(saltus.shorten(result.states[choice[i]], 24))},
+    title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 24))},
     range: view.box[i],
     gridcolor: palette.axis,
     zerolinecolor: palette.axis,
@@ -112,10 +117,10 @@ saltus.portraitLayout = (result, choice, view, holder, palette) => {
   };
 };
 
-saltus.phasePortrait = (result, timeline, select) => {
+saltus.phasePortrait = (result, timeline, select, address) => {
   const holder = saltus.element("div", {class: "phase-plot"});
   const note = saltus.element("p", {class: "quiet note"});
-  const choice = saltus.firstChoice(result, 3);
+  const choice = saltus.axesFromText(result, address.get("space"), 3) ?? saltus.firstChoice(result, 3);
   const sliding = saltus.slidingIntervals(saltus.bandIntervals(result));
   const possible = saltus.hasWebGL();
   let visible = false;
@@ -132,7 +137,10 @@ saltus.phasePortrait = (result, timeline, select) => {
         holder, [...saltus.portraitTraces(result, choice, view, palette), ...surfaces.traces],
         saltus.portraitLayout(result, choice, view, holder, palette), saltus.plotConfig);
   };
-  const [first, second, third] = saltus.statePickers(result, choice, draw);
+  const [first, second, third] = saltus.axisPickers(result, choice, () => {
+    address.set("space", choice.join(","));
+    draw();
+  });
   const element = saltus.element(
       "section", {class: "card phase undrawn"},
       saltus.element(

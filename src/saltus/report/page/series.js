@@ -91,27 +91,112 @@ saltus.leastJump = (values) => {
 };
 
 /**
+ * Pixels of [begin, end) in which a curve jumps more than once, to and fro: lines would show something slower. Each with
+ * its rows, its ends in time, the least and greatest value and the mean over time.
+ */
+saltus.chatteringPixels = (t, values, [begin, end], buckets, leastJump) => {
+  const pixels = [];
+  const width = (t[end - 1] - t[begin]) / buckets;
+  if (!(width > 0) || end - begin < 200) return pixels;
+  for (let i = begin; i < end;) {
+    const limit = t[begin] + width * (Math.floor((t[i] - t[begin]) / width) + 1);
+    const pixel = {begin: i, from: t[i], low: Infinity, high: -Infinity};
+    let [jumps, area, k] = [0, 0, i];
+    for (; k < end && (k === i || t[k] < limit); k += 1) {
+      const value = values[k];
+      if (value === null) continue;
+      pixel.low = Math.min(pixel.low, value);
+      pixel.high = Math.max(pixel.high, value);
+      if (k > i && t[k] === t[k - 1] && Math.abs(value - values[k - 1]) > leastJump) jumps += 1;
+      if (k + 1 < end && values[k + 1] !== null) area += 0.5 * (value + values[k + 1]) * (t[k + 1] - t[k]);
+    }
+    const to = t[Math.min(k, end - 1)];
+    if (jumps > 1 && to > pixel.from) pixels.push({...pixel, end: k, to, mean: area / (to - pixel.from), jumps});
+    i = k;
+  }
+  return pixels;
+};
+
+/**
  * Points of one curve; a jump (two values at one time) and a missing value are gaps. `jumps` has both sides of every
- * jump with a gap behind. A discrete curve has no gaps: its steps are the curve.
+ * jump with a gap behind, `envelope` what is drawn instead where it chatters. A discrete curve has no gaps: its steps are
+ * the curve.
  */
 saltus.points = (t, values, window, buckets, discrete = false) => {
   const leastJump = saltus.leastJump(values);
   const x = [];
   const y = [];
   const jumps = {x: [], y: []};
+  const [begin, end] = saltus.rowsInWindow(t, window);
+  const chattering = saltus.chatteringPixels(t, values, [begin, end], buckets, leastJump);
   let previous = -1;
-  for (const i of saltus.rowsToDraw(t, [values], saltus.rowsInWindow(t, window), buckets)) {
-    if (previous >= 0 && t[previous] === t[i] && Math.abs(values[previous] - values[i]) > leastJump && !discrete) {
+  const gap = (time) => {
+    x.push(time);
+    y.push(null);
+    previous = -1;
+  };
+  const stretch = (from, to) => {
+    if (from >= to) return;
+    const part = Math.max(10, Math.ceil((buckets * (t[to - 1] - t[from])) / (t[end - 1] - t[begin])));
+    for (const i of saltus.rowsToDraw(t, [values], [from, to], chattering.length === 0 ? buckets : part)) {
+      if (previous >= 0 && t[previous] === t[i] && Math.abs(values[previous] - values[i]) > leastJump && !discrete) {
+        x.push(t[i]);
+        y.push(null);
+        jumps.x.push(t[i], t[i], null);
+        jumps.y.push(values[previous], values[i], null);
+      }
       x.push(t[i]);
-      y.push(null);
-      jumps.x.push(t[i], t[i], null);
-      jumps.y.push(values[previous], values[i], null);
+      y.push(values[i]);
+      previous = i;
     }
-    x.push(t[i]);
-    y.push(values[i]);
-    previous = i;
+  };
+  let from = begin;
+  for (const pixel of chattering) {
+    stretch(from, pixel.begin + 1);
+    if (previous >= 0) gap(pixel.from);
+    from = pixel.end;
   }
-  return {x, y, jumps};
+  stretch(from, end);
+  const list = (key) => chattering.map((pixel) => pixel[key]);
+  const envelope =
+      {x: chattering.map((pixel) => [pixel.from, pixel.to]), low: list("low"), high: list("high"), mean: list("mean")};
+  return {x, y, jumps, envelope};
+};
+
+/** How often a mode changes within a pixel around a time. */
+saltus.changesNear = ({edges}, time, pixel) =>
+    saltus.lowerBound(edges, time + pixel / 2) - saltus.lowerBound(edges, time - pixel / 2);
+
+/** Whether any mode changes so often that the whole time in one drawing shows chattering. */
+saltus.chatters = (result) => result.trajectory.modes.some(
+    ({edges}) => edges.some((time, i) => i + 2 < edges.length && edges[i + 2] - time < (edges.at(-1) - edges[0]) / 1000));
+
+/**
+ * Rectangles of the band of a mode: {from, to, share: {minus, sliding, plus}, count}. Intervals of a pixel or more are
+ * rectangles of their own; shorter ones in one pixel become one, with the part of its time that each mode has.
+ */
+saltus.modeCells = ({edges, values}, [from, to], pixels) => {
+  const step = (to - from) / pixels;
+  const names = {"-1": "minus", 0: "sliding", 1: "plus"};
+  const cells = [];
+  let i = Math.max(0, saltus.lowerBound(edges, from) - 1);
+  while (i < values.length && edges[i] <= to) {
+    const cell = {from: edges[i], to: edges[i], share: {minus: 0, sliding: 0, plus: 0}, count: 0};
+    let k = i;
+    do {
+      const name = names[values[k]];
+      if (name !== undefined) cell.share[name] += edges[k + 1] - edges[k];
+      cell.count += 1;
+      k += 1;
+    } while (k < values.length && edges[k + 1] < edges[i] + step);
+    cell.to = edges[k];
+    for (const name of Object.values(names)) cell.share[name] /= cell.to - cell.from;
+    // Rounding: a mode that has all of the time has exactly all of it.
+    if (cell.count === 1 && names[values[i]] !== undefined) cell.share[names[values[i]]] = 1;
+    cells.push(cell);
+    i = k;
+  }
+  return cells;
 };
 
 /** Whether a column changes only at jumps, as discrete states do (one that never changes needs no steps). */

@@ -59,6 +59,12 @@ saltus.clipPolygon = (polygon, within) => within.reduce((points, coefficients) =
 saltus.formOver = (form, states, axes, at) => {
   const coefficients = axes.map(() => 0);
   let constant = form.constant + form.rate * at.t;
+  // The axis behind those of the columns is the time.
+  const time = axes.indexOf(at.timeAxis);
+  if (time >= 0) {
+    coefficients[time] = form.rate;
+    constant -= form.rate * at.t;
+  }
   states.forEach((state, i) => {
     const axis = axes.indexOf(state);
     if (axis >= 0)
@@ -78,7 +84,8 @@ saltus.endsOver = (surface, axes, at) => (surface.within ?? []).map((form) => {
 });
 
 /** Whether the surface is the same whatever the time and the states outside of `axes` are. */
-saltus.isExact = (surface, axes) => !surface.depends_on_time && surface.states.every((state) => axes.includes(state));
+saltus.isExact = (surface, axes, timeAxis) => (!surface.depends_on_time || axes.includes(timeAxis)) &&
+    surface.states.every((state) => axes.includes(state));
 
 /**
  * What of a surface a plane shows: {kind, lines: [[a, b, c]], curves: [{x, y}], within} (lines end where one of
@@ -91,7 +98,7 @@ saltus.surfaceInPlane = (surface, pair, at, between = [-Infinity, Infinity]) => 
   if (surface.affine !== null) {
     const {coefficients, constant} = saltus.affineOver(surface, pair, at);
     if (coefficients[0] === 0 && coefficients[1] === 0) return null;
-    const kind = saltus.isExact(surface, pair) ? "exact" : "cut";
+    const kind = saltus.isExact(surface, pair, at.timeAxis) ? "exact" : "cut";
     const within = saltus.endsOver(surface, pair, at);
     return {kind, lines: [[...coefficients, constant]], curves: [], ...(within.length > 0 ? {within} : {})};
   }
@@ -107,8 +114,8 @@ saltus.surfaceInPlane = (surface, pair, at, between = [-Infinity, Infinity]) => 
   return {kind, lines: [], curves};
 };
 
-/** The pieces of a surface in a box, as one path with gaps. */
-saltus.surfacePath = (parts, box) => {
+/** The pieces of a surface in a box, as one path with gaps; a line of several `pieces` bends on logarithmic axes. */
+saltus.surfacePath = (parts, box, pieces = 1) => {
   const path = {x: [], y: []};
   const add = (x, y) => {
     path.x.push(...x, null);
@@ -117,7 +124,11 @@ saltus.surfacePath = (parts, box) => {
   for (const line of parts.lines) {
     const whole = saltus.clipLine(line, box);
     const ends = whole === null ? null : saltus.clipSegment(whole, parts.within ?? []);
-    if (ends !== null) add(ends.map((point) => point[0]), ends.map((point) => point[1]));
+    if (ends === null) continue;
+    const [from, to] = ends;
+    const inside = Array.from({length: pieces - 1}, (_, k) => (k + 1) / pieces);
+    const along = (axis) => [from[axis], ...inside.map((s) => from[axis] + s * (to[axis] - from[axis])), to[axis]];
+    add(along(0), along(1));
   }
   for (const {x, y} of parts.curves) add(x, y);
   return path;

@@ -5,14 +5,15 @@
  * @param listeners  windowChanged(window) after every change of the window, resized(height) before every drawing
  * @return           what other parts of the page may do with the drawing
  */
-saltus.timeline = (result, holder, listeners) => {
+saltus.timeline = (result, holder, listeners, address) => {
   const full = saltus.fullWindow(result);
   // Of many switching functions some slide nearly always: shading would say nothing, the bands say it.
   const sliding = saltus.bands(result).length <= 4 ? saltus.slidingIntervals(saltus.bandIntervals(result)) : [];
   let shown = result.events.map((_, i) => i);
   let selected = null;
   let branch = null;
-  let window_ = full;
+  let window_ = saltus.windowFromText(address.get("t")) ?? full;
+  let choice = saltus.panelsFromText(result, address.get("c")) ?? saltus.firstPanels(result);
   let ranges = {};
   let stack = null;
 
@@ -25,18 +26,23 @@ saltus.timeline = (result, holder, listeners) => {
   const draw = () => {
     // As tall as the first screen allows, below head and warnings, above axis and border.
     const top = holder.getBoundingClientRect().top + window.scrollY;
-    stack = saltus.stackPanels(result, Math.max(360, window.innerHeight - top - 64));
+    stack = saltus.stackPanels(result, Math.max(360, window.innerHeight - top - 64), choice);
     const current = view();
     const layout = {...saltus.figureLayout(result, stack, current), width: holder.clientWidth};
     listeners.resized(stack.height);
     return Plotly.react(holder, saltus.figureTraces(result, stack, current), layout, saltus.plotConfig);
   };
 
+  const windowMoved = () => {
+    address.set("t", window_[0] === full[0] && window_[1] === full[1] ? null : window_.map((t) => saltus.brief(t, 9)).join(","));
+    draw();
+    listeners.windowChanged(window_);
+  };
+
   const setWindow = (next) => {
     window_ = next;
     ranges = {};
-    draw();
-    listeners.windowChanged(window_);
+    windowMoved();
   };
 
   const relayout = (change) => {
@@ -49,8 +55,7 @@ saltus.timeline = (result, holder, listeners) => {
     }
     const [from, to] = [change["xaxis.range[0]"], change["xaxis.range[1]"]];
     if (from !== undefined && to !== undefined && to > from) window_ = [from, to];
-    draw();
-    listeners.windowChanged(window_);
+    windowMoved();
   };
 
   /** A window around an event, as wide as its distance to the second neighbour on either side. */
@@ -63,6 +68,7 @@ saltus.timeline = (result, holder, listeners) => {
 
   const flag = (i) => {
     selected = i;
+    address.set("event", i === null ? null : String(i + 1));
     if (i !== null) {
       const {t} = result.events[i];
       const half = (window_[1] - window_[0]) / 2;
@@ -90,6 +96,13 @@ saltus.timeline = (result, holder, listeners) => {
       draw();
     },
     branch: () => branch,
+    choice: () => choice,
+    choose: (next) => {
+      choice = next;
+      ranges = {};
+      address.set("c", saltus.panelsText(choice));
+      draw();
+    },
     window: () => window_,
     shown: () => shown,
     selected: () => selected,

@@ -1,0 +1,118 @@
+// The columns of a trajectory: what can be drawn over time and along the axes of phase space, and what is drawn first.
+"use strict";
+
+/** Where the columns of a sort lie in a trajectory. */
+saltus.columnTables = {state: "x", output: "outputs", input: "u", alpha: "alpha", theta: "theta"};
+
+/** A column as it is called in drawings: selections by their sign. */
+saltus.columnLabel = ({name, sort}) => ({alpha: `α(${name})`, theta: `θ(${name})`})[sort] ?? name;
+
+/** The values of a column in a trajectory, that of a branch for example. */
+saltus.columnOf = (trajectory, {sort, index}) =>
+    sort === "time" ? trajectory.t : trajectory[saltus.columnTables[sort]][index];
+
+/** Whether a column changes by more than rounding. */
+saltus.moves = (values) => {
+  const [least, greatest] = saltus.range(values);
+  return greatest - least > 1e-12 * Math.max(Math.abs(least), Math.abs(greatest));
+};
+
+/** All columns, states first in their order, so that the number of a state is that of its column. */
+saltus.columns = (result) => {
+  const held = saltus.columnsOf.get(result);
+  if (held !== undefined) return held;
+  const {trajectory} = result;
+  const names = {
+    state: result.states,
+    output: result.output_names,
+    input: result.controls,
+    alpha: result.switching_functions,
+    theta: result.regions,
+  };
+  const columns = Object.entries(names).flatMap(([sort, list]) => (list ?? []).map((name, index) => {
+    const values = saltus.columnOf(trajectory, {sort, index});
+    return {
+      name,
+      sort,
+      index,
+      values,
+      stepwise: sort === "input" && saltus.isStepwise(values),
+      discrete: sort === "state" && saltus.isDiscrete(trajectory.t, values),
+    };
+  }));
+  saltus.columnsOf.set(result, columns);
+  return columns;
+};
+saltus.columnsOf = new WeakMap();
+
+/** What an axis of phase space can be: every column, and the time behind them. */
+saltus.axes = (result) =>
+    [...saltus.columns(result), {name: "t", sort: "time", index: 0, values: result.trajectory.t}];
+
+/** As many curves are drawn at first; the others wait in the list of columns. */
+saltus.firstCurves = 48;
+saltus.firstBands = 24;
+
+/** Columns of a sort that move, all if none does; of very many those that move most; discrete ones last. */
+saltus.movingFirst = (columns) => {
+  const moving = columns.filter((column) => saltus.moves(column.values));
+  const shown = moving.length > 0 ? moving : columns;
+  const size = (column) => {
+    const [least, greatest] = saltus.range(column.values);
+    return greatest - least;
+  };
+  const most = new Set([...shown].sort((a, b) => size(b) - size(a)).slice(0, saltus.firstCurves));
+  const kept = shown.filter((column) => most.has(column));
+  return [...kept.filter((column) => !column.discrete), ...kept.filter((column) => column.discrete)];
+};
+
+/** Bands of modes at first: all if there are few, else those whose mode changes. */
+saltus.movingBands = (result) => {
+  const bands = saltus.bandIntervals(result);
+  const all = bands.map((_, i) => i);
+  if (all.length <= saltus.firstBands) return all;
+  const changing = all.filter((i) => new Set(bands[i].values).size > 1);
+  return (changing.length > 0 ? changing : all).slice(0, saltus.firstBands);
+};
+
+/** The panels at first, from top to bottom, as numbers of columns; and the bands of modes. */
+saltus.firstPanels = (result) => {
+  const columns = saltus.columns(result);
+  const numbers = new Map(columns.map((column, i) => [column, i]));
+  const of = (sort) => columns.filter((column) => column.sort === sort);
+  const groups = ["state", "output", "input"].flatMap((sort) => saltus.groupCurves(saltus.movingFirst(of(sort))));
+  for (const sort of ["alpha", "theta"]) {
+    const all = of(sort).slice(0, saltus.firstBands);
+    for (let i = 0; i < all.length; i += saltus.perPanel) groups.push(all.slice(i, i + saltus.perPanel));
+  }
+  const isLast = (group) => group.every((column) => column.discrete);
+  const ordered = [...groups.filter((group) => !isLast(group)), ...groups.filter(isLast)];
+  return {
+    panels: ordered.map((group) => ({curves: group.map((column) => numbers.get(column)), log: false})),
+    bands: saltus.movingBands(result),
+  };
+};
+
+/** A choice of panels as text for the address: "0,1+2,l3;0,1" (l: logarithmic; behind the semicolon the bands). */
+saltus.panelsText = ({panels, bands}) =>
+    `${panels.map(({curves, log}) => `${log ? "l" : ""}${curves.join("+")}`).join(",")};${bands.join(",")}`;
+
+/** The choice that such a text stands for; null if it does not fit the result. */
+saltus.panelsFromText = (result, text) => {
+  const match = /^((?:l?\d+(?:\+\d+)*(?:,|(?=;)))*);((?:\d+(?:,|$))*)$/.exec(text ?? "");
+  if (match === null) return null;
+  const list = (part) => part.split(",").filter((entry) => entry !== "");
+  const panels = list(match[1]).map(
+      (entry) => ({log: entry.startsWith("l"), curves: entry.replace("l", "").split("+").map(Number)}));
+  const bands = list(match[2]).map(Number);
+  const fits = panels.every(({curves}) => curves.every((i) => i < saltus.columns(result).length)) &&
+      bands.every((i) => i < saltus.bands(result).length);
+  return fits ? {panels, bands} : null;
+};
+
+/** Axes as text for the address: "1,0"; null if they do not fit the result. */
+saltus.axesFromText = (result, text, size = 2) => {
+  if (!/^\d+(,\d+)*$/.test(text ?? "")) return null;
+  const axes = text.split(",").map(Number);
+  return axes.length === size && axes.every((i) => i < saltus.axes(result).length) ? axes : null;
+};
