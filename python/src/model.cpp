@@ -161,9 +161,7 @@ nb::object optimize(Model& model, std::vector<std::string> settings, std::vector
 
 std::string check(Model& model, std::vector<std::string> settings) {
   const auto input = model.stated({std::move(settings), {}});
-  Watch watch{nb::none()};
-  auto text = cli::check_text(input, watch.observers());
-  watch.raise_what_came(nb::none());
+  auto text = cli::check_text(input);
   if (!text) raise(io::located(text.error(), input.file));
   return *text;
 }

@@ -33,12 +33,18 @@ class Help(tool.ToolTest):
         self.assertNotIn("options-page", text)
 
     def test_every_subcommand_ends_with_one_example(self):
-        for command in ("simulate", "compare", "order", "check", "mpcc", "report", "models"):
+        for command in ("simulate", "compare", "order", "check", "mpcc", "report", "models", "diff", "new", "cite"):
             text, _ = self.run_tool(command, "--help", code=0)
             lines = text.rstrip().splitlines()
             self.assertEqual(lines[-2], "Example:", text)
             self.assertTrue(lines[-1].startswith(f"  saltus "), text)
             self.assertIn(f"saltus {command}", lines[-1])
+
+    def test_help_of_a_command(self):
+        for command in ("simulate", "diff", "check"):
+            self.assertEqual(self.run_tool("help", command, code=0), self.run_tool(command, "--help", code=0))
+        self.assertEqual(self.run_tool("help", code=0), self.run_tool("--help", code=0))
+        self.assertIn("did you mean 'simulate'?", self.run_tool("help", "simulat", code=2)[1])
 
     def test_examples_run(self):
         for command in ("check", "compare", "models", "order", "simulate"):
@@ -46,8 +52,11 @@ class Help(tool.ToolTest):
             example = text.rstrip().splitlines()[-1].split(">")[0].split()
             self.run_tool(*example[1:], code=0)
 
-    def test_help_of_simulate_lists_the_options_table(self):
-        text, _ = self.run_tool("simulate", "--help", code=0)
+    def test_help_of_simulate_is_short_and_all_of_it_lists_the_options_table(self):
+        short, _ = self.run_tool("simulate", "--help", code=0)
+        self.assertLess(len(short.splitlines()), 40)
+        text, _ = self.run_tool("simulate", "--help-all", code=0)
+        self.assertTrue(text.startswith(short.rstrip()), text)
         self.assertLessEqual(max(map(len, text.splitlines())), 120)
         for key in ("event.integrator", "output.every", "initial_mode.*", "max_steps", "default 1e-08"):
             self.assertIn(key, text)
@@ -188,6 +197,12 @@ until = 100
         rows = [line for line in out.splitlines() if " user " in line]
         self.assertEqual(len(rows), 20)
         self.assertTrue(rows[-1].split()[0] == "32" and rows[0].split()[0] == "1")
+        for shown, count in (("3", 6), ("all", 32), ("0", 0), ("100", 32)):
+            out, _ = self.run_tool("simulate", model, "--events", shown, code=0)
+            self.assertEqual(len([line for line in out.splitlines() if " user " in line]), count, shown)
+            self.assertRegex(out, r"(?m)^events +32")
+        _, err = self.run_tool("simulate", model, "--events", "some", code=2)
+        self.assertIn("expected a whole number or all", err)
 
 
 class Check(tool.ToolTest):
@@ -217,7 +232,7 @@ until = 1
         self.assertEqual(err, "")
 
     def test_says_how_large_the_complementarity_systems_are_and_whether_they_are_regular(self):
-        out, _ = self.run_tool("check", "two-belts", code=0)
+        out, _ = self.run_tool("check", "two-belts", "--well-posedness", code=0)
         numbers = {line.split()[0]: [int(n) for n in line.split()[1:]]
                    for line in out.splitlines() if line.startswith(("  step  ", "  stewart  "))}
         # alpha, theta, beta, n_alg, n_comp, n_eq of two functions and four fields: Table 4
@@ -226,9 +241,10 @@ until = 1
         both = out.split("first, second = 0")[1].splitlines()
         self.assertRegex(both[1], r"step +rank 2 of 2, smallest singular value 0\.[0-9]+$")
         self.assertRegex(both[2], r"stewart +rank 4 of 5, .*singular")
-        out, _ = self.run_tool("check", "two-belts", "--set", "simulate.max_events=1", code=0)
+        out, _ = self.run_tool("check", "two-belts", "--well-posedness", "--set", "simulate.max_events=1",
+                               code=0)
         self.assertRegex(out, r"the simulation stopped at t = 0\.24")
-        out, _ = self.run_tool("check", "bouncing-ball", code=0)
+        out, _ = self.run_tool("check", "bouncing-ball", "--well-posedness", code=0)
         self.assertIn("none: finite elements do not cover models with [[jumps]]", out)
         self.assertNotIn("well-posedness", out)
 

@@ -68,7 +68,7 @@ class Interrupt(tool.ToolTest):
         self.assertEqual(result["trajectory"]["t"][-1], result["final"]["t"])
 
     def test_check_says_what_it_knows(self):
-        process = self.start(["check"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = self.start(["check", "--well-posedness"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(2.0)
         self.assertIsNone(process.poll(), "ended by itself")
         process.send_signal(signal.SIGINT)

@@ -107,7 +107,7 @@ FILES = {
 class MalformedJumps(tool.ToolTest):
     def test_the_model_they_are_made_from_is_good(self):
         out, _ = self.run_tool("check", self.write("good.toml", jump("when = 'y < 0'", SET)), code=0)
-        self.assertIn("jump1: when its condition becomes true; sets v", out)
+        self.assertIn("jump1: when y < 0 becomes true; sets v: v becomes -e*v", out)
         self.assertIn("n = 0", out)
 
     def test_all(self):

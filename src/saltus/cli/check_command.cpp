@@ -1,13 +1,22 @@
+#include <algorithm>
 #include <memory>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include "saltus/base/same_place.hpp"
 #include "saltus/cli/check_text.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/model_input.hpp"
+#include "saltus/cli/optimize_text.hpp"
 #include "saltus/cli/progress.hpp"
+#include "saltus/cli/reformulation_text.hpp"
+#include "saltus/cli/source_excerpt.hpp"
 #include "saltus/cli/terminal.hpp"
+#include "saltus/io/check/json_check.hpp"
+#include "saltus/model/build.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -15,25 +24,60 @@ namespace {
 struct CheckArguments {
   std::string model;
   std::vector<std::string> settings;
+  bool json = false;
+  bool well_posedness = false;
 };
 
-ExitCode run_check(const CheckArguments& arguments) {
-  const auto input = read_input(arguments.model, arguments.settings);
-  if (!input) return refuse(input.error());
+/// Every mistake of the file, or the one that is none of the file: of --set, of an option.
+std::vector<Error> all_mistakes(const Error& first, const ModelText& text) {
+  auto errors = io::diagnose_model(text.text, text.name).errors;
+  const auto is_first = [&](const Error& error) { return same_place(error.location, first.location); };
+  if (std::none_of(errors.begin(), errors.end(), is_first)) errors.push_back(first);
+  return errors;
+}
+
+ExitCode refuse_model(const CheckArguments& arguments, const Error& first, const ModelText& text) {
+  const auto errors = all_mistakes(first, text);
+  for (const auto& error : errors) print_error(with_source(error, text));
+  if (errors.size() > 1) print_error(fmt::format("{} mistakes", errors.size()));
+  if (arguments.json) print(io::check_json(text.path, errors, nullptr, nullptr));
+  return ExitCode::bad_input;
+}
+
+/// What takes a simulation.
+ExitCode print_ranks(const ModelInput& input, const model::System& system) {
   ProgressLine progress(ShowProgress::when_terminal);
-  const auto text = check_text(*input, watched(progress));
+  const auto text = ranks_text(system, input.file.simulate, watched(progress));
   progress.clear();
-  if (!text) return refuse(io::located(text.error(), input->file));
-  print(*text);
+  print(text);
   if (!interrupted()) return ExitCode::done;
   print_error("stopped early: stopped_by_user: the ranks are those until then");
   return ExitCode::stopped_early;
 }
 
+ExitCode run_check(const CheckArguments& arguments) {
+  const auto text = read_model_text(arguments.model);
+  if (!text) return refuse(text.error());
+  const auto input = read_input(*text, arguments.settings);
+  if (!input) return refuse_model(arguments, input.error(), *text);
+  const auto system = model::build(input->file.description, input->overrides);
+  if (!system) return refuse_model(arguments, io::located(system.error(), input->file), *text);
+  const auto optimization = optimize_overview(*input);
+  if (!optimization) return refuse_model(arguments, optimization.error(), *text);
+  const auto overview = io::overview_of(input->file.description, *system, input->file.captions);
+  if (arguments.json) {
+    print(io::check_json(text->path, {}, &overview, *optimization ? &**optimization : nullptr));
+    return ExitCode::done;
+  }
+  print(check_text(*input, *system, overview, *optimization));
+  return arguments.well_posedness ? print_ranks(*input, *system) : ExitCode::done;
+}
+
 }  // namespace
 
 Command add_check(CLI::App& app) {
-  auto* command = app.add_subcommand("check", "read a model, classify its switching functions, warn");
+  auto* command =
+      app.add_subcommand("check", "say what is understood of a model, or all its mistakes; simulates nothing");
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<CheckArguments>();
   command
@@ -44,6 +88,11 @@ Command add_check(CLI::App& app) {
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->take_all();
+  command->add_flag("--json", arguments->json, "print it for programs, mistakes included");
+  command
+      ->add_flag("--well-posedness", arguments->well_posedness,
+                 "simulate, and print the ranks of the systems for the multipliers along the solution")
+      ->excludes("--json");
   command->footer("Example:\n  saltus check stick-slip");
   return {"check", [arguments] { return run_check(*arguments); }};
 }

@@ -15,6 +15,7 @@ namespace saltus::cli {
 struct Command {
   std::string name;
   std::function<ExitCode()> run;  ///< once the command line is parsed
+  std::string more_help{};        ///< of --help-all, below the help
 };
 
 [[nodiscard]] Command add_simulate(CLI::App& app);
@@ -25,6 +26,9 @@ struct Command {
 [[nodiscard]] Command add_mpcc(CLI::App& app);
 [[nodiscard]] Command add_models(CLI::App& app);
 [[nodiscard]] Command add_report(CLI::App& app);
+[[nodiscard]] Command add_diff(CLI::App& app);
+[[nodiscard]] Command add_new(CLI::App& app);
+[[nodiscard]] Command add_cite(CLI::App& app);
 /// Hidden: prints docs/options.md.
 [[nodiscard]] Command add_options_page(CLI::App& app);
 

@@ -29,12 +29,24 @@ Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
   return {};
 }
 
-Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings) {
+Expected<ModelText> read_model_text(const std::string& model) {
   const auto path = find_model(model);
   if (!path) return tl::unexpected(path.error());
-  auto file = io::read_model(*path);
+  auto text = io::read_model_text(*path);
+  if (!text) return tl::unexpected(text.error());
+  return ModelText{path->string(), io::shown_name(*path), std::move(*text)};
+}
+
+Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings) {
+  const auto text = read_model_text(model);
+  if (!text) return tl::unexpected(text.error());
+  return read_input(*text, settings);
+}
+
+Expected<ModelInput> read_input(const ModelText& text, const std::vector<std::string>& settings) {
+  auto file = io::parse_model(text.text, text.name);
   if (!file) return tl::unexpected(file.error());
-  ModelInput input{path->string(), std::move(*file), {}};
+  ModelInput input{text.path, std::move(*file), {}};
   for (const auto& setting : settings) {
     if (auto done = apply_setting(input, setting); !done) return tl::unexpected(done.error());
   }

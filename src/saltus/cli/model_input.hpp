@@ -11,16 +11,27 @@
 
 namespace saltus::cli {
 
+/// MODEL of the command line, read but not parsed.
+struct ModelText {
+  std::string path;
+  std::string name;  ///< for messages
+  std::string text;
+};
+
 struct ModelInput {
   std::string path;
   io::ModelFile file;
   std::vector<model::Override> overrides;
 };
 
+/// @param model  path or catalogue name, - for standard input
+[[nodiscard]] Expected<ModelText> read_model_text(const std::string& model);
+
 /// @param model     path or catalogue name
 /// @param settings  NAME=VALUE each; dotted names reach any key of the file, others replace a parameter, an initial
 ///                  value or a control's constant value
 [[nodiscard]] Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings);
+[[nodiscard]] Expected<ModelInput> read_input(const ModelText& text, const std::vector<std::string>& settings);
 
 /// One of these settings.
 [[nodiscard]] Expected<void> apply_setting(ModelInput& input, const std::string& setting);

@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 
 #include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/optimal_control/describe_ocp.hpp"
 
 namespace saltus::cli {
 namespace {
 
 using pipeline::OcpCounts;
+using pipeline::OcpOverview;
 
 std::string counts_line(std::string_view title, const OcpCounts& counts) {
   return fmt::format("  {:<20}{:>12}{:>12}{:>12}{:>12}\n", title, counts.variables, counts.equations, counts.pairs,
@@ -39,21 +39,24 @@ std::string lines_of(const std::vector<OcpCounts>& intervals) {
 
 }  // namespace
 
-Expected<std::string> optimize_text(const ModelInput& input) {
-  if (!input.file.optimize) return std::string();
+Expected<std::optional<OcpOverview>> optimize_overview(const ModelInput& input) {
+  if (!input.file.optimize) return std::optional<OcpOverview>();
   if (auto fits = io::check_optimize_options(input.file); !fits) return tl::unexpected(fits.error());
   io::ModelFile file = input.file;
   if (auto done = io::read_start_result(file); !done) return tl::unexpected(done.error());
   const auto ocp = model::build_ocp(file.description, input.overrides);
   if (!ocp) return tl::unexpected(io::located(ocp.error(), file));
-  const auto overview = pipeline::describe_ocp(*ocp, *file.optimize);
+  auto overview = pipeline::describe_ocp(*ocp, *file.optimize);
   if (!overview) return tl::unexpected(io::located(overview.error(), file));
-  std::string text = fmt::format("\noptimal control ({} control intervals)\n", overview->intervals.size());
+  overview->warnings.insert(overview->warnings.begin(), ocp->warnings.begin(), ocp->warnings.end());
+  return std::optional<OcpOverview>(std::move(*overview));
+}
+
+std::string optimize_text(const OcpOverview& overview) {
+  std::string text = fmt::format("\noptimal control ({} control intervals)\n", overview.intervals.size());
   text += fmt::format("  {:<20}{:>12}{:>12}{:>12}{:>12}\n", "", "variables", "equations", "pairs", "nonzeros");
-  text += lines_of(overview->intervals) + counts_line("problem", overview->problem);
-  auto warnings = ocp->warnings;
-  warnings.insert(warnings.end(), overview->warnings.begin(), overview->warnings.end());
-  for (const auto& warning : warnings) text += fmt::format("  warning: {}\n", warning);
+  text += lines_of(overview.intervals) + counts_line("problem", overview.problem);
+  for (const auto& warning : overview.warnings) text += fmt::format("  warning: {}\n", warning);
   return text;
 }
 

@@ -1,15 +1,20 @@
-// What `saltus check` prints of [optimize].
+// What `saltus check` says of [optimize].
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "saltus/base/error.hpp"
 #include "saltus/cli/model_input.hpp"
+#include "saltus/pipeline/optimal_control/describe_ocp.hpp"
 
 namespace saltus::cli {
 
-/// Sizes per interval and of the problem, and warnings; empty for a model without [optimize]. Fails for bad input as
-/// saltus optimize does.
-[[nodiscard]] Expected<std::string> optimize_text(const ModelInput& input);
+/// Sizes per interval and of the problem, and warnings, those of the statement first; nothing for a model without
+/// [optimize]. Fails for bad input as saltus optimize does.
+[[nodiscard]] Expected<std::optional<pipeline::OcpOverview>> optimize_overview(const ModelInput& input);
+
+/// The same for people.
+[[nodiscard]] std::string optimize_text(const pipeline::OcpOverview& overview);
 
 }  // namespace saltus::cli

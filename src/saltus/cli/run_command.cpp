@@ -1,5 +1,8 @@
 #include "saltus/cli/run_command.hpp"
 
+#include <charconv>
+#include <limits>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,6 +10,7 @@
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/progress.hpp"
+#include "saltus/cli/source_excerpt.hpp"
 #include "saltus/cli/terminal.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/surfaces.hpp"
@@ -64,6 +68,27 @@ class Stops {
   std::size_t said_ = 0;
 };
 
+/// How many events the table shows at each end.
+Expected<std::size_t> shown_events(const std::string& typed) {
+  if (typed.empty()) return report::events_at_each_end;
+  if (typed == "all") return std::numeric_limits<std::size_t>::max();
+  std::size_t count = 0;
+  const auto* end = typed.data() + typed.size();
+  if (const auto read = std::from_chars(typed.data(), end, count); read.ec == std::errc() && read.ptr == end) {
+    return count;
+  }
+  return tl::unexpected(Error{ErrorCode::invalid_option,
+                              fmt::format("--events {}: expected a whole number or all", typed),
+                              "--events 3 shows the first and the last 3",
+                              {},
+                              {}});
+}
+
+ExitCode refuse_with_source(const Error& error, const ModelText& text) {
+  print_error(with_source(error, text));
+  return ExitCode::bad_input;
+}
+
 ExitCode report_stops(const result::Result& result) {
   Stops stops;
   for (const auto& entry : result::tree(result)) {
@@ -118,20 +143,25 @@ void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const
 }
 
 ExitCode run_model(const RunArguments& arguments, Compute compute) {
-  auto input = read_input(arguments.model, arguments.settings);
-  if (!input) return refuse(input.error());
+  const auto shown = shown_events(arguments.events);
+  if (!shown) return refuse(shown.error());
+  const auto text = read_model_text(arguments.model);
+  if (!text) return refuse(text.error());
+  auto input = read_input(*text, arguments.settings);
+  if (!input) return refuse_with_source(input.error(), *text);
   if (auto done = apply_shortcuts(arguments, input->file); !done) return refuse(done.error());
-  if (auto fits = io::check_options(input->file); !fits) return refuse(fits.error());
+  if (auto fits = io::check_options(input->file); !fits) return refuse_with_source(fits.error(), *text);
   const auto outputs = Outputs::make(arguments.outputs, arguments.report, input->path, arguments.output_suffixes);
   if (!outputs) return refuse(outputs.error());
 
   if (arguments.methods == RunMethods::chosen)
     for (const auto& warning : options_without_effect(input->file)) print_error(fmt::format("warning: {}", warning));
   auto result = compute_all(arguments, *input, *outputs, compute);
-  if (!result) return refuse(io::located(result.error(), input->file));
+  if (!result) return refuse_with_source(io::located(result.error(), input->file), *text);
 
   const auto written = outputs->write(*result);
-  if (!arguments.quiet) print(report::to_table(*result));  // also if nothing could be written: it is all that is left
+  if (!arguments.quiet)
+    print(report::to_table(*result, *shown));  // also if nothing could be written: it is all that is left
   if (!written) return refuse(written.error());
   return report_stops(*result);
 }

@@ -43,6 +43,7 @@ struct RunArguments {
   std::vector<std::string> outputs;
   std::vector<std::string> output_suffixes;
   std::string report;
+  std::string events;  ///< of --events; empty: the default
   bool quiet = false;
   RunMethods methods = RunMethods::several;
 };

@@ -21,11 +21,13 @@ constexpr std::array simulate_shortcuts{
              "report, all or K: follow other admissible motions, at most K trajectories"},
 };
 
-std::string footer() {
-  return fmt::format(
-      "Keys of [simulate], for --set simulate.KEY=VALUE:\n{}\nExample:\n  saltus simulate stick-slip --until 20 "
-      "--set belt=0.3 --out stick-slip.json --report stick-slip.html",
-      pipeline::options_help());
+constexpr const char* simulate_footer =
+    "--set simulate.KEY=VALUE reaches every key of [simulate]: saltus simulate --help-all lists them.\n"
+    "\nExample:\n  saltus simulate stick-slip --until 20 --set belt=0.3 --out stick-slip.json --report "
+    "stick-slip.html";
+
+std::string all_keys() {
+  return fmt::format("\nKeys of [simulate], for --set simulate.KEY=VALUE:\n{}", pipeline::options_help());
 }
 
 }  // namespace
@@ -37,8 +39,10 @@ Command add_simulate(CLI::App& app) {
   arguments->methods = RunMethods::chosen;
   add_run_options(*command, *arguments, simulate_shortcuts, {".json", ".csv"},
                   "write the result: .json all of it, .csv the trajectory; may repeat");
-  command->footer(footer());
-  return {"simulate", [arguments] { return run_model(*arguments, pipeline::simulate); }};
+  command->add_option("--events", arguments->events, "events in the table: N at each end (10), or all")
+      ->type_name("N|all");
+  command->footer(simulate_footer);
+  return {"simulate", [arguments] { return run_model(*arguments, pipeline::simulate); }, all_keys()};
 }
 
 }  // namespace saltus::cli

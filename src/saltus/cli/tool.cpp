@@ -51,20 +51,49 @@ Error unknown_command(const std::string& word, const std::vector<Command>& comma
   return {ErrorCode::unknown_name, fmt::format("'{}' is no command of saltus", word), suggest(word, known), {}, {}};
 }
 
+/// What was typed behind the name of the tool.
+std::vector<std::string> arguments_of(int argc, char** argv) {
+  return argc > 1 ? std::vector<std::string>(argv + 1, argv + argc) : std::vector<std::string>();
+}
+
+/// `help` and `help CMD` as `--help` and `CMD --help`.
+std::vector<std::string> help_for(std::vector<std::string> typed) {
+  typed.erase(typed.begin());
+  if (typed.size() > 1) typed.resize(1);
+  typed.emplace_back("--help");
+  return typed;
+}
+
+void add_help_all(CLI::App& app, const std::vector<Command>& commands) {
+  for (const auto& command : commands) {
+    if (!command.more_help.empty()) {
+      app.get_subcommand(command.name)->set_help_all_flag("--help-all", "the same, with every key of the model file");
+    }
+  }
+}
+
 ExitCode run(int argc, char** argv) {
   CLI::App app("Simulates and optimises nonsmooth dynamical systems: switches and sliding modes, located exactly.",
                "saltus");
   app.set_version_flag("--version", fmt::format("saltus {}", version));
   app.footer("Example:\n  saltus simulate stick-slip");
   app.get_formatter()->column_width(26);
-  const std::vector<Command> commands{add_simulate(app), add_optimize(app), add_compare(app),
-                                      add_order(app),    add_check(app),    add_mpcc(app),
-                                      add_models(app),   add_report(app),   add_options_page(app)};
-  const auto chosen = [&](const Command& command) { return argc > 1 && command.name == argv[1]; };
+  const std::vector<Command> commands{add_simulate(app), add_optimize(app), add_compare(app), add_order(app),
+                                      add_check(app),    add_mpcc(app),     add_models(app),  add_report(app),
+                                      add_diff(app),     add_new(app),      add_cite(app),    add_options_page(app)};
+  add_help_all(app, commands);
+  auto typed = arguments_of(argc, argv);
+  if (!typed.empty() && typed.front() == "help") typed = help_for(typed);
+  const auto chosen = [&](const Command& command) { return !typed.empty() && command.name == typed.front(); };
   const auto command = std::find_if(commands.begin(), commands.end(), chosen);
-  if (command == commands.end() && argc > 1 && argv[1][0] != '-') return refuse(unknown_command(argv[1], commands));
+  if (command == commands.end() && !typed.empty() && !typed.front().starts_with('-')) {
+    return refuse(unknown_command(typed.front(), commands));
+  }
   try {
-    app.parse(argc, argv);
+    app.parse(std::vector<std::string>(typed.rbegin(), typed.rend()));  // CLI11 takes them from the back
+  } catch (const CLI::CallForAllHelp&) {
+    print(app.help() + command->more_help);
+    return ExitCode::done;
   } catch (const CLI::ParseError& failure) {
     if (failure.get_exit_code() != 0) return refuse(unexpected_argument(app, failure));
     app.exit(failure);  // prints the help or the version that was asked for

@@ -27,11 +27,17 @@ namespace saltus::expression {
 /// A number as a tree, e.g. for a bare number in a model file; may be negative, as it may not in a parsed tree.
 [[nodiscard]] NodePtr number(double value, const SourceLocation& location);
 
+/// A tree in place of one that could not be read: a name without letters, which nobody can give.
+[[nodiscard]] NodePtr unreadable(const SourceLocation& location);
+
 /// The text of a tree without spaces (but around the words and, or, not), with the parentheses that were written and
 /// those that are needed, numbers as they were written (or, if no text states them, the shortest ones that read back
 /// the same). Names switching functions.
 /// Parsing it gives an equal tree, if the tree was parsed.
 [[nodiscard]] std::string to_text(const Node& node);
+
+/// The same, with spaces where people put them: around + - and comparisons, behind commas.
+[[nodiscard]] std::string to_spaced_text(const Node& node);
 
 /// Names (not functions) that occur in the tree, each once, in order of appearance.
 [[nodiscard]] std::vector<std::string> names_in(const Node& node);

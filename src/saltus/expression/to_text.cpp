@@ -43,8 +43,12 @@ Precedence precedence_of(const Node& node) {
   return text.substr(0, exponent) + (negative ? "e-" : "e") + text.substr(digits);
 }
 
+enum class Spacing { tight, spaced };
+
 class Writer {
  public:
+  explicit Writer(Spacing spacing) : spaced_(spacing == Spacing::spaced) {}
+
   /// Appends the node, in parentheses if they were written or if `loosest` binds tighter than the node does.
   void write(const Node& node, Precedence loosest) {
     const bool enclosed = node.parenthesised || precedence_of(node) < loosest;
@@ -79,7 +83,8 @@ class Writer {
   void write_value(const Binary& binary) {
     const auto& grammar = grammar_of(binary.op);
     write(*binary.left, left_operand(grammar));
-    const bool is_word = grammar.precedence <= Precedence::logical_and;
+    const bool is_word =
+        grammar.precedence <= Precedence::logical_and || (spaced_ && grammar.precedence <= Precedence::sum);
     if (is_word) text_ += ' ';
     text_ += grammar.text;
     if (is_word) text_ += ' ';
@@ -92,13 +97,14 @@ class Writer {
     text_ += call.function;
     text_ += '(';
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
-      if (i > 0) text_ += ',';
+      if (i > 0) text_ += spaced_ ? ", " : ",";
       write(*call.arguments[i], Precedence::logical_or);
     }
     text_ += ')';
   }
 
   std::string text_;
+  bool spaced_ = false;
 };
 
 void collect_names(const Node& node, std::vector<std::string>& names) {
@@ -122,7 +128,13 @@ void collect_names(const Node& node, std::vector<std::string>& names) {
 }  // namespace
 
 std::string to_text(const Node& node) {
-  Writer writer;
+  Writer writer(Spacing::tight);
+  writer.write(node, Precedence::logical_or);
+  return writer.take();
+}
+
+std::string to_spaced_text(const Node& node) {
+  Writer writer(Spacing::spaced);
   writer.write(node, Precedence::logical_or);
   return writer.take();
 }
@@ -135,6 +147,10 @@ std::vector<std::string> names_in(const Node& node) {
 
 NodePtr number(double value, const SourceLocation& location) {
   return std::make_shared<const Node>(Node{Number{value}, location, false});
+}
+
+NodePtr unreadable(const SourceLocation& location) {
+  return std::make_shared<const Node>(Node{Name{}, location, false});
 }
 
 }  // namespace saltus::expression

@@ -6,9 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/same_place.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/sha256.hpp"
 #include "saltus/io/toml_sections_internal.hpp"
+#include "saltus/model/mistakes.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 
 namespace saltus::io {
@@ -37,7 +39,7 @@ constexpr std::array sections{
     Section{"dynamics", read_into<&model::Description::dynamics>},
     Section{"modes", read_modes},
     Section{"jumps", read_jumps},
-    Section{"outputs", read_into<&model::Description::outputs>},
+    Section{"outputs", read_outputs},
     Section{"events", read_events},
     Section{"tables", read_tables},
     Section{"simulate", read_simulate},
@@ -98,6 +100,71 @@ Expected<void> check_clock(const model::Description& description) {
                                      "in [time_freezing]"));
 }
 
+enum class AfterMistake { stop, read_on };
+
+/// Reads the tables into the model; returns the mistakes.
+std::vector<Error> read_document(const TomlTable& document, ModelFile& model, AfterMistake after) {
+  const auto& file = model.description.file;
+  TomlReader reader(file);
+  reader.set_functions(table_names(document));
+  for (const auto& entry : document) {
+    model.table_locations.emplace_back(entry.key, entry.location);
+    read_section(reader, entry, model);
+    if (!reader.errors().empty() && after == AfterMistake::stop) return reader.errors();
+  }
+  auto errors = reader.errors();
+  if (model.description.name.empty()) {
+    errors.push_back({ErrorCode::parse_failure,
+                      "the model has no table [model] with a name",
+                      "begin the file with [model] and name = \"my-model\"",
+                      {file, 1, 1},
+                      {}});
+  }
+  if (auto fits = check_clock(model.description); !fits) errors.push_back(fits.error());
+  return errors;
+}
+
+/// Takes what is no TOML out of a line, so that the rest can be read: the value of its key, then the line. False if
+/// that cannot help.
+bool withdraw(std::string& text, int line, int attempt) {
+  std::size_t begin = 0;
+  for (int i = 1; i < line && begin != std::string::npos; ++i) {
+    begin = text.find('\n', begin);
+    if (begin != std::string::npos) ++begin;
+  }
+  if (line < 1 || begin >= text.size() || attempt > 1) return false;
+  const auto end = std::min(text.find('\n', begin), text.size());
+  const std::string_view content = std::string_view(text).substr(begin, end - begin);
+  const auto equal = content.find('=');
+  if (equal == std::string_view::npos || content.substr(0, equal).find_first_of("[{\"'#") != std::string_view::npos) {
+    return false;
+  }
+  // A date is no value of any key: whoever reads it complains, in a line of which that is known.
+  const std::string instead = attempt == 0 ? std::string(content.substr(0, equal + 1)) + " 0001-01-01" : std::string();
+  text.replace(begin, end - begin, instead);
+  return true;
+}
+
+/// The document, with the lines that are no TOML taken out; their errors go into `errors`.
+Expected<TomlTable> parse_in_parts(std::string text, const std::string& file, std::vector<Error>& errors) {
+  constexpr std::size_t most_errors = 20;
+  auto document = parse_toml(text, file);
+  int attempt = 0;
+  while (!document && errors.size() < most_errors) {
+    const Error error = document.error();
+    const bool again = !errors.empty() && errors.back().location.line == error.location.line;
+    attempt = again ? attempt + 1 : 0;
+    if (!again) errors.push_back(error);
+    if (!withdraw(text, error.location.line, attempt)) break;
+    document = parse_toml(text, file);
+  }
+  return document;
+}
+
+bool is_before(const Error& a, const Error& b) {
+  return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
+}
+
 }  // namespace
 
 Expected<ModelFile> parse_model(std::string_view text, const std::string& file) {
@@ -106,22 +173,33 @@ Expected<ModelFile> parse_model(std::string_view text, const std::string& file) 
   ModelFile model;
   model.description.file = file;
   model.sha256 = sha256(text);
-  TomlReader reader(file);
-  reader.set_functions(table_names(*document));
-  for (const auto& entry : *document) {
-    model.table_locations.emplace_back(entry.key, entry.location);
-    read_section(reader, entry, model);
-    if (reader.failed()) return tl::unexpected(*reader.error());
-  }
-  if (model.description.name.empty()) {
-    return tl::unexpected(Error{ErrorCode::parse_failure,
-                                "the model has no table [model] with a name",
-                                "begin the file with [model] and name = \"my-model\"",
-                                {file, 1, 1},
-                                {}});
-  }
-  if (auto fits = check_clock(model.description); !fits) return tl::unexpected(fits.error());
+  const auto errors = read_document(*document, model, AfterMistake::stop);
+  if (!errors.empty()) return tl::unexpected(errors.front());
   return model;
+}
+
+Diagnosis diagnose_model(std::string_view text, const std::string& file) {
+  Diagnosis diagnosis;
+  auto& [model, errors] = diagnosis;
+  model.description.file = file;
+  model.sha256 = sha256(text);
+  const auto document = parse_in_parts(std::string(text), file, errors);
+  if (!document) return diagnosis;
+  const std::vector<Error> syntax = errors;
+  const auto known = [&](const Error& error) {
+    const auto same_line = [&](const Error& other) { return other.location.line == error.location.line; };
+    const auto same = [&](const Error& other) { return same_place(other.location, error.location); };
+    return std::any_of(syntax.begin(), syntax.end(), same_line) || std::any_of(errors.begin(), errors.end(), same);
+  };
+  const auto add = [&](const std::vector<Error>& found) {
+    for (const auto& error : found) {
+      if (!known(error)) errors.push_back(error);
+    }
+  };
+  add(read_document(*document, model, AfterMistake::read_on));
+  add(model::find_mistakes(model.description));
+  std::stable_sort(errors.begin(), errors.end(), is_before);
+  return diagnosis;
 }
 
 namespace {
@@ -131,11 +209,16 @@ constexpr std::size_t most_read = std::size_t{64} << 20;  // of what has no size
 }  // namespace
 
 Expected<ModelFile> read_model(const std::filesystem::path& file) {
-  if (file == "-") {
-    const auto text = read_file("/dev/stdin", most_read);
-    if (!text) return tl::unexpected(text.error());
-    return parse_model(*text, "<standard input>");  // in the working folder, as far as files in it are concerned
-  }
+  const auto text = read_model_text(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse_model(*text, shown_name(file));
+}
+
+// Standard input is in the working folder, as far as files beside it are concerned.
+std::string shown_name(const std::filesystem::path& file) { return file == "-" ? "<standard input>" : file.string(); }
+
+Expected<std::string> read_model_text(const std::filesystem::path& file) {
+  if (file == "-") return read_file("/dev/stdin", most_read);
   std::error_code unknown_size;
   const auto size = std::filesystem::file_size(file, unknown_size);
   if (!unknown_size && size > max_model_bytes) {
@@ -145,9 +228,7 @@ Expected<ModelFile> read_model(const std::filesystem::path& file) {
                                 {file.string(), 0, 0},
                                 {}});
   }
-  const auto text = read_file(file, most_read);
-  if (!text) return tl::unexpected(text.error());
-  return parse_model(*text, file.string());
+  return read_file(file, most_read);
 }
 
 Error located(Error error, const ModelFile& model) {

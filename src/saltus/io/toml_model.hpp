@@ -13,6 +13,7 @@
 #include "saltus/model/description.hpp"
 #include "saltus/pipeline/optimize_options.hpp"
 #include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/result/caption.hpp"
 
 namespace saltus::io {
 
@@ -20,6 +21,7 @@ struct ModelFile {
   model::Description description;
   pipeline::SimulateOptions simulate;
   std::optional<pipeline::OptimizeOptions> optimize;  ///< of a file with [optimize]; its problem is in `description`
+  result::Captions captions;                          ///< `unit` and `label`, in the order of the file
   std::string sha256;                                 ///< of the file's bytes
   /// Where each option was written ("rtol", "output.times"), for errors that show only later.
   std::vector<std::pair<std::string, SourceLocation>> option_locations;
@@ -33,8 +35,22 @@ struct ModelFile {
 /// and keys name the nearest known ones; tables that this version does not support are refused (not_available). "-" is
 /// standard input.
 [[nodiscard]] Expected<ModelFile> read_model(const std::filesystem::path& file);
+/// The text of a model file, for parse_model and diagnose_model. "-" is standard input.
+[[nodiscard]] Expected<std::string> read_model_text(const std::filesystem::path& file);
+/// What messages call a file: its path, or "<standard input>".
+[[nodiscard]] std::string shown_name(const std::filesystem::path& file);
 /// The same for text in memory; `file` is used in messages, and the folder it is in to find files that the model names.
 [[nodiscard]] Expected<ModelFile> parse_model(std::string_view text, const std::string& file);
+
+/// A model file with all its mistakes.
+struct Diagnosis {
+  ModelFile model;            ///< as far as it could be read
+  std::vector<Error> errors;  ///< in the order of the file; empty for one that parse_model takes
+};
+
+/// Reads on behind a mistake, so that all of them can be told: those of the file, and those of what it states
+/// (model::find_mistakes). Mistakes that follow from another one are left out.
+[[nodiscard]] Diagnosis diagnose_model(std::string_view text, const std::string& file);
 
 /// Larger files are refused: no model is written by hand at that length.
 inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/same_place.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/toml_reader_internal.hpp"
 
@@ -36,9 +37,10 @@ SourceLocation place_in_string(const TomlString& text, std::size_t offset) {
 }
 
 void TomlReader::fail(Error error) {
-  if (error_) return;
+  const auto is_here = [&](const Error& other) { return same_place(other.location, error.location); };
+  if (std::any_of(errors_.begin(), errors_.end(), is_here)) return;
   if (!table_.empty()) error = with_context(std::move(error), "in " + table_);
-  error_ = std::move(error);
+  errors_.push_back(std::move(error));
 }
 
 void TomlReader::wrong_type(std::string_view expected, const TomlValue& found) {
@@ -75,12 +77,12 @@ expression::NodePtr TomlReader::expression(const TomlValue& value) {
   if (const auto number = number_in(value)) {
     if (std::isfinite(*number)) return expression::number(*number, value.location);
     wrong_type("a finite number", value);
-    return nullptr;
+    return expression::unreadable(value.location);
   }
   const auto* text = std::get_if<TomlString>(&value.value);
   if (text == nullptr) {
     wrong_type(number_or_expression, value);
-    return nullptr;
+    return expression::unreadable(value.location);
   }
   const bool as_it_stands = text->anchors.empty();
   const StringPlaces places(text->text, text->anchors);
@@ -89,7 +91,7 @@ expression::NodePtr TomlReader::expression(const TomlValue& value) {
   if (tree) return as_it_stands ? *tree : places.in_file(*tree);
   if (!as_it_stands) tree.error().location = places.in_file(tree.error().location);
   fail(tree.error());
-  return nullptr;
+  return expression::unreadable(tree.error().location);
 }
 
 expression::NodePtr TomlReader::expression_in(const TomlString& text, std::size_t offset, std::size_t length) {
@@ -101,7 +103,7 @@ expression::NodePtr TomlReader::expression_in(const TomlString& text, std::size_
   if (tree) return as_it_stands ? *tree : places.in_file(*tree);
   if (!as_it_stands) tree.error().location = places.in_file(tree.error().location);
   fail(tree.error());
-  return nullptr;
+  return expression::unreadable(tree.error().location);
 }
 
 expression::NodePtr TomlReader::bound(const TomlValue& value) {

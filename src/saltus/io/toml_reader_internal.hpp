@@ -1,5 +1,4 @@
-// Reads checked values out of a TOML document. Keeps the first error, so that the readers of tables stay straight
-// lines.
+// Reads checked values out of a TOML document. Keeps the errors, so that the readers of tables stay straight lines.
 #pragma once
 
 #include <cstddef>
@@ -21,16 +20,20 @@ class TomlReader {
   explicit TomlReader(std::string file) : file_(std::move(file)) {}
 
   [[nodiscard]] const std::string& file() const { return file_; }
-  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
-  [[nodiscard]] bool failed() const { return error_.has_value(); }
+  [[nodiscard]] const std::vector<Error>& errors() const { return errors_; }
+  /// Whether something of the table that was entered last is wrong.
+  [[nodiscard]] bool failed() const { return errors_.size() > errors_before_; }
 
   /// Names of tables of the model, which expressions may call; set before the first expression is read.
   void set_functions(std::vector<std::string> names) { functions_ = std::move(names); }
 
   /// The table that errors are in, as a context frame; empty for none.
-  void enter(std::string table) { table_ = std::move(table); }
+  void enter(std::string table) {
+    table_ = std::move(table);
+    errors_before_ = errors_.size();
+  }
 
-  /// Keeps the error unless there is one already; adds the table it is in.
+  /// Keeps the error, with the table it is in; of several at one place the first.
   void fail(Error error);
   void wrong_type(std::string_view expected, const TomlValue& found);
   /// An unknown key, with the nearest of `known`.
@@ -39,9 +42,9 @@ class TomlReader {
 
   /// The value as a table, or null and an error.
   const TomlTable* table(const TomlValue& value, std::string_view expected);
-  /// A number or an expression in quotes; null after an error.
+  /// A number or an expression in quotes; after an error expression::unreadable.
   expression::NodePtr expression(const TomlValue& value);
-  /// A part of a string as an expression, for texts that are no expression as a whole; null after an error.
+  /// A part of a string as an expression, for texts that are no expression as a whole; as above.
   expression::NodePtr expression_in(const TomlString& text, std::size_t offset, std::size_t length);
   /// As `expression`, but plus or minus infinity means no bound: null.
   expression::NodePtr bound(const TomlValue& value);
@@ -54,7 +57,8 @@ class TomlReader {
   std::string file_;
   std::string table_;
   std::vector<std::string> functions_;
-  std::optional<Error> error_;
+  std::vector<Error> errors_;
+  std::size_t errors_before_ = 0;  ///< when the table was entered
 };
 
 /// Where a byte of a string stands in the file.

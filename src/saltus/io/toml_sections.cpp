@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/expression/parser.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/toml_sections_internal.hpp"
 #include "saltus/io/toml_words_internal.hpp"
@@ -14,7 +15,12 @@ namespace {
 struct Quantity {
   expression::NodePtr initial, lower, upper;
   bool free = false;
+  result::Caption caption;
 };
+
+void read_caption(TomlReader& reader, const TomlEntry& field, result::Caption& caption) {
+  (field.key == "unit" ? caption.unit : caption.label) = reader.string(field.value, "a text in quotes");
+}
 
 /// Reads `name = value` or `name = { initial = …, … }`.
 Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
@@ -36,7 +42,7 @@ Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::ve
     } else if (key == "free") {
       quantity.free = reader.boolean(value);
     } else {
-      reader.string(value, "a text in quotes");  // unit, label: for people
+      read_caption(reader, {key, location, value}, quantity.caption);
     }
   }
   if (quantity.free && quantity.initial) {
@@ -46,13 +52,45 @@ Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::ve
   return quantity;
 }
 
+void add_caption(ModelFile& model, const std::string& name, result::Caption caption) {
+  if (caption.unit.empty() && caption.label.empty()) return;
+  model.captions.emplace_back(name, std::move(caption));
+}
+
 void require_initial(TomlReader& reader, const TomlEntry& entry, const Quantity& quantity) {
-  if (quantity.initial != nullptr || reader.failed()) return;
+  if (quantity.initial != nullptr) return;
   reader.fail({ErrorCode::parse_failure,
                fmt::format("'{}' has no initial value", entry.key),
                fmt::format("write {} = {{ initial = 0, … }}", entry.key),
                entry.location,
                {}});
+}
+
+/// `name = "…"` or `name = { value = "…", unit = "…", label = "…" }`.
+model::NamedExpression read_output(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  result::Caption caption;
+  model::NamedExpression output{entry.key, nullptr, entry.location};
+  const auto* table = std::get_if<TomlTable>(&entry.value.value);
+  if (table == nullptr) output.expression = reader.expression(entry.value);
+  for (const auto& field : table == nullptr ? TomlTable{} : *table) {
+    if (field.key == "value") {
+      output.expression = reader.expression(field.value);
+    } else if (field.key == "unit" || field.key == "label") {
+      read_caption(reader, field, caption);
+    } else {
+      reader.unknown_key(field, {"value", "unit", "label"});
+    }
+  }
+  if (output.expression == nullptr) {
+    reader.fail({ErrorCode::parse_failure,
+                 fmt::format("the output '{}' has no value", entry.key),
+                 fmt::format("write {} = {{ value = \"…\", unit = \"…\" }}", entry.key),
+                 entry.location,
+                 {}});
+    output.expression = expression::unreadable(entry.location);
+  }
+  add_caption(model, entry.key, std::move(caption));
+  return output;
 }
 
 const std::vector<std::string> quantity_keys{"initial", "lower", "upper", "free", "unit", "label"};
@@ -165,6 +203,12 @@ void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<mo
   }
 }
 
+void read_outputs(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* table = reader.table(entry.value, "the table [outputs] of names and expressions");
+  if (table == nullptr) return;
+  for (const auto& field : *table) model.description.outputs.push_back(read_output(reader, field, model));
+}
+
 void read_parameters(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "the table [parameters]");
   if (table == nullptr) return;
@@ -172,6 +216,7 @@ void read_parameters(TomlReader& reader, const TomlEntry& entry, ModelFile& mode
     auto quantity = read_quantity(reader, field, quantity_keys);
     require_initial(reader, field, quantity);
     model.description.parameters.push_back({field.key, std::move(quantity.initial), field.location});
+    add_caption(model, field.key, std::move(quantity.caption));
     if (!quantity.free) continue;
     model.description.free_parameters.push_back(
         {field.key, std::move(quantity.lower), std::move(quantity.upper), field.location});
@@ -186,6 +231,7 @@ void read_states(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
     require_initial(reader, field, quantity);
     model.description.states.push_back({field.key, std::move(quantity.initial), std::move(quantity.lower),
                                         std::move(quantity.upper), field.location, quantity.free});
+    add_caption(model, field.key, std::move(quantity.caption));
   }
 }
 
@@ -196,6 +242,7 @@ void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
     auto quantity = read_quantity(reader, field, control_keys);
     model.description.controls.push_back(
         {field.key, std::move(quantity.initial), std::move(quantity.lower), std::move(quantity.upper), field.location});
+    add_caption(model, field.key, std::move(quantity.caption));
   }
 }
 

@@ -10,6 +10,7 @@
 namespace saltus::io {
 
 void read_model_table(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_outputs(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_parameters(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_states(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model);

@@ -65,13 +65,7 @@ class Assembly {
       system_.initial_state.push_back(state.initial);
       system_.state_lower.push_back(state.bounds.lower);
       system_.state_upper.push_back(state.bounds.upper);
-      if (!state.dynamics) {
-        return Error{ErrorCode::invalid_model,
-                     fmt::format("the state '{}' has no right-hand side", state.name),
-                     fmt::format("add {} = \"…\" to [dynamics] or to a mode; a constant state gets 0", state.name),
-                     state.location,
-                     {}};
-      }
+      if (!state.dynamics) return no_right_hand_side(state.name, state.location);
     }
     for (const auto& group : statement_.mode_groups) {
       system_.mode_groups.push_back({group.name, static_cast<int>(group.modes.size())});
@@ -390,6 +384,14 @@ class Assembly {
 };
 
 }  // namespace
+
+Error no_right_hand_side(const std::string& state, const SourceLocation& location) {
+  return {ErrorCode::invalid_model,
+          fmt::format("the state '{}' has no right-hand side", state),
+          fmt::format("add {} = \"…\" to [dynamics] or to a mode; a constant state gets 0", state),
+          location,
+          {}};
+}
 
 std::string located(const SourceLocation& location, const std::string& text) {
   if (location.line == 0) return text;

@@ -12,6 +12,7 @@
 #include "saltus/model/build_internal.hpp"
 #include "saltus/model/discrete_states_internal.hpp"
 #include "saltus/model/jumps_internal.hpp"
+#include "saltus/model/mistakes.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
 
@@ -31,24 +32,67 @@ class Build {
         scope_(description, recognition_, statement_) {}
 
   [[nodiscard]] Expected<System> run() {
+    if (auto error = state()) return tl::unexpected(*error);
+    warn_of_unused();
+    return assemble(recognition_, statement_);
+  }
+
+  /// Everything that can be told of it, one mistake or none beside another.
+  [[nodiscard]] std::vector<Error> mistakes() {
+    std::vector<Error> found;
+    scope_.collect_mistakes(found);
+    if (auto error = state()) found.push_back(*error);
+    tell_of_still_states(found);
+    if (!found.empty()) return found;
+    if (auto system = assemble(recognition_, statement_); !system) found.push_back(system.error());
+    return found;
+  }
+
+ private:
+  MaybeError state() {
     statement_.name = description_.name;
     statement_.description = description_.description;
     statement_.inclusion = description_.inclusion;
     statement_.time = recognition_.graph.symbol("t", {.kind = VariableKind::time});
-    note_all_names();
+    note_names(description_, scope_);
+    if (quantities_ != nullptr) {
+      for (const auto& entry : quantities_->expressions) scope_.note_names(entry.expression);
+    }
     using Step = MaybeError (Build::*)();
     constexpr Step steps[] = {&Build::names,  &Build::overrides, &Build::parameters, &Build::controls,
                               &Build::states, &Build::bounds,    &Build::switching,  &Build::dynamics,
                               &Build::modes,  &Build::outputs,   &Build::quantities, &Build::events,
                               &Build::jumps,  &Build::inputs,    &Build::definitions};
     for (const Step step : steps) {
-      if (auto error = (this->*step)()) return tl::unexpected(*error);
+      if (auto error = (this->*step)()) return error;
     }
-    warn_of_unused();
-    return assemble(recognition_, statement_);
+    return std::nullopt;
   }
 
- private:
+  /// Takes the entries one by one, up to the first mistake or to the end (ModelScope::end_at).
+  template <class Entries, class Take>
+  MaybeError take_each(const Entries& entries, Take take) {
+    for (const auto& entry : entries) {
+      MaybeError error = take(entry);
+      if (error) error = scope_.end_at(std::move(*error));
+      if (error) return error;
+    }
+    return std::nullopt;
+  }
+
+  /// A state without right-hand side, which only the assembly refuses.
+  void tell_of_still_states(std::vector<Error>& found) const {
+    for (const auto& entry : description_.states) {
+      const auto moves = [&](const auto& rates) {
+        return std::any_of(rates.begin(), rates.end(), [&](const auto& rate) { return rate.name == entry.name; });
+      };
+      const auto& modes = description_.modes;
+      const bool moved = moves(description_.dynamics) ||
+                         std::any_of(modes.begin(), modes.end(), [&](const auto& m) { return moves(m.dynamics); });
+      if (!moved) found.push_back(no_right_hand_side(entry.name, entry.location));
+    }
+  }
+
   MaybeError names() { return scope_.declare_names(); }
 
   MaybeError overrides() {
@@ -92,26 +136,27 @@ class Build {
   }
 
   MaybeError parameters() {
-    int index = 0;
-    for (const auto& entry : description_.parameters) {
-      const auto value = value_of(entry.name, entry.expression, Reach::earlier_parameters,
-                                  fmt::format("the parameter '{}'", entry.name), 0.0);
-      if (!value) return value.error();
-      if (!std::isfinite(*value)) {
-        return Error{ErrorCode::invalid_model,
-                     fmt::format("the parameter '{}' is {}, not a finite number", entry.name, *value),
-                     "check its expression and the parameters in it",
-                     entry.expression->location,
-                     {}};
+    return take_each(description_.parameters, [&](const NamedExpression& entry) -> MaybeError {
+      auto value = value_of(entry.name, entry.expression, Reach::earlier_parameters,
+                            fmt::format("the parameter '{}'", entry.name), 0.0);
+      if (value && !std::isfinite(*value)) {
+        value = tl::unexpected(Error{ErrorCode::invalid_model,
+                                     fmt::format("the parameter '{}' is {}, not a finite number", entry.name, *value),
+                                     "check its expression and the parameters in it",
+                                     entry.expression->location,
+                                     {}});
       }
+      if (!value) scope_.give_up(entry.name);
       // One that an optimisation chooses is a variable like a control: nothing folds at its value.
       const VariableKind kind = quantities_ != nullptr && quantities_->varying_parameters.contains(entry.name)
                                     ? VariableKind::control
                                     : VariableKind::parameter;
-      const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++, .value = *value});
-      statement_.parameters.push_back({entry.name, symbol, *value});
-    }
-    return std::nullopt;
+      const int index = static_cast<int>(statement_.parameters.size());
+      const SXElem symbol =
+          recognition_.graph.symbol(entry.name, {.kind = kind, .index = index, .value = value.value_or(1.0)});
+      statement_.parameters.push_back({entry.name, symbol, value.value_or(1.0)});
+      return value ? std::nullopt : MaybeError(value.error());
+    });
   }
 
   MaybeError controls() {
@@ -141,17 +186,18 @@ class Build {
 
   /// Initial values and bounds; they may use parameters, so all names must mean something first.
   MaybeError bounds() {
-    for (std::size_t i = 0; i < description_.states.size(); ++i) {
-      auto& state = statement_.states[i];
-      if (auto error = range(description_.states[i], "state", state.initial, state.bounds)) return error;
-      recognition_.graph.set_value(state_variable(state.symbol), state.initial);
-    }
-    for (std::size_t i = 0; i < description_.controls.size(); ++i) {
-      auto& control = statement_.controls[i];
-      if (auto error = range(description_.controls[i], "control", control.initial, control.bounds)) return error;
-      recognition_.graph.set_value(state_variable(control.symbol), control.initial);
-    }
-    return std::nullopt;
+    const auto take = [&](const auto& entry, const std::string& kind, auto& stated) {
+      auto error = range(entry, kind, stated.initial, stated.bounds);
+      recognition_.graph.set_value(state_variable(stated.symbol), stated.initial);
+      return error;
+    };
+    std::size_t i = 0;
+    auto error =
+        take_each(description_.states, [&](const auto& entry) { return take(entry, "state", statement_.states[i++]); });
+    if (error) return error;
+    i = 0;
+    return take_each(description_.controls,
+                     [&](const auto& entry) { return take(entry, "control", statement_.controls[i++]); });
   }
 
   int state_variable(const SXElem& symbol) {
@@ -177,21 +223,21 @@ class Build {
   }
 
   MaybeError switching() {
-    for (std::size_t i = 0; i < description_.switching.size(); ++i) {
-      const auto& entry = description_.switching[i];
-      statement_.switching[i].location = entry.location;
-      statement_.switching[i].referenced = scope_.is_used(entry.name);
-      if (auto error = scope_.resolve_switching(static_cast<int>(i))) {
-        return with_context(*error, fmt::format("in [switching] {}", entry.name));
-      }
-    }
-    return std::nullopt;
+    int i = 0;
+    return take_each(description_.switching, [&](const NamedExpression& entry) -> MaybeError {
+      statement_.switching[at(i)].location = entry.location;
+      statement_.switching[at(i)].referenced = scope_.is_used(entry.name);
+      auto error = scope_.resolve_switching(i++);
+      return error ? with_context(*error, fmt::format("in [switching] {}", entry.name)) : error;
+    });
   }
 
   MaybeError dynamics() {
-    for (const auto& entry : description_.dynamics) {
+    return take_each(description_.dynamics, [&](const NamedExpression& entry) -> MaybeError {
       const Meaning* meaning = scope_.names().find(entry.name);
-      if (meaning == nullptr || meaning->kind != NameKind::state) return no_such_state(entry, meaning);
+      if (meaning == nullptr || meaning->kind != NameKind::state) {
+        return scope_.is_given_up(entry.name) ? Error{} : no_such_state(entry, meaning);
+      }
       auto& state = statement_.states[at(meaning->index)];
       if (state.dynamics) {
         return Error{ErrorCode::invalid_model,
@@ -204,13 +250,14 @@ class Build {
       if (!f) return with_context(f.error(), fmt::format("in [dynamics] {}", entry.name));
       state.dynamics = *f;
       state.dynamics_location = entry.expression->location;
-    }
-    return std::nullopt;
+      return std::nullopt;
+    });
   }
 
   MaybeError modes() {
     if (auto error = state_modes(description_, scope_, statement_)) return error;
-    return add_modes(recognition_, statement_);
+    // Regions of modes of which some could not be read cover what they cover.
+    return scope_.has_mistakes() ? std::nullopt : add_modes(recognition_, statement_);
   }
 
   Error no_such_state(const NamedExpression& entry, const Meaning* meaning) const {
@@ -223,12 +270,12 @@ class Build {
   }
 
   MaybeError outputs() {
-    for (const auto& entry : description_.outputs) {
+    return take_each(description_.outputs, [&](const NamedExpression& entry) -> MaybeError {
       auto output = scope_.expression(*entry.expression);
       if (!output) return with_context(output.error(), fmt::format("in [outputs] {}", entry.name));
       statement_.outputs.push_back({entry.name, *output});
-    }
-    return std::nullopt;
+      return std::nullopt;
+    });
   }
 
   MaybeError quantities() {
@@ -251,7 +298,7 @@ class Build {
   }
 
   MaybeError events() {
-    for (const auto& entry : description_.events) {
+    return take_each(description_.events, [&](const UserEventDescription& entry) -> MaybeError {
       EventStatement event{
           .name = entry.name, .direction = entry.direction, .action = entry.action, .location = entry.when->location};
       if (scope_.translation().is_condition(*entry.when)) {
@@ -264,48 +311,54 @@ class Build {
         event.expression = *value;
       }
       statement_.events.push_back(std::move(event));
-    }
-    return std::nullopt;
+      return std::nullopt;
+    });
   }
 
   MaybeError jumps() { return state_jumps(description_, scope_, statement_); }
 
   MaybeError inputs() {
-    for (const auto& entry : description_.sampled_inputs) {
-      const auto* meaning = control_named(entry.name);
-      if (meaning == nullptr) return no_such_control(entry.name, entry.location);
-      if (set_values_.contains(entry.name)) continue;  // a constant from --set replaces it
-      if (const auto mistake = find_mistake(entry.times, entry.values)) {
-        return Error{ErrorCode::invalid_model,
-                     fmt::format("input '{}': {}", entry.name, mistake->message),
-                     mistake->remedy,
-                     entry.location,
-                     {}};
-      }
-      auto input = recognition_.lookup(std::make_shared<const CellTable>(step_cells(entry.times, entry.values)),
-                                       statement_.time, entry.name);
-      if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
-      auto& control = statement_.controls[at(meaning->index)];
-      control.input = *input;
-      control.input_location = entry.location;
+    auto error = take_each(description_.sampled_inputs, [&](const auto& entry) { return take_samples(entry); });
+    if (error) return error;
+    return take_each(description_.inputs, [&](const auto& entry) { return take_input(entry); });
+  }
+
+  MaybeError take_samples(const SampledInput& entry) {
+    const auto* meaning = control_named(entry.name);
+    if (meaning == nullptr) return no_such_control(entry.name, entry.location);
+    if (set_values_.contains(entry.name)) return std::nullopt;  // a constant from --set replaces it
+    if (const auto mistake = find_mistake(entry.times, entry.values)) {
+      return Error{ErrorCode::invalid_model,
+                   fmt::format("input '{}': {}", entry.name, mistake->message),
+                   mistake->remedy,
+                   entry.location,
+                   {}};
     }
-    for (const auto& entry : description_.inputs) {
-      const auto* meaning = control_named(entry.name);
-      if (meaning == nullptr) return no_such_control(entry.name, entry.location);
-      auto input = scope_.expression(*entry.expression);
-      if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
-      if (set_values_.contains(entry.name)) continue;  // a constant from --set replaces it
-      if (const auto constant = recognition_.parameter_value(*input); constant && !std::isfinite(*constant)) {
-        return Error{ErrorCode::invalid_model,
-                     fmt::format("the input of '{}' is {}, not a finite number", entry.name, *constant),
-                     "check the expression and the parameters in it",
-                     entry.expression->location,
-                     {}};
-      }
-      auto& control = statement_.controls[at(meaning->index)];
-      control.input = *input;
-      control.input_location = entry.expression->location;
+    auto input = recognition_.lookup(std::make_shared<const CellTable>(step_cells(entry.times, entry.values)),
+                                     statement_.time, entry.name);
+    if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
+    auto& control = statement_.controls[at(meaning->index)];
+    control.input = *input;
+    control.input_location = entry.location;
+    return std::nullopt;
+  }
+
+  MaybeError take_input(const NamedExpression& entry) {
+    const auto* meaning = control_named(entry.name);
+    if (meaning == nullptr) return no_such_control(entry.name, entry.location);
+    auto input = scope_.expression(*entry.expression);
+    if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
+    if (set_values_.contains(entry.name)) return std::nullopt;  // a constant from --set replaces it
+    if (const auto constant = recognition_.parameter_value(*input); constant && !std::isfinite(*constant)) {
+      return Error{ErrorCode::invalid_model,
+                   fmt::format("the input of '{}' is {}, not a finite number", entry.name, *constant),
+                   "check the expression and the parameters in it",
+                   entry.expression->location,
+                   {}};
     }
+    auto& control = statement_.controls[at(meaning->index)];
+    control.input = *input;
+    control.input_location = entry.expression->location;
     return std::nullopt;
   }
 
@@ -324,64 +377,11 @@ class Build {
   }
 
   MaybeError definitions() {
-    for (std::size_t i = 0; i < description_.definitions.size(); ++i) {
-      if (auto error = scope_.resolve_definition(static_cast<int>(i))) {
-        return with_context(*error, fmt::format("in [definitions] {}", description_.definitions[i].name));
-      }
-    }
-    return std::nullopt;
-  }
-
-  void note_all_names() {
-    for (const auto* table : {&description_.parameters, &description_.definitions, &description_.switching,
-                              &description_.dynamics, &description_.outputs, &description_.inputs}) {
-      for (const auto& entry : *table) scope_.note_names(entry.expression);
-    }
-    if (quantities_ != nullptr) {
-      for (const auto& entry : quantities_->expressions) scope_.note_names(entry.expression);
-    }
-    for (const auto& state : description_.states) {
-      for (const auto* node : {&state.initial, &state.lower, &state.upper}) scope_.note_names(*node);
-    }
-    for (const auto& control : description_.controls) {
-      for (const auto* node : {&control.initial, &control.lower, &control.upper}) scope_.note_names(*node);
-    }
-    for (const auto& event : description_.events) scope_.note_names(event.when);
-    for (const auto& mode : description_.modes) {
-      for (const auto* node : {&mode.when, &mode.indicator}) scope_.note_names(*node);
-      for (const auto& entry : mode.dynamics) scope_.note_names(entry.expression);
-    }
-    for (const auto& jump : description_.jumps) {
-      for (const auto* node : {&jump.when, &jump.every, &jump.priority, &jump.delay}) scope_.note_names(*node);
-      for (const auto& time : jump.at) scope_.note_names(time);
-      for (const auto& entry : jump.set) scope_.note_names(entry.expression);
-    }
-    if (description_.optimize) note_names_of(*description_.optimize);
-  }
-
-  void note_names_of(const OcpDescription& problem) {
-    const auto note = [&](const expression::NodePtr& node) {
-      if (node) scope_.note_names(node);
-    };
-    const auto note_all = [&](const std::vector<expression::NodePtr>& nodes) {
-      for (const auto& node : nodes) note(node);
-    };
-    note_all({problem.from, problem.horizon.value, problem.horizon.lower, problem.horizon.upper, problem.running_cost,
-              problem.terminal_cost, problem.time_weight});
-    for (const auto* constraints : {&problem.path_constraints, &problem.terminal_constraints}) {
-      for (const auto& constraint : *constraints) {
-        note_all(constraint.sides);
-        note(constraint.penalty);
-      }
-    }
-    for (const auto& pair : problem.path_complementarities) note_all({pair.first, pair.second});
-    for (const auto& term : problem.least_squares) {
-      note_all(term.of);
-      note_all(term.reference);
-      for (const auto& row : term.weight) note_all(row);
-    }
-    for (const auto& guess : problem.guess) note(guess.expression);
-    for (const auto& parameter : description_.free_parameters) note_all({parameter.lower, parameter.upper});
+    int i = 0;
+    return take_each(description_.definitions, [&](const NamedExpression& entry) -> MaybeError {
+      auto error = scope_.resolve_definition(i++);
+      return error ? with_context(*error, fmt::format("in [definitions] {}", entry.name)) : error;
+    });
   }
 
   template <class Entries>
@@ -404,7 +404,7 @@ class Build {
   }
 
   const Description& description_;
-  const std::vector<Override>& overrides_;
+  const std::vector<Override> overrides_;
   const Quantities* quantities_;  ///< null: none
   Recognition recognition_;
   Statement statement_;
@@ -412,10 +412,27 @@ class Build {
   std::map<std::string, double> set_values_;
 };
 
+/// CasADi throws on what it cannot do; everything known is checked before, so say what it said.
+Error refused_by_casadi(const Description& description, const std::exception& exception) {
+  return {ErrorCode::invalid_model,
+          fmt::format("CasADi refused the model '{}': {}", description.name, exception.what()),
+          "simplify the expression it names",
+          {description.file, 0, 0},
+          {}};
+}
+
 }  // namespace
 
 Expected<System> build(const Description& description, const std::vector<Override>& overrides) {
   return build_with(description, overrides, nullptr);
+}
+
+std::vector<Error> find_mistakes(const Description& description) {
+  try {
+    return Build(description, {}, nullptr).mistakes();
+  } catch (const std::exception& exception) {
+    return {refused_by_casadi(description, exception)};
+  }
 }
 
 Expected<System> build_with(const Description& description, const std::vector<Override>& overrides,
@@ -423,12 +440,7 @@ Expected<System> build_with(const Description& description, const std::vector<Ov
   try {
     return Build(description, overrides, quantities).run();
   } catch (const std::exception& exception) {
-    // CasADi throws on what it cannot do; everything known is checked before, so say what it said.
-    return tl::unexpected(Error{ErrorCode::invalid_model,
-                                fmt::format("CasADi refused the model '{}': {}", description.name, exception.what()),
-                                "simplify the expression it names",
-                                {description.file, 0, 0},
-                                {}});
+    return tl::unexpected(refused_by_casadi(description, exception));
   }
 }
 

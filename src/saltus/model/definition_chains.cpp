@@ -47,6 +47,7 @@ std::optional<Error> ModelScope::work_out(const Meaning& meaning, const SourceLo
   auto error = open_.size() > longest_recursion ? work_out_needs(meaning) : std::nullopt;
   if (!error) error = translate(meaning);
   open_.pop_back();
+  if (error) give_up(entry(meaning).name);
   return error;
 }
 
@@ -120,14 +121,15 @@ std::optional<Error> ModelScope::declare_switching(int index) {
 }
 
 std::optional<Error> ModelScope::resolve_switching(int index) {
-  if (switching_.contains(index)) return std::nullopt;
   const Meaning meaning{NameKind::switching, index, {}};
+  if (is_worked_out(meaning) || is_given_up(entry(meaning).name)) return std::nullopt;
   return work_out(meaning, entry(meaning).location);
 }
 
 std::optional<Error> ModelScope::resolve_definition(int index) {
   const Meaning meaning{NameKind::definition, index, {}};
-  return is_worked_out(meaning) ? std::nullopt : work_out(meaning, entry(meaning).location);
+  if (is_worked_out(meaning) || is_given_up(entry(meaning).name)) return std::nullopt;
+  return work_out(meaning, entry(meaning).location);
 }
 
 }  // namespace saltus::model

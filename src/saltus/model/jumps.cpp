@@ -59,6 +59,8 @@ class JumpTranslation {
       stated_.guard = *guard;
       return std::nullopt;
     }
+    const auto* name = std::get_if<expression::Name>(&jump_.when->value);
+    if (name != nullptr && scope_.is_given_up(name->name)) return jump_error(jump_.when->location, "", "");
     if (!condition) {
       return jump_error(
           jump_.when->location, fmt::format("expected a condition, found the expression '{}'", text),
@@ -212,8 +214,11 @@ std::optional<Error> fill_execution(Recognition& recognition, const JumpStatemen
 std::optional<Error> state_jumps(const Description& description, ModelScope& scope, Statement& statement) {
   for (const auto& jump : description.jumps) {
     auto stated = JumpTranslation(jump, scope).run();
-    if (!stated) return with_context(stated.error(), "in [[jumps]]");
-    statement.jumps.push_back(std::move(*stated));
+    if (stated) {
+      statement.jumps.push_back(std::move(*stated));
+    } else if (auto error = scope.end_at(with_context(stated.error(), "in [[jumps]]"))) {
+      return error;
+    }
   }
   return std::nullopt;
 }

@@ -44,8 +44,17 @@ std::optional<Error> ModelScope::declare_names() {
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.second.location.line < b.second.location.line; });
   for (const auto& [name, meaning] : found) {
-    if (auto error = names_.declare(name, meaning)) return error;
+    auto error = names_.declare(name, meaning);
+    if (!error) continue;
+    give_up(name);
+    if ((error = end_at(std::move(*error)))) return error;
   }
+  return std::nullopt;
+}
+
+std::optional<Error> ModelScope::end_at(Error error) {
+  if (found_ == nullptr) return error;
+  if (!error.message.empty()) found_->push_back(std::move(error));
   return std::nullopt;
 }
 
@@ -96,6 +105,7 @@ Expected<SXElem> ModelScope::number(const std::string& name, const SourceLocatio
                                 location,
                                 {}});
   }
+  if (is_given_up(name)) return tl::unexpected(Error{ErrorCode::invalid_model, "", "", location, {}});
   const Meaning* meaning = names_.find(name);
   if (meaning == nullptr) return tl::unexpected(unknown(name, location));
   const bool known_parameter =
@@ -146,7 +156,10 @@ Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meani
 }
 
 Expected<std::shared_ptr<const CellTable>> ModelScope::table(const std::string& name) {
-  const auto index = static_cast<std::size_t>(names_.find(name)->index);
+  const Meaning* meaning = names_.find(name);
+  // The parser knows its name, so it stands in the file, and what is wrong with it is known.
+  if (meaning == nullptr) return tl::unexpected(Error{ErrorCode::invalid_model, "", "", {}, {}});
+  const auto index = static_cast<std::size_t>(meaning->index);
   if (tables_.size() <= index) tables_.resize(description_.tables.size());
   auto& cells = tables_[index];
   if (cells) return cells;
@@ -171,6 +184,7 @@ Expected<SXElem> ModelScope::definition(int index, const SourceLocation& locatio
 Expected<Condition> ModelScope::condition(const std::string& name, const SourceLocation& location) {
   const Meaning& meaning = *names_.find(name);
   if (reach_ < Reach::everything) return tl::unexpected(out_of_reach(name, meaning, location));
+  if (is_given_up(name)) return tl::unexpected(Error{ErrorCode::invalid_model, "", "", location, {}});
   if (const auto known = conditions_.find(meaning.index); known != conditions_.end()) return known->second;
   if (auto error = work_out(meaning, location)) return tl::unexpected(*error);
   return conditions_.at(meaning.index);

@@ -26,7 +26,17 @@ class ModelScope {
  public:
   ModelScope(const Description& description, Recognition& recognition, Statement& statement);
 
-  /// All names of the description, in the order of the file; the first clash is an error.
+  /// From now on a mistake does not end the work: it goes into the list.
+  void collect_mistakes(std::vector<Error>& found) { found_ = &found; }
+  /// What a step says of a mistake: the error, which ends the work, or nothing, as it is in the list. Errors without
+  /// message follow from others.
+  [[nodiscard]] std::optional<Error> end_at(Error error);
+  [[nodiscard]] bool has_mistakes() const { return found_ != nullptr && !found_->empty(); }
+  /// What a name means could not be worked out: expressions with it follow suit in silence.
+  void give_up(const std::string& name) { given_up_.insert(name); }
+  [[nodiscard]] bool is_given_up(const std::string& name) const { return name.empty() || given_up_.contains(name); }
+
+  /// All names of the description, in the order of the file; a clash is an error.
   [[nodiscard]] std::optional<Error> declare_names();
 
   ModelScope(const ModelScope&) = delete;  // the translation refers to it
@@ -87,6 +97,12 @@ class ModelScope {
   std::map<int, SXElem> switching_;
   std::vector<std::shared_ptr<const CellTable>> tables_;  ///< null until used
   std::set<std::string> used_;
+  std::vector<Error>* found_ = nullptr;  ///< null: the first mistake ends the work
+  std::set<std::string> given_up_;
 };
+
+/// Notes the names in all expressions of a description.
+void note_names(const Description& description, ModelScope& scope);
+
 
 }  // namespace saltus::model

@@ -43,17 +43,25 @@ class ModeReader {
 
   std::optional<Error> run() {
     for (const auto& mode : description_.modes) {
-      if (auto error = check_form(mode)) return error;
-      if (auto error = check_group(mode)) return error;
-      if (auto error = read(mode)) return error;
+      auto error = check(mode);
+      if (error) error = scope_.end_at(std::move(*error));
+      if (error) return error;
     }
     for (const auto& group : statement_.mode_groups) {
-      if (auto error = check_names(group)) return error;
+      auto error = check_names(group);
+      if (error) error = scope_.end_at(std::move(*error));
+      if (error) return error;
     }
     return std::nullopt;
   }
 
  private:
+  std::optional<Error> check(const ModeDescription& mode) {
+    if (auto error = check_form(mode)) return error;
+    if (auto error = check_group(mode)) return error;
+    return read(mode);
+  }
+
   /// One group has one form, and its modes different names.
   std::optional<Error> check_group(const ModeDescription& mode) {
     for (const auto& other : description_.modes) {

@@ -138,6 +138,8 @@ struct Statement {
 ///         whose interpolation has too many corners.
 [[nodiscard]] Expected<System> assemble(Recognition& recognition, const Statement& statement);
 
+[[nodiscard]] Error no_right_hand_side(const std::string& state, const SourceLocation& location);
+
 /// Refuses an initial value that is not finite and bounds that exclude each other; warns where the value lies outside.
 /// @param what  "state 'q'"
 [[nodiscard]] std::optional<Error> check_values(const std::string& what, double initial, const Bounds& bounds,

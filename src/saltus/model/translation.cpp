@@ -194,6 +194,9 @@ Expected<Condition> Translation::condition(const Node& node) {
                                 node.location,
                                 {}});
   }
+  if (word != nullptr && scope_.is_given_up(word->name)) {
+    return tl::unexpected(Error{ErrorCode::invalid_model, "", "", node.location, {}});
+  }
   if (!is_condition(node)) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
                                 fmt::format("expected a condition, found the number '{}'", expression::to_text(node)),

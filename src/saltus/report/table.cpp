@@ -16,7 +16,6 @@
 namespace saltus::report {
 namespace {
 
-constexpr std::size_t shown_at_each_end = 10;
 /// Wider tables of signs than this say less than they hide.
 constexpr std::size_t most_signs = 16;
 
@@ -68,15 +67,15 @@ Row event_row(std::size_t number, const result::Event& event, const result::Resu
           remark(event, result)};
 }
 
-std::string event_table(const result::Result& result) {
+std::string event_table(const result::Result& result, std::size_t shown_at_each_end) {
   const auto& events = result.events;
   if (events.empty()) return "events      none\n";
   const std::size_t columns = result.switching_functions.size();
-  const bool all = events.size() <= 2 * shown_at_each_end;
+  const bool all = events.size() / 2 < shown_at_each_end || events.size() == 2 * shown_at_each_end;
   std::vector<Row> rows{{"#", "t", "kind", "surfaces", columns > 0 && columns <= most_signs ? "mode" : "",
                          events.front().regions_after ? "regions" : "", ""}};
   for (std::size_t i = 0; i < events.size(); ++i) {
-    if (all || i < shown_at_each_end || i + shown_at_each_end >= events.size()) {
+    if (all || i < shown_at_each_end || events.size() - i <= shown_at_each_end) {
       rows.push_back(event_row(i + 1, events[i], result));
     } else if (i == shown_at_each_end) {
       rows.push_back({"…", "", "", "", "", "", ""});
@@ -216,7 +215,7 @@ std::string end_state(const result::Result& result) {
 
 }  // namespace
 
-std::string to_table(const result::Result& result) {
+std::string to_table(const result::Result& result, std::size_t shown_events) {
   std::string text = paragraph("model", result.model.description.empty()
                                             ? result.model.name
                                             : fmt::format("{}: {}", result.model.name, result.model.description));
@@ -234,7 +233,7 @@ std::string to_table(const result::Result& result) {
   text += end_state(result);
   if (result.optimization) text += findings_table(result, *result.optimization);
   if (result.sensitivities) text += sensitivity_table(result, *result.sensitivities);
-  text += event_table(result);
+  text += event_table(result, shown_events);
   text += branch_table(result);
   text += family_table(result);
   if (result.optimization) return text + optimization_statistics(*result.optimization);

@@ -1,0 +1,79 @@
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "saltus/cli/commands.hpp"
+#include "saltus/cli/terminal.hpp"
+#include "saltus/io/json_result.hpp"
+#include "saltus/result/difference.hpp"
+
+namespace saltus::cli {
+namespace {
+
+struct DiffArguments {
+  std::string a, b;
+  result::Tolerances tolerances;
+};
+
+std::string numbers_text(std::string_view title, const std::vector<result::NumberDifference>& numbers) {
+  if (numbers.empty()) return "";
+  std::string text = fmt::format("{}\n", title);
+  for (const auto& [what, a, b] : numbers) {
+    text += fmt::format("  {:<20} {:>22.15g} {:>22.15g}   difference {:.3g}\n", what, a, b, b - a);
+  }
+  return text;
+}
+
+std::string difference_text(const result::Difference& difference, const DiffArguments& arguments) {
+  std::string text = numbers_text("parameters", difference.parameters);
+  if (!difference.ends.empty()) text += fmt::format("the runs ended differently: {}\n", difference.ends);
+  text += numbers_text("at the end", difference.end_state) + numbers_text("on the way", difference.rows);
+  if (difference.events_a != difference.events_b) {
+    text += fmt::format("numbers of events: {} and {}\n", difference.events_a, difference.events_b);
+  }
+  if (!difference.first_event.empty()) text += fmt::format("first event that differs: {}\n", difference.first_event);
+  const auto& [rtol, atol] = arguments.tolerances;
+  return text + fmt::format("{} to rtol {:g}, atol {:g} ({} events, {} common times)\n",
+                            difference.is_none() ? "the same" : "different", rtol, atol, difference.events_a,
+                            difference.common_times);
+}
+
+ExitCode run_diff(const DiffArguments& arguments) {
+  const auto a = io::read_result(arguments.a);
+  if (!a) return refuse(a.error());
+  const auto b = io::read_result(arguments.b);
+  if (!b) return refuse(b.error());
+  const auto difference = result::difference(*a, *b, arguments.tolerances);
+  if (!difference) return refuse(difference.error());
+  print(difference_text(*difference, arguments));
+  return difference->is_none() ? ExitCode::done : ExitCode::different;
+}
+
+}  // namespace
+
+Command add_diff(CLI::App& app) {
+  auto* command = app.add_subcommand("diff", "say whether two results of a model are the same, to tolerances");
+  // Shared: the parser fills it after this function has returned, the command reads it.
+  auto arguments = std::make_shared<DiffArguments>();
+  command->add_option("A", arguments->a, "result written by simulate --out A.json")->required();
+  command->add_option("B", arguments->b, "another one of the same model")->required();
+  command->add_option("--rtol", arguments->tolerances.rtol, "relative tolerance (1e-6)")
+      ->type_name("R")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--atol", arguments->tolerances.atol, "absolute tolerance (1e-9)")
+      ->type_name("A")
+      ->check(CLI::NonNegativeNumber);
+  command->footer(
+      "Compares end states, events, and states at the times that both have. Exit code 0: the same, 1: different, 2: "
+      "results of\ndifferent models, or none.\n"
+      "\nExample:\n  saltus simulate stick-slip --out a.json && saltus simulate stick-slip --rtol 1e-10 --out b.json "
+      "&& "
+      "saltus diff a.json b.json");
+  return {"diff", [arguments] { return run_diff(*arguments); }};
+}
+
+}  // namespace saltus::cli

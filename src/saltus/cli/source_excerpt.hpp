@@ -1,0 +1,14 @@
+// The line of a mistake, with a mark below its place.
+#pragma once
+
+#include <string>
+
+#include "saltus/base/error.hpp"
+#include "saltus/cli/model_input.hpp"
+
+namespace saltus::cli {
+
+/// to_text(error), with the source line and a caret behind its first line; without them for a place outside the text.
+[[nodiscard]] std::string with_source(const Error& error, const ModelText& source);
+
+}  // namespace saltus::cli

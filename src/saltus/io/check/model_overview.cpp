@@ -1,0 +1,204 @@
+#include "saltus/io/check/model_overview.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "saltus/base/at.hpp"
+#include "saltus/expression/parser.hpp"
+#include "saltus/model/switched_rates.hpp"
+
+namespace saltus::io {
+namespace {
+
+using expression::NodePtr;
+using expression::to_spaced_text;
+
+std::vector<OverviewEquation> equations_of(const std::vector<model::NamedExpression>& entries,
+                                           const result::Captions& captions = {}) {
+  std::vector<OverviewEquation> equations;
+  for (const auto& entry : entries)
+    equations.push_back({entry.name, to_spaced_text(*entry.expression), caption_of(captions, entry.name)});
+  return equations;
+}
+
+std::string remark_of(const model::System& system, std::size_t state) {
+  if (!system.discrete_states[state]) return "";
+  for (const auto& jump : system.jumps) {
+    const auto target = std::find(jump.targets.begin(), jump.targets.end(), static_cast<int>(state));
+    if (target != jump.targets.end()) return "discrete: changed by jumps only";
+  }
+  return "constant: its right-hand side is 0 and no jump sets it";
+}
+
+void take_quantities(const model::System& system, const result::Captions& captions, ModelOverview& overview) {
+  for (std::size_t i = 0; i < system.state_names.size(); ++i) {
+    overview.states.push_back({system.state_names[i], system.initial_state[i], system.state_lower[i],
+                               system.state_upper[i], caption_of(captions, system.state_names[i]),
+                               remark_of(system, i)});
+  }
+  for (std::size_t i = 0; i < system.parameter_names.size(); ++i) {
+    overview.parameters.push_back({system.parameter_names[i], system.parameter_values[i], -INFINITY, INFINITY,
+                                   caption_of(captions, system.parameter_names[i])});
+  }
+  for (std::size_t i = 0; i < system.control_names.size(); ++i) {
+    overview.controls.push_back({system.control_names[i], system.control_initial[i], system.control_lower[i],
+                                 system.control_upper[i], caption_of(captions, system.control_names[i])});
+  }
+}
+
+std::vector<OverviewMode> modes_of(const model::Description& description) {
+  std::vector<OverviewMode> modes;
+  for (const auto& mode : description.modes) {
+    const auto in_group = [&](const OverviewMode& other) { return other.group == mode.group; };
+    const auto position = 1 + std::count_if(modes.begin(), modes.end(), in_group);
+    modes.push_back(
+        {mode.group, mode.when ? "" : mode.name.value_or(fmt::format("mode{}", position)),
+         mode.when ? to_spaced_text(*mode.when) : fmt::format("indicator {}", to_spaced_text(*mode.indicator)),
+         equations_of(mode.dynamics)});
+  }
+  return modes;
+}
+
+std::string_view role_of(model::SwitchingRole role) {
+  switch (role) {
+    case model::SwitchingRole::listed:
+      return "listed";
+    case model::SwitchingRole::kink:
+      return "kink";
+    case model::SwitchingRole::time_event:
+      return "time event";
+    case model::SwitchingRole::discrete:
+      return "discrete";
+    case model::SwitchingRole::region:
+      return "region";
+  }
+  __builtin_unreachable();
+}
+
+/// What happens on a surface, in words.
+std::string meaning_of(const model::SwitchingFunction& function, const std::vector<std::string>& rates) {
+  const std::string who = rates.empty() ? "nothing" : fmt::format("{}'", fmt::join(rates, "', "));
+  switch (function.role) {
+    case model::SwitchingRole::listed:
+      return rates.empty() ? "a column of the result" : fmt::format("a column of the result, where {} may jump", who);
+    case model::SwitchingRole::kink:
+      return rates.empty() ? "the integrator restarts there, nothing slides"
+                           : fmt::format("{} has a corner: the integrator restarts there, nothing slides", who);
+    case model::SwitchingRole::time_event:
+      return "the integrator restarts there";
+    case model::SwitchingRole::discrete:
+      return "changed by jumps only, nothing slides";
+    case model::SwitchingRole::region:
+      return "where its indicator is the smallest of its group";
+  }
+  __builtin_unreachable();
+}
+
+/// The expression behind a name of [switching] or [definitions]; an unnamed function is its own text.
+std::string expression_of(const model::Description& description, const std::string& name) {
+  for (const auto* table : {&description.switching, &description.definitions}) {
+    for (const auto& entry : *table) {
+      if (entry.name == name) return to_spaced_text(*entry.expression);
+    }
+  }
+  const auto parsed = expression::parse(name, {});
+  return parsed ? to_spaced_text(**parsed) : name;
+}
+
+std::vector<OverviewSurface> surfaces_of(const model::Description& description, const model::System& system) {
+  const auto switched = model::switched_rates(system);
+  std::vector<OverviewSurface> all;
+  for (std::size_t j = 0; j < system.switching.size(); ++j) {
+    const auto& function = system.switching[j];
+    OverviewSurface surface{
+        function.name, expression_of(description, function.name), std::string(role_of(function.role)), "", {}, {}, "",
+        false};
+    for (const int state : switched[j]) surface.rates.push_back(system.state_names[at(state)]);
+    for (const int index : function.inner) surface.inner.push_back(system.switching[at(index)].name);
+    surface.meaning = meaning_of(function, surface.rates);
+    all.push_back(std::move(surface));
+  }
+  std::vector<OverviewSurface> ordered;
+  std::vector<bool> shown(all.size(), false);
+  for (const auto& column : system.columns) {
+    const auto& function = all[at(column.function)];
+    ordered.push_back(function);
+    if (column.name != function.name) {
+      ordered.back().name = column.name;
+      ordered.back().expression = expression_of(description, column.name);
+      ordered.back().alias_of = function.name;
+      ordered.back().swapped = column.orientation < 0;
+    }
+    shown[at(column.function)] = true;
+  }
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    if (!shown[j]) ordered.push_back(all[j]);
+  }
+  return ordered;
+}
+
+std::string cell_text(const model::Cell& cell) {
+  if (cell.table->kind == model::CellTable::Breaks::integers) return "jumps at whole numbers of its argument";
+  const auto breaks = cell.table->breaks.size();
+  return fmt::format("{} at {} break{}", cell.table->change == model::CellTable::Change::jump ? "jumps" : "kinks",
+                     breaks, breaks == 1 ? "" : "s");
+}
+
+std::string times_text(const model::JumpDescription& jump) {
+  if (jump.every) return fmt::format("every {}", to_spaced_text(*jump.every));
+  std::vector<std::string> times;
+  for (const auto& time : jump.at) times.push_back(to_spaced_text(*time));
+  return fmt::format("at t = {}", fmt::join(times, ", "));
+}
+
+std::string when_text(const model::JumpDescription& jump) {
+  const std::string what = jump.when ? to_spaced_text(*jump.when) : "";
+  switch (jump.trigger) {
+    case model::JumpTrigger::condition:
+      return fmt::format("when {} becomes true", what);
+    case model::JumpTrigger::guard_down:
+      return fmt::format("when {} falls below 0", what);
+    case model::JumpTrigger::guard_up:
+      return fmt::format("when {} rises above 0", what);
+    case model::JumpTrigger::guard_both:
+      return fmt::format("when {} passes 0", what);
+    case model::JumpTrigger::times:
+      return times_text(jump);
+  }
+  __builtin_unreachable();
+}
+
+}  // namespace
+
+ModelOverview overview_of(const model::Description& description, const model::System& system,
+                          const result::Captions& captions) {
+  ModelOverview overview;
+  overview.name = system.name;
+  overview.description = system.description;
+  take_quantities(system, captions, overview);
+  overview.equations = equations_of(description.dynamics);
+  overview.modes = modes_of(description);
+  overview.definitions = equations_of(description.definitions);
+  overview.outputs = equations_of(description.outputs, captions);
+  overview.surfaces = surfaces_of(description, system);
+  for (const auto& cell : system.cells) overview.cells.push_back({cell.name, cell_text(cell)});
+  for (std::size_t i = 0; i < system.events.size(); ++i) {
+    overview.events.push_back({system.events[i].name, to_spaced_text(*description.events[i].when),
+                               system.events[i].action == model::AtEvent::stop});
+  }
+  for (std::size_t i = 0; i < description.jumps.size(); ++i) {
+    overview.jumps.push_back(
+        {system.jumps[i].name, when_text(description.jumps[i]), equations_of(description.jumps[i].set)});
+  }
+  overview.inclusion = system.inclusion == model::Inclusion::filippov ? "filippov" : "aizerman_pyatnitskii";
+  overview.multi_affine = system.multi_affine;
+  overview.inclusion_differences = system.inclusion_differences;
+  overview.warnings = system.warnings;
+  return overview;
+}
+
+}  // namespace saltus::io

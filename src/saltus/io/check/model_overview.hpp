@@ -1,0 +1,80 @@
+// What Saltus understood of a model, in the user's names: plain data for people and programs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saltus/model/description.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/result/caption.hpp"
+
+namespace saltus::io {
+
+/// A state, a parameter or a control.
+struct OverviewQuantity {
+  std::string name;
+  double value = 0.0;  ///< at the start
+  double lower = 0.0, upper = 0.0;
+  result::Caption caption{};
+  std::string remark{};  ///< of a state that does not move: why
+};
+
+/// name = text, as it was read.
+struct OverviewEquation {
+  std::string name;
+  std::string text;
+  result::Caption caption{};
+};
+
+/// One of [[modes]]: where it holds and what it adds.
+struct OverviewMode {
+  std::string group, name;
+  std::string when;  ///< a condition, "otherwise", or "indicator …"
+  std::vector<OverviewEquation> rates;
+};
+
+struct OverviewSurface {
+  std::string name;
+  std::string expression;          ///< psi, as it was read
+  std::string role;                ///< listed, kink, time event, discrete, region
+  std::string meaning;             ///< what happens there, in words
+  std::vector<std::string> rates;  ///< states whose right-hand side has its selection
+  std::vector<std::string> inner;  ///< functions whose selection its expression contains
+  std::string alias_of;            ///< empty, or the function that it is under another name
+  bool swapped = false;            ///< an alias with the sides exchanged
+};
+
+struct OverviewJump {
+  std::string name;
+  std::string when;  ///< "when on == 1 and x1 > h", "when y falls below 0", "every 0.5"
+  std::vector<OverviewEquation> set;
+};
+
+struct OverviewEvent {
+  std::string name;
+  std::string when;
+  bool stops = false;
+};
+
+struct ModelOverview {
+  std::string name, description;
+  std::vector<OverviewQuantity> states, parameters, controls;
+  std::vector<OverviewEquation> equations;  ///< of [dynamics]
+  std::vector<OverviewMode> modes;
+  std::vector<OverviewEquation> definitions, outputs;
+  std::vector<OverviewSurface> surfaces;  ///< the columns of a result first and in their order
+  std::vector<OverviewEquation> cells;    ///< tables, floor and mod, samples of inputs
+  std::vector<OverviewEvent> events;
+  std::vector<OverviewJump> jumps;
+  std::string inclusion;
+  bool multi_affine = true;
+  std::vector<std::string> inclusion_differences;
+  std::vector<std::string> warnings;
+};
+
+/// Reads the two, computes nothing.
+/// @param system  of this description, by model::build
+[[nodiscard]] ModelOverview overview_of(const model::Description& description, const model::System& system,
+                                        const result::Captions& captions = {});
+
+}  // namespace saltus::io

@@ -1,0 +1,15 @@
+// All mistakes of a description at once, for whoever reads them all.
+#pragma once
+
+#include <vector>
+
+#include "saltus/model/description.hpp"
+
+namespace saltus::model {
+
+/// What build() would refuse, and what it would refuse next were that put right. A name whose meaning could not be
+/// worked out says nothing about the expressions that use it. Trees may be expression::unreadable, of which nothing is
+/// told: whoever read them has. Empty for a description that build() takes.
+[[nodiscard]] std::vector<Error> find_mistakes(const Description& description);
+
+}  // namespace saltus::model

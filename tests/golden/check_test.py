@@ -1,0 +1,182 @@
+"""saltus check: what it understood of a model, or all its mistakes, without simulating."""
+
+import json
+import resource
+import subprocess
+import sys
+
+import tool
+
+TWO_MISTAKES = """[model]
+name = "m"
+[states]
+x = "one"
+[dynamics]
+x = "-x"
+[simulate]
+until = "10 s"
+"""
+
+MANY = """[model]
+name = "many"
+[parameters]
+k = 1
+m = "2*kk"
+k = 3
+[states]
+x = 1 [m]
+v = { initial = 0, lower = "nothing" }
+w = 0
+[definitions]
+spring = "-k*x +"
+force = "spring + m"
+a = "b"
+b = "a"
+[dynamics]
+x = "v"
+v = "force/m"
+y = "a"
+[[events]]
+when = "velocity"
+[[jumps]]
+when = "x < 0"
+set = { x = "-x", u = 1 }
+[[jumps]]
+when = "x + 1"
+set = { x = 0 }
+[simulat]
+until = 1
+"""
+
+FRICTION = """[model]
+name = "block"
+description = "on a belt"
+[parameters]
+mu = { initial = 0.5, unit = "-", label = "friction" }
+[states]
+q = { initial = 1, unit = "m", label = "position" }
+v = { initial = 0, unit = "m/s" }
+on = 0
+[definitions]
+spring = "-q"
+[switching]
+slip = "v - 0.2"
+[dynamics]
+q = "v"
+v = "spring - mu*sign(slip)*(1+on)"
+on = 0
+[outputs]
+power = { value = "mu*sign(slip)*v", unit = "W", label = "lost" }
+[[jumps]]
+name = "harder"
+when = "q < 0 and on == 0"
+set = { on = 1 }
+[[events]]
+name = "turns"
+when = "v"
+[simulate]
+until = 1e9
+"""
+
+
+class Mistakes(tool.ToolTest):
+    def check(self, text, *arguments):
+        out, err = self.run_tool("check", self.write("m.toml", text), *arguments, code=2)
+        return out, err.replace(f"{self.folder}/", "")
+
+    def test_all_at_once_with_line_and_caret(self):
+        out, err = self.check(TWO_MISTAKES)
+        self.assertEqual(out, "")
+        first, second = err.index("m.toml:4:6: error: unknown name 'one'"), err.index("m.toml:8:9: error: until: ")
+        self.assertLess(first, second)
+        self.assertIn('\n    4 | x = "one"\n      |      ^\n', err)
+        self.assertIn('\n    8 | until = "10 s"\n      |         ^\n', err)
+        self.assertTrue(err.endswith("2 mistakes\n"), err)
+
+    def test_one_is_told_once_and_what_follows_from_it_is_not(self):
+        _, err = self.check(MANY)
+        places = [line.split(":")[1] for line in err.splitlines() if ": error: " in line]
+        expected = ["5",   # kk
+                    "6",   # k again
+                    "8",   # 1 [m]
+                    "9",   # nothing
+                    "10",  # w has no right-hand side
+                    "12",  # the sum ends
+                    "15",  # a cycle
+                    "19",  # y is no state
+                    "21",  # velocity
+                    "24",  # u is no state
+                    "26",  # a guard without direction
+                    "28"]  # [simulat]
+        self.assertEqual(places, expected, err)
+
+    def test_a_mistake_in_a_setting_is_told_as_before(self):
+        path = self.write("m.toml", FRICTION)
+        _, err = self.run_tool("check", path, "--set", "mi=1", code=2)
+        self.assertIn("did you mean 'mu'?", err)
+        _, err = self.run_tool("check", path, "--set", "dynamics.v=q+", code=2)
+        self.assertIn("dynamics.v", err)
+        self.assertNotIn("mistakes", err)
+
+    def test_standard_input_has_carets_too(self):
+        done = subprocess.run([tool.TOOL, "check", "-"], input=TWO_MISTAKES, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('<standard input>:4:6: error: unknown name', done.stderr)
+        self.assertIn('    4 | x = "one"\n      |      ^\n', done.stderr)
+
+    def test_for_programs(self):
+        out, err = self.check(TWO_MISTAKES, "--json")
+        report = json.loads(out)
+        self.assertEqual((report["format"], report["valid"]), ("saltus-check/1", False))
+        self.assertEqual([(e["line"], e["column"]) for e in report["errors"]], [(4, 6), (8, 9)])
+        self.assertIn("unknown name 'one'", report["errors"][0]["message"])
+        self.assertNotIn("states", report)
+
+
+class Overview(tool.ToolTest):
+    def test_shows_equations_surfaces_jumps_and_units(self):
+        out, err = self.run_tool("check", self.write("m.toml", FRICTION), code=0)
+        self.assertEqual(err, "")
+        for line in ("  q = 1 m  (position)", "  v = 0 m/s", "  mu = 0.5 -  (friction)", "  q' = v",
+                     "  v' = spring - mu*sign(slip)*(1 + on)", "  spring = -q",
+                     "  power = mu*sign(slip)*v  [W]  (lost)",
+                     "  slip: listed: v - 0.2 = 0; a column of the result, where v' may jump",
+                     "  harder: when q < 0 and on == 0 becomes true; sets on: on becomes 1", "  turns: v"):
+            self.assertIn(line, out.splitlines())
+
+    def test_for_programs(self):
+        out, _ = self.run_tool("check", self.write("m.toml", FRICTION), "--json", code=0)
+        report = json.loads(out)
+        self.assertTrue(report["valid"])
+        self.assertEqual([state["name"] for state in report["states"]], ["q", "v", "on"])
+        self.assertEqual(report["states"][0]["unit"], "m")
+        self.assertEqual(report["outputs"][0]["label"], "lost")
+        self.assertEqual(report["surfaces"][0]["rates"], ["v"])
+        self.assertEqual(report["jumps"][0]["set"], [{"name": "on", "expression": "1"}])
+        out, _ = self.run_tool("check", "turbo-car", "--json", code=0)
+        self.assertGreater(json.loads(out)["optimization"]["problem"]["variables"], 100)
+
+    def test_every_model_of_the_catalogue_has_a_json(self):
+        for path in sorted((tool.SOURCE / "models").glob("*.toml")):
+            out, _ = self.run_tool("check", path, "--json", code=0)
+            report = json.loads(out)
+            self.assertEqual((report["errors"], report["valid"]), ([], True), path)
+            self.assertTrue(report["equations"] or report["modes"], path)
+
+    def test_simulates_nothing(self):
+        # The simulation of this model would take hours.
+        path = self.write("m.toml", FRICTION.replace('"spring', '"sin(1e6*t) + spring'))
+        begin = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        self.run_tool("check", path, code=0)
+        self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - begin, 1.0)
+
+    def test_ranks_are_there_for_the_asking(self):
+        plain, _ = self.run_tool("check", "two-belts", code=0)
+        self.assertNotIn("rank", plain)
+        more, _ = self.run_tool("check", "two-belts", "--well-posedness", code=0)
+        self.assertTrue(more.startswith(plain))
+        self.assertIn("rank 2 of 2", more)
+
+
+if __name__ == "__main__":
+    tool.main()

@@ -1,0 +1,90 @@
+"""The small commands: diff, new, cite."""
+
+import json
+import re
+
+import tool
+
+
+class Diff(tool.ToolTest):
+    def run_model(self, name, model, *arguments):
+        self.run_tool("simulate", model, *arguments, "--out", name, "--quiet", code=0)
+        return name
+
+    def test_two_runs_of_one_accuracy_are_the_same(self):
+        a = self.run_model("a.json", "stick-slip")
+        b = self.run_model("b.json", "stick-slip", "--rtol", "1e-10", "--integrator", "dop853")
+        out, err = self.run_tool("diff", a, b, code=0)
+        self.assertEqual(err, "")
+        self.assertTrue(out.startswith("the same to rtol 1e-06, atol 1e-09"), out)
+        self.run_tool("diff", a, b, "--rtol", "0", "--atol", "0", code=1)
+        self.assertTrue(self.run_tool("diff", a, a, "--rtol", "0", "--atol", "0", code=0)[0].startswith("the same"))
+
+    def test_says_what_differs(self):
+        a = self.run_model("a.json", "stick-slip")
+        b = self.run_model("b.json", "stick-slip", "--set", "belt=0.3")
+        out, err = self.run_tool("diff", a, b, code=1)
+        self.assertEqual(err, "")
+        self.assertRegex(out, r"(?m)^parameters\n  belt +0.2 +0.3 ")
+        self.assertRegex(out, r"(?m)^first event that differs: event 1: ")
+        self.assertRegex(out, r"(?m)^different to rtol")
+
+    def test_an_event_that_differs_alone_is_seen(self):
+        a = self.run_model("a.json", "bouncing-ball")
+        changed = json.loads((self.folder / a).read_text(encoding="utf-8"))
+        changed["events"][1]["t"] += 1e-3
+        self.write("b.json", json.dumps(changed))
+        self.assertIn("event 2: jump", self.run_tool("diff", a, "b.json", code=1)[0])
+        changed["events"][1]["t"] -= 1e-3
+        del changed["events"][-1]
+        self.write("b.json", json.dumps(changed))
+        self.assertIn("numbers of events: ", self.run_tool("diff", a, "b.json", code=1)[0])
+
+    def test_different_models_and_files_that_are_none(self):
+        a = self.run_model("a.json", "stick-slip")
+        b = self.run_model("b.json", "two-belts")
+        out, err = self.run_tool("diff", a, b, code=2)
+        self.assertEqual(out, "")
+        self.assertIn("different models", err)
+        self.write("c.json", "{}")
+        self.assertIn("c.json", self.run_tool("diff", a, "c.json", code=2)[1])
+        self.assertIn("none.json", self.run_tool("diff", "none.json", a, code=2)[1])
+        self.assertIn("--rtol", self.run_tool("diff", a, a, "--rtol", "-1", code=2)[1])
+
+
+class New(tool.ToolTest):
+    def test_every_kind_runs_without_a_warning(self):
+        for kind in ("relay", "gene", "friction", "impact"):
+            out, _ = self.run_tool("new", f"my-{kind}", "--like", kind, code=0)
+            self.assertIn(f"saltus simulate my-{kind}.toml", out)
+            text = (self.folder / f"my-{kind}.toml").read_text(encoding="utf-8")
+            self.assertIn(f'name = "my-{kind}"', text)
+            self.assertTrue(text.startswith("#:schema "))
+            out, err = self.run_tool("simulate", f"my-{kind}.toml", code=0)
+            self.assertEqual(err, "")
+            self.assertGreater(int(re.search(r"(?m)^events +(\d+)", out).group(1)), 0)
+
+    def test_what_is_there_stays(self):
+        self.write("m.toml", "mine")
+        for name in ("m", "m.toml"):
+            self.assertIn("this file exists", self.run_tool("new", name, code=2)[1])
+        self.assertEqual((self.folder / "m.toml").read_text(encoding="utf-8"), "mine")
+
+    def test_bad_input(self):
+        self.assertIn("did you mean 'relay'?", self.run_tool("new", "m", "--like", "relai", code=2)[1])
+        self.assertIn("cannot name a model", self.run_tool("new", 'a"b', code=2)[1])
+        self.assertIn("NAME", self.run_tool("new", code=2)[1])
+        self.run_tool("new", "no/such/folder", code=2)
+
+
+class Cite(tool.ToolTest):
+    def test_says_what_citation_cff_says(self):
+        text, _ = self.run_tool("cite", code=0)
+        cff = (tool.SOURCE / "CITATION.cff").read_text(encoding="utf-8")
+        self.assertIn(re.search(r'(?m)^title: "(.*)"$', cff).group(1), text)
+        self.assertIn(re.search(r"(?m)^version: (.*)$", cff).group(1), text)
+        self.assertEqual(text.count("{"), text.count("}"))
+
+
+if __name__ == "__main__":
+    tool.main()
