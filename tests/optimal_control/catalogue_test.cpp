@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <ostream>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -73,6 +74,23 @@ INSTANTIATE_TEST_SUITE_P(Models, OcpCatalogueBound,
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+/// The turbo goes on at v = 15, after 3 s of full thrust, and off at v = 10, 2 s before the end. Both take no time.
+TEST(OcpFrozenTime, HysteresisCar) {
+  const auto result = optimum_of("hysteresis-car");
+  ASSERT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.optimization->objective, 10.2292578, 1e-5);
+  ASSERT_EQ(result.events.size(), 3U);
+  for (const auto& [number, t, v, w] : {std::tuple{1U, 3.0, 15.0, 0.0}, {2U, result.final.t - 2.0, 10.0, 1.0}}) {
+    const auto& event = result.events[number];
+    EXPECT_NEAR(event.t, t, 1e-7);
+    EXPECT_EQ(event.kind, result::EventKind::change_sliding);
+    EXPECT_NEAR(event.x[1], v, 1e-7);
+    EXPECT_NEAR(event.x[2], w, 1e-7);
+    EXPECT_NEAR(event.x_after[2], 1.0 - w, 1e-7);
+    EXPECT_EQ(std::count(result.trajectory.t.begin(), result.trajectory.t.end(), event.t), 2);
+  }
+}
 
 /// Sliding begins and ends inside intervals here.
 TEST(OcpDefect, FallsWithTheOrderOfTheScheme) {

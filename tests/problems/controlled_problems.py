@@ -25,8 +25,8 @@ def turbo_car():
 
 
 def hysteresis_car():
-    """u = 4: without turbo up to v = 15, a transfer at speed 1/2 while the clock stands still, then with turbo. The field of
-    "turn-off" vanishes where it is left: to stay there is another solution."""
+    """u = 4: without turbo up to v = 15, a transfer at speed 1 while the clock stands still, then with turbo. To stay
+    where three regions meet, time frozen for ever, is another solution."""
     names = ["slow", "turn-off", "turn-on", "fast"]
 
     def event(kind, surfaces, after, t, x, **more):
@@ -34,7 +34,7 @@ def hysteresis_car():
                     regions_after=[after], **more)
 
     def solution():
-        on, off = mpf(15) / 4, mpf(15) / 4 + 2
+        on, off = mpf(15) / 4, mpf(15) / 4 + 1
         q = 2 * on * on
         events = [event("start", names[:2], names[:2], mpf(0), [mpf(0)] * 4),
                   event("change_sliding", names[:3], ["turn-on"], on, [q, mpf(15), mpf(0), on], unique=False,

@@ -169,8 +169,8 @@ Recorder::Differences Recorder::differences(const Columns& from, const Columns& 
   return differences;
 }
 
-bool Recorder::switched(double t, const std::vector<double>& x, const Side& before,
-                        const std::vector<Continuation>& found, const double* held, std::string_view reason) {
+bool Recorder::jumped(double t, const std::vector<double>& x, const std::vector<double>& x_after, const Side& before,
+                      const std::vector<Continuation>& found, const double* held, std::string_view reason) {
   const Columns from = columns(*before.set, *before.selections, before.held);
   const Columns to = columns(found.front().set, found.front().selections, held);
   Differences listed = differences(from, to);
@@ -179,10 +179,11 @@ bool Recorder::switched(double t, const std::vector<double>& x, const Side& befo
   event.kind = result::kind_of_switch(listed.before, listed.after);
   event.surfaces = std::move(listed.names);
   row_before(t, x, before);
-  row(t, x, found.front().set, found.front().selections, held);
+  row(t, x_after, found.front().set, found.front().selections, held);
   event.t = t;
   note_before(event, from);
-  event.x = event.x_after = x;
+  event.x = x;
+  event.x_after = x_after;
   finish(event, to, found, held, reason);
   events_.push_back(std::move(event));
   return true;

@@ -39,7 +39,12 @@ class Recorder {
   };
   /// `found`: all continuations; the first is where it goes on. Returns whether it was an event.
   bool switched(double t, const std::vector<double>& x, const Side& before, const std::vector<Continuation>& found,
-                const double* held, std::string_view reason);
+                const double* held, std::string_view reason) {
+    return jumped(t, x, x, before, found, held, reason);
+  }
+  /// Likewise where the state jumps, too.
+  bool jumped(double t, const std::vector<double>& x, const std::vector<double>& x_after, const Side& before,
+              const std::vector<Continuation>& found, const double* held, std::string_view reason);
   bool started(double t, const std::vector<double>& x, const std::vector<Continuation>& found, const double* held,
                const std::vector<int>& at_zero);
   /// Switches have a limit at t: `x` is the last state before it.

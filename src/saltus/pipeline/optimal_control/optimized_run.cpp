@@ -52,8 +52,7 @@ class Recording {
         continue;
       }
       if (has_jumped) {
-        jump_rows_.push_back(recorder_.trajectory().t.size());
-        recorder_.row(piece.element.t, piece.element.x, piece.set, piece.left, piece.held.data());
+        jump(before, piece);
       } else if (before != nullptr) {
         boundary(*before, piece);
       }
@@ -85,6 +84,17 @@ class Recording {
   [[nodiscard]] Recorder& recorder() { return recorder_; }
 
  private:
+  /// What lies between two pieces is left out: the state jumps, and mostly the mode, too.
+  void jump(const OptimizedPiece* before, const OptimizedPiece& behind) {
+    const auto& element = behind.element;
+    const bool is_event =
+        before != nullptr && recorder_.jumped(before->end, before->element.end, element.x,
+                                              {&before->set, &before->right, before->held.data()},
+                                              continuation_with(behind), behind.held.data(), switch_reason);
+    if (!is_event) recorder_.row(element.t, element.x, behind.set, behind.left, behind.held.data());
+    jump_rows_.push_back(recorder_.trajectory().t.size() - 1);
+  }
+
   void start(const OptimizedPiece& piece) {
     recorder_.started(piece.element.t, piece.element.x, continuation_with(piece), piece.held.data(), at_zero(piece));
   }
