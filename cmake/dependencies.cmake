@@ -13,6 +13,7 @@
 # CLI11           >= 2.1   BSD-3     libcli11-dev; command line
 # GoogleTest      >= 1.12  BSD-3     libgtest-dev; tests, developer mode only
 # zlib            >= 1.2   Zlib      zlib1g-dev; numbers of reports, deflated
+# librsvg         any      LGPL-2.1  librsvg2-bin; its program writes .pdf and .png drawings, looked for at run time
 # plotly.js       4.1      MIT       scripts/make_plotly.sh by npm, or the wheel of PyPI's plotly in .venv; pictures of the report, read at run time
 # nanobind        >= 2.4   BSD-3     wheel of PyPI in .venv; the Python package only
 

@@ -117,3 +117,14 @@ if [[ ! -f .venv/plotly/plotly.min.js ]] && command -v npm >/dev/null && command
   say "Making a small plotly …"
   timeout 180 scripts/make_plotly.sh >/dev/null 2>&1 || say "npm's registry does not answer: reports carry the whole plotly of PyPI"
 fi
+
+# What tests/report checks the accessibility of pages with.
+if [[ "${1:-}" == developer && ! -f .venv/axe/axe.min.js ]] && command -v npm >/dev/null; then
+  folder=$(mktemp -d)
+  if timeout 60 npm install --silent --ignore-scripts --no-audit --no-fund --prefix "$folder" axe-core@4.10.3 >/dev/null 2>&1; then
+    mkdir -p .venv/axe && cp "$folder/node_modules/axe-core/axe.min.js" .venv/axe/
+  else
+    say "going on without axe-core"
+  fi
+  rm -rf "$folder"
+fi

@@ -15,6 +15,7 @@ TOOL, SOURCE, BROWSER = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
 sys.path.insert(0, str(SOURCE / "scripts"))
 import look_at_report  # noqa: E402  (the path has to be known first)
 
+AXE = SOURCE / ".venv/axe/axe.min.js"
 DRAWN = "document.querySelectorAll('.js-plotly-plot').length"
 PLANE = "document.querySelectorAll('.phase-plot')[0]"
 NAMES = PLANE + ".data.filter((trace) => trace.x.length > 0).map((trace) => trace.name)"
@@ -215,6 +216,22 @@ until = 3
         self.assertLess(abs(sum(means) / len(means)), 0.05)
 
 
+class Overlays(Page):
+    def test_two_results_over_each_other_with_their_differences(self):
+        self.tool("simulate", "stick-slip", "--quiet", "--out", "a.json")
+        self.tool("simulate", "stick-slip", "--set", "q=0.1", "--rtol", "1e-6", "--quiet", "--out", "b.json")
+        self.tool("report", "a.json", "b.json", "--out", "both.html")
+        self.open("both.html")
+        overlays = "document.querySelector('.timeline').data.filter((trace) => trace.meta === 'overlay').length"
+        self.assertEqual(self.value(overlays), 3)
+        self.assertIn("b.json", self.value(NAMES))
+        self.assertIn("of the range of", self.value("document.querySelector('.overlays').textContent"))
+        self.assertIn("Differences", self.value("[...document.querySelectorAll('.phase h2')].map((e) => e.textContent)"))
+        largest = self.value("Math.max(...document.querySelectorAll('.phase-plot')[1].data[0].y.map(Math.abs))")
+        self.assertGreater(largest, 0.05)
+        self.assertLess(largest, 2)
+
+
 ROTATING = """
 [model]
 name = "entry"
@@ -350,6 +367,50 @@ class Optimisation(Page):
                    " {'xaxis.range[0]': 5, 'xaxis.range[1]': 6})")
         self.becomes("document.querySelector('.timeline').layout.xaxis.range", [5, 6])
         self.becomes("document.querySelectorAll('.phase-plot')[3].layout.xaxis.range", [5, 6])
+
+
+class Accessibility(Page):
+    """Of axe-core, which `scripts/install.sh developer` brings where npm is there, no rule is broken."""
+
+    def broken(self, width, theme):
+        self.browser.open((self.folder / "page.html").as_uri(), width, 900, theme)
+        self.value("document.querySelector('.toolbar button[aria-expanded]').click()")
+        return self.rules()
+
+    def rules(self):
+        self.value(AXE.read_text(encoding="utf-8") + "; 1")
+        self.value("axe.run(document).then((found) => { window.passed = found.passes.length; window.broken ="
+                   " found.violations.map((rule) => rule.id + ' ' + rule.nodes[0].target); }); 1")
+        end = time.monotonic() + 60
+        while self.value("window.passed ?? 0") == 0 and time.monotonic() < end:
+            time.sleep(0.1)
+        self.assertGreater(self.value("window.passed"), 20)
+        return self.value("window.broken")
+
+    @unittest.skipUnless(AXE.exists(), "no axe-core")
+    def test_light_dark_narrow_and_in_print(self):
+        self.tool("simulate", "stick-slip", "--quiet", "--report", "page.html")
+        for width, theme in ((1366, "light"), (1366, "dark"), (390, "light")):
+            self.assertEqual(self.broken(width, theme), [], (width, theme))
+        self.assertEqual(self.value("document.documentElement.scrollWidth"), 390)
+        self.broken(1366, "light")
+        self.value("window.dispatchEvent(new Event('beforeprint')); delete window.passed")
+        self.assertEqual(self.rules(), [])
+
+    def test_the_time_is_moved_by_keys(self):
+        self.show("stick-slip")
+        holder = "document.querySelector('.timeline')"
+        window = holder + ".layout.xaxis.range.map((t) => Math.round(t))"
+
+        def press(name):
+            self.value(f"{holder}.dispatchEvent(new KeyboardEvent('keydown', {{key: '{name}', bubbles: true}}))")
+
+        press("+")
+        self.becomes(window, [10, 30])
+        press("ArrowRight")
+        self.becomes(window, [14, 34])
+        press("0")
+        self.becomes(window, [0, 40])
 
 
 class WithoutWebGL(Page):

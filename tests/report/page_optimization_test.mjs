@@ -6,7 +6,7 @@ import vm from "node:vm";
 
 const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source = [
-  "format.js", "series.js", "panels.js", "branches.js", "figure.js", "cards.js", "optimization.js", "drawing_card.js",
+  "format.js", "series.js", "panels.js", "branches.js", "figure.js", "cards.js", "optimization.js", "overlays.js", "drawing_card.js",
   "homotopy.js", "constraints.js", "open_loop.js"
 ].map((file) => fs.readFileSync(new URL(file, page), "utf8")).join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);

@@ -8,7 +8,7 @@ const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
       "format.js", "series.js", "panels.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
-      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js"
+      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
@@ -560,4 +560,23 @@ test("intervals of modes below a pixel keep their parts of the time", () => {
   assert.ok(Math.abs(share.plus - 0.25) < 0.02 && Math.abs(share.minus - 0.75) < 0.02);
   assert.equal(count > 100, true);
   assert.deepEqual(cells.at(-1), {from: 1, to: 10, share: {minus: 0, sliding: 1, plus: 0}, count: 1});
+});
+
+test("differences to another result are taken at the times of the first, and not where the other has ended", () => {
+  const first = {t: [0, 1, 2, 2, 3], x: [[0, 1, 2, 5, 6]]};
+  const other = {t: [0, 2, 2.5], x: [[1, 3, 3]]};
+  const {x, y, largest} = saltus.differenceOf(first, other, {sort: "state", index: 0});
+  assert.deepEqual(x, first.t);
+  assert.deepEqual(y, [1, 1, null, -2, null]);
+  assert.equal(largest, 2);
+  assert.equal(saltus.differenceOf(first, {t: [0], x: [[]]}, {sort: "state", index: 0}).largest, null);
+});
+
+test("the rows of a page are a table with both sides of events", () => {
+  const lines = saltus.toCsv({...mixed(), controls: ["a,b"], trajectory: {...mixed().trajectory, u: [[1, 1, 1, null, 1]]}})
+                    .trimEnd().split("\r\n");
+  assert.equal(lines[0], "t,side,rest,count,move,\"a,b\",power,alpha(s),mode(s)");
+  assert.equal(lines[3], "2,0,1,0,2,1,7,0,-1");
+  assert.equal(lines[4], "2,1,1,1,2,,7,1,1");
+  assert.equal(lines.length, 6);
 });

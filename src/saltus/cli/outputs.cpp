@@ -78,7 +78,7 @@ bool Outputs::show_surfaces() const {
                                          [](const std::string& file) { return fs::path(file).extension() != ".csv"; });
 }
 
-Expected<void> Outputs::write(const result::Result& result) const {
+Expected<void> Outputs::write(const result::Result& result, const std::vector<report::Overlay>& overlays) const {
   Expected<void> outcome;
   const auto put = [&](const std::string& file, const std::string& content) {
     auto written = io::write_file(file, content);
@@ -86,7 +86,7 @@ Expected<void> Outputs::write(const result::Result& result) const {
   };
   for (const auto& file : files_)
     put(file, fs::path(file).extension() == ".csv" ? io::to_csv(result) : io::to_json(result));
-  if (!report_.empty()) put(report_, report::to_html(result, plotly_));
+  if (!report_.empty()) put(report_, report::to_html(result, plotly_, overlays));
   return outcome;
 }
 

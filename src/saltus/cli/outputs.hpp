@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/report/overlay.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::cli {
@@ -26,7 +27,9 @@ class Outputs {
   [[nodiscard]] bool show_surfaces() const;
 
   /// Writes all it can; returns the first failure.
-  [[nodiscard]] Expected<void> write(const result::Result& result) const;
+  /// @param overlays  results that the page lays over this one
+  [[nodiscard]] Expected<void> write(const result::Result& result,
+                                     const std::vector<report::Overlay>& overlays = {}) const;
 
  private:
   std::vector<std::string> files_;

@@ -1,44 +1,126 @@
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "saltus/cli/commands.hpp"
+#include "saltus/cli/figure_file.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/terminal.hpp"
 #include "saltus/io/json_result.hpp"
+#include "saltus/report/figure.hpp"
 
 namespace saltus::cli {
 namespace {
 
 struct ReportArguments {
-  std::string result;
+  std::vector<std::string> results;
   std::string page;
+  std::vector<std::string> figures;
+  std::string phase;
+  bool open = false;
 };
 
-ExitCode run_report(const ReportArguments& arguments) {
-  const auto page = arguments.page.empty() ? std::filesystem::path(arguments.result).replace_extension(".html").string()
-                                           : arguments.page;
-  const auto result = io::read_result(arguments.result);
-  if (!result) return refuse(result.error());
-  const auto output = Outputs::make({}, page, arguments.result);
-  if (!output) return refuse(output.error());
-  if (auto written = output->write(*result); !written) return refuse(written.error());
+/// All drawings, or the first mistake; nothing is written before all is known to be right.
+Expected<void> write_figures(const ReportArguments& arguments, const result::Result& result) {
+  std::optional<report::PhaseAxes> phase;
+  if (!arguments.phase.empty()) {
+    auto axes = report::phase_axes(result, arguments.phase);
+    if (!axes) return tl::unexpected(axes.error());
+    phase = std::move(*axes);
+  }
+  for (const auto& file : arguments.figures) {
+    if (auto possible = check_figure(file); !possible) return possible;
+  }
+  if (arguments.figures.empty()) return {};
+  const auto svg = report::to_svg(result, phase);
+  if (!svg) return tl::unexpected(svg.error());
+  for (const auto& file : arguments.figures) {
+    if (auto written = write_figure(file, *svg); !written) return written;
+    print(file + "\n");
+  }
+  return {};
+}
+
+/// The results behind the first, as far as they are of the same model.
+Expected<std::vector<report::Overlay>> read_overlays(const std::vector<std::string>& files,
+                                                     const result::Result& first) {
+  std::vector<report::Overlay> overlays;
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    auto result = io::read_result(files[i]);
+    if (!result) return tl::unexpected(result.error());
+    overlays.push_back({std::filesystem::path(files[i]).filename().string(), std::move(*result)});
+    if (auto fits = report::check_overlay(first, overlays.back()); !fits) return tl::unexpected(fits.error());
+  }
+  return overlays;
+}
+
+Expected<void> write_page(const std::string& page, const ReportArguments& arguments, const result::Result& result) {
+  const auto overlays = read_overlays(arguments.results, result);
+  if (!overlays) return tl::unexpected(overlays.error());
+  for (const auto& input : arguments.results) {
+    // None of the results that are read may be written over.
+    if (auto output = Outputs::make({}, page, input); !output) return tl::unexpected(output.error());
+  }
+  const auto output = Outputs::make({}, page, arguments.results.front());
+  if (!output) return tl::unexpected(output.error());
+  if (auto written = output->write(result, *overlays); !written) return written;
   print(page + "\n");
+  return {};
+}
+
+ExitCode run_report(const ReportArguments& arguments) {
+  if (!arguments.phase.empty() && arguments.figures.empty()) {
+    return refuse({ErrorCode::invalid_option,
+                   "--phase chooses the columns of a drawing, and there is none",
+                   "add --figure FILE.svg; in a page the columns are chosen with the mouse",
+                   {},
+                   {}});
+  }
+  const auto result = io::read_result(arguments.results.front());
+  if (!result) return refuse(result.error());
+  if (auto drawn = write_figures(arguments, *result); !drawn) return refuse(drawn.error());
+  // With drawings alone no page is made unless it is asked for.
+  if (!arguments.figures.empty() && arguments.page.empty() && !arguments.open) return ExitCode::done;
+  const auto page = arguments.page.empty()
+                        ? std::filesystem::path(arguments.results.front()).replace_extension(".html").string()
+                        : arguments.page;
+  if (auto written = write_page(page, arguments, *result); !written) return refuse(written.error());
+  if (!arguments.open) return ExitCode::done;
+  if (auto opened = open_page(page); !opened) return refuse(opened.error());
   return ExitCode::done;
 }
 
 }  // namespace
 
 Command add_report(CLI::App& app) {
-  auto* command = app.add_subcommand("report", "make the page with pictures of a stored result");
+  auto* command = app.add_subcommand(
+      "report", "make the page with pictures of a stored result, or of several laid over each other");
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<ReportArguments>();
-  command->add_option("RESULT", arguments->result, "result written by simulate --out RESULT.json")->required();
+  command
+      ->add_option("RESULT", arguments->results,
+                   "result written by simulate --out RESULT.json; further ones of the same model are laid over it")
+      ->required();
   command->add_option("--out", arguments->page, "page to write (default: the result's name with .html)")
       ->type_name("FILE.html");
-  command->footer("Example:\n  saltus simulate stick-slip --out stick-slip.json && saltus report stick-slip.json");
+  command
+      ->add_option("--figure", arguments->figures,
+                   "draw into this file instead of a page; .pdf and .png need rsvg-convert (librsvg2-bin); repeatable")
+      ->type_name("FILE.svg|.pdf|.png")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      ->add_option("--phase", arguments->phase,
+                   "draw column Y over column X: states, controls, outputs, alpha(NAME) or t; default: all over time")
+      ->type_name("X,Y");
+  command->add_flag("--open", arguments->open, "show the page with $BROWSER, else xdg-open");
+  command->footer(
+      "Examples:\n  saltus simulate stick-slip --out stick-slip.json && saltus report stick-slip.json\n"
+      "  saltus report stick-slip.json --figure plane.svg --phase q,v\n"
+      "  saltus report first.json second.json --out both.html");
   return {"report", [arguments] { return run_report(*arguments); }};
 }
 

@@ -10,6 +10,7 @@
 #include "report_style.hpp"
 #include "saltus/report/packing_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
+#include "saltus/report/page_overlays_internal.hpp"
 
 namespace saltus::report {
 namespace {
@@ -66,8 +67,12 @@ std::uint64_t fingerprint(std::string_view text) {
 
 }  // namespace
 
-std::string to_html(const result::Result& result, std::string_view plotly_source) {
-  Packed packed = pack(page_data(result));
+std::string to_html(const result::Result& result, std::string_view plotly_source,
+                    const std::vector<Overlay>& overlays) {
+  const std::size_t share = numbers_in_page / (1 + overlays.size());
+  nlohmann::json everything = page_data(result, share);
+  everything["overlays"] = overlays_data(result, overlays, share);
+  Packed packed = pack(std::move(everything));
   const std::string data = to_script_text(packed.skeleton);
   const std::string numbers = deflated_base64(shuffled_bytes(packed.numbers));
   const std::string plotly = deflated_base64(plotly_source);

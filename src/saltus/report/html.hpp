@@ -3,14 +3,18 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "saltus/report/overlay.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {
 
 /// Numbers and plotly are deflated in it; the page inflates them.
 /// @param plotly_source  the text of plotly.min.js, embedded into the page
-/// @return a complete HTML document; depends on the result only.
-[[nodiscard]] std::string to_html(const result::Result& result, std::string_view plotly_source);
+/// @param overlays       other results of the model (check_overlay), drawn over it; their differences are shown
+/// @return a complete HTML document; depends on the results only.
+[[nodiscard]] std::string to_html(const result::Result& result, std::string_view plotly_source,
+                                  const std::vector<Overlay>& overlays = {});
 
 }  // namespace saltus::report

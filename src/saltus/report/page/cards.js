@@ -143,6 +143,8 @@ saltus.infoCards = (result) => {
   ];
   const quiet = (text) => saltus.element("p", {class: "quiet"}, text);
   return [
+    saltus.modelCard(result),
+    saltus.startCard(result),
     saltus.finalCard(result),
     saltus.card(
         "Parameters",
@@ -151,7 +153,7 @@ saltus.infoCards = (result) => {
             quiet("The model has none.")),
     result.options.length > 0 ? saltus.optionsCard(result) : saltus.card("Options", quiet("None are recorded.")),
     saltus.card("Statistics", saltus.pairTable(result.optimization ? saltus.optimizationStatistics(result) : numbers)),
-  ];
+  ].filter((card) => card !== null);
 };
 
 saltus.notes = (result) => {

@@ -4,7 +4,7 @@
 saltus.fullWindow = (result) => {
   const {t} = result.trajectory;
   if (t.length === 0) return [0, 1];
-  const ends = result.branches.map((branch) => branch.trajectory.t.at(-1) ?? t[0]);
+  const ends = [...result.branches, ...(result.overlays ?? [])].map((other) => other.trajectory.t.at(-1) ?? t[0]);
   const [from, to] = [t[0], ends.reduce((latest, end) => Math.max(latest, end), t[t.length - 1])];
   return from < to ? [from, to] : [from - 0.5, from + 0.5];
 };
@@ -126,7 +126,7 @@ saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve,
   return [
     ...saltus.boundLines(result, curve, axis, view), ...saltus.branchCurves(result, curve, axis, color, view),
     ...(envelope === undefined ? [] : saltus.envelopeTraces(envelope, axis, color)), line, ...jumpTraces,
-    ...saltus.simulatedCurve(result, curve, axis, view)
+    ...saltus.simulatedCurve(result, curve, axis, view), ...saltus.overlayCurves(result, curve, axis, view)
   ];
 });
 

@@ -18,10 +18,16 @@ saltus.legend = (result, holder, timeline, chooser) => {
       ...saltus.optimizationSwatches(result, swatch),
       ...(result.branches.length > 0 ? [swatch("branch-line", "branches")] : []),
       saltus.element(
-          "span", {class: "quiet help", title: "A double click shows the whole time again; a click on the line of an event shows the event."},
+          "span", {class: "quiet help", title: "Keys, when the drawing has the focus: arrows, +, -, 0. A double click shows the whole time again; a click on the line of an event shows the event."},
           "drag: zoom"),
       saltus.element("button", {onclick: () => timeline().reset()}, "whole time"), chooser.button,
-      ...saltus.saveButtons(result, holder, "trajectory"));
+      ...saltus.saveButtons(result, holder, "trajectory"),
+      saltus.element(
+          "button", {
+            title: "save the rows of this page as CSV",
+            onclick: () => saltus.saveText(saltus.fileName(result, ".csv"), saltus.toCsv(result), "text/csv")
+          },
+          "CSV"));
 };
 
 saltus.eventSection = (result, parts) => {
@@ -87,6 +93,7 @@ saltus.start = () => {
   main.append(saltus.pageHeader(result, theme.toggle), ...saltus.banners(result, select));
   const comparison = saltus.comparisonCard(result);
   if (comparison !== null) main.append(comparison);
+  if (result.overlays.length > 0) main.append(saltus.overlayCard(result, saltus.palette()));
   const orders = saltus.orderPictures(result);
   phases.push(...orders);
   if (orders.length > 0)
@@ -120,6 +127,8 @@ saltus.start = () => {
     phases.push(saltus.phasePlane(result, timeline, select, address));
     if (result.states.length > 2) phases.push(saltus.phasePortrait(result, timeline, select, address));
   }
+  const differences = saltus.differencePicture(result, timeline);
+  if (differences !== null) phases.push(differences);
   const multipliers = saltus.multiplierPicture(result, timeline);
   if (multipliers !== null) phases.push(multipliers);
   phases.push(...saltus.optimizationPictures(result, timeline));

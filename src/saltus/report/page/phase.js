@@ -74,6 +74,10 @@ saltus.phaseView = (result, timeline, choice, sliding, buckets) => {
     box: columns.map((column, axis) => saltus.roomyRange([
       ...rows.map((i) => column[i]),
       ...(saltus.branchPath(result.branches, (branch) => [saltus.columnOf(branch.trajectory, chosen[axis])], window_, buckets)[0] ??
+          []),
+      ...(saltus.branchPath(
+              saltus.overlaysWith(result, chosen), (other) => [saltus.columnOf(other.trajectory, chosen[axis])], window_,
+              buckets)[0] ??
           [])
     ])),
     at: saltus.slicePlace(result, selected, rows),

@@ -101,6 +101,7 @@ saltus.planeTraces = (result, choice, view, palette) => {
     point(rows[rows.length - 1], "end", "square"),
     ...flagged,
     ...saltus.simulatedOrbit(result, choice, view, palette, "scatter"),
+    ...saltus.overlayOrbits(result, choice, view, palette, "scatter"),
   ];
 };
 

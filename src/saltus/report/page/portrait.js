@@ -37,6 +37,7 @@ saltus.portraitTraces = (result, choice, view, palette) => {
   return [
     ...saltus.branchOrbits(result, choice, view, palette, "scatter3d"),
     ...saltus.simulatedOrbit(result, choice, view, palette, "scatter3d"),
+    ...saltus.overlayOrbits(result, choice, view, palette, "scatter3d"),
     line(parts.free, "not sliding", {color: palette.curves[0], width: 3}),
     line(parts.sliding, "sliding", {color: palette.sliding, width: 6}),
     line(parts.jumps, "jump", {color: palette.jump, width: 3, dash: "dot"}),

@@ -78,6 +78,29 @@ saltus.timeline = (result, holder, listeners, address) => {
     return draw();
   };
 
+  /** The window shifted by and scaled with its width; within the whole time. */
+  const moved = (shift, scale) => {
+    const middle = (window_[0] + window_[1]) / 2 + shift * (window_[1] - window_[0]);
+    const half = (scale * (window_[1] - window_[0])) / 2;
+    const next = [Math.max(full[0], middle - half), Math.min(full[1], middle + half)];
+    if (next[1] - next[0] > 1e-12 * (full[1] - full[0])) setWindow(next);
+  };
+  const keys = {
+    ArrowLeft: () => moved(-0.2, 1),
+    ArrowRight: () => moved(0.2, 1),
+    "+": () => moved(0, 0.5),
+    "-": () => moved(0, 2),
+    0: () => setWindow(full),
+  };
+  holder.tabIndex = 0;
+  holder.setAttribute("role", "application");
+  holder.setAttribute("aria-label", "drawing over time; arrow keys move, plus and minus zoom, 0 shows the whole time");
+  holder.addEventListener("keydown", (event) => {
+    if (keys[event.key] === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    keys[event.key]();
+  });
+
   draw();
   holder.on("plotly_relayout", relayout);
   holder.on("plotly_doubleclick", () => setWindow(full));

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "saltus/report/figure_columns_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+/// Rows to draw: all if they are further apart than a pixel, else the first, extreme and last ones of each pixel.
+std::vector<std::size_t> rows_of_pixels(const std::vector<double>& t, const std::vector<double>& y, double pixel) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < t.size();) {
+    std::size_t k = i, least = i, greatest = i;
+    for (; k < t.size() && (k == i || t[k] < t[i] + pixel); ++k) {
+      if (y[k] < y[least] || std::isnan(y[least])) least = k;
+      if (y[k] > y[greatest] || std::isnan(y[greatest])) greatest = k;
+    }
+    if (k - i <= 4) {
+      for (std::size_t row = i; row < k; ++row) rows.push_back(row);
+    } else {
+      std::size_t chosen[] = {i, least, greatest, k - 1};
+      std::sort(std::begin(chosen), std::end(chosen));
+      for (const std::size_t row : chosen) {
+        if (rows.empty() || rows.back() != row) rows.push_back(row);
+      }
+    }
+    i = k;
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<FigureColumn> figure_columns(const result::Result& result) {
+  std::vector<FigureColumn> columns;
+  const auto& trajectory = result.trajectory;
+  const auto add = [&](const std::vector<std::string>& names, const std::vector<std::vector<double>>& rows,
+                       ColumnSort sort) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      FigureColumn column{sort == ColumnSort::alpha ? fmt::format("alpha({})", names[i]) : names[i], sort, i, {}};
+      for (std::size_t row = 0; row < trajectory.t.size(); ++row) {
+        const bool there = row < rows.size() && i < rows[row].size();
+        column.values.push_back(there ? rows[row][i] : std::numeric_limits<double>::quiet_NaN());
+      }
+      columns.push_back(std::move(column));
+    }
+  };
+  add(result.states, trajectory.x, ColumnSort::state);
+  add(result.outputs, trajectory.outputs, ColumnSort::output);
+  add(result.controls, trajectory.u, ColumnSort::control);
+  add(result.switching_functions, trajectory.alpha, ColumnSort::alpha);
+  columns.push_back({"t", ColumnSort::time, 0, trajectory.t});
+  return columns;
+}
+
+Range range_of(const std::vector<double>& values) {
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    range.from = std::min(range.from, value);
+    range.to = std::max(range.to, value);
+  }
+  return range.from <= range.to ? range : Range{0.0, 0.0};
+}
+
+Range roomy(Range range) {
+  const double width = range.to - range.from;
+  const double room = width > 0.0 ? 0.06 * width : std::max(0.1 * std::abs(range.from), 1e-3);
+  return {range.from - room, range.to + room};
+}
+
+bool moves(const std::vector<double>& values) {
+  const Range range = range_of(values);
+  return range.to - range.from > 1e-12 * std::max(std::abs(range.from), std::abs(range.to));
+}
+
+bool is_discrete(const std::vector<double>& t, const std::vector<double>& values) {
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    if (values[i] != values[i - 1] && t[i] != t[i - 1]) return false;
+  }
+  return moves(values);
+}
+
+bool slides(const result::Trajectory& trajectory, std::size_t row) {
+  const auto& modes = trajectory.mode;
+  if (row < modes.size() && std::find(modes[row].begin(), modes[row].end(), 0) != modes[row].end()) return true;
+  const auto& regions = trajectory.regions;
+  return row < regions.size() &&
+         std::any_of(regions[row].begin(), regions[row].end(), [](const auto& active) { return active.size() > 1; });
+}
+
+CurvePieces curve_pieces(const result::Trajectory& trajectory, const std::vector<double>& x,
+                         const std::vector<double>& y, const Plot& plot, double pixel, bool steps) {
+  CurvePieces pieces;
+  const auto& t = trajectory.t;
+  // A hundredth of a pixel; below it are the roundings of states that were put onto a surface.
+  const double least_x = 1e-5 * (plot.x.to - plot.x.from), least_y = 1e-5 * (plot.y.to - plot.y.from);
+  std::size_t previous = 0;
+  bool open = false;
+  for (const std::size_t row : rows_of_pixels(t, y, pixel)) {
+    if (!std::isfinite(x[row]) || !std::isfinite(y[row])) {
+      open = false;
+      continue;
+    }
+    const Point here = plot.place(x[row], y[row]);
+    const bool together = open && t[previous] == t[row];
+    const bool jumps =
+        together && (std::abs(x[previous] - x[row]) > least_x || std::abs(y[previous] - y[row]) > least_y);
+    if (jumps && !steps) {
+      pieces.jumps.push_back({plot.place(x[previous], y[previous]), here});
+      open = false;
+    }
+    const bool sliding = slides(trajectory, open ? previous : row);
+    if (!open) {
+      pieces.lines.push_back({{here}, sliding});
+    } else {
+      if (!together && pieces.lines.back().sliding != sliding)
+        pieces.lines.push_back({{pieces.lines.back().points.back()}, sliding});
+      pieces.lines.back().points.push_back(here);
+    }
+    open = true;
+    previous = row;
+  }
+  return pieces;
+}
+
+}  // namespace saltus::report

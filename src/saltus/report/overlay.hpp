@@ -1,0 +1,21 @@
+// Other results of a model, laid over the one that a page shows.
+#pragma once
+
+#include <string>
+
+#include "saltus/base/error.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::report {
+
+/// A result, and what it is called in the page (the name of its file).
+struct Overlay {
+  std::string label;
+  result::Result result;
+};
+
+/// Whether `other` is of the same model as `first`: the name of the model and the names of its states agree (parameters,
+/// methods, outputs and text may differ).
+[[nodiscard]] Expected<void> check_overlay(const result::Result& first, const Overlay& other);
+
+}  // namespace saltus::report

@@ -1,0 +1,141 @@
+// Other results of the model over the one that is shown, and how far they are from it.
+"use strict";
+
+/** Colour and dashes of a result that lies over the first. */
+saltus.overlayLine = (i, palette) => ({
+  simplify: false,
+  color: [palette.simulated, palette.jump, palette.alarm, palette.accumulation][i % 4],
+  width: 1.5,
+  dash: ["solid", "dash", "dot", "dashdot"][Math.floor(i / 4) % 4],
+});
+
+/** What another result has of a curve over time. */
+saltus.overlayCurves = (result, curve, axis, view) => (result.overlays ?? []).flatMap(({trajectory, label}, i) => {
+  const values = saltus.columnOf(trajectory, curve);
+  if ((values ?? []).length === 0) return [];
+  const {x, y} = saltus.points(trajectory.t, values, view.window, view.pixels, true);
+  return [{
+    ...saltus.lineOverTime(axis, x, y),
+    meta: "overlay",
+    name: saltus.plain(label),
+    line: saltus.overlayLine(i, view.palette),
+  }];
+});
+
+/** The other results that have all of some columns. */
+saltus.overlaysWith = (result, columns) => (result.overlays ?? []).filter(
+    ({trajectory}) => columns.every((column) => (saltus.columnOf(trajectory, column) ?? []).length > 0));
+
+/** Other results in a plane or a space. */
+saltus.overlayOrbits = (result, choice, view, palette, type) => (result.overlays ?? []).flatMap((overlay, i) => {
+  const {t} = overlay.trajectory;
+  const lists = choice.map((axis) => saltus.columnOf(overlay.trajectory, saltus.axes(result)[axis]) ?? []);
+  if (t.length === 0 || lists.some((list) => list.length === 0)) return [];
+  const rows = saltus.rowsToDraw(t, lists, saltus.rowsInWindow(t, view.window), view.pixels);
+  const [x, y, z] = lists.map((list) => rows.map((row) => list[row]));
+  const line = saltus.overlayLine(i, palette);
+  return [{
+    type,
+    mode: "lines",
+    x,
+    y,
+    ...(z === undefined ? {} : {z}),
+    name: saltus.plain(saltus.shorten(overlay.label, 24)),
+    hoverinfo: "skip",
+    line: type === "scatter" ? line : {color: line.color, width: 3, dash: line.dash},
+  }];
+});
+
+/** Value of a column at a time, linear between rows; at doubled rows the one behind. Null outside of its times. */
+saltus.interpolated = (t, values, time) => {
+  if (t.length === 0 || time < t[0] || time > t[t.length - 1]) return null;
+  const i = saltus.lowerBound(t, time);
+  if (t[i] === time) return values[saltus.rowsAtOneTime(t, i)[1]];
+  const [from, to] = [values[i - 1], values[i]];
+  return from === null || to === null ? null : from + ((time - t[i - 1]) / (t[i] - t[i - 1])) * (to - from);
+};
+
+/** Other minus first at the times of the first, and the largest absolute value. */
+saltus.differenceOf = (first, other, column) => {
+  const [own, values] = [saltus.columnOf(first, column), saltus.columnOf(other, column) ?? []];
+  let largest = null;
+  const y = first.t.map((time, row) => {
+    // Of doubled rows the last alone: events of the two are hardly ever at one time.
+    const at = values.length === 0 || first.t[row + 1] === time ? null : saltus.interpolated(other.t, values, time);
+    const difference = at === null || own[row] === null ? null : at - own[row];
+    if (difference !== null) largest = Math.max(largest ?? 0, Math.abs(difference));
+    return difference;
+  });
+  return {x: first.t, y, largest};
+};
+
+/** One row for every result: what differs from the first, and how far it is from it. */
+saltus.overlayCard = (result, palette) => {
+  const rows = result.overlays.map((overlay, i) => {
+    const line = saltus.element("i", {class: "overlay-line", style: `color: ${saltus.overlayLine(i, palette).color}`});
+    const states = saltus.columns(result).filter(({sort}) => sort === "state");
+    const far = states
+                    .map((column) => {
+                      const [least, greatest] = saltus.range(column.values);
+                      const {largest} = saltus.differenceOf(result.trajectory, overlay.trajectory, column);
+                      return {name: column.name, part: (largest ?? 0) / (greatest - least || 1)};
+                    })
+                    .reduce((most, one) => (one.part > most.part ? one : most), {name: "", part: 0});
+    const parameters = overlay.parameters.map(([name, value]) => `${name} = ${saltus.exact(value)}`).join(", ");
+    const ends = `${overlay.status.termination.replaceAll("_", " ")} at t = ${saltus.brief(overlay.status.time_reached, 6)}`;
+    return [
+      saltus.element("span", {}, line, " ", overlay.label), overlay.method, parameters || "the same", String(overlay.events),
+      ends, far.part === 0 ? "none" : `${saltus.brief(far.part, 3)} of the range of ${far.name}`
+    ];
+  });
+  const head = ["result", "method", "other parameters", "events", "ends", "largest difference"];
+  return saltus.element(
+      "section", {class: "card comparison overlays"}, saltus.element("h2", {}, "Results laid over this one"),
+      saltus.plainTable(head, rows.map((row) => row)));
+};
+
+/** The differences over time, one column at a time. */
+saltus.differencePicture = (result, timeline) => {
+  if ((result.overlays ?? []).length === 0) return null;
+  const columns = saltus.columns(result);
+  const first = saltus.firstPanels(result).panels[0]?.curves[0] ?? 0;
+  let chosen = first;
+  const figure = (palette, holder) => ({
+    data: result.overlays.map((overlay, i) => {
+      const {x, y} = saltus.differenceOf(result.trajectory, overlay.trajectory, columns[chosen]);
+      return {
+        type: "scatter",
+        mode: "lines",
+        name: saltus.plain(saltus.shorten(overlay.label, 24)),
+        x,
+        y,
+        line: saltus.overlayLine(i, palette),
+      };
+    }),
+    layout: saltus.cardLayout(palette, holder, {
+      xaxis: saltus.cardAxis(palette, "t", {range: timeline.window(), zeroline: false}),
+      yaxis: saltus.cardAxis(palette, `difference of ${saltus.plain(saltus.columnLabel(columns[chosen]))}`),
+      showlegend: true,
+    }),
+  });
+  const option = (column, i) => saltus.element(
+      "option", {value: String(i), ...(i === chosen ? {selected: ""} : {})}, saltus.columnLabel(column));
+  const picker = saltus.element(
+      "select", {
+        "aria-label": "column",
+        onchange: (event) => {
+          chosen = Number(event.target.value);
+          card.draw();
+        }
+      },
+      ...columns.map(option));
+  const card = saltus.drawingCard(
+      result, {
+        title: "Differences",
+        note: "The other results minus this one, at its times; between rows the others are interpolated linearly.",
+        file: "differences",
+        controls: ["of ", picker],
+      },
+      figure, saltus.followsTime(timeline));
+  return card;
+};

@@ -1,0 +1,77 @@
+"""Drawings without a browser: saltus report --figure, --phase, --open."""
+
+import os
+import pathlib
+import stat
+import time
+import xml.etree.ElementTree as tree
+
+import tool
+
+
+class Figure(tool.ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.run_tool("simulate", "stick-slip", "--out", "r.json", "--quiet", code=0)
+
+    def words(self, name):
+        svg = tree.parse(self.folder / name).getroot()
+        return [text.text for text in svg.iter("{http://www.w3.org/2000/svg}text")]
+
+    def test_over_time_and_in_a_plane(self):
+        out, _ = self.run_tool("report", "r.json", "--figure", "time.svg", code=0)
+        self.assertEqual(out, "time.svg\n")
+        self.assertFalse((self.folder / "r.html").exists())
+        for name in ("q", "v", "slip", "alpha(slip)", "t"):
+            self.assertIn(name, self.words("time.svg"))
+        self.run_tool("report", "r.json", "--figure", "plane.svg", "--phase", "t,alpha(slip)", code=0)
+        self.assertIn("stick-slip: alpha(slip) over t", self.words("plane.svg"))
+
+    def test_what_is_wrong_is_refused_before_anything_is_written(self):
+        for arguments, part in ((["--figure", "a.gif"], ".svg, .pdf or .png"),
+                                (["--figure", "a.svg", "--phase", "q,w"], "no column 'w'"),
+                                (["--figure", "a.svg", "--phase", "q"], "two columns"),
+                                (["--figure", "none/a.svg"], "none"),
+                                (["--phase", "q,v"], "--figure")):
+            _, err = self.run_tool("report", "r.json", *arguments, code=2)
+            self.assertIn(part, err)
+            self.assertFalse((self.folder / "a.svg").exists())
+
+    def test_without_a_converter_only_svg_can_be_written(self):
+        _, err = self.run_tool("report", "r.json", "--figure", "a.pdf", code=2, environment={"PATH": "/none"})
+        self.assertIn("librsvg2-bin", err)
+
+    def test_the_converter_makes_the_other_formats(self):
+        if not any((pathlib.Path(folder) / "rsvg-convert").exists() for folder in os.environ["PATH"].split(":")):
+            self.skipTest("no rsvg-convert")
+        self.run_tool("report", "r.json", "--figure", "a.pdf", "--figure", "a.png", code=0)
+        self.assertTrue((self.folder / "a.pdf").read_bytes().startswith(b"%PDF"))
+        self.assertTrue((self.folder / "a.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_open_gives_the_page_to_the_browser(self):
+        browser = self.folder / "browser"
+        browser.write_text("#!/bin/sh\necho \"$1\" > seen.tmp && mv seen.tmp seen\n", encoding="utf-8")
+        browser.chmod(browser.stat().st_mode | stat.S_IXUSR)
+        self.run_tool("report", "r.json", "--open", code=0, environment={"BROWSER": str(browser)})
+        end = time.monotonic() + 20
+        while not (self.folder / "seen").exists() and time.monotonic() < end:
+            time.sleep(0.02)
+        self.assertEqual((self.folder / "seen").read_text(encoding="utf-8").strip(),
+                         str((self.folder / "r.html").resolve()))
+        self.run_tool("report", "r.json", "--open", code=2, environment={"BROWSER": "/none/browser"})
+
+
+class Overlays(tool.ToolTest):
+    def test_results_of_other_models_are_refused(self):
+        for model in ("stick-slip", "circle"):
+            self.run_tool("simulate", model, "--out", f"{model}.json", "--quiet", code=0)
+        _, err = self.run_tool("report", "stick-slip.json", "circle.json", "--out", "p.html", code=2)
+        self.assertIn("circle.json", err)
+        self.assertFalse((self.folder / "p.html").exists())
+        _, err = self.run_tool("report", "stick-slip.json", "none.json", "--out", "p.html", code=2)
+        self.assertIn("none.json", err)
+        self.run_tool("report", "stick-slip.json", "stick-slip.json", "--out", "p.html", code=0)
+
+
+if __name__ == "__main__":
+    tool.main()

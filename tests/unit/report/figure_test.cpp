@@ -1,0 +1,107 @@
+#include "saltus/report/figure.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "saltus/report/figure_columns_internal.hpp"
+#include "sample_results.hpp"
+
+namespace saltus::report {
+namespace {
+
+std::size_t occurrences(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST(Figure, OverTimeHasAPanelForWhatMoves) {
+  const auto svg = to_svg(report_samples::stick_slip(40, 50));
+  ASSERT_TRUE(svg);
+  EXPECT_TRUE(svg->starts_with("<svg xmlns"));
+  EXPECT_TRUE(svg->ends_with("</svg>\n"));
+  for (const char* name : {">q<", ">v<", ">alpha(slip)<", ">slip<"}) EXPECT_EQ(occurrences(*svg, name), 1U) << name;
+  EXPECT_EQ(occurrences(*svg, "<g "), occurrences(*svg, "</g>"));
+  EXPECT_EQ(svg->find("nan"), std::string::npos);
+}
+
+TEST(Figure, OfAPlaneHasItsColumnsAsAxes) {
+  const auto result = report_samples::stick_slip(40, 50);
+  const auto axes = phase_axes(result, "q,alpha(slip)");
+  ASSERT_TRUE(axes);
+  EXPECT_EQ(axes->second, "alpha(slip)");
+  const auto svg = to_svg(result, *axes);
+  ASSERT_TRUE(svg);
+  EXPECT_NE(svg->find("alpha(slip) over q"), std::string::npos);
+}
+
+TEST(Figure, UnknownColumnsAreRefusedWithTheNearestName) {
+  const auto result = report_samples::stick_slip(4, 5);
+  for (const char* wrong : {"q,vv", "vv,q", "q", ""}) {
+    const auto axes = phase_axes(result, wrong);
+    ASSERT_FALSE(axes) << wrong;
+    EXPECT_FALSE(axes.error().remedy.empty());
+  }
+  EXPECT_NE(phase_axes(result, "q,vv").error().message.find("'vv'"), std::string::npos);
+}
+
+TEST(Figure, NothingIsNoError) {
+  for (const auto& result : {result::Result{}, report_samples::nothing(), report_samples::failed()}) {
+    const auto svg = to_svg(result);
+    ASSERT_TRUE(svg);
+    EXPECT_EQ(svg->find("nan"), std::string::npos);
+    EXPECT_EQ(svg->find("inf"), std::string::npos);
+  }
+}
+
+TEST(Figure, NamesOfOthersStayText) {
+  auto result = report_samples::stick_slip(4, 5);
+  result.states[0] = "</svg><script>&";
+  const auto svg = to_svg(result);
+  EXPECT_EQ(occurrences(*svg, "<script>"), 0U);
+  EXPECT_NE(svg->find("&lt;/svg&gt;&lt;script&gt;&amp;"), std::string::npos);
+}
+
+TEST(Figure, CurvesKeepTheirExtremesAndCutsAtJumps) {
+  result::Trajectory trajectory;
+  std::vector<double> y;
+  for (int i = 0; i <= 10000; ++i) {
+    trajectory.t.push_back(i / 1000.0);
+    y.push_back(i == 5003 ? 7.0 : std::sin(i / 1000.0));
+  }
+  trajectory.t.push_back(10.0);
+  y.push_back(3.0);
+  const Plot plot{{0.0, 0.0}, 100.0, 100.0, {0.0, 10.0}, {-10.0, 10.0}};
+  const auto pieces = curve_pieces(trajectory, trajectory.t, y, plot, 0.1, false);
+  ASSERT_EQ(pieces.lines.size(), 2U);
+  ASSERT_EQ(pieces.jumps.size(), 1U);
+  EXPECT_LE(pieces.lines[0].points.size(), 410U);
+  double highest = 100.0;
+  for (const auto& point : pieces.lines[0].points) highest = std::min(highest, point.y);
+  EXPECT_NEAR(highest, plot.place(5.003, 7.0).y, 1e-12);
+}
+
+TEST(Figure, ChatteringFillsBothHalvesOfABand) {
+  result::Result result;
+  result.states = {"x"};
+  result.switching_functions = {"s"};
+  for (int i = 0; i < 20000; ++i) {
+    for (const double part : {0.0, 0.5}) report_samples::add_row(result, {i + part, {0.0}, {part == 0.0 ? 1 : -1}, {0.0}});
+  }
+  report_samples::finish(result);
+  const auto svg = to_svg(result);
+  ASSERT_TRUE(svg);
+  for (const char* color : {"#1f4e8c", "#9cc9ee"}) {
+    EXPECT_GT(occurrences(*svg, color), 300U);
+    EXPECT_LT(occurrences(*svg, color), 1000U);
+  }
+}
+
+TEST(Figure, NumbersOfAxesAreRound) {
+  EXPECT_EQ(round_numbers({0.0, 1.0}, 5), (std::vector<double>{0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0}));
+  EXPECT_EQ(round_numbers({-3.0, 40.0}, 5), (std::vector<double>{0.0, 10.0, 20.0, 30.0, 40.0}));
+}
+
+}  // namespace
+}  // namespace saltus::report
