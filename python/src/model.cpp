@@ -54,6 +54,7 @@ class Model {
     for (const auto& setting : request.settings) value_or_raise(cli::apply_setting(input, setting));
     for (const auto& [key, value, written] : request.options) {
       value_or_raise(io::set_option(input.file, key, value, {written, 0, 0}));
+      input.settings.push_back(key + "=" + value);
     }
     return input;
   }

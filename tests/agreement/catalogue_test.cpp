@@ -100,7 +100,8 @@ TEST_P(Catalogue, OutputGridChangesNothing) {
     const Result every_step = model.run(options);
     const double until = GetParam().until;
     for (const pipeline::OutputGrid& grid :
-         {pipeline::OutputGrid{pipeline::NumberOfPoints{2}}, pipeline::OutputGrid{pipeline::NumberOfPoints{1237}},
+         {pipeline::OutputGrid{pipeline::Automatic{}}, pipeline::OutputGrid{pipeline::NumberOfPoints{2}},
+          pipeline::OutputGrid{pipeline::NumberOfPoints{1237}},
           pipeline::OutputGrid{pipeline::EveryInterval{until / 77.3}},
           pipeline::OutputGrid{pipeline::AtTimes{{0.1 * until, 0.1 * until + 1e-9, until}}}}) {
       options.output = grid;

@@ -67,6 +67,21 @@ class Interrupt(tool.ToolTest):
         self.assertLess(result["final"]["t"], 1e9)
         self.assertEqual(result["trajectory"]["t"][-1], result["final"]["t"])
 
+    def test_while_writing_nothing_is_left(self):
+        self.write("m.toml", ENDLESS.replace("1e9\n", "1000\n").replace("points = 10", "points = 1000000"))
+        self.write("r.json", "precious")
+        process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--out", "r.json"], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        while not any(path.stat().st_size > 0 for path in self.folder.glob(".saltus-*.tmp")):
+            self.assertIsNone(process.poll(), "ended by itself")
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 3, err)
+        self.assertIn("writing r.json was interrupted", err)
+        self.assertEqual((self.folder / "r.json").read_text(), "precious")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["m.toml", "r.json"])
+
     def test_check_says_what_it_knows(self):
         process = self.start(["check", "--well-posedness"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(2.0)

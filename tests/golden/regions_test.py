@@ -62,10 +62,10 @@ class Files(tool.ToolTest):
         result = self.simulate()
         with open(self.folder / "r.csv", newline="", encoding="utf-8") as file:
             head, *rows = csv.reader(file)
-        self.assertEqual(head, ["t", "x", "y", "regions(first)", "regions(second)", "theta(first.low)", "theta(first.high)",
+        self.assertEqual(head, ["t", "side", "x", "y", "regions(first)", "regions(second)", "theta(first.low)", "theta(first.high)",
                                 "theta(second.low)", "theta(second.mode2)"])
-        self.assertEqual(rows[-1][4], "low+mode2")
-        self.assertEqual([float(field) for field in rows[-1][5:]], result["final"]["theta"])
+        self.assertEqual(rows[-1][5], "low+mode2")
+        self.assertEqual([float(field) for field in rows[-1][6:]], result["final"]["theta"])
 
     def test_the_first_regions_may_be_given(self):
         for name, value, x, regions in (("first.low", 1, -1, ["low"]), ("high", 1, 1, ["high"]),

@@ -1,13 +1,16 @@
 """JSON, CSV and report files of a run."""
 
+import ast
 import csv
 import hashlib
 import json
 import re
+import struct
+import zipfile
 
 import tool
 
-KEYS = ["format", "saltus", "model", "command", "method", "status", "states", "controls", "switching_functions",
+KEYS = ["format", "saltus", "model", "command", "command_line", "method", "status", "states", "controls", "switching_functions",
         "outputs", "final", "events", "trajectory", "surfaces", "statistics", "options"]
 EVENT_KEYS = ["t", "kind", "name", "surfaces", "mode_before", "mode_after", "alpha_before", "alpha_after", "x",
               "x_after", "unique", "alternatives", "reason"]
@@ -60,11 +63,34 @@ class Json(tool.ToolTest):
     def test_csv_holds_the_same_trajectory(self):
         with open(self.folder / "r.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.reader(file))
-        self.assertEqual(rows[0], ["t", "q", "v", "alpha(slip)", "mode(slip)"])
+        self.assertEqual(rows[0], ["t", "side", "q", "v", "alpha(slip)", "mode(slip)"])
         trajectory = self.result["trajectory"]
         self.assertEqual(len(rows) - 1, len(trajectory["t"]))
         for row, t, x in zip(rows[1:], trajectory["t"], trajectory["x"]):
-            self.assertEqual([float(field) for field in row[:3]], [t, *x])
+            self.assertEqual([float(field) for field in [row[0], *row[2:4]]], [t, *x])
+        behind = [float(row[0]) for row in rows[1:] if row[1] == "1"]
+        self.assertEqual(behind, [event["t"] for event in self.result["events"]])
+
+    def test_csv_has_the_outputs(self):
+        out = self.csv("sliding-mode-pendulum", "--out", "r.csv", "--out", "r.json")
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        columns = range(2 + len(result["states"]), 2 + len(result["states"]) + len(result["outputs"]))
+        self.assertEqual([out[0][k] for k in columns], result["outputs"])
+        self.assertEqual([[float(row[k]) for k in columns] for row in out[1:]], result["trajectory"]["outputs"])
+
+    def test_events_as_a_table(self):
+        head, *rows = self.csv("stick-slip", "--out", "r.events.csv")
+        self.assertEqual(head, ["t", "kind", "name", "surfaces", "q", "v", "after(q)", "after(v)", "mode_before(slip)",
+                                "mode_after(slip)", "alpha_before(slip)", "alpha_after(slip)", "unique", "reason"])
+        self.assertEqual(len(rows), len(self.result["events"]))
+        for row, event in zip(rows, self.result["events"]):
+            self.assertEqual((float(row[0]), row[1], row[3]), (event["t"], event["kind"], "slip"))
+            self.assertEqual([float(field) for field in row[4:8]], event["x"] + event["x_after"])
+
+    def csv(self, model, *arguments):
+        self.run_tool("simulate", model, "--quiet", *arguments, code=0)
+        with open(self.folder / arguments[1], newline="", encoding="utf-8") as file:
+            return list(csv.reader(file))
 
     def test_the_page_of_a_stored_result_is_that_of_the_run(self):
         out, _ = self.run_tool("report", "r.json", code=0)
@@ -80,6 +106,140 @@ class Json(tool.ToolTest):
         def timeless(name):
             return re.sub(r'"wall_seconds": [^\n]*', "", (self.folder / name).read_text(encoding="utf-8"))
         self.assertEqual(timeless("r.json"), timeless("s.json"))
+
+
+def npy(data):
+    """One array as numpy.load reads it (NEP 1): without NumPy, which is not needed to test Saltus."""
+    assert data[:8] == b"\x93NUMPY\x01\x00"
+    length = struct.unpack("<H", data[8:10])[0]
+    assert (10 + length) % 64 == 0
+    head = ast.literal_eval(data[10:10 + length].decode("ascii"))
+    assert head["fortran_order"] is False
+    body, (count,), kind = data[10 + length:], head["shape"], head["descr"]
+    if kind.startswith("<U"):
+        width = 4 * int(kind[2:])
+        assert len(body) == width * count
+        return [body[k * width:(k + 1) * width].decode("utf-32-le").rstrip("\0") for k in range(count)]
+    return list(struct.unpack(f"<{count}{ {'<f8': 'd', '|i1': 'b'}[kind]}", body))
+
+
+class Arrays(tool.ToolTest):
+    def arrays(self, *arguments):
+        self.run_tool("simulate", *arguments, "--out", "r.json", "--out", "r.npz", "--quiet", code=0)
+        self.result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        with zipfile.ZipFile(self.folder / "r.npz") as archive:
+            self.assertIsNone(archive.testzip())
+            self.assertTrue(all(info.compress_type == zipfile.ZIP_DEFLATED for info in archive.infolist()))
+            return {info.filename.removesuffix(".npy"): npy(archive.read(info)) for info in archive.infolist()}
+
+    def test_all_columns_with_the_same_bits(self):
+        arrays = self.arrays("sliding-mode-pendulum")
+        trajectory, events = self.result["trajectory"], self.result["events"]
+        self.assertEqual(arrays["t"], trajectory["t"])
+        self.assertEqual(sum(arrays["side"]), len(events))
+        for names, rows in (("states", "x"), ("controls", "u"), ("outputs", "outputs")):
+            for i, name in enumerate(self.result[names]):
+                self.assertEqual(arrays[name], [row[i] for row in trajectory[rows]])
+        for i, name in enumerate(self.result["switching_functions"]):
+            self.assertEqual(arrays[f"mode({name})"], [row[i] for row in trajectory["mode"]])
+            self.assertEqual(arrays[f"alpha({name})"], [row[i] for row in trajectory["alpha"]])
+            self.assertEqual(arrays[f"events.alpha_after({name})"], [event["alpha_after"][i] for event in events])
+        self.assertEqual(arrays["events.t"], [event["t"] for event in events])
+        self.assertEqual(arrays["events.kind"], [event["kind"] for event in events])
+        self.assertEqual(arrays["events.reason"], [event["reason"] for event in events])
+        for i, name in enumerate(self.result["states"]):
+            self.assertEqual(arrays[f"events.after({name})"], [event["x_after"][i] for event in events])
+
+    def test_branches_are_told_by_their_labels(self):
+        arrays = self.arrays("spontaneous-switch", "--branch", "all")
+        self.assertEqual(set(arrays["branch"]), {"main", "1", "2"})
+        self.assertEqual(len(arrays["branch"]), len(arrays["x"]))
+        self.assertTrue(all(mode != mode for mode in arrays["events.mode_before(x)"]))  # NaN: they begin with a start
+
+    def test_numpy_reads_it(self):
+        try:
+            import numpy
+        except ImportError:
+            self.skipTest("there is no NumPy")
+        self.arrays("stick-slip")
+        with numpy.load(self.folder / "r.npz") as arrays:
+            self.assertEqual(arrays["t"].tolist(), self.result["trajectory"]["t"])
+            self.assertEqual(arrays["events.kind"].tolist(), [event["kind"] for event in self.result["events"]])
+
+
+class StandardOutput(tool.ToolTest):
+    def test_has_the_result_and_nothing_else(self):
+        self.run_tool("simulate", "crossing", "--out", "r.json", "--out", "r.csv", "--out", "r.events.csv", "--quiet",
+                      code=0)
+        for format_, file in ((None, "r.json"), ("json", "r.json"), ("csv", "r.csv"), ("events.csv", "r.events.csv")):
+            arguments = ["--format", format_] if format_ else []
+            out, err = self.run_tool("simulate", "crossing", "--out", "-", *arguments, code=0)
+            self.assertEqual(err, "")
+            timeless = lambda text: re.sub(r'"wall_seconds": [^\n]*', "", text)
+            self.assertEqual(timeless(out), timeless((self.folder / file).read_text(encoding="utf-8")), format_)
+
+    def test_formats_that_say_nothing(self):
+        for arguments, message in ((["--format", "csv"], "it is for --out -"),
+                                   (["--out", "-", "--format", "xls"], "expected json or csv or npz or events.csv"),
+                                   (["--out", "-", "--out", "-"], "standard output is named twice")):
+            err = self.run_tool("simulate", "crossing", *arguments, code=2)[1]
+            self.assertIn(message, err)
+
+
+class RegularGrid(tool.ToolTest):
+    MODEL = """
+[model]
+name = "bounces"
+[states]
+h = 1
+v = 0
+[dynamics]
+h = "v"
+v = "-9.81"
+[[jumps]]
+when = "h"
+direction = "down"
+set = { v = "-0.8*v" }
+[simulate]
+until = 2
+"""
+
+    def times(self, *arguments, model=None):
+        self.write("m.toml", model or self.MODEL)
+        self.run_tool("simulate", "m.toml", "--out", "r.json", "--quiet", *arguments, code=0)
+        self.result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        return self.result["trajectory"]["t"]
+
+    def test_no_rows_at_events(self):
+        with_events = self.times("--set", "simulate.output.every=0.01")
+        final, events = self.result["final"], self.result["events"]
+        self.assertEqual(len(with_events), 201 + 2 * len(events))
+        times = self.times("--set", "simulate.output.every=0.01", "--set", "simulate.output.events=false")
+        self.assertEqual(len(times), 201)
+        self.assertTrue(all(abs(t - 0.01 * k) < 1e-12 for k, t in enumerate(times)))
+        self.assertEqual((self.result["final"], self.result["events"]), (final, events))
+        times = self.times(model=self.MODEL + "output = { points = 11, events = false }\n")
+        self.assertEqual(len(times), 11)
+        self.run_tool("report", "r.json", code=0)
+
+    def test_steps_without_doubled_rows(self):
+        times = self.times(model=self.MODEL + "output = { events = false }\n")
+        self.assertEqual(times, sorted(set(times)))
+        for event in self.result["events"]:  # the row behind it is left
+            row = times.index(event["t"])
+            self.assertEqual(self.result["trajectory"]["x"][row], event["x_after"])
+
+    def test_the_end_is_a_row_where_an_event_stops(self):
+        times = self.times(model=self.MODEL + 'output = { every = 0.5, events = false }\n'
+                                              '[[events]]\nwhen = "h - 0.1"\nstop = true\n')
+        self.assertEqual(times[:-1], [0.0])
+        self.assertEqual(times[-1], self.result["final"]["t"])
+
+    def test_what_is_no_truth_is_refused(self):
+        self.write("m.toml", self.MODEL + "output = { every = 1, events = 0 }\n")
+        err = self.run_tool("simulate", "m.toml", code=2)[1]
+        self.assertIn("m.toml:16:", err)
+        self.assertIn("expected true or false, found 0", err)
 
 
 class Branches(tool.ToolTest):

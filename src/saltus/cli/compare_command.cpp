@@ -27,7 +27,7 @@ Command add_compare(CLI::App& app) {
   command->footer(
       "The reference is the method event with its tightest settings. What a method cannot do is told below the table.\n"
       "\nExample:\n  saltus compare stick-slip --until 10 --out stick-slip.json --report stick-slip.html");
-  return {"compare", [arguments] { return run_model(*arguments, pipeline::compare); }};
+  return {"compare", [arguments] { return run_model("compare", *arguments, pipeline::compare); }};
 }
 
 }  // namespace saltus::cli

@@ -13,6 +13,7 @@ extern "C" void remember_interrupt(int) { arrived = 1; }
 }  // namespace
 
 void catch_interrupt() {
+  arrived = 0;
   struct sigaction action = {};
   action.sa_handler = remember_interrupt;
   // RESETHAND: the second signal finds the default, which kills.

@@ -1,5 +1,7 @@
 #include "saltus/cli/model_input.hpp"
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +11,20 @@
 #include "saltus/pipeline/option_effects.hpp"
 
 namespace saltus::cli {
+namespace {
+
+/// What `--set` changes: NAME, for a parameter, an initial value or a control also by its dotted name.
+std::string target_of(const std::string& setting) {
+  auto name = setting.substr(0, setting.find('='));
+  for (const std::string_view table : {"parameters.", "states.", "controls."}) {
+    const bool whole = name.starts_with(table) && name.find('.', table.size()) == std::string::npos;
+    if (whole) return name.substr(table.size());
+  }
+  return name;
+}
+
+}  // namespace
+
 Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
   const auto equal = setting.find('=');
   if (equal == std::string::npos || equal == 0 || equal + 1 == setting.size()) {
@@ -21,11 +37,15 @@ Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
   const auto name = setting.substr(0, equal);
   const auto value = setting.substr(equal + 1);
   if (name.find('.') != std::string::npos) {
-    return io::with_setting(input.file, name, value).map([&](io::ModelFile file) { input.file = std::move(file); });
+    return io::with_setting(input.file, name, value).map([&](io::ModelFile file) {
+      input.file = std::move(file);
+      input.settings.push_back(setting);
+    });
   }
   auto tree = expression::parse(value, {fmt::format("--set {}", setting), 0, 0});
   if (!tree) return tl::unexpected(tree.error());
   input.overrides.push_back({name, std::move(*tree)});
+  input.settings.push_back(setting);
   return {};
 }
 
@@ -34,7 +54,8 @@ Expected<ModelText> read_model_text(const std::string& model) {
   if (!path) return tl::unexpected(path.error());
   auto text = io::read_model_text(*path);
   if (!text) return tl::unexpected(text.error());
-  return ModelText{path->string(), io::shown_name(*path), std::move(*text)};
+  return ModelText{path->string(), std::move(text->name), std::move(text->text), std::move(text->files),
+                   std::move(text->settings)};
 }
 
 Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings) {
@@ -44,9 +65,18 @@ Expected<ModelInput> read_input(const std::string& model, const std::vector<std:
 }
 
 Expected<ModelInput> read_input(const ModelText& text, const std::vector<std::string>& settings) {
-  auto file = io::parse_model(text.text, text.name);
+  auto file = io::parse_model(text.text, text.name, text.files);
   if (!file) return tl::unexpected(file.error());
-  ModelInput input{text.path, std::move(*file), {}};
+  ModelInput input{text.path, std::move(*file), {}, {}, {}};
+  // What a stored result was computed with, and is not set anew.
+  for (const auto& setting : text.settings) {
+    const bool anew = std::any_of(settings.begin(), settings.end(),
+                                  [&](const auto& other) { return target_of(other) == target_of(setting); });
+    if (anew) continue;
+    if (auto done = apply_setting(input, setting); !done) {
+      return tl::unexpected(with_context(done.error(), fmt::format("in what was set in {}", text.path)));
+    }
+  }
   for (const auto& setting : settings) {
     if (auto done = apply_setting(input, setting); !done) return tl::unexpected(done.error());
   }
@@ -67,11 +97,32 @@ std::vector<std::string> options_without_effect(const io::ModelFile& file) {
 }
 
 void complete_record(const ModelInput& input, result::Result& result) {
+  result.command_line = input.call;
   result.model.sha256 = input.file.sha256;
+  result.model.file = input.file.description.file;
+  result.model.text = input.file.text;
+  result.model.settings = input.settings;
+  if (!result.left_at) result.model.files = input.file.files;
   for (const auto& value : input.file.description.inputs) {
     result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));
   }
   for (auto& branch : result.branches) complete_record(input, branch);
+}
+
+std::string command_line(const std::vector<std::string>& arguments) {
+  constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./:,@%";
+  std::string line = "saltus";
+  for (const auto& argument : arguments) {
+    line += ' ';
+    if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) {
+      line += argument;
+      continue;
+    }
+    line += '\'';
+    for (const char c : argument) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += '\'';
+  }
+  return line;
 }
 
 }  // namespace saltus::cli

@@ -11,17 +11,21 @@
 
 namespace saltus::cli {
 
-/// MODEL of the command line, read but not parsed.
+/// MODEL of the command line, read but not parsed; of a stored result the model in it.
 struct ModelText {
   std::string path;
   std::string name;  ///< for messages
   std::string text;
+  std::vector<result::NamedFile> files;  ///< that a stored result has
+  std::vector<std::string> settings;     ///< with which it was computed
 };
 
 struct ModelInput {
   std::string path;
   io::ModelFile file;
   std::vector<model::Override> overrides;
+  std::vector<std::string> settings{};  ///< NAME=VALUE in their order, those of a stored result first
+  std::string call{};                   ///< the command line; empty elsewhere
 };
 
 /// @param model  path or catalogue name, - for standard input
@@ -29,18 +33,23 @@ struct ModelInput {
 
 /// @param model     path or catalogue name
 /// @param settings  NAME=VALUE each; dotted names reach any key of the file, others replace a parameter, an initial
-///                  value or a control's constant value
+///                  value or a control's constant value; they come behind those of a stored result and replace the
+///                  ones of the same name
 [[nodiscard]] Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings);
 [[nodiscard]] Expected<ModelInput> read_input(const ModelText& text, const std::vector<std::string>& settings);
 
-/// One of these settings.
+/// One of these settings, which is noted.
 [[nodiscard]] Expected<void> apply_setting(ModelInput& input, const std::string& setting);
 
 /// Which given options say nothing to the method that runs, as warnings. A file may hold the tables of several methods;
 /// what is typed, and what stands in the table of this one, is meant.
 [[nodiscard]] std::vector<std::string> options_without_effect(const io::ModelFile& file);
 
-/// What a simulation cannot know: the file's fingerprint, and the inputs as they were written.
+/// What a simulation cannot know: what it takes to run it again (text of the model, files, settings, the call), and the
+/// inputs as they were written.
 void complete_record(const ModelInput& input, result::Result& result);
+
+/// Arguments as a shell reads them.
+[[nodiscard]] std::string command_line(const std::vector<std::string>& arguments);
 
 }  // namespace saltus::cli

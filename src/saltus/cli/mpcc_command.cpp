@@ -127,12 +127,18 @@ void show_steps(const MpccArguments& arguments, const foreign::Problem& problem,
 
 ExitCode finish(const MpccArguments& arguments, const result::MpccResult& result) {
   Expected<void> written;
+  bool to_standard_output = false;
   const auto text = arguments.outputs.empty() ? std::string() : io::to_json(result);
   for (const auto& file : arguments.outputs) {
+    to_standard_output = to_standard_output || file == "-";
+    if (file == "-") {
+      print(text);
+      continue;
+    }
     auto done = io::write_file(file, text);
     if (!done && written) written = std::move(done);
   }
-  if (!arguments.quiet) print(report::to_table(result));
+  if (!arguments.quiet && !to_standard_output) print(report::to_table(result));
   if (!written) return refuse(written.error());
   if (is_done(result.status.termination)) return ExitCode::done;
   print_error(fmt::format("stopped early: {}{}{}", name(result.status.termination),
@@ -148,7 +154,7 @@ ExitCode run_mpcc(const MpccArguments& arguments) {
   if (!text) return refuse(text.error());
   auto problem = foreign::parse(*text, arguments.file, names_beside(arguments.file));
   if (!problem) return refuse(problem.error());
-  const auto outputs = Outputs::make(arguments.outputs, "", arguments.file, {".json"});
+  const auto outputs = Outputs::make({.files = arguments.outputs, .suffixes = {".json"}}, arguments.file);
   if (!outputs) return refuse(outputs.error());
   std::optional<std::vector<double>> start;
   if (!arguments.start.empty()) {

@@ -38,15 +38,15 @@ struct OptimizeArguments {
 Expected<ModelInput> stated_input(const OptimizeArguments& arguments) {
   auto input = read_input(arguments.run.model, arguments.run.settings);
   if (!input) return input;
-  for (const auto& [shortcut, value] : arguments.run.shortcuts) {
-    if (!value) continue;
-    const SourceLocation typed{fmt::format("{} {}", shortcut.flag, *value), 0, 0};
-    if (auto done = io::set_option(input->file, shortcut.key, *value, typed); !done) {
-      return tl::unexpected(done.error());
-    }
-  }
+  if (auto done = apply_shortcuts(arguments.run, *input); !done) return tl::unexpected(done.error());
   if (auto fits = io::check_optimize_options(input->file); !fits) return tl::unexpected(fits.error());
-  if (!arguments.start.empty()) input->file.optimize->start_result = arguments.start;
+  if (!arguments.start.empty()) {
+    input->file.optimize->start_result = arguments.start;
+    input->settings.push_back(fmt::format("optimize.initial_guess.result={}", arguments.start));
+  }
+  input->call = call_of("optimize", arguments.run);
+  if (!arguments.start.empty())
+    input->call += command_line({"--start", arguments.start}).substr(std::size("saltus") - 1);
   if (auto done = io::read_start_result(input->file); !done) return tl::unexpected(done.error());
   return input;
 }
@@ -78,14 +78,14 @@ Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, con
 ExitCode run_optimize(const OptimizeArguments& arguments) {
   const auto input = stated_input(arguments);
   if (!input) return refuse(input.error());
-  const auto outputs =
-      Outputs::make(arguments.run.outputs, arguments.run.report, input->path, arguments.run.output_suffixes);
+  const auto outputs = Outputs::make(arguments.run.outputs, input->path);
   if (!outputs) return refuse(outputs.error());
   const auto result = compute_optimum(arguments, *input, *outputs);
   if (!result) return refuse(io::located(result.error(), input->file));
-  const auto written = outputs->write(*result);
-  if (!arguments.run.quiet) print(report::to_table(*result));
+  const auto written = outputs->write(*result, progress_of(arguments.run));
+  if (!arguments.run.quiet && !outputs->fill_standard_output()) print(report::to_table(*result));
   if (!written) return refuse(written.error());
+  if (*written == Written::interrupted) return ExitCode::stopped_early;
   if (is_done(result->status.termination)) return ExitCode::done;
   print_error(fmt::format("stopped early: {}{}{}", name(result->status.termination),
                           result->status.message.empty() ? "" : ": ", result->status.message));
@@ -106,8 +106,8 @@ Command add_optimize(CLI::App& app) {
   auto* command = app.add_subcommand("optimize", "find controls that minimise the cost of [optimize], and verify them");
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<OptimizeArguments>();
-  add_run_options(*command, arguments->run, optimize_shortcuts, {".json", ".csv"},
-                  "write the result: .json all of it, .csv the trajectory; may repeat");
+  add_run_options(*command, arguments->run, optimize_shortcuts, {".json", ".csv", ".npz"},
+                  "write the result: .json all, .csv trajectory, .events.csv events, .npz for NumPy; may repeat");
   command->add_option("--start", arguments->start, "begin at the solution of a stored result")
       ->type_name("RESULT.json");
   command->footer(optimize_footer());

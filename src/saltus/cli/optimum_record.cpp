@@ -10,7 +10,7 @@
 namespace saltus::cli {
 
 void complete_optimum(const ModelInput& input, result::Result& result) {
-  result.model.sha256 = input.file.sha256;
+  complete_record(input, result);
   const auto& problem = *input.file.description.optimize;
   const auto note = [&](std::string_view key, const expression::NodePtr& tree) {
     if (tree) result.options.emplace_back(fmt::format("optimize.{}", key), expression::to_text(*tree));

@@ -7,7 +7,7 @@
 
 namespace saltus::cli {
 
-/// What the numerical method does not know: the file's fingerprint, and the problem as it was written.
+/// What the numerical method does not know: complete_record, and the problem as it was written.
 void complete_optimum(const ModelInput& input, result::Result& result);
 
 /// The surfaces of the model with the parameters that were found.

@@ -44,10 +44,11 @@ Expected<pipeline::OrderOptions> order_options(const OrderArguments& arguments) 
 ExitCode run_order(const OrderArguments& arguments) {
   const auto what = order_options(arguments);
   if (!what) return refuse(what.error());
-  return run_model(arguments.run, [&](const model::System& system, const pipeline::SimulateOptions& options,
-                                      const pipeline::Observers& observers) {
-    return pipeline::order(system, options, *what, observers);
-  });
+  return run_model(
+      "order", arguments.run,
+      [&](const model::System& system, const pipeline::SimulateOptions& options, const pipeline::Observers& observers) {
+        return pipeline::order(system, options, *what, observers);
+      });
 }
 
 }  // namespace

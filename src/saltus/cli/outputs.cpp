@@ -7,8 +7,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/cli/catalogue.hpp"
+#include "saltus/cli/interrupt.hpp"
+#include "saltus/cli/terminal.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json_result.hpp"
 #include "saltus/report/html.hpp"
@@ -35,15 +38,26 @@ struct Output {
   std::vector<std::string> suffixes;
 };
 
-Expected<void> check(const Output& output, std::set<fs::path>& taken) {
+constexpr std::string_view standard_output = "-";
+
+/// Writes what the end of the name says.
+bool write_as(std::string_view name, const result::Result& result, io::Sink sink) {
+  if (name.ends_with("events.csv")) return io::write_events_csv(result, sink);
+  if (name.ends_with("csv")) return io::write_csv(result, sink);
+  return name.ends_with("npz") ? io::write_npz(result, sink) : io::write_json(result, sink);
+}
+
+Expected<void> check_suffix(const Output& output) {
   const auto suffix = fs::path(output.file).extension().string();
-  bool known = false;
-  for (const auto& candidate : output.suffixes) known = known || suffix == candidate;
-  if (!known) {
-    return tl::unexpected(refused(output.option, output.file,
-                                  fmt::format("the name must end in {}", fmt::join(output.suffixes, " or ")),
-                                  "the suffix says what is written"));
-  }
+  const auto& known = output.suffixes;
+  if (std::find(known.begin(), known.end(), suffix) != known.end()) return {};
+  return tl::unexpected(refused(output.option, output.file,
+                                fmt::format("the name must end in {}", fmt::join(known, " or ")),
+                                "the suffix says what is written"));
+}
+
+Expected<void> check(const Output& output, std::set<fs::path>& taken) {
+  if (auto known = check_suffix(output); !known) return known;
   if (!taken.insert(identity(output.file)).second) {
     return tl::unexpected(refused(output.option, output.file, "this file is named twice, or is the input",
                                   "give every output its own file"));
@@ -51,43 +65,125 @@ Expected<void> check(const Output& output, std::set<fs::path>& taken) {
   return io::check_writable(output.file);
 }
 
+/// Standard output: one result at most, of a format that files may have.
+Expected<void> check_standard_output(const OutputNames& names) {
+  const auto count = std::count(names.files.begin(), names.files.end(), standard_output);
+  if (count > 1) {
+    return tl::unexpected(refused("--out", "-", "standard output is named twice", "give every output its own file"));
+  }
+  if (names.format.empty()) return {};
+  if (count == 0) {
+    return tl::unexpected(
+        refused("--format", names.format, "it is for --out -", "the suffix of a file says what is written"));
+  }
+  std::vector<std::string> known;
+  for (const auto& suffix : names.suffixes) known.push_back(suffix.substr(1));
+  if (std::find(known.begin(), known.end(), "csv") != known.end()) known.emplace_back("events.csv");
+  if (std::find(known.begin(), known.end(), names.format) != known.end()) return {};
+  return tl::unexpected(refused("--format", names.format, fmt::format("expected {}", fmt::join(known, " or ")),
+                                suggest(names.format, known)));
+}
+
+/// Passes pieces on, shows how many bytes there are, and takes no more after Ctrl-C.
+class WatchedWriting {
+ public:
+  WatchedWriting(const std::string& file, ShowProgress show) : file_(file), show_(show), line_(show) {}
+
+  bool pass(std::string_view piece, io::Sink sink) {
+    bytes_ += piece.size();
+    if (interrupted()) return false;
+    line_.show([&] { return fmt::format("writing {}   {:.0f} MB", file_, static_cast<double>(bytes_) / 1e6); });
+    return sink(piece);
+  }
+  /// Notices a large file.
+  void end() {
+    line_.clear();
+    constexpr std::size_t large = 50000000;
+    if (bytes_ < large || show_ == ShowProgress::never) return;
+    const bool packed = file_.ends_with(".npz");
+    print_error(fmt::format("note: {} has {:.0f} MB{}", file_, static_cast<double>(bytes_) / 1e6,
+                            packed ? "" : "; --out NAME.npz holds the same numbers in a fraction of it"));
+  }
+
+ private:
+  const std::string& file_;
+  ShowProgress show_;
+  ProgressLine line_;
+  std::size_t bytes_ = 0;
+};
+
+Expected<void> write_one(const std::string& file, const std::string& format, const result::Result& result,
+                         ShowProgress show) {
+  WatchedWriting watched(file, show);
+  const auto write_into = [&](std::string_view name, io::Sink sink) {
+    return write_as(name, result, [&](std::string_view piece) { return watched.pass(piece, sink); });
+  };
+  Expected<void> written;
+  if (file == standard_output) {
+    static_cast<void>(write_into(format, [](std::string_view piece) {
+      print(piece);
+      return true;
+    }));
+  } else {
+    written = io::stream_file(file, [&](io::Sink sink) { return write_into(file, sink); });
+  }
+  watched.end();
+  return written;
+}
+
 }  // namespace
 
-Expected<Outputs> Outputs::make(const std::vector<std::string>& files, const std::string& report,
-                                const std::string& input, const std::vector<std::string>& suffixes) {
+Expected<Outputs> Outputs::make(const OutputNames& names, const std::string& input) {
   std::set<fs::path> taken{identity(input)};
+  if (auto fits = check_standard_output(names); !fits) return tl::unexpected(fits.error());
   std::vector<Output> wanted;
-  for (const auto& file : files) wanted.push_back({"--out", file, suffixes});
-  if (!report.empty()) wanted.push_back({"--report", report, {".html", ".htm"}});
+  for (const auto& file : names.files) {
+    const bool to_standard_output = file == standard_output && !names.suffixes.empty();
+    if (!to_standard_output) wanted.push_back({"--out", file, names.suffixes});
+  }
+  if (!names.report.empty()) wanted.push_back({"--report", names.report, {".html", ".htm"}});
   for (const auto& output : wanted) {
     if (auto writable = check(output, taken); !writable) return tl::unexpected(writable.error());
   }
   Outputs outputs;
-  outputs.files_ = files;
-  outputs.report_ = report;
-  if (!report.empty()) {
+  outputs.names_ = names;
+  if (!names.report.empty()) {
     auto plotly = plotly_source();
-    if (!plotly) return tl::unexpected(with_context(plotly.error(), fmt::format("for --report {}", report)));
+    if (!plotly) return tl::unexpected(with_context(plotly.error(), fmt::format("for --report {}", names.report)));
     outputs.plotly_ = std::move(*plotly);
   }
   return outputs;
 }
 
 bool Outputs::show_surfaces() const {
-  return !report_.empty() || std::any_of(files_.begin(), files_.end(),
-                                         [](const std::string& file) { return fs::path(file).extension() != ".csv"; });
+  const auto& format = names_.format;
+  return !names_.report.empty() || std::any_of(names_.files.begin(), names_.files.end(), [&](const auto& file) {
+    return file == standard_output ? format.empty() || format == "json" : file.ends_with(".json");
+  });
 }
 
-Expected<void> Outputs::write(const result::Result& result, const std::vector<report::Overlay>& overlays) const {
+bool Outputs::fill_standard_output() const {
+  return std::find(names_.files.begin(), names_.files.end(), standard_output) != names_.files.end();
+}
+
+Expected<Written> Outputs::write(const result::Result& result, ShowProgress show,
+                                 const std::vector<report::Overlay>& overlays) const {
+  catch_interrupt();  // anew: one that ended the run does not keep its result from being written
   Expected<void> outcome;
-  const auto put = [&](const std::string& file, const std::string& content) {
-    auto written = io::write_file(file, content);
+  const auto keep_first = [&](Expected<void> written) {
     if (!written && outcome) outcome = std::move(written);
   };
-  for (const auto& file : files_)
-    put(file, fs::path(file).extension() == ".csv" ? io::to_csv(result) : io::to_json(result));
-  if (!report_.empty()) put(report_, report::to_html(result, plotly_, overlays));
-  return outcome;
+  for (const auto& file : names_.files) {
+    auto written = write_one(file, names_.format, result, show);
+    if (interrupted()) {
+      print_error(fmt::format("writing {} was interrupted; an earlier file of that name is as it was", file));
+      return Written::interrupted;
+    }
+    keep_first(std::move(written));
+  }
+  if (!names_.report.empty()) keep_first(io::write_file(names_.report, report::to_html(result, plotly_, overlays)));
+  if (!outcome) return tl::unexpected(outcome.error());
+  return Written::all;
 }
 
 }  // namespace saltus::cli

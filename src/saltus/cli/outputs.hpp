@@ -6,34 +6,45 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/cli/progress.hpp"
 #include "saltus/report/overlay.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::cli {
 
+enum class Written {
+  all,
+  interrupted,  ///< by Ctrl-C: of the file under way nothing is left, the ones before it are complete
+};
+
+/// What was typed of files.
+struct OutputNames {
+  std::vector<std::string> files{};     ///< of --out; - is standard output
+  std::string format{};                 ///< of --format, for standard output: a suffix without its point
+  std::string report{};                 ///< of --report: .html; empty for none
+  std::vector<std::string> suffixes{};  ///< that files of --out may have: .json, .csv, .npz
+};
+
 /// The outputs of one run; exists only if all of them can be written.
 class Outputs {
  public:
-  /// @param files     of --out
-  /// @param report    of --report: .html; empty for none
   /// @param input     file that is read and must not be overwritten
-  /// @param suffixes  that files of --out may have: .json, .csv
-  /// @return the outputs, or an error: a suffix without meaning, a file twice, one that cannot be written, plotly
-  ///         missing.
-  [[nodiscard]] static Expected<Outputs> make(const std::vector<std::string>& files, const std::string& report,
-                                              const std::string& input, const std::vector<std::string>& suffixes = {});
+  /// @return the outputs, or an error: a suffix or a format without meaning, a file twice, one that cannot be written,
+  ///         plotly missing.
+  [[nodiscard]] static Expected<Outputs> make(const OutputNames& names, const std::string& input);
 
   /// Whether any of them has the surfaces of the model in it.
   [[nodiscard]] bool show_surfaces() const;
+  /// Whether standard output has one of them, and nothing else.
+  [[nodiscard]] bool fill_standard_output() const;
 
-  /// Writes all it can; returns the first failure.
+  /// Writes all it can, with a line of progress, until Ctrl-C; returns the first failure.
   /// @param overlays  results that the page lays over this one
-  [[nodiscard]] Expected<void> write(const result::Result& result,
-                                     const std::vector<report::Overlay>& overlays = {}) const;
+  [[nodiscard]] Expected<Written> write(const result::Result& result, ShowProgress show,
+                                        const std::vector<report::Overlay>& overlays = {}) const;
 
  private:
-  std::vector<std::string> files_;
-  std::string report_;
+  OutputNames names_;
   std::string plotly_;
 };
 

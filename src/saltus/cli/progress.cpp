@@ -38,11 +38,15 @@ ProgressLine::ProgressLine(ShowProgress show)
     : shown_(show == ShowProgress::when_terminal && ::isatty(STDERR_FILENO) == 1), next_(Clock::now() + patience) {}
 
 void ProgressLine::update(const pipeline::StepRecord& step) {
+  show([&] { return progress_text(step); });
+}
+
+void ProgressLine::show(FunctionRef<std::string()> make_text) {
   if (!shown_) return;
   const auto now = Clock::now();
   if (now < next_) return;
   next_ = now + interval;
-  const auto text = progress_text(step);
+  const auto text = make_text();
   std::fputs(fmt::format("\r{:<{}}", text, width_).c_str(), stderr);
   std::fflush(stderr);
   width_ = std::max(width_, text.size());

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/pipeline/simulate.hpp"
 
 namespace saltus::cli {
@@ -20,6 +21,8 @@ class ProgressLine {
   ~ProgressLine() { clear(); }
 
   void update(const pipeline::StepRecord& step);
+  /// Shows a text, unless one was shown just before. Made only if it is shown.
+  void show(FunctionRef<std::string()> text);
   /// Takes the line away.
   void clear();
 

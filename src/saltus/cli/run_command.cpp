@@ -19,21 +19,12 @@
 namespace saltus::cli {
 namespace {
 
-Expected<void> apply_shortcuts(const RunArguments& arguments, io::ModelFile& file) {
-  for (const auto& [shortcut, value] : arguments.shortcuts) {
-    if (!value) continue;
-    const SourceLocation typed{fmt::format("{} {}", shortcut.flag, *value), 0, 0};
-    if (auto done = io::set_option(file, shortcut.key, *value, typed); !done) return done;
-  }
-  return {};
-}
-
 Expected<result::Result> compute_all(const RunArguments& arguments, const ModelInput& input, const Outputs& outputs,
                                      Compute compute) {
   const auto system = model::build(input.file.description, input.overrides);
   if (!system) return tl::unexpected(system.error());
   for (const auto& warning : system->warnings) print_error(fmt::format("warning: {}", warning));
-  ProgressLine progress(arguments.quiet ? ShowProgress::never : ShowProgress::when_terminal);
+  ProgressLine progress(progress_of(arguments));
   auto result = compute(*system, input.file.simulate, watched(progress));
   if (!result) return result;
   complete_record(input, *result);
@@ -132,26 +123,48 @@ void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->take_all();
-  arguments.output_suffixes = suffixes;
-  command.add_option("--out", arguments.outputs, out_help)
+  arguments.outputs.suffixes = suffixes;
+  command.add_option("--out", arguments.outputs.files, out_help)
       ->type_name(suffixes.size() == 1 ? "FILE" + suffixes.front() : "FILE")
       ->expected(1)
       ->take_all();
-  command.add_option("--report", arguments.report, "write a page with pictures that works offline")
+  command.add_option("--format", arguments.outputs.format, "of --out -: json (default), or another suffix of --out")
+      ->type_name("FORMAT");
+  command.add_option("--report", arguments.outputs.report, "write a page with pictures that works offline")
       ->type_name("FILE.html");
   command.add_flag("--quiet", arguments.quiet, "no table, no progress");
 }
 
-ExitCode run_model(const RunArguments& arguments, Compute compute) {
+Expected<void> apply_shortcuts(const RunArguments& arguments, ModelInput& input) {
+  for (const auto& [shortcut, value] : arguments.shortcuts) {
+    if (!value) continue;
+    const SourceLocation typed{fmt::format("{} {}", shortcut.flag, *value), 0, 0};
+    if (auto done = io::set_option(input.file, shortcut.key, *value, typed); !done) return done;
+    input.settings.push_back(fmt::format("{}={}", shortcut.key, *value));
+  }
+  return {};
+}
+
+std::string call_of(const char* command, const RunArguments& arguments) {
+  std::vector<std::string> call{command, arguments.model};
+  for (const auto& [shortcut, value] : arguments.shortcuts) {
+    if (value) call.insert(call.end(), {shortcut.flag, *value});
+  }
+  for (const auto& setting : arguments.settings) call.insert(call.end(), {"--set", setting});
+  return command_line(call);
+}
+
+ExitCode run_model(const char* command, const RunArguments& arguments, Compute compute) {
   const auto shown = shown_events(arguments.events);
   if (!shown) return refuse(shown.error());
   const auto text = read_model_text(arguments.model);
   if (!text) return refuse(text.error());
   auto input = read_input(*text, arguments.settings);
   if (!input) return refuse_with_source(input.error(), *text);
-  if (auto done = apply_shortcuts(arguments, input->file); !done) return refuse(done.error());
+  if (auto done = apply_shortcuts(arguments, *input); !done) return refuse(done.error());
   if (auto fits = io::check_options(input->file); !fits) return refuse_with_source(fits.error(), *text);
-  const auto outputs = Outputs::make(arguments.outputs, arguments.report, input->path, arguments.output_suffixes);
+  input->call = call_of(command, arguments);
+  const auto outputs = Outputs::make(arguments.outputs, input->path);
   if (!outputs) return refuse(outputs.error());
 
   if (arguments.methods == RunMethods::chosen)
@@ -159,10 +172,11 @@ ExitCode run_model(const RunArguments& arguments, Compute compute) {
   auto result = compute_all(arguments, *input, *outputs, compute);
   if (!result) return refuse_with_source(io::located(result.error(), input->file), *text);
 
-  const auto written = outputs->write(*result);
-  if (!arguments.quiet)
-    print(report::to_table(*result, *shown));  // also if nothing could be written: it is all that is left
+  const auto written = outputs->write(*result, progress_of(arguments));
+  // Also if nothing could be written: it is all that is left.
+  if (!arguments.quiet && !outputs->fill_standard_output()) print(report::to_table(*result, *shown));
   if (!written) return refuse(written.error());
+  if (*written == Written::interrupted) return ExitCode::stopped_early;
   return report_stops(*result);
 }
 

@@ -10,7 +10,8 @@
 #include "saltus/base/error.hpp"
 #include "saltus/base/function_ref.hpp"
 #include "saltus/cli/exit_code.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/cli/model_input.hpp"
+#include "saltus/cli/outputs.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/result.hpp"
@@ -40,9 +41,7 @@ struct RunArguments {
   std::string model;
   std::vector<std::pair<Shortcut, std::optional<std::string>>> shortcuts;
   std::vector<std::string> settings;
-  std::vector<std::string> outputs;
-  std::vector<std::string> output_suffixes;
-  std::string report;
+  OutputNames outputs;
   std::string events;  ///< of --events; empty: the default
   bool quiet = false;
   RunMethods methods = RunMethods::several;
@@ -54,10 +53,22 @@ struct RunArguments {
 void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts,
                      const std::vector<std::string>& suffixes, const std::string& out_help);
 
+/// Whether to show a line of progress on a terminal.
+[[nodiscard]] inline ShowProgress progress_of(const RunArguments& arguments) {
+  return arguments.quiet ? ShowProgress::never : ShowProgress::when_terminal;
+}
+
+/// Applies what was typed beside --set, and notes it as settings.
+[[nodiscard]] Expected<void> apply_shortcuts(const RunArguments& arguments, ModelInput& input);
+
+/// The call, without what says where its results go.
+[[nodiscard]] std::string call_of(const char* command, const RunArguments& arguments);
+
 using Compute = FunctionRef<Expected<result::Result>(const model::System&, const pipeline::SimulateOptions&,
                                                      const pipeline::Observers&)>;
 
 /// Reads the model, computes, writes the files, prints the table. Ctrl-C asks the observer to stop.
-[[nodiscard]] ExitCode run_model(const RunArguments& arguments, Compute compute);
+/// @param command  its name
+[[nodiscard]] ExitCode run_model(const char* command, const RunArguments& arguments, Compute compute);
 
 }  // namespace saltus::cli

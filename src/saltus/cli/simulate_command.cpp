@@ -37,12 +37,12 @@ Command add_simulate(CLI::App& app) {
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<RunArguments>();
   arguments->methods = RunMethods::chosen;
-  add_run_options(*command, *arguments, simulate_shortcuts, {".json", ".csv"},
-                  "write the result: .json all of it, .csv the trajectory; may repeat");
+  add_run_options(*command, *arguments, simulate_shortcuts, {".json", ".csv", ".npz"},
+                  "write the result: .json all, .csv trajectory, .events.csv events, .npz for NumPy; may repeat");
   command->add_option("--events", arguments->events, "events in the table: N at each end (10), or all")
       ->type_name("N|all");
   command->footer(simulate_footer);
-  return {"simulate", [arguments] { return run_model(*arguments, pipeline::simulate); }, all_keys()};
+  return {"simulate", [arguments] { return run_model("simulate", *arguments, pipeline::simulate); }, all_keys()};
 }
 
 }  // namespace saltus::cli

@@ -75,6 +75,16 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       ending_roots_.push_back(j);
     }
   }
+  if (options.output.straight > 0.0) {
+    line_rows_.emplace(LineRows{
+        ode::ColumnRanges(x_.size() + at(kernel.controls() + kernel.outputs() + kernel.switching_functions()),
+                          options.output.straight, tolerances_),
+        {},
+        {},
+        {},
+        {}});
+    recorder_.widen(line_rows_->ranges, options.output.selections);
+  }
   ordinary_ = way == Way::short_where_ordinary && has_ordinary_switches();
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (i >= system.discrete_states.size() || !system.discrete_states[i]) continuous_.push_back(i);

@@ -1,6 +1,7 @@
 // The event-driven engine: from an initial state through all switches and sliding phases to the end.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -21,6 +22,10 @@ struct OutputTimes {
   enum class Rows { at_times, at_steps };
   Rows rows = Rows::at_steps;
   std::vector<double> times;  ///< ascending, inside [from, until]; for at_times
+  /// For at_steps: between the steps as many rows as keep straight lines within this part of the range of every state,
+  /// input, output and selection, so far; 0: none.
+  double straight = 0.0;
+  std::size_t selections = 0;  ///< so many of the last outputs are selections, cut to [0, 1]
 };
 
 /// Layers of a regularised system: inside one, psi + half_width > 0 > psi - half_width.

@@ -92,6 +92,21 @@ void Recorder::append_row(double t, const std::vector<double>& x, const std::vec
     kernel_.outputs(t, x.data(), alpha.data(), extend(recording_.row_outputs, recording_.n_y));
   }
   recording_.row_modes.push_back(mode);
+  if (ranges_ != nullptr) widen_ranges(x, alpha);
+}
+
+/// By the row just appended.
+void Recorder::widen_ranges(const std::vector<double>& x, const std::vector<double>& alpha) {
+  std::size_t column = 0;
+  for (const double value : x) ranges_->widen(column++, value);
+  const double* inputs = recording_.row_inputs.data() + recording_.row_inputs.size() - recording_.n_u;
+  for (std::size_t k = 0; k < recording_.n_u; ++k) ranges_->widen(column++, inputs[k]);
+  const double* outputs = recording_.row_outputs.data() + recording_.row_outputs.size() - recording_.n_y;
+  for (std::size_t k = 0; k < recording_.n_y; ++k) {
+    const bool selection = k + cut_outputs_ >= recording_.n_y;
+    ranges_->widen(column++, selection ? std::clamp(outputs[k], 0.0, 1.0) : outputs[k]);
+  }
+  for (const double value : alpha) ranges_->widen(column++, value);
 }
 
 std::size_t Recorder::number(const ModeState& state, const std::vector<double>& alpha, const HigherOrderSet* higher) {

@@ -15,6 +15,7 @@
 #include "saltus/event_integrator/recording.hpp"
 #include "saltus/event_integrator/transition.hpp"
 #include "saltus/model/system.hpp"
+#include "saltus/ode/straight_lines.hpp"
 
 namespace saltus::event_integrator {
 
@@ -53,6 +54,12 @@ class Recorder {
  public:
   Recorder(const evaluation::ModelKernel& kernel, const model::System& system);
 
+  /// From now on every row widens these: states, inputs, outputs (of which the last `selections` are cut to [0, 1]),
+  /// selections by switching function. They must outlive this.
+  void widen(ode::ColumnRanges& ranges, std::size_t selections) {
+    ranges_ = &ranges;
+    cut_outputs_ = selections;
+  }
   /// One row in a mode; `alpha` over switching functions (the sliding values at this point).
   /// Selections that nothing determines are recorded as NaN; outputs have the ones that they are handed.
   void row(double t, const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha);
@@ -104,6 +111,7 @@ class Recorder {
   /// A new event; the reference is valid until the next one.
   Recording::Event& begin(double t, result::EventKind kind);
   void append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode);
+  void widen_ranges(const std::vector<double>& x, const std::vector<double>& alpha);
   [[nodiscard]] std::size_t keep(const std::vector<double>& x);
   [[nodiscard]] std::size_t number(const ModeState& state, const std::vector<double>& alpha,
                                    const HigherOrderSet* higher);
@@ -139,6 +147,8 @@ class Recorder {
   const evaluation::ModelKernel& kernel_;
   const model::System& system_;
   Recording recording_;
+  ode::ColumnRanges* ranges_ = nullptr;  ///< nullptr: nobody asks for them
+  std::size_t cut_outputs_ = 0;
   std::array<KnownReason, 16> known_reasons_;
   std::vector<std::vector<std::size_t>> listed_columns_;  ///< by switching function: of the result, if it is listed
   std::vector<std::size_t> changed_, columns_;            ///< of one event

@@ -235,6 +235,14 @@ Run::Step Run::handle(const Located& located) {
   return depart(arrival);
 }
 
+/// Whether a selection is another one than before that is no kink: one of time only, which makes no event.
+bool Run::selections_jumped() const {
+  for (std::size_t j = 0; j < state_.mode.size() && j < before_.mode.size(); ++j) {
+    if (state_.mode[j] != before_.mode[j] && !surroundings_.system.switching[j].is_kink()) return true;
+  }
+  return false;
+}
+
 Run::Step Run::depart(const Arrival& arrival) {
   const bool event = recorder_.events() > arrival.events;
   if (event || !running_) {
@@ -242,7 +250,7 @@ Run::Step Run::depart(const Arrival& arrival) {
     if (event) row(t_, x_);
   } else if (options_.output.rows == OutputTimes::Rows::at_steps) {
     // Inputs and outputs may jump here: their values before and behind.
-    if (cell_change_ == CellChange::jump) rows_at_event(arrival);
+    if (cell_change_ == CellChange::jump || (line_rows_ && selections_jumped())) rows_at_event(arrival);
     row(t_, x_);
   }
   while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) {

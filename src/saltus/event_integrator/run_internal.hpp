@@ -1,7 +1,7 @@
 // A run in progress: the state of the engine between its sources. integrate.cpp begins and ends it, run_steps.cpp takes
 // the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it, run_jumps.cpp,
 // run_limits.cpp and run_resting.cpp jumps, their accumulation, and what is at rest behind it, run_spirals.cpp and
-// run_shrinking.cpp the accumulation of switches.
+// run_shrinking.cpp the accumulation of switches, run_lines.cpp rows between steps.
 #pragma once
 
 #include <algorithm>
@@ -93,6 +93,13 @@ class Run {
     double end = std::numeric_limits<double>::quiet_NaN();  ///< where g is 0, by what was seen until then
   };
 
+  /// Rows between steps, where they are asked for. Columns are states, inputs, outputs, selections.
+  struct LineRows {
+    ode::ColumnRanges ranges;
+    ode::StraightLines lines;
+    std::vector<double> tolerance, low, high;
+  };
+
   struct RestingGuards {
     std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
   };
@@ -124,6 +131,7 @@ class Run {
   void begin_search(const SurfaceSwitch& change);
   Arrival arrive(RowBefore row);
   Step depart(const Arrival& arrival);
+  [[nodiscard]] bool selections_jumped() const;
   void choose(Transition& transition);
   void choose_phase(Transition& transition);
   void note_choice(long decision);
@@ -239,6 +247,9 @@ class Run {
   void rows_by_steps(double t_new);
   void row_inside(double t);
   void rows_at_event(const Arrival& arrival);
+  [[nodiscard]] bool may_bend();
+  void columns_at(double theta, double* columns);
+  void rows_between_steps(double t_end);
   [[nodiscard]] bool reaches_cell_end(const Located& located) const;
   void row(double t, const std::vector<double>& x);
   void fail(result::Termination termination, std::string message);
@@ -354,6 +365,7 @@ class Run {
   double longest_step_ = 0.0;       ///< behind the last switch
   double last_step_ = 0.0;          ///< the last one behind the last switch; 0 = none
   std::size_t next_output_ = 0;
+  std::optional<LineRows> line_rows_;
   bool jumped_ = false;  ///< at the event in hand
   Families families_;
   long decisions_ = 0;  ///< with alternatives, or of spirals, so far

@@ -339,6 +339,8 @@ Run::Step Run::attempt() {
     if (!dense_is_last_ && stepper_.dense(right_hand_side(), dense_) == ode::Attempt::undefined) {
       if (may_vanish) return shorten(0.5) ? Step::shortened : undefined_step();
       rows_by_steps(t_new);
+    } else {
+      dense_is_last_ = true;
     }
     Hit hit;
     switch (may_vanish ? search_.search(dense_, hit) : SearchOutcome::none) {
@@ -353,10 +355,14 @@ Run::Step Run::attempt() {
         if (!located || is_repelled(*located)) return shorten(0.5) ? Step::shortened : undefined_step();
         ++result_.statistics.steps;
         // A requested time that is a break but for its rounding belongs to the cell behind it.
+        if (line_rows_) rows_between_steps(located->t);
         rows_until(reaches_cell_end(*located) ? located->t - 4.0 * rounding_unit * std::abs(located->t) : located->t);
         return handle(*located);
       }
     }
+  }
+  if (line_rows_ && may_bend()) {
+    if (dense_is_last_ || stepper_.dense(right_hand_side(), dense_) == ode::Attempt::finite) rows_between_steps(t_new);
   }
   return accept(t_new);
 }

@@ -47,6 +47,9 @@ struct IntegrationOptions {
   enum class Rows { at_elements, at_times };
   Rows rows = Rows::at_elements;
   std::vector<double> times;
+  /// For at_elements: inside elements as many rows as keep straight lines within this part of the range of every state,
+  /// input, output and selection, so far; 0: none.
+  double straight = 0.0;
   /// With switch detection: simulation steps solved by this, and not by predicting active sets; it must outlive the
   /// run.
   StepProblem* step_problem = nullptr;

@@ -251,26 +251,59 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
 }
 
 void Run::emit_times(const Element* element, const std::vector<double>& selections, double until) {
-  if (options_.rows != IntegrationOptions::Rows::at_times) return;
-  for (; next_time_ < options_.times.size() && options_.times[next_time_] < until; ++next_time_) {
-    const double time = options_.times[next_time_];
+  const auto& times = options_.rows == IntegrationOptions::Rows::at_times ? options_.times : chosen_times_;
+  for (; next_time_ < times.size() && times[next_time_] < until; ++next_time_) {
+    const double time = times[next_time_];
     event_state(*element, selections, (time - element->t) / element->h);
     recorder_.row(time, between_x_, set_, between_selections_, held_.data());
   }
 }
 
+void Run::choose_times(const Element& element, const std::vector<double>& selections) {
+  const std::size_t before_selections = facts_.n_x + facts_.n_u + facts_.n_y;
+  if (!ranges_) {
+    const ode::Tolerances floor{1e-9, 1e-12};  // of states that do nothing
+    ranges_.emplace(before_selections + facts_.n_functions, options_.straight, floor);
+  }
+  const auto columns_at = [&](double theta, double* columns) {
+    const double t = element.t + theta * element.h;
+    event_state(element, selections, theta);
+    columns = std::copy(between_x_.begin(), between_x_.end(), columns);
+    functions_.inputs(t, held_.data(), columns);
+    columns += facts_.n_u;
+    functions_.outputs(t, between_x_.data(), between_selections_.data(), held_.data(), columns);
+    columns += facts_.n_y;
+    const auto view = recorder_.view(set_, between_selections_, held_.data());
+    std::copy(view.alpha.begin(), view.alpha.end(), columns);
+  };
+  tolerance_.resize(ranges_->size());
+  for (const double theta : {0.0, 1.0}) {
+    columns_at(theta, tolerance_.data());
+    for (std::size_t k = 0; k < tolerance_.size(); ++k) ranges_->widen(k, tolerance_[k]);
+  }
+  for (std::size_t k = 0; k < tolerance_.size(); ++k) tolerance_[k] = ranges_->tolerance(k);
+  chosen_times_.clear();
+  next_time_ = 0;
+  for (const double theta : lines_.points(columns_at, 1.0, 2, tolerance_)) {
+    const double t = element.t + theta * element.h;
+    if (t > t_) chosen_times_.push_back(t);
+  }
+}
+
 /// The row at the end of an element, unless an event has put it there.
 void Run::row_here() {
-  const bool asked = next_time_ < options_.times.size() && options_.times[next_time_] == t_;
+  const bool at_times = options_.rows == IntegrationOptions::Rows::at_times;
+  const bool asked = at_times && next_time_ < options_.times.size() && options_.times[next_time_] == t_;
   if (asked) ++next_time_;
   if (recorder_.ends_at(t_)) return;
-  if (asked || options_.rows == IntegrationOptions::Rows::at_elements) {
+  if (asked || !at_times) {
     recorder_.row(t_, x_, set_, selections_, held_.data());
   }
 }
 
 void Run::accept(const Element& element, const std::vector<double>& left, const std::vector<double>& right,
                  double end) {
+  if (options_.straight > 0.0) choose_times(element, left);
   if (user_events_.empty()) {
     emit_times(&element, left, end);
   } else if (!record_user_events(element, left, end)) {

@@ -22,6 +22,7 @@
 #include "saltus/fesd_integrator/transition.hpp"
 #include "saltus/fesd_integrator/user_events.hpp"
 #include "saltus/fesd_integrator/watch.hpp"
+#include "saltus/ode/straight_lines.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -142,6 +143,8 @@ class Run {
   /// Of the set where the run is: what slides on which nothing determines all selections.
   [[nodiscard]] std::string undetermined_message() const;
   void emit_times(const Element* element, const std::vector<double>& selections, double until);
+  /// Output times of an element: those that keep straight lines close to it.
+  void choose_times(const Element& element, const std::vector<double>& selections);
   struct EventZero {
     std::size_t function = 0;
     double theta = 0.0;
@@ -232,7 +235,10 @@ class Run {
   bool ends_fixed_ =
       false;  ///< the last chain of elements, with sensitivities: neither by a switch nor by a time event
   std::optional<TimeEvent> time_event_;
-  std::size_t next_time_ = 0;
+  std::size_t next_time_ = 0;  ///< in the times asked for, or in chosen_times_
+  std::optional<ode::ColumnRanges> ranges_;
+  ode::StraightLines lines_;
+  std::vector<double> chosen_times_, tolerance_;
   std::vector<double> event_values_;
   Element shorter_;
   std::vector<double> between_x_, between_selections_, held_before_;

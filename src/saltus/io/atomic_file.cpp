@@ -133,10 +133,20 @@ Expected<void> check_writable(const fs::path& path) {
 }
 
 Expected<void> write_file(const fs::path& path, std::string_view content) {
+  return stream_file(path, [&](Sink sink) { return sink(content); });
+}
+
+Expected<void> stream_file(const fs::path& path, Writer writer) {
   const auto target = target_of(path);
   TemporaryFile file(target);
   int error_number = file.error_number();
-  if (error_number == 0) error_number = file.write(content);
+  if (error_number == 0) {
+    const bool complete = writer([&](std::string_view piece) {
+      error_number = file.write(piece);
+      return error_number == 0;
+    });
+    if (!complete && error_number == 0) error_number = ECANCELED;
+  }
   if (error_number == 0) error_number = file.replace(target);
   if (error_number == 0) return {};
   return failure(path, fmt::format("cannot write: {}", reason(error_number)),

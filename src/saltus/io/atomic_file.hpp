@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "saltus/base/error.hpp"
+#include "saltus/base/function_ref.hpp"
 
 namespace saltus::io {
 
@@ -16,6 +17,14 @@ namespace saltus::io {
 [[nodiscard]] Expected<void> check_writable(const std::filesystem::path& path);
 /// Writes to a temporary file beside `path`, flushes it to disk, and renames it over `path`.
 [[nodiscard]] Expected<void> write_file(const std::filesystem::path& path, std::string_view content);
+
+/// Takes bytes, a piece after the other. False: they cannot be written, or no more are wanted.
+using Sink = FunctionRef<bool(std::string_view piece)>;
+/// Hands all its bytes to a sink; false if the sink took not all of them.
+using Writer = FunctionRef<bool(Sink)>;
+/// As write_file, of what is written a piece after the other. Of a writer that returns false nothing is left: an
+/// earlier file of that name is as it was.
+[[nodiscard]] Expected<void> stream_file(const std::filesystem::path& path, Writer writer);
 /// The whole content of a file, device or pipe; more than `limit` bytes are an error (a device has no end).
 [[nodiscard]] Expected<std::string> read_file(const std::filesystem::path& path,
                                               std::size_t limit = std::size_t{2} << 30);

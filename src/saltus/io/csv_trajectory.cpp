@@ -1,9 +1,11 @@
+// Trajectories and events as tables of comma-separated values.
 #include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "saltus/io/json_result.hpp"
+#include "saltus/io/text_stream_internal.hpp"
 
 namespace saltus::io {
 namespace {
@@ -21,12 +23,24 @@ void append(std::string& text, const Row& row) {
   for (const auto value : row) fmt::format_to(std::back_inserter(text), ",{}", value);
 }
 
+/// One field for each name: "alpha(name)".
+void append_heads(std::string& text, const char* quantity, const std::vector<std::string>& names) {
+  for (const auto& name : names) text += "," + field(fmt::format("{}({})", quantity, name));
+}
+
+void append_names(std::string& text, const std::vector<std::string>& names) {
+  for (const auto& name : names) text += "," + field(name);
+}
+
 /// One line for every row, each with `end` behind it.
-void append_rows(std::string& text, const result::Trajectory& trajectory, const std::string& end) {
-  for (std::size_t i = 0; i < trajectory.t.size(); ++i) {
-    fmt::format_to(std::back_inserter(text), "{}", trajectory.t[i]);
+void append_rows(TextStream& stream, const result::Result& result, const std::string& end) {
+  const auto& trajectory = result.trajectory;
+  std::string& text = stream.text();
+  for (std::size_t i = 0; i < trajectory.t.size() && stream.pass(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{},{}", trajectory.t[i], side(trajectory, i));
     append(text, trajectory.x[i]);
     append(text, trajectory.u[i]);
+    append(text, trajectory.outputs[i]);
     append(text, trajectory.alpha[i]);
     append(text, trajectory.mode[i]);
     if (!trajectory.regions.empty()) {
@@ -37,24 +51,76 @@ void append_rows(std::string& text, const result::Trajectory& trajectory, const 
   }
 }
 
+/// Values that are not there leave their fields empty.
+template <class Row>
+void append_or_empty(std::string& text, const std::optional<Row>& row, std::size_t count) {
+  if (row) return append(text, *row);
+  text.append(count, ',');
+}
+
+void append_events(TextStream& stream, const result::Result& result, const std::string& end) {
+  const std::size_t columns = result.switching_functions.size();
+  std::string& text = stream.text();
+  for (const auto& event : result.events) {
+    if (!stream.pass()) return;
+    fmt::format_to(std::back_inserter(text), "{},{},{},{}", event.t, name(event.kind), field(event.name.value_or("")),
+                   field(fmt::format("{}", fmt::join(event.surfaces, ";"))));
+    append(text, event.x);
+    append(text, event.x_after);
+    append_or_empty(text, event.mode_before, columns);
+    append_or_empty(text, event.mode_after, columns);
+    append_or_empty(text, event.alpha_before, columns);
+    append_or_empty(text, event.alpha_after, columns);
+    text += !event.unique ? "," : *event.unique ? ",true" : ",false";
+    text += "," + field(event.reason) + end + "\n";
+  }
+}
+
+using AppendPart = void (*)(TextStream&, const result::Result&, const std::string&);
+
+/// The lines of a result and of its branches, which have their label in a last column.
+bool write_lines(const std::string& header, const result::Result& result, AppendPart append_part, Sink sink) {
+  TextStream stream(sink);
+  const bool several = !result.branches.empty();
+  stream.text() = header + (several ? ",branch\n" : "\n");
+  for (const auto& [part, label, parent] : result::tree(result)) {
+    append_part(stream, *part, several ? "," + label : "");
+  }
+  return stream.flush();
+}
+
 }  // namespace
 
-std::string to_csv(const result::Result& result) {
-  std::string text = "t";
-  for (const auto& state : result.states) text += "," + field(state);
-  for (const auto& control : result.controls) text += "," + field(control);
-  for (const auto& name : result.switching_functions) text += "," + field("alpha(" + name + ")");
-  for (const auto& name : result.switching_functions) text += "," + field("mode(" + name + ")");
+bool write_csv(const result::Result& result, Sink sink) {
+  std::string text = "t,side";
+  append_names(text, result.states);
+  append_names(text, result.controls);
+  append_names(text, result.outputs);
+  append_heads(text, "alpha", result.switching_functions);
+  append_heads(text, "mode", result.switching_functions);
   for (const auto& group : result.region_groups) {
     text += "," + field(group.name.empty() ? "regions" : "regions(" + group.name + ")");
   }
-  for (const auto& label : result::region_labels(result.region_groups)) text += "," + field("theta(" + label + ")");
-  const bool with_branches = !result.branches.empty();
-  text += with_branches ? ",branch\n" : "\n";
-  for (const auto& [part, label, parent] : result::tree(result)) {
-    append_rows(text, part->trajectory, with_branches ? "," + label : "");
+  append_heads(text, "theta", result::region_labels(result.region_groups));
+  return write_lines(text, result, append_rows, sink);
+}
+
+bool write_events_csv(const result::Result& result, Sink sink) {
+  std::string text = "t,kind,name,surfaces";
+  append_names(text, result.states);
+  append_heads(text, "after", result.states);
+  for (const auto* quantity : {"mode_before", "mode_after", "alpha_before", "alpha_after"}) {
+    append_heads(text, quantity, result.switching_functions);
   }
-  return text;
+  return write_lines(text + ",unique,reason", result, append_events, sink);
+}
+
+std::string to_csv(const result::Result& result) {
+  return collected([&](Sink sink) { return write_csv(result, sink); });
+}
+
+std::string events_to_csv(const result::Result& result) {
+  return collected([&](Sink sink) { return write_events_csv(result, sink); });
 }
 
 }  // namespace saltus::io

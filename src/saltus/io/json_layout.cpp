@@ -3,9 +3,6 @@
 namespace saltus::io {
 namespace {
 
-/// Texts of a result may come from anywhere; what is no UTF-8 in them is replaced, not thrown at the user.
-std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 bool fits_on_a_line(const Json& json) {
   if (!json.is_structured()) return true;
   for (const auto& element : json) {
@@ -14,7 +11,12 @@ bool fits_on_a_line(const Json& json) {
   return json.is_array() || json.size() <= 2;
 }
 
-void write(const Json& json, std::size_t indent, std::string& text) {
+}  // namespace
+
+/// Texts of a result may come from anywhere; what is no UTF-8 in them is replaced, not thrown at the user.
+std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+void append_laid_out(const Json& json, std::size_t indent, std::string& text) {
   if (fits_on_a_line(json)) {
     text += compact(json);
     return;
@@ -26,17 +28,15 @@ void write(const Json& json, std::size_t indent, std::string& text) {
   for (auto element = json.begin(); element != json.end(); ++element) {
     text += margin;
     if (is_object) text += compact(Json(element.key())) + ": ";
-    write(*element, indent + 2, text);
+    append_laid_out(*element, indent + 2, text);
     text += ++written < json.size() ? ",\n" : "\n";
   }
   text += std::string(indent, ' ') + (is_object ? "}" : "]");
 }
 
-}  // namespace
-
 std::string laid_out(const Json& json) {
   std::string text;
-  write(json, 0, text);
+  append_laid_out(json, 0, text);
   return text + "\n";
 }
 

@@ -13,12 +13,28 @@ namespace {
 
 constexpr std::string_view format_name = "saltus-result/1";
 
+result::NamedFile read_named_file(JsonReader& reader, const Json& json, const std::string& path) {
+  result::NamedFile file;
+  reader.read_member(json, path, "name", file.name);
+  reader.read_member(json, path, "sha256", file.sha256);
+  reader.read_member(json, path, "text", file.text);
+  return file;
+}
+
 void read_model(JsonReader& reader, const Json& json, const std::string& path, result::ModelRecord& model) {
   reader.read_member(json, path, "name", model.name);
   reader.read_member(json, path, "sha256", model.sha256);
   if (json.is_object() && json.contains("description"))
     reader.read_member(json, path, "description", model.description);
   read_part(reader, json, path, "parameters", read_numbers, model.parameters);
+  if (!json.is_object()) return;
+  if (json.contains("initial_state")) {
+    read_part(reader, json, path, "initial_state", read_numbers, model.initial_state);
+  }
+  reader.read_if_there(json, path, "file", model.file);
+  reader.read_if_there(json, path, "text", model.text);
+  reader.read_if_there(json, path, "set", model.settings);
+  if (json.contains("files")) read_list(reader, json["files"], path + "/files", model.files, read_named_file);
 }
 
 result::Alternative read_alternative(JsonReader& reader, const Json& json, const std::string& path) {
@@ -205,6 +221,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   result::Result result;
   read_part(reader, json, path, "model", read_model, result.model);
   reader.read_member(json, path, "command", result.command);
+  reader.read_if_there(json, path, "command_line", result.command_line);
   reader.read_member(json, path, "method", result.method);
   read_part(reader, json, path, "status", read_status, result.status);
   reader.read_member(json, path, "states", result.states);

@@ -1,20 +1,34 @@
-// Result <-> JSON (format saltus-result/1), and the trajectory as CSV.
+// Result <-> JSON (format saltus-result/1), and trajectory and events as CSV and as arrays of NumPy.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 #include "saltus/base/error.hpp"
+#include "saltus/io/atomic_file.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::io {
 
-/// Numbers as shortest round trip, non-finite ones as null.
+/// Numbers as shortest round trip, non-finite ones as null. Memory: some pieces of text, and the parts that do not grow
+/// with the run. False if the sink took not all.
+[[nodiscard]] bool write_json(const result::Result& result, Sink sink);
 [[nodiscard]] std::string to_json(const result::Result& result);
 /// Reads a stored result; errors name the file, the position or the JSON path, and what was expected.
 [[nodiscard]] Expected<result::Result> read_result(const std::filesystem::path& file);
 [[nodiscard]] Expected<result::Result> parse_result(const std::string& text, const std::string& file);
-/// Header t,<states>,<controls>,alpha(<name>)…,mode(<name>)…; fields quoted by RFC 4180.
+/// Header t,side,<states>,<controls>,<outputs>,alpha(<name>)…,mode(<name>)…; fields quoted by RFC 4180. `side` is
+/// result::side.
+[[nodiscard]] bool write_csv(const result::Result& result, Sink sink);
 [[nodiscard]] std::string to_csv(const result::Result& result);
+/// A line per event: t,kind,name,surfaces,<states>,after(<state>)…,mode_before(<name>)…,mode_after(<name>)…,
+/// alpha_before(<name>)…,alpha_after(<name>)…,unique,reason. Surfaces are separated by semicolons; what an event does
+/// not have, and `unique` where it is not decided, is empty.
+[[nodiscard]] bool write_events_csv(const result::Result& result, Sink sink);
+[[nodiscard]] std::string events_to_csv(const result::Result& result);
+/// The columns of both tables as a zip archive of .npy arrays, deflated: those of the trajectory by their names, those
+/// of the events with "events." before them. Numbers are float64, `side` and modes of rows int8, words unicode; what is
+/// not there is NaN, `unique` is 1, 0 or -1 (not decided).
+[[nodiscard]] bool write_npz(const result::Result& result, Sink sink);
 
 }  // namespace saltus::io

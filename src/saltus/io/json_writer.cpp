@@ -3,19 +3,36 @@
 #include <cstddef>
 
 #include "saltus/base/version.hpp"
-#include "saltus/io/json_layout_internal.hpp"
 #include "saltus/io/json_optimization_internal.hpp"
 #include "saltus/io/json_parts_internal.hpp"
 #include "saltus/io/json_result.hpp"
+#include "saltus/io/json_stream_internal.hpp"
 
 namespace saltus::io {
 namespace {
 
+Json named_file_json(const result::NamedFile& file) {
+  Json json = Json::object();
+  json["name"] = file.name;
+  json["sha256"] = file.sha256;
+  json["text"] = or_null(file.text);
+  return json;
+}
+
 Json model_json(const result::ModelRecord& model) {
-  return {{"name", model.name},
-          {"sha256", model.sha256},
-          {"parameters", numbers_json(model.parameters)},
-          {"description", model.description}};
+  Json json = Json::object();
+  json["name"] = model.name;
+  json["sha256"] = model.sha256;
+  json["parameters"] = numbers_json(model.parameters);
+  json["initial_state"] = numbers_json(model.initial_state);
+  json["description"] = model.description;
+  if (model.text.empty()) return json;
+  json["file"] = model.file;
+  json["text"] = model.text;
+  json["files"] = Json::array();
+  for (const auto& file : model.files) json["files"].push_back(named_file_json(file));
+  json["set"] = model.settings;
+  return json;
 }
 
 Json intersection_json(const result::Intersection& intersection) {
@@ -58,27 +75,28 @@ Json departure_json(const result::Departure& departure) {
   return json;
 }
 
-Json event_json(const result::Event& event) {
+void append_event(TextStream& stream, const result::Event& event, std::size_t indent) {
+  ObjectStream object(stream, indent);
+  const auto put = [&](const char* key, const auto& value) { append_json(object.key(key), value); };
+  put("t", event.t);
+  put("kind", std::string(name(event.kind)));
+  put("name", event.name);
+  put("surfaces", event.surfaces);
+  put("mode_before", event.mode_before);
+  put("mode_after", event.mode_after);
+  put("alpha_before", event.alpha_before);
+  put("alpha_after", event.alpha_after);
+  if (event.regions_before) object.member("regions_before", *event.regions_before);
+  if (event.regions_after) object.member("regions_after", *event.regions_after);
+  put("x", event.x);
+  put("x_after", event.x_after);
+  object.key("unique") += !event.unique ? "null" : *event.unique ? "true" : "false";
   Json alternatives = Json::array();
   for (const auto& other : event.alternatives) alternatives.push_back(alternative_json(other));
-  Json json = Json::object();
-  json["t"] = event.t;
-  json["kind"] = name(event.kind);
-  json["name"] = or_null(event.name);
-  json["surfaces"] = event.surfaces;
-  json["mode_before"] = or_null(event.mode_before);
-  json["mode_after"] = or_null(event.mode_after);
-  json["alpha_before"] = or_null(event.alpha_before);
-  json["alpha_after"] = or_null(event.alpha_after);
-  if (event.regions_before) json["regions_before"] = *event.regions_before;
-  if (event.regions_after) json["regions_after"] = *event.regions_after;
-  json["x"] = event.x;
-  json["x_after"] = event.x_after;
-  json["unique"] = or_null(event.unique);
-  json["alternatives"] = std::move(alternatives);
-  json["reason"] = event.reason;
-  if (event.intersection) json["intersection"] = intersection_json(*event.intersection);
-  return json;
+  object.member("alternatives", alternatives);
+  put("reason", event.reason);
+  if (event.intersection) object.member("intersection", intersection_json(*event.intersection));
+  object.end();
 }
 
 Json final_json(const result::Final& final) {
@@ -95,19 +113,22 @@ Json final_json(const result::Final& final) {
   return json;
 }
 
-Json trajectory_json(const result::Trajectory& trajectory) {
-  Json json = Json::object();
-  json["t"] = trajectory.t;
-  json["x"] = trajectory.x;
-  json["u"] = trajectory.u;
-  json["alpha"] = trajectory.alpha;
-  json["mode"] = trajectory.mode;
-  json["outputs"] = trajectory.outputs;
+void append_trajectory(TextStream& stream, const result::Trajectory& trajectory, std::size_t indent) {
+  ObjectStream object(stream, indent);
+  const auto rows = [&](const char* key, const auto& table) {
+    object.list(key, table, [&](const auto& row, std::size_t) { append_json(stream.text(), row); });
+  };
+  append_json(object.key("t"), trajectory.t);
+  rows("x", trajectory.x);
+  rows("u", trajectory.u);
+  rows("alpha", trajectory.alpha);
+  rows("mode", trajectory.mode);
+  rows("outputs", trajectory.outputs);
   if (!trajectory.regions.empty()) {
-    json["regions"] = trajectory.regions;
-    json["theta"] = trajectory.theta;
+    rows("regions", trajectory.regions);
+    rows("theta", trajectory.theta);
   }
-  return json;
+  object.end();
 }
 
 Json affine_json(const result::AffineSurface& affine) {
@@ -145,49 +166,71 @@ Json options_json(const result::OptionRecord& options) {
   return json;
 }
 
-Json whole_json(const result::Result& result) {
-  Json events = Json::array();
-  for (const auto& event : result.events) events.push_back(event_json(event));
+/// What an optimisation has found, as members of the result.
+void append_optimum(ObjectStream& object, const result::Optimization& optimization) {
+  Json found = Json::object();
+  add_optimization(found, optimization);
+  for (const auto& [key, value] : found.items()) object.member(key.c_str(), value);
+}
+
+void append_head(ObjectStream& object, const result::Result& result) {
+  object.member("format", "saltus-result/1");
+  object.member("saltus", version);
+  object.member("model", model_json(result.model));
+  object.member("command", result.command);
+  if (!result.command_line.empty()) object.member("command_line", result.command_line);
+  object.member("method", result.method);
+  object.member("status", status_json(result.status));
+  object.member("states", result.states);
+  object.member("controls", result.controls);
+  object.member("switching_functions", result.switching_functions);
+  object.member("outputs", result.outputs);
+  Json groups = Json::array();
+  for (const auto& group : result.region_groups) groups.push_back({{"name", group.name}, {"modes", group.modes}});
+  if (!groups.empty()) object.member("region_groups", groups);
+  object.member("final", final_json(result.final));
+}
+
+void append_whole(TextStream& stream, const result::Result& result, std::size_t indent) {
+  ObjectStream object(stream, indent);
+  append_head(object, result);
+  object.list("events", result.events, [&](const auto& event, std::size_t at) { append_event(stream, event, at); });
+  object.key("trajectory");
+  append_trajectory(stream, result.trajectory, indent + 2);
+  if (result.optimization) append_optimum(object, *result.optimization);
   Json surfaces = Json::array();
   for (const auto& surface : result.surfaces) surfaces.push_back(surface_json(surface));
-  Json json = Json::object();
-  json["format"] = "saltus-result/1";
-  json["saltus"] = version;
-  json["model"] = model_json(result.model);
-  json["command"] = result.command;
-  json["method"] = result.method;
-  json["status"] = status_json(result.status);
-  json["states"] = result.states;
-  json["controls"] = result.controls;
-  json["switching_functions"] = result.switching_functions;
-  json["outputs"] = result.outputs;
-  for (const auto& group : result.region_groups) {
-    json["region_groups"].push_back({{"name", group.name}, {"modes", group.modes}});
-  }
-  json["final"] = final_json(result.final);
-  json["events"] = std::move(events);
-  json["trajectory"] = trajectory_json(result.trajectory);
-  if (result.optimization) add_optimization(json, *result.optimization);
-  json["surfaces"] = std::move(surfaces);
-  json["statistics"] = result.optimization ? optimization_statistics_json(result.optimization->statistics)
-                                           : statistics_json(result.statistics);
-  json["options"] = options_json(result.options);
-  if (result.sensitivities) json["sensitivities"] = sensitivities_json(*result.sensitivities);
-  if (result.optimization) json["start_values"] = start_values_json(*result.optimization);
-  if (result.elements) json["elements"] = elements_json(*result.elements);
-  if (result.comparison) json["comparison"] = comparison_json(*result.comparison);
-  if (result.order) json["order"] = order_json(*result.order);
-  for (const auto& family : result.families) json["families"].push_back(family_json(family));
-  if (result.left_at) json["left_at"] = departure_json(*result.left_at);
+  object.member("surfaces", surfaces);
+  object.member("statistics", result.optimization ? optimization_statistics_json(result.optimization->statistics)
+                                                  : statistics_json(result.statistics));
+  object.member("options", options_json(result.options));
+  if (result.sensitivities) object.member("sensitivities", sensitivities_json(*result.sensitivities));
+  if (result.optimization) object.member("start_values", start_values_json(*result.optimization));
+  if (result.elements) object.member("elements", elements_json(*result.elements));
+  if (result.comparison) object.member("comparison", comparison_json(*result.comparison));
+  if (result.order) object.member("order", order_json(*result.order));
+  Json families = Json::array();
+  for (const auto& family : result.families) families.push_back(family_json(family));
+  if (!families.empty()) object.member("families", families);
+  if (result.left_at) object.member("left_at", departure_json(*result.left_at));
   if (!result.branches.empty()) {
-    json["branches"] = Json::array();
-    for (const auto& branch : result.branches) json["branches"].push_back(whole_json(branch));
+    object.list("branches", result.branches,
+                [&](const auto& branch, std::size_t at) { append_whole(stream, branch, at); });
   }
-  return json;
+  object.end();
 }
 
 }  // namespace
 
-std::string to_json(const result::Result& result) { return laid_out(whole_json(result)); }
+bool write_json(const result::Result& result, Sink sink) {
+  TextStream stream(sink);
+  append_whole(stream, result, 0);
+  stream.text() += '\n';
+  return stream.flush();
+}
+
+std::string to_json(const result::Result& result) {
+  return collected([&](Sink sink) { return write_json(result, sink); });
+}
 
 }  // namespace saltus::io

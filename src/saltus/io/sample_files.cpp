@@ -6,14 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json_result.hpp"
 #include "saltus/io/separated_line_internal.hpp"
 
 namespace saltus::io {
 namespace {
-
-constexpr std::size_t largest_file = std::size_t{64} << 20;
 
 /// Reads line by line; the first mistake ends it.
 class ColumnReader {
@@ -99,19 +96,13 @@ Expected<Columns> parse_columns(std::string_view text, const std::string& file, 
   return ColumnReader(file, second).read(text);
 }
 
-Expected<Columns> read_columns(const std::filesystem::path& file, const std::string& second) {
-  const auto text = read_file(file, largest_file);
-  if (!text) return tl::unexpected(text.error());
-  return parse_columns(*text, file.string(), second);
-}
-
 Error located(const model::PointMistake& mistake, const Columns& columns) {
   const int line = mistake.point && *mistake.point < columns.lines.size() ? columns.lines[*mistake.point] : 0;
   return {ErrorCode::invalid_model, mistake.message, mistake.remedy, {columns.file, line, line > 0 ? 1 : 0}, {}};
 }
 
-Expected<Columns> read_control(const std::filesystem::path& file, const std::string& control) {
-  const auto result = read_result(file);
+Expected<Columns> parse_control(const std::string& text, const std::string& file, const std::string& control) {
+  const auto result = parse_result(text, file);
   if (!result) return tl::unexpected(result.error());
   const auto found = std::find(result->controls.begin(), result->controls.end(), control);
   if (found == result->controls.end()) {
@@ -119,12 +110,12 @@ Expected<Columns> read_control(const std::filesystem::path& file, const std::str
         Error{ErrorCode::unknown_name,
               fmt::format("the result has no control '{}'", control),
               result->controls.empty() ? "its model has no controls" : suggest(control, result->controls),
-              {file.string(), 0, 0},
+              {file, 0, 0},
               {}});
   }
   const auto index = static_cast<std::size_t>(found - result->controls.begin());
   Columns columns;
-  columns.file = file.string();
+  columns.file = file;
   if (result->optimization && !result->optimization->u.empty()) {
     const auto& grid = result->optimization->grid;
     columns.first.assign(grid.begin(), grid.end() - 1);

@@ -1,8 +1,8 @@
 // Numbers in files beside a model: points of tables, samples of inputs.
 #pragma once
 
-#include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saltus/base/error.hpp"
@@ -21,7 +21,6 @@ struct Columns {
 /// # are skipped. A first line without numbers is a header; with it there may be more columns, of which the first one
 /// and the one named `second` are taken (the second one if there are just two). Fails with the file's own line: what is
 /// no number, wrong number of columns, no such column.
-[[nodiscard]] Expected<Columns> read_columns(const std::filesystem::path& file, const std::string& second);
 [[nodiscard]] Expected<Columns> parse_columns(std::string_view text, const std::string& file,
                                               const std::string& second);
 
@@ -30,6 +29,8 @@ struct Columns {
 
 /// The piecewise constant control of a stored result: of an optimisation one sample per control interval, else one per
 /// row of its trajectory, of rows at one time the last. Fails if there is no such control.
-[[nodiscard]] Expected<Columns> read_control(const std::filesystem::path& result, const std::string& control);
+/// @param file  for messages
+[[nodiscard]] Expected<Columns> parse_control(const std::string& text, const std::string& file,
+                                              const std::string& control);
 
 }  // namespace saltus::io

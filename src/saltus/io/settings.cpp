@@ -173,11 +173,11 @@ Expected<void> set_input_expression(model::Description& description, std::string
 }
 
 /// simulate.inputs.u.file=… and simulate.inputs.u.result=…, relative to the working folder.
-Expected<void> set_samples(model::Description& description, std::string_view name, std::string_view source,
-                           std::string_view file) {
+Expected<void> set_samples(ModelFile& model, std::string_view name, std::string_view source, std::string_view file) {
   const auto place = place_of_setting(fmt::format("simulate.inputs.{}.{}", name, source));
-  auto input = sampled_input(std::string(name), source, std::string(file), place);
+  auto input = sampled_input(std::string(name), source, std::string(file), place, model.files);
   if (!input) return tl::unexpected(input.error());
+  auto& description = model.description;
   const auto same = [&](const auto& other) { return other.name == name; };
   std::erase_if(description.sampled_inputs, same);
   std::erase_if(description.inputs, same);
@@ -185,11 +185,11 @@ Expected<void> set_samples(model::Description& description, std::string_view nam
   return {};
 }
 
-Expected<void> set_input(model::Description& description, std::string_view path, std::string_view value) {
+Expected<void> set_input(ModelFile& model, std::string_view path, std::string_view value) {
   const auto dot = path.find('.');
-  if (dot == std::string_view::npos) return set_input_expression(description, path, value);
+  if (dot == std::string_view::npos) return set_input_expression(model.description, path, value);
   const auto source = path.substr(dot + 1);
-  if (source == "file" || source == "result") return set_samples(description, path.substr(0, dot), source, value);
+  if (source == "file" || source == "result") return set_samples(model, path.substr(0, dot), source, value);
   return refused_setting(fmt::format("simulate.inputs.{}", path), ErrorCode::unknown_name,
                          fmt::format("an input has no key '{}'", source),
                          suggest(std::string(source), {"file", "result"}));
@@ -228,7 +228,7 @@ Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::str
   const auto table = key.substr(0, dot);
   Expected<void> done;
   if (key.starts_with(inputs)) {
-    done = set_input(model.description, key.substr(inputs.size()), value);
+    done = set_input(model, key.substr(inputs.size()), value);
   } else if (table == "simulate") {
     done = set_option(model, key, value, place_of_setting(key));
   } else if (table == "optimize") {

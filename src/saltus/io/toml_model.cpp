@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "saltus/base/same_place.hpp"
 #include "saltus/io/atomic_file.hpp"
+#include "saltus/io/json_result.hpp"
 #include "saltus/io/sha256.hpp"
 #include "saltus/io/toml_sections_internal.hpp"
 #include "saltus/model/mistakes.hpp"
@@ -105,7 +107,7 @@ enum class AfterMistake { stop, read_on };
 /// Reads the tables into the model; returns the mistakes.
 std::vector<Error> read_document(const TomlTable& document, ModelFile& model, AfterMistake after) {
   const auto& file = model.description.file;
-  TomlReader reader(file);
+  TomlReader reader(file, model.files);
   reader.set_functions(table_names(document));
   for (const auto& entry : document) {
     model.table_locations.emplace_back(entry.key, entry.location);
@@ -167,12 +169,14 @@ bool is_before(const Error& a, const Error& b) {
 
 }  // namespace
 
-Expected<ModelFile> parse_model(std::string_view text, const std::string& file) {
+Expected<ModelFile> parse_model(std::string_view text, const std::string& file, std::vector<result::NamedFile> files) {
   const auto document = parse_toml(text, file);
   if (!document) return tl::unexpected(document.error());
   ModelFile model;
   model.description.file = file;
+  model.text = text;
   model.sha256 = sha256(text);
+  model.files = std::move(files);
   const auto errors = read_document(*document, model, AfterMistake::stop);
   if (!errors.empty()) return tl::unexpected(errors.front());
   return model;
@@ -206,29 +210,66 @@ namespace {
 
 constexpr std::size_t most_read = std::size_t{64} << 20;  // of what has no size, like a pipe
 
+/// No TOML begins with a brace.
+bool is_stored_result(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '{';
+}
+
+Expected<ModelText> model_in_result(const std::string& text, const std::string& file) {
+  auto stored = parse_result(text, file);
+  if (!stored) return tl::unexpected(stored.error());
+  auto& record = stored->model;
+  if (record.text.empty()) {
+    return tl::unexpected(Error{ErrorCode::io_failure,
+                                "this result does not contain its model",
+                                fmt::format("run the model file of '{}' itself", record.name),
+                                {file, 0, 0},
+                                {}});
+  }
+  if (sha256(record.text) != record.sha256) {
+    return tl::unexpected(Error{ErrorCode::io_failure,
+                                "the model in this result is not the one with which it was computed",
+                                "was it edited? save the model in a file of its own, and run that",
+                                {file, 0, 0},
+                                {}});
+  }
+  return ModelText{std::move(record.file), std::move(record.text), std::move(record.files), std::move(record.settings)};
+}
+
+/// Whether the file is too large for a model, and no result.
+bool is_too_large(const std::filesystem::path& file) {
+  std::error_code unknown_size;
+  const auto size = std::filesystem::file_size(file, unknown_size);
+  if (unknown_size || size <= max_model_bytes) return false;
+  std::string begin(16, '\0');
+  std::ifstream(file).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return !is_stored_result(begin);
+}
+
 }  // namespace
 
 Expected<ModelFile> read_model(const std::filesystem::path& file) {
-  const auto text = read_model_text(file);
+  auto text = read_model_text(file);
   if (!text) return tl::unexpected(text.error());
-  return parse_model(*text, shown_name(file));
+  return parse_model(text->text, text->name, std::move(text->files));
 }
 
-// Standard input is in the working folder, as far as files beside it are concerned.
-std::string shown_name(const std::filesystem::path& file) { return file == "-" ? "<standard input>" : file.string(); }
-
-Expected<std::string> read_model_text(const std::filesystem::path& file) {
-  if (file == "-") return read_file("/dev/stdin", most_read);
-  std::error_code unknown_size;
-  const auto size = std::filesystem::file_size(file, unknown_size);
-  if (!unknown_size && size > max_model_bytes) {
-    return tl::unexpected(Error{ErrorCode::io_failure,
-                                fmt::format("the file is too large for a model: {} bytes", size),
-                                fmt::format("a model file has at most {} bytes", max_model_bytes),
-                                {file.string(), 0, 0},
-                                {}});
+Expected<ModelText> read_model_text(const std::filesystem::path& file) {
+  if (is_too_large(file)) {
+    return tl::unexpected(
+        Error{ErrorCode::io_failure,
+              fmt::format("the file is too large for a model: {} bytes", std::filesystem::file_size(file)),
+              fmt::format("a model file has at most {} bytes", max_model_bytes),
+              {file.string(), 0, 0},
+              {}});
   }
-  return read_file(file, most_read);
+  auto text = file == "-" ? read_file("/dev/stdin", most_read) : read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  // Standard input is in the working folder, as far as files beside it are concerned.
+  const std::string name = file == "-" ? "<standard input>" : file.string();
+  if (is_stored_result(*text) && file.extension() != ".toml") return model_in_result(*text, name);
+  return ModelText{name, std::move(*text)};
 }
 
 Error located(Error error, const ModelFile& model) {

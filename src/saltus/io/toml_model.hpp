@@ -14,6 +14,7 @@
 #include "saltus/pipeline/optimize_options.hpp"
 #include "saltus/pipeline/simulate_options.hpp"
 #include "saltus/result/caption.hpp"
+#include "saltus/result/result.hpp"
 
 namespace saltus::io {
 
@@ -22,7 +23,9 @@ struct ModelFile {
   pipeline::SimulateOptions simulate;
   std::optional<pipeline::OptimizeOptions> optimize;  ///< of a file with [optimize]; its problem is in `description`
   result::Captions captions;                          ///< `unit` and `label`, in the order of the file
+  std::string text;                                   ///< of the file
   std::string sha256;                                 ///< of the file's bytes
+  std::vector<result::NamedFile> files;               ///< that it, or a setting, names
   /// Where each option was written ("rtol", "output.times"), for errors that show only later.
   std::vector<std::pair<std::string, SourceLocation>> option_locations;
   /// The same for options of [optimize] ("mpcc.tolerance").
@@ -33,14 +36,23 @@ struct ModelFile {
 
 /// Reads a model file. Every error has file, line, column, what was expected and found, and a remedy; unknown tables
 /// and keys name the nearest known ones; tables that this version does not support are refused (not_available). "-" is
-/// standard input.
+/// standard input. Of a stored result (JSON) it is the model that is in it.
 [[nodiscard]] Expected<ModelFile> read_model(const std::filesystem::path& file);
-/// The text of a model file, for parse_model and diagnose_model. "-" is standard input.
-[[nodiscard]] Expected<std::string> read_model_text(const std::filesystem::path& file);
-/// What messages call a file: its path, or "<standard input>".
-[[nodiscard]] std::string shown_name(const std::filesystem::path& file);
+
+/// What parse_model and diagnose_model take.
+struct ModelText {
+  std::string name;  ///< for messages: the path of the model file, or "<standard input>"
+  std::string text;
+  std::vector<result::NamedFile> files{};  ///< of a stored result
+  std::vector<std::string> settings{};     ///< NAME=VALUE: with which it was computed
+};
+/// The text of a model file, or the model in a stored result. "-" is standard input.
+[[nodiscard]] Expected<ModelText> read_model_text(const std::filesystem::path& file);
+
 /// The same for text in memory; `file` is used in messages, and the folder it is in to find files that the model names.
-[[nodiscard]] Expected<ModelFile> parse_model(std::string_view text, const std::string& file);
+/// @param files  taken in place of those of these names
+[[nodiscard]] Expected<ModelFile> parse_model(std::string_view text, const std::string& file,
+                                              std::vector<result::NamedFile> files = {});
 
 /// A model file with all its mistakes.
 struct Diagnosis {

@@ -12,14 +12,17 @@
 #include "saltus/base/error.hpp"
 #include "saltus/expression/syntax_tree.hpp"
 #include "saltus/io/toml_document_internal.hpp"
+#include "saltus/result/result.hpp"
 
 namespace saltus::io {
 
 class TomlReader {
  public:
-  explicit TomlReader(std::string file) : file_(std::move(file)) {}
+  /// @param files  those that the document names; must outlive this
+  TomlReader(std::string file, std::vector<result::NamedFile>& files) : file_(std::move(file)), files_(&files) {}
 
   [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] std::vector<result::NamedFile>& files() { return *files_; }
   [[nodiscard]] const std::vector<Error>& errors() const { return errors_; }
   /// Whether something of the table that was entered last is wrong.
   [[nodiscard]] bool failed() const { return errors_.size() > errors_before_; }
@@ -55,6 +58,7 @@ class TomlReader {
 
  private:
   std::string file_;
+  std::vector<result::NamedFile>* files_;
   std::string table_;
   std::vector<std::string> functions_;
   std::vector<Error> errors_;

@@ -30,7 +30,8 @@ void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 /// Samples of a control from a file of numbers (source "file") or a stored result ("result").
 [[nodiscard]] Expected<model::SampledInput> sampled_input(const std::string& control, std::string_view source,
                                                           const std::filesystem::path& file,
-                                                          const SourceLocation& location);
+                                                          const SourceLocation& location,
+                                                          std::vector<result::NamedFile>& files);
 
 /// The value of an option: truth, number, word or list of numbers; nullopt and an error for anything else.
 [[nodiscard]] std::optional<result::OptionValue> read_option_value(TomlReader& reader, const TomlValue& value);

@@ -68,7 +68,9 @@ void read_option(TomlReader& reader, const std::string& key, const TomlEntry& en
 }
 
 void check_output_table(TomlReader& reader, const TomlEntry& entry, const TomlTable& table) {
-  if (table.size() == 1) return;
+  // `events` stands beside one of the others, or alone.
+  const auto grids = std::count_if(table.begin(), table.end(), [](const auto& key) { return key.key != "events"; });
+  if (!table.empty() && grids <= 1) return;
   reader.fail(
       {ErrorCode::invalid_option,
        fmt::format("expected one of every, points and times in output, found {}", table.empty() ? "none" : "several"),
@@ -108,7 +110,8 @@ void read_samples(TomlReader& reader, const TomlEntry& field, const TomlTable& s
   }
   const auto name = reader.string(source.front().value, "a file name in quotes");
   if (reader.failed()) return;
-  auto input = sampled_input(field.key, source.front().key, beside(reader.file(), name), field.location);
+  auto input =
+      sampled_input(field.key, source.front().key, beside(reader.file(), name), field.location, reader.files());
   if (!input) {
     reader.fail(with_context(input.error(), fmt::format("line {} of {}", field.location.line, reader.file())));
     return;

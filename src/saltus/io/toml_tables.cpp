@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/io/named_files_internal.hpp"
 #include "saltus/io/sample_files.hpp"
 #include "saltus/io/toml_sections_internal.hpp"
 
@@ -96,7 +97,10 @@ void read_points(TomlReader& reader, const TomlEntry& entry, const StatedTable& 
       return;
     }
   } else {
-    auto columns = read_columns(beside(reader.file(), *stated.file), entry.key);
+    const auto file = beside(reader.file(), *stated.file);
+    auto columns = read_named(reader.files(), file).and_then([&](const std::string& text) {
+      return parse_columns(text, file.string(), entry.key);
+    });
     if (!columns) {
       reader.fail(with_context(columns.error(), fmt::format("{}, line {}", frame, stated.file_location.line)));
       return;
@@ -167,9 +171,13 @@ std::vector<std::string> table_names(const TomlTable& document) {
 }
 
 Expected<model::SampledInput> sampled_input(const std::string& control, std::string_view source,
-                                            const std::filesystem::path& file, const SourceLocation& location) {
+                                            const std::filesystem::path& file, const SourceLocation& location,
+                                            std::vector<result::NamedFile>& files) {
   const auto frame = fmt::format("in the input of {}", control);
-  auto columns = source == "file" ? read_columns(file, control) : read_control(file, control);
+  const auto text = read_named(files, file);
+  if (!text) return tl::unexpected(with_context(text.error(), frame));
+  auto columns = source == "file" ? parse_columns(*text, file.string(), control)
+                                  : parse_control(*text, file.string(), control);
   if (!columns) return tl::unexpected(with_context(columns.error(), frame));
   if (const auto mistake = model::find_mistake(columns->first, columns->second)) {
     return tl::unexpected(with_context(located(*mistake, *columns), frame));

@@ -129,21 +129,9 @@ void record_lifting(const SimulateOptions& options, std::string_view key, Option
 }
 
 template <auto part>
-Expected<void> set_sensitivities(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  const auto* word = std::get_if<std::string>(&value);  // of the command line
-  const auto* truth = std::get_if<bool>(&value);
-  const bool yes = truth != nullptr ? *truth : word != nullptr && *word == "true";
-  if (!yes && truth == nullptr && (word == nullptr || *word != "false")) {
-    return tl::unexpected(out_of_range("true or false", value));
-  }
-  part(options).sensitivities = yes;
-  return {};
-}
-
-template <auto part>
-void record_sensitivities(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
-  record.emplace_back(key, part(options).sensitivities);
-}
+constexpr auto sensitivities = [](auto& o) -> auto& {
+  return part(o).sensitivities;
+};
 
 template <auto part>
 constexpr std::array fields_of{
@@ -191,7 +179,7 @@ constexpr std::array fields_of{
                 set_lifting<part>, record_lifting<part>},
     OptionField{"sensitivities", "true, false",
                 "Derivatives of the end state with respect to initial state and parameters, of the discretisation.",
-                set_sensitivities<part>, record_sensitivities<part>},
+                set_truth<sensitivities<part>>, record_truth<sensitivities<part>>},
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ constexpr auto from_of = [](auto& o) -> auto& { return o.from; };
 constexpr auto method_of = [](auto& o) -> auto& { return o.method; };
 constexpr auto rtol_of = [](auto& o) -> auto& { return o.rtol; };
 constexpr auto atol_of = [](auto& o) -> auto& { return o.atol; };
+constexpr auto event_rows_of = [](auto& o) -> auto& { return o.event_rows; };
 constexpr auto native_of = [](auto& o) -> auto& { return o.native; };
 constexpr auto max_steps_of = [](auto& o) -> auto& { return o.max_steps; };
 constexpr auto members_of = [](auto& o) -> auto& { return o.event.members; };
@@ -43,12 +44,14 @@ constexpr Choices<Selection, 4> selections{
     {Selection::active_dominant, Selection::passive_dominant, Selection::scaled, Selection::report}};
 
 Expected<void> set_output_word(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  if (const auto* word = std::get_if<std::string>(&value); word == nullptr || *word != "steps") {
-    return tl::unexpected(out_of_range(
-        "\"steps\", { every = a number > 0 }, { points = a whole number >= 2 } or { times = [increasing numbers] }",
-        value));
+  const auto* word = std::get_if<std::string>(&value);
+  if (word == nullptr || (*word != "auto" && *word != "steps")) {
+    return tl::unexpected(
+        out_of_range("\"steps\", \"auto\", { every = a number > 0 }, { points = a whole number >= 2 } or { times = "
+                     "[increasing numbers] }",
+                     value));
   }
-  options.output = EveryStep{};
+  options.output = *word == "auto" ? OutputGrid(Automatic{}) : OutputGrid(EveryStep{});
   return {};
 }
 
@@ -83,11 +86,15 @@ Expected<void> set_output_times(SimulateOptions& options, std::string_view, cons
   return {};
 }
 
+void record_output_word(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (std::holds_alternative<Automatic>(options.output)) record.emplace_back(key, std::string("auto"));
+  if (std::holds_alternative<EveryStep>(options.output)) record.emplace_back(key, std::string("steps"));
+}
+
 template <class Grid>
 void record_output(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
   const auto* grid = std::get_if<Grid>(&options.output);
   if (grid == nullptr) return;
-  if constexpr (std::is_same_v<Grid, EveryStep>) record.emplace_back(key, std::string("steps"));
   if constexpr (std::is_same_v<Grid, EveryInterval>) record.emplace_back(key, grid->interval);
   if constexpr (std::is_same_v<Grid, NumberOfPoints>) record.emplace_back(key, std::int64_t{grid->points});
   if constexpr (std::is_same_v<Grid, AtTimes>) record.emplace_back(key, grid->times);
@@ -189,14 +196,18 @@ constexpr std::array fields{
                 set_number<rtol_of, Range::positive>, record_number<rtol_of>},
     OptionField{"atol", "a finite number >= 0", "Absolute error tolerance of a step, in the units of the states.",
                 set_number<atol_of, Range::not_negative>, record_number<atol_of>},
-    OptionField{"output", "steps", "Rows of the trajectory: every accepted step.", set_output_word,
-                record_output<EveryStep>},
+    OptionField{"output", "auto, steps",
+                "Rows at steps, and between them so that straight lines are within 1e-3 of every column's range.",
+                set_output_word, record_output_word},
     OptionField{"output.every", "a finite number > 0", "Instead: a row every so often, counted from `from`.",
                 set_output_every, record_output<EveryInterval>},
     OptionField{"output.points", "a whole number >= 2", "Instead: so many rows, both ends among them.",
                 set_output_points, record_output<NumberOfPoints>},
     OptionField{"output.times", "increasing numbers", "Instead: rows at these times, all within the span.",
                 set_output_times, record_output<AtTimes>},
+    OptionField{"output.events", "true, false",
+                "Rows before and behind every event; false leaves them out, so that no time has two rows.",
+                set_truth<event_rows_of>, record_truth<event_rows_of>},
     OptionField{"native", "auto, on, off",
                 "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler.",
                 set_choice<native_of, natives>, record_choice<native_of, natives>},

@@ -20,7 +20,8 @@ Generated from the option table of the source (`saltus options-page > docs/optio
 
 Write them in the model file under `[simulate]` (`[simulate.event]` for those that begin with `event.`, and so on), or on
 the command line as `--set simulate.KEY=VALUE`. `*` stands for the name of a switching function. `output` is one of
-`"steps"`, `{ every = … }`, `{ points = … }`, `{ times = […] }`; `until` is always a row.
+`"auto"`, `"steps"` (no rows between), `{ every = … }`, `{ points = … }`, `{ times = […] }`; `until` is always a row, and events and end state
+do not depend on it.
 
 | key | value | default | meaning |
 |---|---|---|---|

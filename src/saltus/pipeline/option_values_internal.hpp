@@ -82,6 +82,23 @@ void record_count(const Options& options, std::string_view key, OptionRecord& re
   record.emplace_back(key, std::int64_t{access(options)});
 }
 
+template <auto access, class Options = SimulateOptions>
+Expected<void> set_truth(Options& options, std::string_view, const OptionValue& value) {
+  const auto* word = std::get_if<std::string>(&value);  // on the command line
+  const auto* truth = std::get_if<bool>(&value);
+  const bool yes = truth != nullptr ? *truth : word != nullptr && *word == "true";
+  if (!yes && truth == nullptr && (word == nullptr || *word != "false")) {
+    return tl::unexpected(out_of_range("true or false", value));
+  }
+  access(options) = yes;
+  return {};
+}
+
+template <auto access, class Options = SimulateOptions>
+void record_truth(const Options& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, bool{access(options)});
+}
+
 /// The spellings of an enum, and what they stand for.
 template <class Enum, std::size_t n>
 struct Choices {

@@ -15,6 +15,7 @@
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/option_effects.hpp"
 #include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/pipeline/step_observer_internal.hpp"
 #include "saltus/smoothed/regularise.hpp"
@@ -37,26 +38,6 @@ evaluation::NativeCode native_code(Native native) {
 namespace {
 
 using event_integrator::IntegrationOptions;
-using event_integrator::OutputTimes;
-
-OutputTimes output_times(const OutputGrid& grid, double from, double until) {
-  OutputTimes output;
-  if (std::holds_alternative<EveryStep>(grid)) return output;
-  output.rows = OutputTimes::Rows::at_times;
-  if (const auto* at = std::get_if<AtTimes>(&grid)) {
-    output.times = at->times;
-    return output;
-  }
-  const auto* points = std::get_if<NumberOfPoints>(&grid);
-  const auto* every = std::get_if<EveryInterval>(&grid);
-  const double count = number_of_rows(grid, from, until) - 1.0;
-  for (double i = 0.0; i <= count; i += 1.0) {
-    const double t = points ? from + (until - from) * (i / count) : from + i * every->interval;
-    // The last multiple may miss `until` by its rounding: one row, not two.
-    output.times.push_back(until - t <= 1e-12 * (until - from) ? until : t);
-  }
-  return output;
-}
 
 /// The switching function of a name in the options under `key`.
 Expected<model::SwitchingColumn> find_column(const model::System& system, const std::string& key,
@@ -177,6 +158,13 @@ class Integrand {
   }
 
   [[nodiscard]] const model::System& system() const { return regularisation_ ? regularisation_->system : *system_; }
+  /// Of the last outputs so many are selections.
+  [[nodiscard]] std::size_t selections() const {
+    if (!regularisation_) return 0;
+    std::size_t count = regularisation_->columns.size();
+    for (const auto& group : regularisation_->regions) count += group.names.size();
+    return count;
+  }
   [[nodiscard]] event_integrator::ThinLayers layers() const {
     event_integrator::ThinLayers layers;
     if (!regularisation_) return layers;
@@ -230,6 +218,9 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   for (std::size_t i = 0; i < system.parameter_names.size(); ++i) {
     result.model.parameters.emplace_back(system.parameter_names[i], system.parameter_values[i]);
   }
+  for (std::size_t i = 0; i < system.state_names.size(); ++i) {
+    result.model.initial_state.emplace_back(system.state_names[i], system.initial_state[i]);
+  }
   result.method = name(options.method);
   result.states = system.state_names;
   result.controls = system.control_names;
@@ -257,6 +248,7 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   const auto integrand_or = integrand(system, options);
   if (!integrand_or) return tl::unexpected(integrand_or.error());
   integration_or->layers = integrand_or->layers();
+  integration_or->output.selections = integrand_or->selections();
   auto kernel = evaluation::ModelKernel::compile(integrand_or->system(), native_code(options.native));
   if (!kernel) return tl::unexpected(kernel.error());
 
@@ -273,6 +265,7 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
     result.final = std::move(run.final);
     result.events = std::move(run.events);
     result.trajectory = std::move(run.trajectory);
+    if (!options.event_rows) leave_out_event_rows(integration.output.times, result.trajectory);
     result.statistics = run.statistics;
     const auto end = std::chrono::steady_clock::now();
     result.statistics.wall_seconds = std::chrono::duration<double>(end - begin).count();

@@ -7,6 +7,7 @@
 #include "saltus/fesd_integrator/step_problem.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/pipeline/step_observer_internal.hpp"
 #include "saltus/reformulation/dcs.hpp"
@@ -61,7 +62,8 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   const double values = static_cast<double>(wanted.steps) * static_cast<double>(wanted.elements * wanted.stages) *
                         static_cast<double>(dcs->selection.numel());
   integration.record_elements = values > 0.0 && values <= most_recorded_values;
-  if (!std::holds_alternative<EveryStep>(options.output)) {
+  if (std::holds_alternative<Automatic>(options.output)) integration.straight = straight_share;
+  if (is_at_times(options.output)) {
     integration.rows = IntegrationOptions::Rows::at_times;
     integration.times = std::move(times);
   }
@@ -91,6 +93,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   frame.final = std::move(run->final);
   frame.events = std::move(run->events);
   frame.trajectory = std::move(run->trajectory);
+  if (!options.event_rows) leave_out_event_rows(integration.times, frame.trajectory);
   frame.statistics = run->statistics;
   frame.sensitivities = std::move(run->sensitivities);
   frame.elements = std::move(run->elements);

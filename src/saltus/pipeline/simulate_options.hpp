@@ -15,6 +15,7 @@ enum class Native { automatic, on, off };
 enum class Selection { active_dominant, passive_dominant, scaled, report };
 
 /// Rows of the trajectory beside the two of every event.
+struct Automatic {};  ///< at steps and, between them, as many as keep straight lines close to the solution
 struct EveryStep {};
 struct EveryInterval {
   double interval = 0.0;
@@ -25,7 +26,7 @@ struct NumberOfPoints {
 struct AtTimes {
   std::vector<double> times;
 };
-using OutputGrid = std::variant<EveryStep, EveryInterval, NumberOfPoints, AtTimes>;
+using OutputGrid = std::variant<Automatic, EveryStep, EveryInterval, NumberOfPoints, AtTimes>;
 
 /// [simulate.event]
 struct EventOptions {
@@ -82,7 +83,8 @@ struct SimulateOptions {
   Method method = Method::event;
   double rtol = 1e-8;
   double atol = 1e-10;
-  OutputGrid output = EveryStep{};
+  OutputGrid output = Automatic{};
+  bool event_rows = true;  ///< rows before and behind every event; without them no two rows have the same time
   Native native = Native::automatic;
   long max_steps = 1000000;
   long max_events = 100000;

@@ -85,6 +85,11 @@ struct Trajectory {
   std::vector<std::vector<double>> theta{};
 };
 
+/// 1 for a row behind another one at the same time, like the one behind an event; else 0.
+[[nodiscard]] inline int side(const Trajectory& trajectory, std::size_t row) {
+  return row > 0 && trajectory.t[row - 1] == trajectory.t[row] ? 1 : 0;
+}
+
 struct Final {
   double t = 0.0;
   std::vector<double> x;
@@ -95,11 +100,24 @@ struct Final {
   std::vector<double> theta{};  ///< of all modes by `indicator`
 };
 
+/// A file that the model file, or a setting, names.
+struct NamedFile {
+  std::string name;  ///< as it was opened
+  std::string sha256;
+  std::optional<std::string> text;  ///< not of files of more than 10^6 bytes
+};
+
 struct ModelRecord {
   std::string name;
   std::string description;
   std::string sha256;  ///< of the model file's bytes; empty for a model stated in C++
   std::vector<std::pair<std::string, double>> parameters;
+  std::vector<std::pair<std::string, double>> initial_state{};
+  // What it takes to run it again; empty for a model stated in C++.
+  std::string file{};                   ///< its name, as it was opened
+  std::string text{};                   ///< of the model file
+  std::vector<NamedFile> files{};       ///< of a branch none: they are its root's
+  std::vector<std::string> settings{};  ///< NAME=VALUE, in their order: of --set, then of the other options
 };
 
 /// What a surface belongs to.
@@ -176,6 +194,7 @@ struct Departure {
 struct Result {
   ModelRecord model;
   std::string command = "simulate";
+  std::string command_line;  ///< the call, without what says where its results go; empty if there was none
   std::string method = "event";
   Status status;
   std::vector<std::string> states, controls, switching_functions, outputs;

@@ -297,9 +297,30 @@ TEST(JsonResult, RefusesTextsThatAreNoResult) {
 TEST(CsvTrajectory, HasTheHeaderOfTheContractWithQuotedNames) {
   const auto text = to_csv(sample());
   const auto header = text.substr(0, text.find('\n'));
-  EXPECT_EQ(header, "t,q,v,u,alpha(slip),\"alpha(q-max(v,0.2))\",mode(slip),\"mode(q-max(v,0.2))\"");
-  EXPECT_NE(text.find("\n2,1e+22,123456789.12345679,-2.5,0.25,0,0,-1\n"), std::string::npos) << text;
+  EXPECT_EQ(header, "t,side,q,v,u,power,alpha(slip),\"alpha(q-max(v,0.2))\",mode(slip),\"mode(q-max(v,0.2))\"");
+  EXPECT_NE(text.find("\n2,0,1e+22,123456789.12345679,-2.5,4,0.25,0,0,-1\n"), std::string::npos) << text;
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+}
+
+TEST(CsvTrajectory, NumbersTheSidesOfRowsAtOneTime) {
+  auto result = sample();
+  result.trajectory.t = {2.0, 2.0};
+  const auto text = to_csv(result);
+  EXPECT_NE(text.find("\n2,0,"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n2,1,"), std::string::npos) << text;
+}
+
+TEST(CsvEvents, HasALinePerEventAndEmptyFieldsForWhatIsNotThere) {
+  const auto text = events_to_csv(sample());
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "t,kind,name,surfaces,q,v,after(q),after(v),mode_before(slip),\"mode_before(q-max(v,0.2))\","
+            "mode_after(slip),\"mode_after(q-max(v,0.2))\",alpha_before(slip),\"alpha_before(q-max(v,0.2))\","
+            "alpha_after(slip),\"alpha_after(q-max(v,0.2))\",unique,reason");
+  EXPECT_NE(text.find("\n0.24468880178327183,enter_sliding,,slip,0.1,0.2,0.1,0.2,-1,-1,0,-1,0,0,nan,0,false,both "
+                      "fields point to the surface\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("\n0,user,returns,,0,1e-300,0,1e-300,,,,,,,,,,\n"), std::string::npos) << text;
 }
 
 }  // namespace

@@ -134,6 +134,10 @@ TEST(TomlModel, ReadsOptions) {
 TEST(TomlModel, ReadsEveryFormOfOutput) {
   const std::string head = "[model]\nname='m'\n[simulate]\noutput = ";
   EXPECT_TRUE(std::holds_alternative<pipeline::EveryStep>(parsed(head + "'steps'").simulate.output));
+  EXPECT_TRUE(std::holds_alternative<pipeline::Automatic>(parsed(head + "'auto'").simulate.output));
+  EXPECT_TRUE(std::holds_alternative<pipeline::Automatic>(parsed("[model]\nname='m'\n").simulate.output));
+  EXPECT_FALSE(parsed(head + "{ every = 0.25, events = false }").simulate.event_rows);
+  EXPECT_TRUE(parsed(head + "{ every = 0.25 }").simulate.event_rows);
   EXPECT_EQ(std::get<pipeline::EveryInterval>(parsed(head + "{ every = 0.25 }").simulate.output).interval, 0.25);
   EXPECT_EQ(std::get<pipeline::NumberOfPoints>(parsed(head + "{ points = 7 }").simulate.output).points, 7);
 }

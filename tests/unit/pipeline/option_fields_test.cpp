@@ -23,10 +23,12 @@ SimulateOptions uncommon_options() {
 }
 
 TEST(OptionFields, WhatIsRecordedSetsTheSameOptionsAgain) {
-  const std::vector<OutputGrid> grids{EveryStep{}, EveryInterval{0.5}, NumberOfPoints{11}, AtTimes{{0.0, 1.0}}};
+  const std::vector<OutputGrid> grids{Automatic{}, EveryStep{}, EveryInterval{0.5}, NumberOfPoints{11},
+                                      AtTimes{{0.0, 1.0}}};
   for (const auto& grid : grids) {
     auto original = uncommon_options();
     original.output = grid;
+    original.event_rows = false;
     const auto record = option_record(original);
     SimulateOptions copy;
     for (const auto& [name, value] : record) {
@@ -39,6 +41,7 @@ TEST(OptionFields, WhatIsRecordedSetsTheSameOptionsAgain) {
     EXPECT_EQ(copy.until, original.until);
     EXPECT_EQ(copy.initial_mode, original.initial_mode);
     EXPECT_EQ(copy.output.index(), original.output.index());
+    EXPECT_FALSE(copy.event_rows);
   }
 }
 

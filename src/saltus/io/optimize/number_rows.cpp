@@ -65,10 +65,4 @@ Expected<std::vector<std::vector<double>>> parse_rows(std::string_view text, con
   return rows;
 }
 
-Expected<std::vector<std::vector<double>>> read_rows(const std::filesystem::path& file, std::size_t columns) {
-  const auto text = read_file(file, largest_number_file);
-  if (!text) return tl::unexpected(text.error());
-  return parse_rows(*text, file.string(), columns);
-}
-
 }  // namespace saltus::io

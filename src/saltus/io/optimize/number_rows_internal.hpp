@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,12 +14,7 @@ namespace saltus::io {
 /// begin with # are skipped, as is a first line without numbers. Fails with the file's own line: what is no finite
 /// number, a row of another length, no rows at all.
 /// @param columns  numbers of every row, >= 1
-[[nodiscard]] Expected<std::vector<std::vector<double>>> read_rows(const std::filesystem::path& file,
-                                                                   std::size_t columns);
 [[nodiscard]] Expected<std::vector<std::vector<double>>> parse_rows(std::string_view text, const std::string& file,
                                                                     std::size_t columns);
-
-/// Larger files of numbers are refused.
-inline constexpr std::size_t largest_number_file = std::size_t{64} << 20;
 
 }  // namespace saltus::io

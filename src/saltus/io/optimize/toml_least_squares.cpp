@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/io/constant_value_internal.hpp"
+#include "saltus/io/named_files_internal.hpp"
 #include "saltus/io/optimize/number_rows_internal.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/toml_sections_internal.hpp"
@@ -103,7 +104,10 @@ class LeastSquaresReader {
            "write one reference per expression", reference_);
     }
     if (part_.file.empty()) return;
-    auto rows = read_rows(beside(reader_.file(), part_.file), expected);
+    const auto file = beside(reader_.file(), part_.file);
+    auto rows = read_named(reader_.files(), file).and_then([&](const std::string& text) {
+      return parse_rows(text, file.string(), expected);
+    });
     if (!rows) {
       reader_.fail(with_context(rows.error(), fmt::format("line {} of {}", reference_.line, reader_.file())));
       return;

@@ -184,6 +184,9 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   auto run = optimized_run(ocp, read, reformulation_options(options.element), stated->tableau);
   if (!run) return tl::unexpected(run.error());
   result.trajectory = std::move(run->trajectory);
+  for (std::size_t i = 0; i < result.states.size() && !result.trajectory.x.empty(); ++i) {
+    result.model.initial_state.emplace_back(result.states[i], result.trajectory.x.front()[i]);
+  }
   result.events = std::move(run->events);
   result.final = std::move(run->final);
   result.elements = std::move(run->elements);

@@ -1,0 +1,61 @@
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <variant>
+
+#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/output_rows_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+/// Keeps some rows of one column, which may be empty.
+template <class Column>
+void keep(Column& column, const std::vector<std::size_t>& rows) {
+  if (column.empty()) return;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] != i) column[i] = std::move(column[rows[i]]);
+  }
+  column.resize(rows.size());
+}
+
+}  // namespace
+
+event_integrator::OutputTimes output_times(const OutputGrid& grid, double from, double until) {
+  event_integrator::OutputTimes output;
+  if (std::holds_alternative<Automatic>(grid)) output.straight = straight_share;
+  if (!is_at_times(grid)) return output;
+  output.rows = event_integrator::OutputTimes::Rows::at_times;
+  if (const auto* at = std::get_if<AtTimes>(&grid)) {
+    output.times = at->times;
+    return output;
+  }
+  const auto* points = std::get_if<NumberOfPoints>(&grid);
+  const auto* every = std::get_if<EveryInterval>(&grid);
+  const double count = number_of_rows(grid, from, until) - 1.0;
+  for (double i = 0.0; i <= count; i += 1.0) {
+    const double t = points ? from + (until - from) * (i / count) : from + i * every->interval;
+    // The last multiple may miss `until` by its rounding: one row, not two.
+    output.times.push_back(until - t <= 1e-12 * (until - from) ? until : t);
+  }
+  return output;
+}
+
+void leave_out_event_rows(const std::vector<double>& times, result::Trajectory& rows) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < rows.t.size(); ++i) {
+    const bool last = i + 1 == rows.t.size();
+    if (!last && rows.t[i + 1] == rows.t[i]) continue;  // values are continuous from the right
+    if (last || times.empty() || std::binary_search(times.begin(), times.end(), rows.t[i])) kept.push_back(i);
+  }
+  keep(rows.t, kept);
+  keep(rows.x, kept);
+  keep(rows.u, kept);
+  keep(rows.alpha, kept);
+  keep(rows.mode, kept);
+  keep(rows.outputs, kept);
+  keep(rows.regions, kept);
+  keep(rows.theta, kept);
+}
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,29 @@
+// A simulated solution as a function of time.
+#pragma once
+
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/pipeline/simulate.hpp"
+#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::pipeline {
+
+/// Which value is meant where there are two, at an event.
+enum class SideOfEvent { before, behind };
+
+/// x(t), inputs, outputs, selections and modes at any times of a simulation, from the method's dense output.
+///
+/// The simulation is run once more with rows at these times, and without branches: the values are those of its rows at
+/// the same times bit for bit, and no polynomials are kept in memory.
+/// @param times  in any order, within [from, until], and not behind the end of a run that stops early
+/// @return one row per time, in their order; an Error for a time that is NaN or outside, and for options that do not
+///         fit. Cost: that of the simulation, for all times together.
+[[nodiscard]] Expected<result::Trajectory> values_at(const model::System& system, const SimulateOptions& options,
+                                                     const std::vector<double>& times,
+                                                     SideOfEvent side = SideOfEvent::behind,
+                                                     const Observers& observers = {});
+
+}  // namespace saltus::pipeline
