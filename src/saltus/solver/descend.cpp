@@ -23,7 +23,7 @@ constexpr int largest_rounds = 200;
 /// Of one branch problem.
 constexpr int branch_iterations = 500;
 /// Of one that begins at a point which is equal to the last: where it is better, that shows soon.
-constexpr int move_iterations = 80;
+constexpr int move_iterations = 40;
 /// Flips tried one by one before the linear program decides.
 constexpr int flips_tried = 5;
 
@@ -73,8 +73,7 @@ class Descent {
     of = {};
     of.primal_infeasibility = branch().primal_infeasibility;
     of.complementarity_residual = branch().complementarity_residual;
-    of.stationarity =
-        certificate::stationarity(run_.problem, branch().w, multipliers, &branch().problem->reduction());
+    of.stationarity = certificate::stationarity(run_.problem, branch().w, multipliers, &branch().problem->reduction());
     of.biactive = static_cast<int>(std::count(states_.biactive.begin(), states_.biactive.end(), true));
     of.stationarity_type = certificate::stationarity_type(multipliers, states_.biactive, tolerance());
     if (of.stationarity_type == StationarityType::S && of.stationarity <= tolerance()) of.b_stationary = true;
@@ -84,7 +83,7 @@ class Descent {
   bool take(const std::vector<ActiveSide>& sides, ConstVectorView from, const char* message,
             int iterations = branch_iterations) {
     if (!visited_.insert(sides).second) return false;
-    crossover::Branch next = run_.solve_branch(sides, from, iterations, message);
+    crossover::Branch next = run_.solve_branch(sides, from, iterations, message, branch().objective);
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
     run_.branch = std::move(next);
     return true;
@@ -144,7 +143,8 @@ class Descent {
     if (*of.b_stationary) return move();
     std::vector<ActiveSide> sides = branch().sides;
     for (std::size_t i = 0; i < linear.groups.size(); ++i) {
-      for (const int pair : linear.groups[i]) sides[at(pair)] = found.first_is_active[i] ? ActiveSide::G : ActiveSide::H;
+      for (const int pair : linear.groups[i])
+        sides[at(pair)] = found.first_is_active[i] ? ActiveSide::G : ActiveSide::H;
     }
     if (take(sides, branch().w, "proposed by the linear program")) return true;
     // Flipped already, but not from as far as the linear program sees.

@@ -24,10 +24,12 @@ constexpr double stationary = 1e-5;
 /// A branch problem that was infeasible is tried again from a point that is nearer by this.
 constexpr double retry_factor = 0.011;
 /// Iterations of a branch problem that the next sigma may make easier, and of one that it may not.
-constexpr int trial_limit = 100;
+constexpr int trial_limit = 60;
 constexpr int whole_limit = 500;
 /// How much worse than the relaxed point a branch may be: relaxed points are better than any feasible one.
 constexpr double objective_slack = 1e-3;
+/// Relaxed problems in a row that lead to a branch which was refused, until the next ones will, too.
+constexpr int settled_problems = 2;
 
 /// Follows one schedule.
 class Path {
@@ -55,6 +57,7 @@ class Path {
       // A solver that fails near a solution fails for its last digits only.
       const bool is_usable = is_solved || has_point_;
       if (is_usable && run_.options.crossover && cross_over(sigma, is_last)) return PathEnd::crossed_over;
+      if (is_solved && has_settled()) return PathEnd::finished;
       // Problems of larger sigma are not solved as sharply.
       const bool is_sharp = is_solved && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
       if (is_sharp && !run_.options.crossover) return PathEnd::finished;
@@ -68,7 +71,17 @@ class Path {
     return std::max(certificate::scaled_infeasibility(run_.problem, w), certificate::complementarity(run_.problem, w));
   }
 
-  [[nodiscard]] static double norm(const Eigen::VectorXd& w) { return w.size() > 0 ? w.lpNorm<Eigen::Infinity>() : 0.0; }
+  [[nodiscard]] static double norm(const Eigen::VectorXd& w) {
+    return w.size() > 0 ? w.lpNorm<Eigen::Infinity>() : 0.0;
+  }
+
+  /// The sides stay those of a branch that was refused, and what is left of the path cannot lift the relaxed objective
+  /// to it: its own elements have lengths that no branch has.
+  [[nodiscard]] bool has_settled() const {
+    if (same_refused_ < settled_problems) return false;
+    const double rise = std::abs(objective_ - last_objective_);
+    return objective_ + 2.0 * rise + objective_slack * std::max(1.0, std::abs(objective_)) < run_.refused->objective;
+  }
 
   /// Where no branch was accepted, and the relaxed point itself is a solution but for a digit or two.
   [[nodiscard]] bool is_nearly_done(double sigma) const {
@@ -130,6 +143,8 @@ class Path {
       run_.relaxed.point = point;
       run_.relaxed.report = report;
     }
+    last_objective_ = objective_;
+    objective_ = run_.problem.objective(w_);
     note_failure(report, is_solved);
     result::HomotopyStep step;
     step.sigma = sigma;
@@ -154,7 +169,9 @@ class Path {
     const auto sides = crossover::smaller_sides(run_.problem, run_.groups, c);
     // The same sides have the same solution: what was refused for its objective needs no second solution, what was
     // infeasible deserves one from much nearer only.
-    if (run_.refused && run_.refused->sides == sides) return accept_refused();
+    const bool is_refused = run_.refused && run_.refused->sides == sides;
+    same_refused_ = is_refused ? same_refused_ + 1 : 0;
+    if (is_refused) return accept_refused();
     if (sides == infeasible_sides_ && !is_last && sigma > retry_factor * infeasible_sigma_) return false;
     crossover::Branch branch = run_.solve_branch(sides, w_, is_last ? whole_limit : trial_limit);
     const bool is_near = norm(branch.w) <= far_away * std::max(1.0, norm(w_));
@@ -195,6 +212,8 @@ class Path {
   double infeasibility_ = 0.0;
   bool has_multipliers_ = false;
   bool has_point_ = false;  ///< of the last relaxed problem, near enough to feasible ones for a branch
+  double objective_ = 0.0, last_objective_ = 0.0;  ///< of the last two relaxed points
+  int same_refused_ = 0;                           ///< relaxed points in a row with the sides of run_.refused
   std::optional<std::vector<mpcc::ActiveSide>> infeasible_sides_;
   double infeasible_sigma_ = 0.0;
 };

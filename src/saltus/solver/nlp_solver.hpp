@@ -31,6 +31,8 @@ struct NlpOptions {
   std::optional<double> warm_barrier_mu = {};
   /// How far inside of its bounds a start with multipliers is moved.
   double warm_push = 1e-9;
+  /// A solution with a larger objective is of no use: the solver may stop where it comes to one (not_converged).
+  std::optional<double> objective_cutoff = {};
   /// Asked before every iteration: true ends the solution (stopped_by_user).
   std::function<bool()> is_interrupted = {};
 };

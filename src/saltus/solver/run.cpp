@@ -25,9 +25,7 @@ Run::Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpc
       options(wanted),
       groups(crossover::groups_of(problem_to_solve)) {}
 
-double Run::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
+double Run::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
 bool Run::is_over() {
   if (stopped) return true;
@@ -44,7 +42,8 @@ bool Run::is_over() {
 NlpOptions Run::nlp_options() const {
   NlpOptions result;
   result.tolerance = problem_tolerance;
-  result.iteration_limit = std::max(0, std::min(problem_iteration_limit, options.iteration_limit - solution.iterations));
+  result.iteration_limit =
+      std::max(0, std::min(problem_iteration_limit, options.iteration_limit - solution.iterations));
   if (options.time_limit) result.time_limit = std::max(0.0, *options.time_limit - seconds());
   result.is_interrupted = options.is_interrupted;
   return result;
@@ -66,10 +65,11 @@ void Run::record(result::HomotopyStep step, const NlpReport* report, double star
 }
 
 crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, int iteration_limit,
-                                    std::string message) {
+                                    std::string message, std::optional<double> cutoff) {
   const double started = seconds();
   NlpOptions limited = nlp_options();
   limited.iteration_limit = std::min(limited.iteration_limit, iteration_limit);
+  limited.objective_cutoff = cutoff;
   crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, limited);
   result::HomotopyStep step;
   step.phase = result::HomotopyPhase::branch;

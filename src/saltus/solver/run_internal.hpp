@@ -30,9 +30,10 @@ class Run {
   /// Limits of the next problem.
   [[nodiscard]] NlpOptions nlp_options() const;
   void record(result::HomotopyStep step, const NlpReport* report, double started);
-  /// Solves a branch problem, counts and records it.
+  /// Solves a branch problem, counts and records it. It may be given up where its objective is above `cutoff`.
   [[nodiscard]] crossover::Branch solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
-                                               int iteration_limit, std::string message = {});
+                                               int iteration_limit, std::string message = {},
+                                               std::optional<double> cutoff = std::nullopt);
 
   mpcc::Problem& problem;
   NlpSolver& nlp;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
 #include "saltus/base/contracts.hpp"
@@ -33,10 +34,55 @@ void write_pattern(const mpcc::Pattern& pattern, Ipopt::Index* row, Ipopt::Index
 constexpr double standstill = 1e-8;
 /// Such steps in a row after which the solver is stopped: at a singular point it would go on to its limit.
 constexpr int patience = 12;
+/// Where the optimality conditions are singular Ipopt finds the optimum and then wanders about it, as no step can
+/// satisfy them to the last digit. An objective that changes by less than this, relative above 1, has been found.
+constexpr double equal_objective = 1e-11;
+constexpr double feasible = 1e-9;
+constexpr double small_barrier = 1e-7;
+constexpr int patience_at_optimum = 4;
+/// Below these violations and barrier parameters an objective is that of the solution but for this, relative above 1.
+constexpr double nearly_feasible = 1e-5;
+constexpr double nearly_optimal = 1e-4;
 
 }  // namespace
 
+void IpoptProgram::set(mpcc::Problem& problem, solver::NlpPoint& point, const solver::NlpOptions& options) {
+  problem_ = &problem;
+  point_ = &point;
+  is_interrupted_ = options.is_interrupted;
+  evaluation_seconds_ = 0.0;
+  standing_ = equal_ = 0;
+  last_objective_ = best_error_ = std::numeric_limits<double>::infinity();
+  acceptable_ = options.acceptable_tolerance;
+  feasible_ = std::min(options.tolerance, feasible);
+  cutoff_ = options.objective_cutoff.value_or(last_objective_);
+  is_cut_off_ = false;
+  find_rows();
+}
+
 bool IpoptProgram::stands_still() const { return standing_ >= patience; }
+
+bool IpoptProgram::is_exhausted() const { return equal_ >= patience_at_optimum && best_error_ <= acceptable_; }
+
+void IpoptProgram::watch(double objective, double primal_infeasibility, double dual_infeasibility, double mu,
+                         const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities) {
+  const bool is_equal = std::abs(objective - last_objective_) <= equal_objective * std::max(1.0, std::abs(objective));
+  last_objective_ = objective;
+  is_cut_off_ = std::max(primal_infeasibility, mu) <= nearly_feasible &&
+                objective > cutoff_ + nearly_optimal * std::max(1.0, std::abs(cutoff_));
+  const bool is_near = primal_infeasibility <= feasible_ && mu <= small_barrier;
+  equal_ = is_near && is_equal ? equal_ + 1 : 0;
+  if (!is_near || !(dual_infeasibility < best_error_)) return;
+  const auto n = static_cast<Ipopt::Index>(point_->w.size());
+  const auto m = static_cast<Ipopt::Index>(rows_.size());
+  best_.w.resize(n);
+  best_.z_lower.resize(n);
+  best_.z_upper.resize(n);
+  best_.y.resize(m);
+  const bool is_there = get_curr_iterate(data, quantities, /*scaled=*/false, n, best_.w.data(), best_.z_lower.data(),
+                                         best_.z_upper.data(), m, nullptr, best_.y.data());
+  if (is_there) best_error_ = dual_infeasibility;
+}
 
 void IpoptProgram::find_rows() {
   const auto& bounds = problem_->constraint_bounds();
@@ -139,14 +185,14 @@ bool IpoptProgram::eval_h(Ipopt::Index n, const double* w, bool /*is_new*/, doub
   return Input(values, entries).allFinite();
 }
 
-bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Ipopt::Index /*iteration*/,
-                                         double /*objective*/, double /*primal_infeasibility*/,
-                                         double /*dual_infeasibility*/, double /*mu*/, double step_norm,
-                                         double /*regularisation*/, double /*dual_step*/, double primal_step,
-                                         Ipopt::Index /*trials*/, const Ipopt::IpoptData* /*data*/,
-                                         Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
+bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Ipopt::Index /*iteration*/, double objective,
+                                         double primal_infeasibility, double dual_infeasibility, double mu,
+                                         double step_norm, double /*regularisation*/, double /*dual_step*/,
+                                         double primal_step, Ipopt::Index /*trials*/, const Ipopt::IpoptData* data,
+                                         Ipopt::IpoptCalculatedQuantities* quantities) {
   standing_ = primal_step * step_norm <= standstill ? standing_ + 1 : 0;
-  return !stands_still() && !(is_interrupted_ && is_interrupted_());
+  watch(objective, primal_infeasibility, dual_infeasibility, mu, data, quantities);
+  return !stands_still() && !is_exhausted() && !is_cut_off() && !(is_interrupted_ && is_interrupted_());
 }
 
 void IpoptProgram::finalize_solution(Ipopt::SolverReturn /*status*/, Ipopt::Index n, const double* w,
@@ -157,6 +203,9 @@ void IpoptProgram::finalize_solution(Ipopt::SolverReturn /*status*/, Ipopt::Inde
   y_(rows_) = Input(y, m);
   *point_ = {.w = Input(w, n), .y = y_, .z_lower = Input(z_lower, n), .z_upper = Input(z_upper, n)};
   objective_ = objective;
+  if (!is_exhausted()) return;
+  y_(rows_) = best_.y;
+  *point_ = {.w = best_.w, .y = y_, .z_lower = best_.z_lower, .z_upper = best_.z_upper};
 }
 
 }  // namespace saltus::adapters

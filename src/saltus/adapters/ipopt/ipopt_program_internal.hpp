@@ -13,16 +13,13 @@ namespace saltus::adapters {
 class IpoptProgram final : public Ipopt::TNLP {
  public:
   /// What the next solution is about; both outlive it.
-  void set(mpcc::Problem& problem, solver::NlpPoint& point, std::function<bool()> is_interrupted) {
-    problem_ = &problem;
-    point_ = &point;
-    is_interrupted_ = std::move(is_interrupted);
-    evaluation_seconds_ = 0.0;
-    standing_ = 0;
-    find_rows();
-  }
+  void set(mpcc::Problem& problem, solver::NlpPoint& point, const solver::NlpOptions& options);
   /// Whether the last problem was stopped because its point did not move any more.
   [[nodiscard]] bool stands_still() const;
+  /// Whether it was stopped because its objective did not, at a point that is acceptable.
+  [[nodiscard]] bool is_exhausted() const;
+  /// Whether it was stopped because it was about to end above NlpOptions::objective_cutoff.
+  [[nodiscard]] bool is_cut_off() const { return is_cut_off_; }
   [[nodiscard]] double objective() const { return objective_; }
   [[nodiscard]] double evaluation_seconds() const { return evaluation_seconds_; }
 
@@ -50,6 +47,9 @@ class IpoptProgram final : public Ipopt::TNLP {
  private:
   /// Rows without bounds are no constraints: Ipopt does not see them.
   void find_rows();
+  /// Counts iterations that change nothing, keeps the best of them.
+  void watch(double objective, double primal_infeasibility, double dual_infeasibility, double mu,
+             const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities);
 
   std::vector<int> rows_;     ///< of the problem that Ipopt sees
   std::vector<int> entries_;  ///< of the problem's Jacobian
@@ -61,6 +61,13 @@ class IpoptProgram final : public Ipopt::TNLP {
   double objective_ = 0.0;
   double evaluation_seconds_ = 0.0;
   int standing_ = 0;  ///< iterations in a row without a step
+  int equal_ = 0;     ///< without a change of the objective
+  double last_objective_ = 0.0;
+  double acceptable_ = 0.0, feasible_ = 0.0;
+  double cutoff_ = 0.0;
+  bool is_cut_off_ = false;
+  solver::NlpPoint best_;  ///< feasible, with the least dual infeasibility
+  double best_error_ = 0.0;
 };
 
 }  // namespace saltus::adapters

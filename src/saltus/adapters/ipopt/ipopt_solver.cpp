@@ -1,11 +1,10 @@
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 
-#include <dlfcn.h>
-
 #include <IpIpoptApplication.hpp>
 #include <IpSolveStatistics.hpp>
 #include <algorithm>
 #include <cstdlib>
+#include <dlfcn.h>
 
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
 #include "saltus/base/contracts.hpp"
@@ -68,7 +67,8 @@ void use_one_thread() {
   }
 }
 
-/// Whether the application still has what it needs to be used again: a problem that was not solved takes nothing from it.
+/// Whether the application still has what it needs to be used again: a problem that was not solved takes nothing from
+/// it.
 bool keeps_structures(Ipopt::ApplicationReturnStatus status) {
   switch (status) {
     case Ipopt::Invalid_Problem_Definition:
@@ -144,17 +144,23 @@ solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point
   const bool has_multipliers = point.y.size() == nlp.constraints() && point.z_lower.size() == nlp.variables() &&
                                point.z_upper.size() == nlp.variables();
   implementation_->set_options(options, has_multipliers);
-  program->set(nlp, point, options.is_interrupted);
+  program->set(nlp, point, options);
   const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
   const auto status = has_structures ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
   has_structures = keeps_structures(status);
 
-  const Outcome outcome = status == Ipopt::User_Requested_Stop && program->stands_still()
-                              ? outcome_of(Ipopt::Search_Direction_Becomes_Too_Small)
-                              : outcome_of(status);
+  const bool is_stopped = status == Ipopt::User_Requested_Stop;
+  const bool is_exhausted = is_stopped && program->is_exhausted();
+  Outcome outcome = outcome_of(status);
+  if (is_exhausted)
+    outcome = outcome_of(Ipopt::Solved_To_Acceptable_Level);
+  else if (is_stopped && program->stands_still())
+    outcome = outcome_of(Ipopt::Search_Direction_Becomes_Too_Small);
+  else if (is_stopped && program->is_cut_off())
+    outcome = {Termination::not_converged, "its objective is too large"};
   solver::NlpReport report;
   report.termination = outcome.termination;
-  report.acceptable_only = status == Ipopt::Solved_To_Acceptable_Level;
+  report.acceptable_only = is_exhausted || status == Ipopt::Solved_To_Acceptable_Level;
   report.diverging = status == Ipopt::Diverging_Iterates;
   report.objective = program->objective();
   report.evaluation_seconds = program->evaluation_seconds();

@@ -108,7 +108,7 @@ void take_point(discretization::OcpProblem& problem, const solver::Solution& sol
   statistics.equations = problem.constraints();
   statistics.pairs = problem.pairs();
   statistics.evaluation_seconds = solution.evaluation_seconds;
-  statistics.linear_algebra_seconds = std::max(solution.solver_seconds - solution.evaluation_seconds, 0.0);
+  statistics.linear_algebra_seconds = solution.solver_seconds;
 }
 
 /// completed only if the other engine agrees.

@@ -1,5 +1,9 @@
 #include "saltus/solver/crossover/branch.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "saltus/solver/certificate/classify.hpp"
 #include "saltus/solver/crossover/refine.hpp"
 
@@ -12,6 +16,14 @@ using result::Termination;
 constexpr double unsolved = 1e-6;
 /// Violations of a branch that has a solution.
 constexpr double solved = 1e-9;
+
+/// Whether the solver has seen that this branch is of no use: it needs no more digits and no second attempt.
+bool is_useless(const Branch& branch, const NlpOptions& options) {
+  if (!options.objective_cutoff) return false;
+  const double largest = *options.objective_cutoff + 1e-6 * std::max(1.0, std::abs(*options.objective_cutoff));
+  const auto why = branch.report.termination;
+  return (why == Termination::completed || why == Termination::not_converged) && branch.report.objective > largest;
+}
 
 /// Solves from `start`, then refines; without free variables there is nothing to solve.
 void solve_from(const Eigen::VectorXd& start, Branch& branch, NlpSolver& nlp, const NlpOptions& options) {
@@ -33,7 +45,8 @@ void solve_from(const Eigen::VectorXd& start, Branch& branch, NlpSolver& nlp, co
              .z_lower = Eigen::VectorXd::Zero(reduced.variables()),
              .z_upper = Eigen::VectorXd::Zero(reduced.variables())};
   }
-  branch.optimality_error = refine(reduced, point);
+  branch.optimality_error =
+      is_useless(branch, options) ? std::numeric_limits<double>::infinity() : refine(reduced, point);
 }
 
 /// Leaves out equations that depend on others at v; false if there are none.
@@ -43,26 +56,28 @@ bool drop_dependent(BranchProblem& reduced, const Eigen::VectorXd& v) {
   return !dependent.empty();
 }
 
-bool has_failed(const Branch& branch) {
+bool has_failed(const Branch& branch, const NlpOptions& options) {
+  if (is_useless(branch, options)) return false;
   const auto why = branch.report.termination;
   const bool by_itself = why == Termination::infeasible || why == Termination::not_converged ||
                          why == Termination::factorization_failed || why == Termination::step_size_too_small;
   return by_itself && !(branch.optimality_error <= unsolved);
 }
 
-Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, NlpSolver& nlp,
-                    const NlpOptions& options, Closing closing) {
+Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
+                    NlpSolver& nlp, const NlpOptions& options, Closing closing) {
   Branch branch;
   branch.sides = sides;
   Eigen::VectorXd c(problem.rows());
   problem.functions(w, c);
-  branch.problem = std::make_unique<BranchProblem>(problem, reduce(problem, sides, jacobian_matrix(problem, w), c, closing));
+  branch.problem =
+      std::make_unique<BranchProblem>(problem, reduce(problem, sides, jacobian_matrix(problem, w), c, closing));
   BranchProblem& reduced = *branch.problem;
   const Eigen::VectorXd start = reduced.reduced(w);
   if (reduced.reduction().equations() > reduced.variables()) drop_dependent(reduced, start);
   solve_from(start, branch, nlp, options);
   // Equations that depend on each other at the solution are no reason to fail, but can be one to find no direction.
-  if (has_failed(branch) && drop_dependent(reduced, branch.point.w)) solve_from(start, branch, nlp, options);
+  if (has_failed(branch, options) && drop_dependent(reduced, branch.point.w)) solve_from(start, branch, nlp, options);
   branch.w = reduced.full(branch.point.w);
   problem.complete(branch.w);
   branch.objective = problem.objective(branch.w);
@@ -73,13 +88,17 @@ Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
 
 }  // namespace
 
-Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, NlpSolver& nlp,
-                    const NlpOptions& options) {
+Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
+                    NlpSolver& nlp, const NlpOptions& options) {
   Branch closed = solve_closed(problem, sides, w, nlp, options, Closing::whole);
-  const bool is_solved = closed.primal_infeasibility <= solved && closed.optimality_error <= unsolved;
-  if (is_solved || problem.close_branch(sides).freedom.is_empty()) return closed;
+  const bool is_optimal = closed.optimality_error <= unsolved || closed.report.termination == Termination::completed;
+  const bool is_decided = is_useless(closed, options) || (closed.primal_infeasibility <= solved && is_optimal);
+  if (is_decided || problem.close_branch(sides).freedom.is_empty()) return closed;
   // A closed branch may have no solution where its elements are too coarse.
-  Branch open = solve_closed(problem, sides, w, nlp, options, Closing::with_freedom);
+  NlpOptions rest = options;
+  rest.iteration_limit -= closed.report.iterations;
+  if (rest.iteration_limit <= 0) return closed;
+  Branch open = solve_closed(problem, sides, w, nlp, rest, Closing::with_freedom);
   open.report.iterations += closed.report.iterations;
   open.report.evaluation_seconds += closed.report.evaluation_seconds;
   return open;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/SparseLU>
 #include <Eigen/SparseQR>
@@ -18,6 +19,8 @@ using Matrix = Eigen::SparseMatrix<double>;
 /// Weight of the regularisation: small beside anything that matters, large beside rounding of entries of order 1.
 constexpr double regularisation = 1e-9;
 constexpr int largest_steps = 12;
+/// An error from which no step leads back.
+constexpr double lost = 1.0;
 constexpr int refinements = 5;
 /// Where bounds are weakly active, snapping onto them must not cost more feasibility than this.
 constexpr double allowed_violation = 1e-11;
@@ -56,8 +59,7 @@ double violation_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& val
 double error_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values) {
   const auto& bounds = nlp.variable_bounds();
   const auto& rows = nlp.constraint_bounds();
-  const Eigen::VectorXd slope =
-      values.gradient + values.jacobian.transpose() * point.y - point.z_lower + point.z_upper;
+  const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * point.y - point.z_lower + point.z_upper;
   double error = slope.size() > 0 ? slope.lpNorm<Eigen::Infinity>() : 0.0;
   for (Eigen::Index i = 0; i < point.w.size(); ++i) {
     const double pressure = point.z_upper[i] - point.z_lower[i];
@@ -71,10 +73,10 @@ double error_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values)
 
 /// Which bounds and rows hold with equality, and where the others stand in the system.
 struct ActiveSet {
-  std::vector<int> column;   ///< of each variable that no active bound holds; else -1
-  Eigen::VectorXd held;      ///< values of the others
-  std::vector<int> line;     ///< of each active row; else -1
-  Eigen::VectorXd target;    ///< values of active rows
+  std::vector<int> column;  ///< of each variable that no active bound holds; else -1
+  Eigen::VectorXd held;     ///< values of the others
+  std::vector<int> line;    ///< of each active row; else -1
+  Eigen::VectorXd target;   ///< values of active rows
   int variables = 0;
   int rows = 0;
 };
@@ -130,26 +132,57 @@ Matrix system_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values
   return system;
 }
 
-/// Solves the exact system by corrections with the regularised one; empty if that cannot be factorised.
-Eigen::VectorXd solve_refined(const Matrix& system, const Eigen::VectorXd& right, int variables) {
-  Matrix shift(system.rows(), system.cols());
-  shift.setIdentity();
-  for (Eigen::Index i = 0; i < system.rows(); ++i) shift.coeffRef(i, i) = i < variables ? regularisation : -regularisation;
-  Matrix regular = system + shift;
-  regular.makeCompressed();
-  Eigen::SparseLU<Matrix> factors(regular);
-  if (factors.info() != Eigen::Success) return {};
-  Eigen::VectorXd solution = Eigen::VectorXd::Zero(right.size());
-  double last = right.norm();
-  for (int i = 0; i < refinements; ++i) {
-    const Eigen::VectorXd next = solution + factors.solve(right - system * solution);
-    const double left = (right - system * next).norm();
-    if (!(left <= last)) break;
-    solution = next;
-    last = left;
+/// Solves exact systems by corrections with the factors of a regularised one, which need not be of the same point.
+class Corrector {
+ public:
+  explicit Corrector(int variables) : variables_(variables) {}
+
+  /// Factorises anew where the factors of an earlier point correct too slowly; empty if that fails.
+  [[nodiscard]] Eigen::VectorXd solve(const Matrix& system, const Eigen::VectorXd& right) {
+    if (has_factors_) {
+      auto [solution, left] = corrected(system, right);
+      if (left <= enough * right.norm()) return solution;
+    }
+    if (!factorise(system)) return {};
+    return corrected(system, right).first;
   }
-  return solution;
-}
+
+ private:
+  static constexpr double enough = 1e-6;  ///< of the right-hand side may be left by old factors
+
+  bool factorise(const Matrix& system) {
+    Matrix shift(system.rows(), system.cols());
+    shift.setIdentity();
+    for (Eigen::Index i = 0; i < system.rows(); ++i) {
+      shift.coeffRef(i, i) = i < variables_ ? regularisation : -regularisation;
+    }
+    Matrix regular = system + shift;
+    regular.makeCompressed();
+    factors_.compute(regular);
+    return has_factors_ = factors_.info() == Eigen::Success;
+  }
+
+  /// The solution and the norm of what it leaves.
+  [[nodiscard]] std::pair<Eigen::VectorXd, double> corrected(const Matrix& system, const Eigen::VectorXd& right) const {
+    Eigen::VectorXd solution = Eigen::VectorXd::Zero(right.size());
+    Eigen::VectorXd rest = right;
+    double left = right.norm();
+    for (int i = 0; i < refinements; ++i) {
+      const Eigen::VectorXd next = solution + factors_.solve(rest);
+      const Eigen::VectorXd next_rest = right - system * next;
+      const double next_left = next_rest.norm();
+      if (!(next_left <= left)) break;
+      solution = next;
+      rest = next_rest;
+      left = next_left;
+    }
+    return {solution, left};
+  }
+
+  int variables_;
+  bool has_factors_ = false;
+  Eigen::SparseLU<Matrix> factors_;
+};
 
 /// Multipliers of active bounds from stationarity; those of the others are zero.
 void set_bound_multipliers(NlpPoint& point, const Values& values, const ActiveSet& active, const mpcc::Bounds& bounds) {
@@ -172,7 +205,9 @@ bool has_right_signs(const NlpPoint& point, double tolerance) {
 
 }  // namespace
 
-double optimality_error(mpcc::Problem& nlp, const NlpPoint& point) { return error_of(nlp, point, evaluate(nlp, point.w)); }
+double optimality_error(mpcc::Problem& nlp, const NlpPoint& point) {
+  return error_of(nlp, point, evaluate(nlp, point.w));
+}
 
 double refine(mpcc::Problem& nlp, NlpPoint& point) {
   Values values = evaluate(nlp, point.w);
@@ -185,6 +220,7 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
   for (Eigen::Index i = 0; i < trial.y.size(); ++i) {
     if (active.line[at(i)] < 0) trial.y[i] = 0.0;
   }
+  Corrector corrector(active.variables);
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < largest_steps; ++step) {
     values = evaluate(nlp, trial.w);
@@ -197,8 +233,9 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
       violation = trial_violation;
       point = trial;
     }
-    // Quadratic until rounding is reached, from where it stands still; a step that makes it worse comes from afar.
-    if (!std::isfinite(error) || (step > 3 && error > 0.5 * last)) break;
+    // Quadratic until rounding is reached, from where it stands still; a step that makes it worse comes from afar, one
+    // that makes it much worse from a system that is singular.
+    if (!(error < lost) || (step > 3 && error > 0.5 * last)) break;
     last = error;
     if (active.variables + active.rows == 0) break;
     const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * trial.y;
@@ -209,7 +246,7 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
     for (Eigen::Index i = 0; i < values.c.size(); ++i) {
       if (active.line[at(i)] >= 0) right[active.variables + active.line[at(i)]] = active.target[i] - values.c[i];
     }
-    const Eigen::VectorXd d = solve_refined(system_of(nlp, trial, values, active), right, active.variables);
+    const Eigen::VectorXd d = corrector.solve(system_of(nlp, trial, values, active), right);
     if (d.size() == 0 || !d.allFinite()) break;
     for (Eigen::Index i = 0; i < slope.size(); ++i) {
       if (active.column[at(i)] >= 0) trial.w[i] += d[active.column[at(i)]];
@@ -240,7 +277,8 @@ std::vector<int> dependent_equations(mpcc::Problem& nlp, ConstVectorView v) {
   transposed.makeCompressed();
   Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>> factors;
   // At a point near a branch, rows that depend on each other there do so to the square root of the last sigma only.
-  factors.setPivotThreshold(1e-6 * std::max(1.0, transposed.norm() / std::sqrt(1.0 + static_cast<double>(equations.size()))));
+  factors.setPivotThreshold(1e-6 *
+                            std::max(1.0, transposed.norm() / std::sqrt(1.0 + static_cast<double>(equations.size()))));
   factors.compute(transposed);
   std::vector<int> dependent;
   for (Eigen::Index i = factors.rank(); i < index(equations.size()); ++i) {

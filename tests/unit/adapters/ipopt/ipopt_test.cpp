@@ -77,6 +77,19 @@ TEST(Ipopt, SaysWhatWentWrong) {
   EXPECT_EQ(solver.solve(singular, zero, {}).termination, Termination::evaluation_failed);
 }
 
+TEST(Ipopt, GivesUpWhereTheObjectiveIsOfNoUse) {
+  adapters::IpoptSolver solver;
+  auto problem = hock_schittkowski_15();
+  NlpOptions options;
+  for (const double cutoff : {300.0, 310.0}) {
+    NlpPoint point{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+    options.objective_cutoff = cutoff;  // the optimum is 306.5
+    const NlpReport report = solver.solve(problem, point, options);
+    EXPECT_EQ(report.termination, cutoff > 306.5 ? Termination::completed : Termination::not_converged) << cutoff;
+    EXPECT_EQ(report.objective > cutoff, cutoff < 306.5);
+  }
+}
+
 TEST(Ipopt, SameProblemTwiceSameBits) {
   auto problem = hock_schittkowski_15();
   const NlpPoint start{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
