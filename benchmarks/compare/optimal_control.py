@@ -134,7 +134,7 @@ def page(measured, rounds, load):
     other = subprocess.run([NOSNOC, "-c", ask], capture_output=True, text=True, check=False) if NOSNOC.exists() else None
     versions = f"{contenders.machine()} (Release); {other.stdout.strip() if other else 'no nosnoc'}"
     return (f"# Optimal control: Saltus, a plain homotopy, nosnoc\n\n{versions}\n\nMade by `benchmarks/compare/optimal_control.py`; "
-            f"how to read it: [benchmarks/README.md](../README.md). Medians of {rounds} rounds; processes that wanted to run "
+            f"how to read it: [benchmarks/README.md](../README.md). {f'Medians of {rounds} rounds' if rounds > 1 else 'One round'}; processes that wanted to run "
             f"meanwhile (load average behind): {load:.1f}.\n\n" + table.markdown([head, ["---"] * len(head), *body]))
 
 

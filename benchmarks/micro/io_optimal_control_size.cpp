@@ -21,7 +21,11 @@ CartPole cart_pole(long intervals) {
   return problem;
 }
 
-double used_bytes() { return static_cast<double>(mallinfo2().uordblks); }
+/// Large blocks are not among those of the heap.
+double used_bytes() {
+  const auto used = mallinfo2();
+  return static_cast<double>(used.uordblks) + static_cast<double>(used.hblkhd);
+}
 
 void build(benchmark::State& state) {
   const auto problem = cart_pole(state.range(0));
