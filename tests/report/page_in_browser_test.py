@@ -216,6 +216,22 @@ until = 3
         self.assertLess(abs(sum(means) / len(means)), 0.05)
 
 
+class Source(Page):
+    def test_the_page_has_the_model_the_start_and_its_rows(self):
+        self.tool("simulate", "stick-slip", "--set", "q=0.1", "--quiet", "--report", "page.html")
+        self.open("page.html")
+        source = (SOURCE / "models/stick-slip.toml").read_text(encoding="utf-8")
+        self.assertEqual(self.value("document.querySelector('.info details pre').textContent"), source)
+        cards = "[...document.querySelectorAll('.info .card')].map((card) => card.textContent)"
+        start = [text for text in self.value(cards) if text.startswith("Start")][0]
+        self.assertIn("q0.1", start)
+        self.assertIn("saltus simulate stick-slip --set q=0.1", start)
+        # What the button saves has the columns of the tool's own file.
+        self.tool("simulate", "stick-slip", "--set", "q=0.1", "--quiet", "--out", "r.csv")
+        header = (self.folder / "r.csv").read_text(encoding="utf-8").splitlines()[0]
+        self.assertEqual(self.value("saltus.toCsv(saltus.result).split('\\r\\n')[0]"), header)
+
+
 class Overlays(Page):
     def test_two_results_over_each_other_with_their_differences(self):
         self.tool("simulate", "stick-slip", "--quiet", "--out", "a.json")

@@ -161,6 +161,22 @@ json pairs(const Pairs& list) {
   return result;
 }
 
+/// With what it takes to run it again: who gets the page alone sees what was solved.
+json model_data(const result::ModelRecord& model) {
+  json files = json::array();
+  for (const auto& file : model.files)
+    files.push_back({{"name", file.name}, {"sha256", file.sha256}, {"text", or_null(file.text)}});
+  return {{"name", model.name},
+          {"description", model.description},
+          {"sha256", model.sha256},
+          {"parameters", pairs(model.parameters)},
+          {"initial_state", pairs(head(model.initial_state, columns_in_page))},
+          {"file", model.file},
+          {"text", model.text},
+          {"files", std::move(files)},
+          {"settings", model.settings}};
+}
+
 json trajectory_data(const result::Result& result, std::size_t limit) {
   const auto& trajectory = result.trajectory;
   const std::size_t columns_drawn = 1 + number_of_columns(trajectory, columns_in_page);
@@ -271,12 +287,9 @@ json page_data(const result::Result& result, std::size_t limit) {
     if (drawn) surfaces.push_back(surface_data(surface, states));
   }
   return {{"saltus", version},
-          {"model",
-           {{"name", result.model.name},
-            {"description", result.model.description},
-            {"sha256", result.model.sha256},
-            {"parameters", pairs(result.model.parameters)}}},
+          {"model", model_data(result.model)},
           {"command", result.command},
+          {"command_line", result.command_line},
           {"method", result.method},
           {"status", status_data(result.status)},
           {"states", states},

@@ -32,14 +32,17 @@ json by_name(const std::vector<std::string>& names, const std::vector<std::strin
   return columns;
 }
 
-/// Names with both values, of the parameters that differ.
-json changed_parameters(const result::Result& first, const result::Result& other) {
+/// Parameters and initial values that differ from those of the first, with their values.
+json changed_values(const result::ModelRecord& first, const result::ModelRecord& other) {
   json changed = json::array();
-  for (const auto& [name, value] : other.model.parameters) {
-    const auto& own = first.model.parameters;
-    const auto found = std::find_if(own.begin(), own.end(), [&](const auto& pair) { return pair.first == name; });
-    if (found == own.end() || found->second != value) changed.push_back(json::array({name, value}));
-  }
+  const auto add = [&](const auto& own, const auto& values) {
+    for (const auto& [name, value] : values) {
+      const auto found = std::find_if(own.begin(), own.end(), [&](const auto& pair) { return pair.first == name; });
+      if (found == own.end() || found->second != value) changed.push_back(json::array({name, value}));
+    }
+  };
+  add(first.parameters, other.parameters);
+  add(first.initial_state, other.initial_state);
   return changed;
 }
 
@@ -76,7 +79,7 @@ json overlays_data(const result::Result& first, const std::vector<Overlay>& over
                     {"method", other.method},
                     {"status", status_data(other.status)},
                     {"events", other.events.size()},
-                    {"parameters", changed_parameters(first, other)},
+                    {"parameters", changed_values(first.model, other.model)},
                     {"trajectory",
                      {{"t", std::move(t)},
                       {"x", by_name(first.states, other.states, rows.x, chosen)},

@@ -88,7 +88,7 @@ saltus.overlayCard = (result, palette) => {
       ends, far.part === 0 ? "none" : `${saltus.brief(far.part, 3)} of the range of ${far.name}`
     ];
   });
-  const head = ["result", "method", "other parameters", "events", "ends", "largest difference"];
+  const head = ["result", "method", "other values", "events", "ends", "largest difference"];
   return saltus.element(
       "section", {class: "card comparison overlays"}, saltus.element("h2", {}, "Results laid over this one"),
       saltus.plainTable(head, rows.map((row) => row)));
