@@ -25,6 +25,17 @@ if(TARGET saltus_tool)
   file(RELATIVE_PATH up_from_bin /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR}/saltus)
   set_target_properties(saltus_tool PROPERTIES INSTALL_RPATH "$ORIGIN/${up_from_bin}")
   install(TARGETS saltus_tool RUNTIME)
+  # Made by the tool itself, from the tables of its options.
+  function(saltus_install_made file folder)
+    install(CODE "execute_process(COMMAND $<TARGET_FILE:saltus_tool> ${ARGN} OUTPUT_FILE ${PROJECT_BINARY_DIR}/made/${file}
+      COMMAND_ERROR_IS_FATAL ANY)")
+    install(FILES ${PROJECT_BINARY_DIR}/made/${file} DESTINATION ${folder})
+  endfunction()
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/made)
+  saltus_install_made(saltus.1 ${CMAKE_INSTALL_MANDIR}/man1 man-page)
+  saltus_install_made(saltus ${CMAKE_INSTALL_DATADIR}/bash-completion/completions completion bash)
+  saltus_install_made(_saltus ${CMAKE_INSTALL_DATADIR}/zsh/site-functions completion zsh)
+  saltus_install_made(saltus.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d completion fish)
   install(FILES $<TARGET_SONAME_FILE:casadi::casadi> ${SALTUS_IPOPT_LIBRARIES}
       ${SALTUS_HIGHS_LIBRARIES} DESTINATION ${CMAKE_INSTALL_LIBDIR}/saltus)
 endif()

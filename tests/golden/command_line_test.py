@@ -146,7 +146,7 @@ class Simulate(tool.ToolTest):
         self.assertRegex(out, r"(?m)^end state +x = 0\.6666666\d*$")
         self.assertRegex(out, r"(?m)^events +1$")
         self.assertRegex(out, r"(?m)^  # +t +kind +surfaces +mode$")
-        self.assertRegex(out, r"(?m)^  1 +0\.3333333\d* +crossing +x-0 +- > \+$")
+        self.assertRegex(out, r"(?m)^  1 +0\.3333333\d* +crossing +x +- > \+$")
         self.assertRegex(out, r"(?m)^statistics +\d+ steps, \d+ rejected, \d+ evaluations")
         self.assertLessEqual(max(map(len, out.splitlines())), 100)
 

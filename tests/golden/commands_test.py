@@ -62,6 +62,8 @@ class New(tool.ToolTest):
             self.assertTrue(text.startswith("#:schema "))
             out, err = self.run_tool("simulate", f"my-{kind}.toml", code=0)
             self.assertEqual(err, "")
+            if kind == "friction":
+                self.assertRegex(out, r"(?m)^end state +x = [-0-9.e]+ m  v = 0 m/s$")
             self.assertGreater(int(re.search(r"(?m)^events +(\d+)", out).group(1)), 0)
 
     def test_what_is_there_stays(self):

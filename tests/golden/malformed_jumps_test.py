@@ -89,7 +89,6 @@ FILES = {
     "delay infinite": (jump("when = 'y < 0'", SET, "delay = '1/0'"), 18, "is inf"),
     "delay true": (jump("when = 'y < 0'", SET, "delay = true"), 18, "an expression in quotes"),
     "priority a condition": (jump("when = 'y < 0'", SET, "priority = 'y > 1'"), 18, "found the condition"),
-    "name of a state": (jump("name = 'y'", "when = 'y < 0'", SET), 15, "'y' is already a state"),
     "name twice": (jump("name = 'a'", "when = 'y < 0'", SET) + "[[jumps]]\nname = 'a'\nevery = 1\n" + SET + "\n", 19,
                    "'a' is already a jump"),
     "name with a blank": (jump("name = 'a b'", "when = 'y < 0'", SET), 15, "'a b' cannot name a jump"),

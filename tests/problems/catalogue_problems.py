@@ -46,12 +46,9 @@ def four_cases():
 
 
 def scalar_problems():
-    # x < 0 is the switching function 0-x, x > 0 is x-0 (unnamed switching functions are named by their text)
-    yield scalar("simplest-switch", lambda: -1, lambda c, x, a: mix(a, 2, decimal("0.2")), lambda: 1.5, name="0-x",
-                 orientation=-1)
+    yield scalar("simplest-switch", lambda: -1, lambda c, x, a: mix(a, decimal("0.2"), 2), lambda: 1.5)
     yield scalar("entering-sliding", lambda: -mpmath.sqrt(2), lambda c, x, a: -sgn(a), lambda: 2)
-    yield scalar("asymmetric-sliding", lambda: -mpmath.sqrt(2), lambda c, x, a: mix(a, -1, 3), lambda: 2,
-                 name="x-0")
+    yield scalar("asymmetric-sliding", lambda: -mpmath.sqrt(2), lambda c, x, a: mix(a, -1, 3), lambda: 2)
 
 
 def rotating_oscillator():

@@ -74,6 +74,13 @@ Expected<fs::path> find_model(const std::string& model) {
   const bool is_path = model.find('/') != std::string::npos || path.extension() == ".toml" || fs::exists(path, ignored);
   if (is_path) return path;
   const auto nearest = nearest_names(model, known);
+  if (fs::exists(path.string() + ".toml", ignored)) {
+    return tl::unexpected(Error{ErrorCode::unknown_name,
+                                fmt::format("'{}' is no file and no model of the catalogue", model),
+                                fmt::format("did you mean the file {}.toml?", model),
+                                {},
+                                {}});
+  }
   return tl::unexpected(Error{ErrorCode::unknown_name,
                               fmt::format("'{}' is no file and no model of the catalogue", model),
                               nearest.empty() ? "`saltus models` lists the catalogue" : suggest(model, known),

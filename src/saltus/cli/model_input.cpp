@@ -93,6 +93,11 @@ std::vector<std::string> options_without_effect(const io::ModelFile& file) {
         location.line == 0 ? location.file : fmt::format("{}:{}: simulate.{}", location.file, location.line, key);
     warnings.push_back(fmt::format("{} has no effect: {}", place, reason));
   }
+  constexpr double least = 1e-15;  // a few roundings
+  if (file.simulate.rtol > 0.0 && file.simulate.rtol < least && file.simulate.atol < least) {
+    warnings.push_back(fmt::format("rtol = {:g} asks for more digits than numbers have: errors are those of rounding",
+                                   file.simulate.rtol));
+  }
   return warnings;
 }
 

@@ -2,6 +2,8 @@
 
 #include <charconv>
 #include <limits>
+#include <set>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/surfaces.hpp"
 #include "saltus/report/table.hpp"
+#include "saltus/result/cause.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -32,11 +35,21 @@ Expected<result::Result> compute_all(const RunArguments& arguments, const ModelI
   return result;
 }
 
-/// Says which trajectories stopped early, if any did.
+/// Says which trajectories stopped early, if any did, and every reason once.
 class Stops {
  public:
+  /// @param message_shown  whoever reads this has the messages on the same terminal already
+  explicit Stops(bool message_shown) : message_shown_(message_shown) {}
   void look_at(const std::string& who, const result::Status& status) {
     if (is_done(status.termination)) return;
+    if (!causes_.insert(std::string(name(status.termination)) + result::cause_of(status.message)).second) {
+      ++stopped_;  // for a reason that was told
+      return;
+    }
+    if (message_shown_) {
+      tell(fmt::format("{}stopped early: {}", who, name(status.termination)));
+      return;
+    }
     const bool says_when = status.message.find("t = ") != std::string::npos;
     tell(fmt::format("{}stopped early: {}{}{}{}", who, name(status.termination),
                      says_when ? "" : fmt::format(" at t = {}", status.time_reached),
@@ -44,9 +57,10 @@ class Stops {
   }
   /// A run of which only this is known.
   void tell(const std::string& message) {
-    if (++stopped_ > most_said) return;
+    ++stopped_;
+    if (said_ == most_said) return;
     print_error(message);
-    said_ = stopped_;
+    ++said_;
   }
   [[nodiscard]] ExitCode exit_code() const {
     if (stopped_ > said_) print_error(fmt::format("and {} more stopped early", stopped_ - said_));
@@ -57,6 +71,8 @@ class Stops {
   static constexpr std::size_t most_said = 5;
   std::size_t stopped_ = 0;
   std::size_t said_ = 0;
+  bool message_shown_ = false;
+  std::set<std::string> causes_;
 };
 
 /// How many events the table shows at each end.
@@ -80,8 +96,8 @@ ExitCode refuse_with_source(const Error& error, const ModelText& text) {
   return ExitCode::bad_input;
 }
 
-ExitCode report_stops(const result::Result& result) {
-  Stops stops;
+ExitCode report_stops(const result::Result& result, const RunArguments& arguments) {
+  Stops stops(!arguments.quiet && isatty(STDOUT_FILENO) != 0 && isatty(STDERR_FILENO) != 0);
   for (const auto& entry : result::tree(result)) {
     stops.look_at(entry.result == &result ? "" : "branch " + entry.label + " ", entry.result->status);
   }
@@ -174,10 +190,10 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
 
   const auto written = outputs->write(*result, progress_of(arguments));
   // Also if nothing could be written: it is all that is left.
-  if (!arguments.quiet && !outputs->fill_standard_output()) print(report::to_table(*result, *shown));
+  if (!arguments.quiet && !outputs->fill_standard_output()) print(report::to_table(*result, *shown, input->file.captions));
   if (!written) return refuse(written.error());
   if (*written == Written::interrupted) return ExitCode::stopped_early;
-  return report_stops(*result);
+  return report_stops(*result, arguments);
 }
 
 }  // namespace saltus::cli

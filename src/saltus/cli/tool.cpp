@@ -46,7 +46,9 @@ Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
 Error unknown_command(const std::string& word, const std::vector<Command>& commands) {
   std::vector<std::string> known;
   for (const auto& command : commands) {
-    if (command.name != "options-page") known.push_back(command.name);
+    const bool hidden =
+        command.name == "options-page" || command.name == "complete-names" || command.name == "man-page";
+    if (!hidden) known.push_back(command.name);
   }
   return {ErrorCode::unknown_name, fmt::format("'{}' is no command of saltus", word), suggest(word, known), {}, {}};
 }
@@ -78,9 +80,11 @@ ExitCode run(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("saltus {}", version));
   app.footer("Example:\n  saltus simulate stick-slip");
   app.get_formatter()->column_width(26);
-  const std::vector<Command> commands{add_simulate(app), add_optimize(app), add_compare(app), add_order(app),
-                                      add_check(app),    add_mpcc(app),     add_models(app),  add_report(app),
-                                      add_diff(app),     add_new(app),      add_cite(app),    add_options_page(app)};
+  const std::vector<Command> commands{
+      add_simulate(app),    add_optimize(app), add_compare(app),    add_order(app),          add_check(app),
+      add_mpcc(app),        add_models(app),   add_report(app),     add_diff(app),           add_new(app),
+      add_cite(app),        add_schema(app),   add_completion(app), add_complete_names(app), add_man_page(app),
+      add_options_page(app)};
   add_help_all(app, commands);
   auto typed = arguments_of(argc, argv);
   if (!typed.empty() && typed.front() == "help") typed = help_for(typed);

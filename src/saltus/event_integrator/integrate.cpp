@@ -12,6 +12,7 @@
 #include "saltus/event_integrator/start.hpp"
 #include "saltus/event_integrator/thin_layers.hpp"
 #include "saltus/event_integrator/undefined.hpp"
+#include "saltus/model/vanishing_norm.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -231,7 +232,8 @@ CompactIntegration Run::to_end() {
   if (begin()) {
     while (running_ && t_ < options_.until) {
       if (result_.statistics.steps + result_.statistics.rejected >= options_.max_steps) {
-        fail(Termination::iteration_limit, fmt::format("max_steps = {} reached at {}", options_.max_steps, where()));
+        fail(Termination::iteration_limit, fmt::format("max_steps = {} reached at {}{}", options_.max_steps, where(),
+                                                       model::vanishing_norm(surroundings_.system, t_, x_)));
         break;
       }
       if (spiral_start_) begin_spiral();

@@ -12,6 +12,15 @@ namespace {
 /// Of fewer events no power can be told.
 constexpr long fewest_shrinking = 64;
 
+/// What to smooth such laps with: a layer that is far wider than they are now has far fewer of them outside.
+std::string resolving_layer(double farthest, bool smoothed) {
+  constexpr double wider = 100.0;
+  if (!(farthest > 0.0) || !std::isfinite(farthest)) return "method = \"smoothed\"";
+  const double epsilon = std::pow(10.0, std::ceil(std::log10(wider * farthest)));
+  return smoothed ? fmt::format("a wider layer: simulate.smoothed.epsilon = {:g}", epsilon)
+                  : fmt::format("method = \"smoothed\" with simulate.smoothed.epsilon = {:g}", epsilon);
+}
+
 }  // namespace
 
 /// Mean distance of the events number first to first + count.
@@ -77,10 +86,12 @@ std::string Run::shrinking_laps() {
   constexpr long longest_lap = 8;
   std::string names;
   double farthest = 0.0, rounding = 0.0;
+  bool smoothed = false;  // the surfaces are edges of layers
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     const auto& function = surroundings_.system.switching[at(j)];
     if (function.role != model::SwitchingRole::listed || state_.mode[at(j)] == 0) continue;
     if (!recorder_.switched_lately(j, longest_lap) || !has_one_rate(j)) continue;
+    smoothed = smoothed || function.continuous;
     names += (names.empty() ? "'" : "', '") + function.name;
     const Rate rate = rate_along_field(j, t_, x_.data(), slope_.data());
     farthest = std::max(farthest, 0.25 * std::abs(rate.value) * last_interval(events));
@@ -100,10 +111,9 @@ std::string Run::shrinking_laps() {
   return fmt::format(
       "laps of {} shrink like the power -{:.2g} of their number (relative degree 2: the derivative of the function is "
       "the "
-      "same on both sides, so that nothing slides): {}; give the switch a hysteresis, use method = \"smoothed\", or "
-      "start "
+      "same on both sides, so that nothing slides): {}; give the switch a hysteresis, use {}, or start "
       "at rest where function and derivative are 0, which is held",
-      names, *exponent, limit);
+      names, *exponent, limit, resolving_layer(farthest, smoothed));
 }
 
 }  // namespace saltus::event_integrator

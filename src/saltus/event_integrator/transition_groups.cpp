@@ -94,6 +94,21 @@ bool Decider::passes_kink(const std::vector<int>& group, const switching::GroupD
   return true;
 }
 
+/// Whether the selections of the surfaces that stay 0 act on nothing, the others being what was decided.
+bool Decider::standing_fields_agree(const std::vector<int>& group, const switching::GroupDecision& decision) const {
+  ModeState point = base_;
+  std::vector<int> standing;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const auto& surface = decision.surfaces[k];
+    if (surface.verdict == Verdict::stands) {
+      standing.push_back(group[k]);
+    } else {
+      point.alpha[at(group[k])] = surface.alpha;
+    }
+  }
+  return fields_.fields_agree(point, standing);
+}
+
 bool Decider::decide(const std::vector<int>& group) {
   if (group.size() > 1) {
     for (const int j : group) {
@@ -137,7 +152,7 @@ bool Decider::decide(const std::vector<int>& group) {
       break;
     case Verdict::stands:
       // Nothing depends on the selection: any side continues the same solution.
-      if (!fields_.fields_agree(base_, group)) {
+      if (!standing_fields_agree(group, decision)) {
         return fail(result::Termination::outside_class,
                     fmt::format("'{}' does not leave 0 at t = {} under either field, which differ there (boundary "
                                 "equilibrium or higher-order contact); start beside the surface or perturb a parameter",

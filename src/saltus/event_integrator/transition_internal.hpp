@@ -144,6 +144,8 @@ class Decider {
 
  private:
   bool decide(const std::vector<int>& group);
+  [[nodiscard]] bool standing_fields_agree(const std::vector<int>& group,
+                                           const switching::GroupDecision& decision) const;
   bool passes_kink(const std::vector<int>& group, const switching::GroupDecision& decision);
   bool decide_parts(const std::vector<std::vector<int>>& parts);
   bool decide_parts(const std::vector<int>& group, const switching::CornerTable& table);

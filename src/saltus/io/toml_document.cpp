@@ -154,6 +154,28 @@ struct Slip {
   std::string remedy;
 };
 
+/// mass = 1 [kg], T = 300 K
+std::optional<Slip> unit_behind_number(std::string_view line) {
+  const auto equal = line.find('=');
+  if (equal == std::string_view::npos) return std::nullopt;
+  const auto trimmed = [](std::string_view text) {
+    const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t\r");
+    return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
+  };
+  const auto name = trimmed(line.substr(0, equal));
+  const auto value = trimmed(line.substr(equal + 1, line.find('#', equal) - equal - 1));
+  const auto space = value.find_first_of(" \t");
+  if (space == std::string_view::npos || value.find_first_not_of("0123456789.eE+-_") != space) return std::nullopt;
+  auto unit = trimmed(value.substr(space));
+  if (unit.starts_with('[') && unit.ends_with(']')) unit = unit.substr(1, unit.size() - 2);
+  const bool is_word = !unit.empty() && (std::isalpha(static_cast<unsigned char>(unit.front())) != 0 ||
+                                         static_cast<unsigned char>(unit.front()) >= 0x80U);
+  if (!is_word || unit.find_first_of("\"'=[]{}(),") != std::string_view::npos) return std::nullopt;
+  return Slip{fmt::format("not valid TOML: '{}' behind a number", unit),
+              fmt::format("a unit is a text of its own: {} = {{ initial = {}, unit = \"{}\" }}", name,
+                          value.substr(0, space), unit)};
+}
+
 std::optional<Slip> usual_slip(std::string_view line, std::size_t column, std::string_view description) {
   for (const std::string_view quote : {"\u201C", "\u201D", "\u2018", "\u2019"}) {
     if (line.find(quote) == std::string_view::npos) continue;
@@ -162,6 +184,7 @@ std::optional<Slip> usual_slip(std::string_view line, std::size_t column, std::s
   if (column > line.size() && description.find("control characters") != std::string_view::npos) {
     return Slip{"not valid TOML: a text in quotes does not end on its line", "close the quotes where the text ends"};
   }
+  if (auto slip = unit_behind_number(line)) return slip;
   const auto prime = line.find('\''), equal = line.find('=');
   const bool primed =
       prime != std::string_view::npos && prime > 0 && prime < equal && line.find('\'', prime + 1) > equal;

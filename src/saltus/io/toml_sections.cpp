@@ -93,6 +93,15 @@ model::NamedExpression read_output(TomlReader& reader, const TomlEntry& entry, M
   return output;
 }
 
+/// `record = ["s", "u"]`: each is an output of that name.
+void read_record(TomlReader& reader, const TomlValue& value, ModelFile& model) {
+  for (const auto& element : std::get<TomlArray>(value.value)) {
+    auto name = reader.string(element, "the name of a definition in quotes");
+    if (!std::holds_alternative<TomlString>(element.value)) continue;
+    model.description.outputs.push_back({std::move(name), reader.expression(element), element.location});
+  }
+}
+
 const std::vector<std::string> quantity_keys{"initial", "lower", "upper", "free", "unit", "label"};
 const std::vector<std::string> control_keys{"initial", "lower", "upper", "unit", "label"};
 
@@ -206,7 +215,13 @@ void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<mo
 void read_outputs(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "the table [outputs] of names and expressions");
   if (table == nullptr) return;
-  for (const auto& field : *table) model.description.outputs.push_back(read_output(reader, field, model));
+  for (const auto& field : *table) {
+    if (field.key == "record" && std::holds_alternative<TomlArray>(field.value.value)) {
+      read_record(reader, field.value, model);
+    } else {
+      model.description.outputs.push_back(read_output(reader, field, model));
+    }
+  }
 }
 
 void read_parameters(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {

@@ -270,12 +270,28 @@ class Build {
   }
 
   MaybeError outputs() {
-    return take_each(description_.outputs, [&](const NamedExpression& entry) -> MaybeError {
+    recognition_.take_whole_parts_of_all(true);
+    auto error = take_each(description_.outputs, [&](const NamedExpression& entry) -> MaybeError {
+      const auto* name = std::get_if<expression::Name>(&entry.expression->value);
+      if (name != nullptr && name->name == entry.name) {
+        const Meaning* meaning = scope_.names().find(entry.name);
+        if (meaning == nullptr || meaning->kind == NameKind::output) return nothing_to_record(entry);
+      }
       auto output = scope_.expression(*entry.expression);
       if (!output) return with_context(output.error(), fmt::format("in [outputs] {}", entry.name));
       statement_.outputs.push_back({entry.name, *output});
       return std::nullopt;
     });
+    recognition_.take_whole_parts_of_all(false);
+    return error;
+  }
+
+  Error nothing_to_record(const NamedExpression& entry) const {
+    return {ErrorCode::unknown_name,
+            fmt::format("there is no definition '{}' to record", entry.name),
+            suggest(entry.name, scope_.names().of({NameKind::definition, NameKind::switching})),
+            entry.expression->location,
+            {"in [outputs]"}};
   }
 
   MaybeError quantities() {

@@ -66,7 +66,7 @@ Expected<SXElem> Recognition::whole_part(const SXElem& e, const std::string& nam
   const auto node = graph.add(e);
   if (!node) return tl::unexpected(node.error());
   constexpr KindSet forbidden = changing_kinds & ~kind_bit(VariableKind::time) & ~kind_bit(VariableKind::cell);
-  if ((graph.tape()[*node].reached & forbidden) != 0) {
+  if (!whole_parts_of_all_ && (graph.tape()[*node].reached & forbidden) != 0) {
     return tl::unexpected(not_of_time(name.substr(0, name.find('(')), casadi::SX(e).get_str().substr(0, 80)));
   }
   return lookup(integers_, e, name);

@@ -40,6 +40,10 @@ std::optional<Error> ModelScope::declare_names() {
     const std::string name = jump.name.value_or(fmt::format("jump{}", position + 1));
     found.push_back({name, {NameKind::jump, position++, jump.location}});
   }
+  std::set<std::string> shared;  // once each: a second one clashes
+  std::erase_if(found, [&](const auto& entry) {
+    return is_shared(entry.first, entry.second) && shared.insert(entry.first).second;
+  });
   // The later one of two equal names is the wrong one.
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.second.location.line < b.second.location.line; });
@@ -50,6 +54,19 @@ std::optional<Error> ModelScope::declare_names() {
     if ((error = end_at(std::move(*error)))) return error;
   }
   return std::nullopt;
+}
+
+/// An output that records a definition or a switching function under its name, and a jump that is called like a state.
+bool ModelScope::is_shared(const std::string& name, const Meaning& meaning) const {
+  const auto declares = [&](const auto& entries) {
+    return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return entry.name == name; });
+  };
+  if (meaning.kind == NameKind::jump) return declares(description_.states);
+  if (meaning.kind != NameKind::output) return false;
+  const auto* recorded =
+      std::get_if<saltus::expression::Name>(&description_.outputs[at(meaning.index)].expression->value);
+  return recorded != nullptr && recorded->name == name &&
+         (declares(description_.definitions) || declares(description_.switching));
 }
 
 std::optional<Error> ModelScope::end_at(Error error) {

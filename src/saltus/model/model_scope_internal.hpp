@@ -70,6 +70,7 @@ class ModelScope {
   Translation& translation() { return translation_; }
 
  private:
+  [[nodiscard]] bool is_shared(const std::string& name, const Meaning& meaning) const;
   [[nodiscard]] Error unknown(const std::string& name, const SourceLocation& location) const;
   [[nodiscard]] Error out_of_reach(const std::string& name, const Meaning& meaning,
                                    const SourceLocation& location) const;

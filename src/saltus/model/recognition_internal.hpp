@@ -51,6 +51,8 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> min(const SXElem& a, const SXElem& b, const std::string& name);
   [[nodiscard]] Expected<SXElem> select(const Condition& condition, const SXElem& a, const SXElem& b);
 
+  /// From now on floor and mod may be of states and controls, too, or no longer: where nothing but a record has them.
+  void take_whole_parts_of_all(bool all) { whole_parts_of_all_ = all; }
   /// floor(e): e of time and parameters only.
   [[nodiscard]] Expected<SXElem> floor(const SXElem& e, const std::string& name);
   /// e - m floor(e/m): m a constant other than 0, e of time and parameters only.
@@ -96,6 +98,7 @@ class Recognition {
                                                      const std::string& name, int& corners);
   [[nodiscard]] std::vector<int> alphas_in(int node) const;
 
+  bool whole_parts_of_all_ = false;
   std::vector<MetFunction> functions_;
   SharingIndex index_;
   std::shared_ptr<const CellTable> integers_ = std::make_shared<const CellTable>(integer_cells());

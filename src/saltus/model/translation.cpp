@@ -64,6 +64,23 @@ std::string difference_text(const NodePtr& a, const NodePtr& b) {
   return expression::to_text(difference);
 }
 
+bool is_zero(const Node& node) {
+  const auto* number = std::get_if<expression::Number>(&node.value);
+  return number != nullptr && number->value == 0.0;
+}
+
+/// Of a comparison with 0 or a choice between 0 and something: the other side. Null without a 0.
+const Node* beside_zero(const NodePtr& a, const NodePtr& b) {
+  if (is_zero(*a) == is_zero(*b)) return nullptr;
+  return is_zero(*a) ? b.get() : a.get();
+}
+
+/// The text of an expression without parentheses around all of it.
+std::string bare_text(Node node) {
+  node.parenthesised = false;
+  return expression::to_text(node);
+}
+
 std::string call_text(const expression::Call& call) {
   Node node;
   node.value = call;
@@ -161,7 +178,15 @@ Expected<SXElem> Translation::nonsmooth(const expression::Call& call, const Sour
   const auto b = number(*call.arguments.back());
   if (!b) return b;
   if (call.function == "mod") return recognition_.mod(*a, *b, call_text(call)).map_error(locate);
-  const std::string difference = difference_text(call.arguments.front(), call.arguments.back());
+  const auto& first = call.arguments.front();
+  const auto& last = call.arguments.back();
+  const Node* other = beside_zero(first, last);
+  if (other != nullptr && is_zero(*first)) {  // max(0, e) is max(e, 0), and switches where e does
+    return (call.function == "max" ? recognition_.max(*b, *a, bare_text(*other))
+                                   : recognition_.min(*b, *a, bare_text(*other)))
+        .map_error(locate);
+  }
+  const std::string difference = other != nullptr ? bare_text(*other) : difference_text(first, last);
   return (call.function == "max" ? recognition_.max(*a, *b, difference) : recognition_.min(*a, *b, difference))
       .map_error(locate);
 }
@@ -225,6 +250,14 @@ Expected<Condition> Translation::comparison(const expression::Binary& binary, co
   if (!right) return tl::unexpected(right.error());
   const bool is_less = binary.op == BinaryOperator::less || binary.op == BinaryOperator::less_equal;
   const bool inclusive = binary.op == BinaryOperator::less_equal || binary.op == BinaryOperator::greater_equal;
+  if (const Node* other = beside_zero(binary.left, binary.right)) {
+    // The function is the other side as it is: e < 0 holds where e >= 0 does not.
+    const bool above = is_zero(*binary.left) == is_less;
+    const casadi::SX e(is_zero(*binary.left) ? *right : *left);
+    const auto at_zero = inclusive == above ? AtEquality::is_true : AtEquality::is_false;
+    const Condition positive(Comparison{e, at_zero, bare_text(*other), Sides::any});
+    return above ? positive : !positive;
+  }
   return Condition(Comparison{
       casadi::SX(is_less ? *right - *left : *left - *right), inclusive ? AtEquality::is_true : AtEquality::is_false,
       is_less ? difference_text(binary.right, binary.left) : difference_text(binary.left, binary.right), Sides::any});

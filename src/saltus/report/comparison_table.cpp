@@ -4,9 +4,11 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/report/comparison_table_internal.hpp"
 #include "saltus/report/text_columns_internal.hpp"
+#include "saltus/result/cause.hpp"
 
 namespace saltus::report {
 namespace {
@@ -41,6 +43,21 @@ std::string of_run(const result::ComparedRun& run) {
   return run.variant.empty() ? run.method : fmt::format("{} ({})", run.method, run.variant);
 }
 
+/// Runs that stopped early for one reason.
+struct Stop {
+  std::string cause;
+  result::Status status;  ///< of the first of them
+  std::vector<std::string> runs;
+};
+
+void note_stop(const result::ComparedRun& run, std::vector<Stop>& stops) {
+  const auto cause = std::string(name(run.status.termination)) + result::cause_of(run.status.message);
+  const auto same = [&](const Stop& stop) { return stop.cause == cause; };
+  auto stop = std::find_if(stops.begin(), stops.end(), same);
+  if (stop == stops.end()) stop = stops.insert(stops.end(), {cause, run.status, {}});
+  stop->runs.push_back(of_run(run));
+}
+
 std::string not_unique(const result::Result& reference) {
   const auto& events = reference.events;
   const auto ambiguous = [](const result::Event& event) { return event.unique == false; };
@@ -62,6 +79,7 @@ std::string comparison_table(const result::Result& result, const result::Compari
   }
   std::vector<Row> rows{head};
   std::string remarks, stops, refusals;
+  std::vector<Stop> stopped;
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     const auto& run = comparison.runs[i];
     if (!run.reason.empty()) {
@@ -74,8 +92,12 @@ std::string comparison_table(const result::Result& result, const result::Compari
         remarks += paragraph("", fmt::format("{}: {}", of_run(run), run.status.message));
       continue;
     }
-    stops += paragraph("", fmt::format("{}: {} at t = {:.12g}: {}", of_run(run), name(run.status.termination),
-                                       run.status.time_reached, run.status.message));
+    note_stop(run, stopped);
+  }
+  for (const auto& stop : stopped) {
+    stops += paragraph(
+        "", fmt::format("{}: {} at t = {:.12g}{}: {}", fmt::join(stop.runs, ", "), name(stop.status.termination),
+                        stop.status.time_reached, stop.runs.size() > 1 ? " (the first)" : "", stop.status.message));
   }
   std::string text =
       paragraph("compared", fmt::format("end states at t = {:.12g}{}, and the times of switches", result.final.t,

@@ -177,10 +177,16 @@ std::string method_text(const result::Result& result) {
   return details.empty() ? result.method : fmt::format("{} ({})", result.method, fmt::join(details, ", "));
 }
 
-std::string end_state(const result::Result& result) {
+/// "q = 0.5 m"
+std::string with_unit(const std::string& name, double value, const result::Captions& captions) {
+  const auto unit = caption_of(captions, name).unit;
+  return fmt::format("{} = {:.12g}{}{}", name, value, unit.empty() ? "" : " ", unit);
+}
+
+std::string end_state(const result::Result& result, const result::Captions& captions) {
   std::vector<std::string> pieces;
   for (std::size_t i = 0; i < result.states.size() && i < result.final.x.size(); ++i) {
-    pieces.push_back(fmt::format("{} = {:.12g}", result.states[i], result.final.x[i]));
+    pieces.push_back(with_unit(result.states[i], result.final.x[i], captions));
   }
   std::string text = wrapped("end state", pieces);
   pieces.clear();
@@ -207,7 +213,7 @@ std::string end_state(const result::Result& result) {
   if (!pieces.empty()) text += wrapped("regions", pieces);
   pieces.clear();
   for (std::size_t i = 0; i < result.outputs.size() && i < result.final.outputs.size(); ++i) {
-    pieces.push_back(fmt::format("{} = {:.12g}", result.outputs[i], result.final.outputs[i]));
+    pieces.push_back(with_unit(result.outputs[i], result.final.outputs[i], captions));
   }
   if (!pieces.empty()) text += wrapped("outputs", pieces);
   return text;
@@ -215,7 +221,7 @@ std::string end_state(const result::Result& result) {
 
 }  // namespace
 
-std::string to_table(const result::Result& result, std::size_t shown_events) {
+std::string to_table(const result::Result& result, std::size_t shown_events, const result::Captions& captions) {
   std::string text = paragraph("model", result.model.description.empty()
                                             ? result.model.name
                                             : fmt::format("{}: {}", result.model.name, result.model.description));
@@ -230,7 +236,7 @@ std::string to_table(const result::Result& result, std::size_t shown_events) {
                                   : fmt::format("{} at t = {:.12g}", termination, result.status.time_reached));
   if (!result.status.message.empty()) text += paragraph("", result.status.message);
   if (result.optimization) text += objective_table(*result.optimization);
-  text += end_state(result);
+  text += end_state(result, captions);
   if (result.optimization) text += findings_table(result, *result.optimization);
   if (result.sensitivities) text += sensitivity_table(result, *result.sensitivities);
   text += event_table(result, shown_events);

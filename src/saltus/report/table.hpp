@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 
+#include "saltus/result/caption.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {
@@ -13,6 +14,7 @@ inline constexpr std::size_t events_at_each_end = 10;
 
 /// Method, status, end state, event list (the first and the last ones, with the count), statistics; of a comparison a
 /// row for every run, of an order study one for every scheme.
-[[nodiscard]] std::string to_table(const result::Result& result, std::size_t shown_events = events_at_each_end);
+[[nodiscard]] std::string to_table(const result::Result& result, std::size_t shown_events = events_at_each_end,
+                                   const result::Captions& captions = {});
 
 }  // namespace saltus::report

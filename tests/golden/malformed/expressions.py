@@ -71,7 +71,7 @@ FILES = {
     "half uncovered": (modes("when = 'x > 1'\ndynamics = { x = 1 }\n"), 14, "uncovered", "x-1 < 0"),
     "quadrant uncovered": (modes("when = 'x > 0 and v > 0'\ndynamics = { x = 1 }\n[[modes]]\nwhen = 'x > 0 and v < 0'\n"
                                  "dynamics = { x = 2 }\n[[modes]]\nwhen = 'x < 0 and v > 0'\ndynamics = { x = 3 }\n"),
-                           "20:15", "uncovered 1 sign pattern: v < 0, x-0 < 0"),
+                           "20:15", "uncovered 1 sign pattern: v < 0, x < 0"),
     "overlap": (modes("when = 'x > 1'\ndynamics = { x = 1 }\n[[modes]]\nwhen = 'x > 0'\ndynamics = { x = 2 }\n"), 17,
                 "overlaps", "x-1 > 0"),
     "overlap of equals": (modes("when = 'x > 1'\ndynamics = { x = 1 }\n[[modes]]\nwhen = '2*x > 2'\n"

@@ -93,7 +93,7 @@ TEST(DiscreteStates, WhatMakesAJumpHasAColumnOfItsOwnName) {
   ModelText named = machine("if(full >= 0, 1, 0) + if(full > 0, 1, 0)");
   named.switching = {{"full", "n-2"}};
   const System system = built(named);
-  EXPECT_EQ(columns(system), (Names{"full", "full-0"}));
+  EXPECT_EQ(columns(system), (Names{"full", "full>0"}));
   EXPECT_EQ(system.switching[0].alpha_at_zero, 1.0);
   EXPECT_EQ(system.switching[1].alpha_at_zero, 0.0);
 }

@@ -1,0 +1,203 @@
+#include "saltus/io/check/model_schema.hpp"
+
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+#include "saltus/io/json_reader_internal.hpp"
+#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/pipeline/option_fields.hpp"
+
+namespace saltus::io {
+namespace {
+
+using Members = std::initializer_list<std::pair<std::string_view, Json>>;
+
+Json described(Json schema, std::string_view text) {
+  schema["description"] = text;
+  return schema;
+}
+
+Json reference(std::string_view definition) { return {{"$ref", fmt::format("#/$defs/{}", definition)}}; }
+
+Json text(std::string_view meaning) { return described({{"type", "string"}}, meaning); }
+Json truth(std::string_view meaning) { return described({{"type", "boolean"}}, meaning); }
+Json one_of_words(const std::vector<std::string>& words, std::string_view meaning) {
+  return described({{"enum", words}}, meaning);
+}
+Json list_of(Json item, std::string_view meaning) {
+  return described({{"type", "array"}, {"items", std::move(item)}}, meaning);
+}
+
+/// A table with these keys and no others.
+Json table(Members members, std::string_view meaning, const std::vector<std::string>& required = {}) {
+  Json json = {{"type", "object"}, {"description", meaning}, {"properties", Json::object()}};
+  for (const auto& [key, schema] : members) json["properties"][std::string(key)] = schema;
+  json["additionalProperties"] = false;
+  if (!required.empty()) json["required"] = required;
+  return json;
+}
+
+/// A table of names that the user gives.
+Json names(Json value, std::string_view meaning) {
+  return {{"type", "object"},
+          {"description", meaning},
+          {"propertyNames", {{"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}},
+          {"additionalProperties", std::move(value)}};
+}
+
+/// A number or an expression, or a table with more about it.
+Json or_table(Json in_table) { return {{"anyOf", Json::array({reference("expression"), std::move(in_table)})}}; }
+
+Json bounded(bool may_be_free) {
+  Json json = table({{"initial", reference("expression")},
+                     {"lower", described(reference("expression"), "of [optimize]")},
+                     {"upper", described(reference("expression"), "of [optimize]")},
+                     {"unit", text("shown, not computed with")},
+                     {"label", text("shown, not computed with")}},
+                    "a value with bounds and names for people");
+  if (may_be_free) json["properties"]["free"] = truth("[optimize] chooses it within its bounds");
+  return json;
+}
+
+/// Puts a schema at a dotted key; tables on the way come into being. `*` stands for names of the model.
+void put(Json& tables, std::string_view key, Json schema) {
+  const auto dot = key.find('.');
+  auto& entries = tables["properties"];
+  if (dot == std::string_view::npos) {
+    const std::string last(key);
+    // `output` is a word, or a table of `output.every` and others.
+    if (last == "*") {
+      tables["additionalProperties"] = std::move(schema);
+    } else if (entries.contains(last)) {
+      entries[last] = {{"anyOf", Json::array({std::move(schema), entries[last]})}};
+    } else {
+      entries[last] = std::move(schema);
+    }
+    return;
+  }
+  const std::string first(key.substr(0, dot));
+  if (!entries.contains(first)) {
+    entries[first] = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
+  } else if (!entries[first].contains("properties")) {
+    if (!entries[first].contains("anyOf")) {
+      const Json word = entries[first];
+      entries[first] = {{"anyOf", Json::array({word})}};
+      entries[first]["anyOf"].push_back(
+          {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}});
+    }
+    put(entries[first]["anyOf"].back(), key.substr(dot + 1), std::move(schema));
+    return;
+  }
+  put(entries[first], key.substr(dot + 1), std::move(schema));
+}
+
+Json simulate_schema() {
+  Json json = table(
+      {{"inputs",
+        names(or_table(table({{"file", text("two columns, t and the value")}, {"result", text("a stored result")}},
+                             "piecewise constant samples")),
+              "values of controls")}},
+      "how to simulate");
+  for (const auto& field : pipeline::simulate_fields()) {
+    put(json, field.key, {{"description", fmt::format("{} ({})", field.doc, field.expects)}});
+  }
+  return json;
+}
+
+Json optimize_schema() {
+  Json json = table({}, "an optimal control problem");
+  for (const auto& field : pipeline::optimize_fields()) {
+    put(json, field.key, {{"description", fmt::format("{} ({})", field.doc, field.expects)}});
+  }
+  for (const auto& key : pipeline::problem_keys()) {
+    const auto first = key.key.substr(0, key.key.find('.'));
+    if (json["properties"].contains(std::string(first))) continue;
+    put(json, first, {{"description", fmt::format("{} ({})", key.doc, key.expects)}});
+  }
+  return json;
+}
+
+Json jumps_schema() {
+  return list_of(table({{"name", text("unique")},
+                        {"when", described(reference("expression"), "a condition, or a guard with `direction`")},
+                        {"direction", one_of_words({"down", "up", "both"}, "of a guard")},
+                        {"every", described(reference("expression"), "a period, instead of `when`")},
+                        {"at", list_of(reference("expression"), "times, instead of `when`")},
+                        {"set", names(reference("expression"), "states and their new values")},
+                        {"at_start", truth("also where the condition holds at the start")},
+                        {"priority", reference("expression")},
+                        {"delay", reference("expression")},
+                        {"persistent", truth("executed also if the condition no longer holds")},
+                        {"values", one_of_words({"trigger", "execution"}, "when the values are evaluated")}},
+                       "a jump of states", {"set"}),
+                 "states that change at once");
+}
+
+Json modes_schema() {
+  return list_of(table({{"when", described(reference("expression"), "a condition, or \"otherwise\"")},
+                        {"indicator", described(reference("expression"), "the smallest of a group is active")},
+                        {"group", text("groups are summed")},
+                        {"name", text("of a mode with an indicator")},
+                        {"dynamics", names(reference("expression"), "right-hand sides in this mode")}},
+                       "a region with its own equations", {"dynamics"}),
+                 "piecewise equations");
+}
+
+Json root_properties() {
+  Json properties;
+  properties["model"] = table({{"name", text("required")},
+                               {"description", text("one line")},
+                               {"inclusion", one_of_words({"filippov", "aizerman_pyatnitskii"}, "on surfaces")}},
+                              "what the file is", {"name"});
+  properties["parameters"] = names(or_table(bounded(true)), "constants");
+  properties["states"] = names(or_table(bounded(true)), "names and initial values");
+  properties["controls"] = names(or_table(bounded(false)), "piecewise constant inputs");
+  properties["definitions"] = names(reference("expression"), "named intermediate expressions");
+  properties["switching"] = names(reference("expression"), "named switching functions");
+  properties["dynamics"] = names(reference("expression"), "right-hand side of every state");
+  properties["modes"] = modes_schema();
+  properties["jumps"] = jumps_schema();
+  properties["outputs"] = names(
+      {{"anyOf",
+        Json::array({reference("expression"),
+                     table({{"value", reference("expression")}, {"unit", text("shown")}, {"label", text("shown")}},
+                           "a value with names for people", {"value"}),
+                     list_of({{"type", "string"}}, "`record`: names of definitions")})}},
+      "named quantities, recorded beside the states");
+  properties["events"] =
+      list_of(table({{"name", text("unique")},
+                     {"when", described(reference("expression"), "its zeros, or the edges of a condition")},
+                     {"direction", one_of_words({"up", "down", "both"}, "of the zero")},
+                     {"stop", truth("end the simulation there")}},
+                    "an event to record or to stop at", {"when"}),
+              "zeros to record");
+  properties["tables"] = names(table({{"x", list_of({{"type", "number"}}, "increasing")},
+                                      {"y", list_of({{"type", "number"}}, "values")},
+                                      {"file", text("two columns")},
+                                      {"kind", one_of_words({"linear", "cubic"}, "between the points")}},
+                                     "a function of one argument"),
+                               "functions by points");
+  properties["simulate"] = simulate_schema();
+  properties["optimize"] = optimize_schema();
+  for (const auto* open : {"time_freezing", "mechanics", "contacts", "hysteresis", "sensitivity"}) {
+    properties[open] = {{"description", "see the page on model files"}};
+  }
+  return properties;
+}
+
+}  // namespace
+
+std::string model_schema() {
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"title", "Saltus model file"},
+                 {"type", "object"},
+                 {"properties", root_properties()},
+                 {"required", {"model"}},
+                 {"additionalProperties", false}};
+  schema["$defs"]["expression"] = {{"type", {"number", "string"}},
+                                   {"description", "a number, or an expression in quotes"}};
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace saltus::io

@@ -1,0 +1,291 @@
+"""Models that people new to Saltus wrote: what they expected of it."""
+
+import json
+
+import tool
+
+PWM = """
+[model]
+name = "PI with saturation and anti windup, PWM"
+[parameters]
+Kp = 2
+Ki = 5
+umax = 1
+[states]
+y = 0
+i = 0
+[definitions]
+ref = "if(t > 1, 0.8, 0)"
+e = "ref - y"
+v = "Kp*e + Ki*i"
+u = "max(min(v, umax), -umax)"
+sat = "abs(v) - umax"
+duty = "mod(t, 0.1)/0.1"
+pwm = "if(u > duty, 1, 0)"
+[dynamics]
+y = "-y + pwm"
+i = "if(sat > 0 and v*e > 0, 0, e)"
+[simulate]
+until = 8
+"""
+
+NAMES = """
+[model]
+name = "names"
+[states]
+x = 1
+th = 0
+[definitions]
+s = "x - 0.5"
+turn = "mod(th, 2*pi)"
+[dynamics]
+x = "if(s > 0, -1, 1) + if(0 < x, -1, -1.5) + 0*max(0, th - 3)"
+th = 4
+[outputs]
+turns = "floor(th/(2*pi))"
+record = ["s", "turn"]
+[simulate]
+until = 4
+"""
+
+FEEDBACK = """
+[model]
+name = "negative feedback loop of two genes"
+[states]
+A = 0.3
+B = 0.9
+[dynamics]
+A = "if(B < 0.5, 1, 0) - A"
+B = "if(A > 0.5 , 1, 0) - B"
+[simulate]
+until = 20
+max_events = 2000
+"""
+
+PUCK = """
+[model]
+name = "puck on a table: planar dry friction"
+[parameters]
+mu = 0.3
+[states]
+x = 0
+y = 0
+vx = 3
+vy = 2
+[definitions]
+speed = "hypot(vx, vy)"
+[dynamics]
+x = "vx"
+y = "vy"
+vx = "-mu*9.81*vx/speed"
+vy = "-mu*9.81*vy/speed"
+[simulate]
+until = 3
+max_steps = 20000
+"""
+
+RELAY = """
+[model]
+name = "relay"
+[states]
+x = 0
+on = 1
+[dynamics]
+x = "2*on - 1"
+on = 0
+[[jumps]]
+name = "off"
+when = "on == 1 and x > 1"
+set = { on = 0 }
+[[jumps]]
+name = "on"
+when = "on == 0 and x < -1"
+set = { on = 1 }
+[simulate]
+until = 6.5
+"""
+
+
+class Tried(tool.ToolTest):
+    def simulated(self, text, *arguments, code=0):
+        out, err = self.run_tool("simulate", self.write("m.toml", text), "--out", "r.json", *arguments, code=code)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8")), out, err
+
+    def test_a_function_whose_selection_acts_on_nothing_stops_no_run(self):
+        result, _, _ = self.simulated(PWM)
+        self.assertEqual(result["status"]["termination"], "completed")
+        # The integral part holds the mean of y at the reference, beside the ripple of the modulation.
+        self.assertAlmostEqual(result["final"]["x"][0], 0.8, delta=0.05)
+        before = [row for row in zip(result["trajectory"]["t"], result["trajectory"]["x"]) if row[0] < 1.0]
+        self.assertTrue(all(abs(x[0]) < 1e-9 and abs(x[1]) < 1e-9 for _, x in before))
+
+    def test_functions_have_the_names_that_were_written(self):
+        result, _, err = self.simulated(NAMES)
+        self.assertEqual(err, "")
+        self.assertEqual(result["switching_functions"], ["s", "x"])
+        sliding = [event for event in result["events"] if event["kind"] == "enter_sliding"]
+        self.assertEqual([event["surfaces"] for event in sliding], [["s"]])
+
+    def test_definitions_are_recorded_under_their_names_and_angles_wrapped(self):
+        result, _, _ = self.simulated(NAMES)
+        self.assertEqual(result["outputs"], ["turns", "s", "turn"])
+        turns, s, turn = result["final"]["outputs"]
+        self.assertAlmostEqual(s, result["final"]["x"][0] - 0.5, delta=1e-9)
+        self.assertEqual(turns, 2.0)  # 16 / (2 pi) = 2.546
+        self.assertAlmostEqual(turn, 16 % 6.283185307179586, delta=1e-6)
+        same = NAMES.replace('record = ["s", "turn"]', 's = "s"\nturn = "turn"')
+        self.assertEqual(self.simulated(same)[0]["final"]["outputs"], result["final"]["outputs"])
+        self.write("m.toml", NAMES.replace('record = ["s", "turn"]', 's = "x"'))
+        self.assertIn("'s' is already a definition", self.run_tool("simulate", "m.toml", code=2)[1])
+        self.write("m.toml", NAMES.replace('"s", "turn"]', '"S"]'))
+        self.assertIn("did you mean 's'?", self.run_tool("simulate", "m.toml", code=2)[1])
+        # Where it decides something it is refused as before.
+        self.write("m.toml", NAMES.replace("th = 4", 'th = "turn"'))
+        self.assertIn("floor and mod are for the time", self.run_tool("simulate", "m.toml", code=2)[1])
+
+    def test_a_jump_may_be_called_like_a_state(self):
+        result, _, _ = self.simulated(RELAY)
+        self.assertEqual([event["name"] for event in result["events"]], ["off", "on", "off"])
+        self.write("m.toml", RELAY.replace('name = "off"', 'name = "on"'))
+        self.assertIn("on", self.run_tool("simulate", "m.toml", code=2)[1])
+
+    def test_the_layer_that_is_advised_resolves_the_laps(self):
+        _, _, err = self.simulated(FEEDBACK, code=3)
+        epsilon = err.split("simulate.smoothed.epsilon = ")[1].split(",")[0]
+        result, _, err = self.simulated(FEEDBACK, "--method", "smoothed", "--set", f"simulate.smoothed.epsilon={epsilon}")
+        self.assertEqual(result["status"]["termination"], "completed")
+        _, _, err = self.simulated(FEEDBACK, "--method", "smoothed", "--set", "simulate.smoothed.epsilon=1e-9", code=3)
+        self.assertIn("a wider layer: simulate.smoothed.epsilon = ", err)
+        self.assertNotIn('method = "smoothed"', err)
+
+    def test_planar_friction_is_named(self):
+        _, _, err = self.simulated(PUCK, code=3)
+        self.assertIn("a norm of vx, vy vanishes here", err)
+        self.assertIn("sqrt(vx^2 + vy^2 + 1e-6)", err)
+
+    def test_a_unit_behind_a_number_is_understood(self):
+        for written, unit in (("1 [m]", "m"), ("9.81 m/s^2", "m/s^2"), ("300 K # warm", "K")):
+            self.write("m.toml", PUCK.replace("x = 0", f"x = {written}", 1))
+            _, err = self.run_tool("simulate", "m.toml", code=2)
+            self.assertIn(f'unit = "{unit}" }}', err)
+
+    def test_a_model_file_beside_is_offered(self):
+        self.write("puck.toml", PUCK)
+        self.assertIn("did you mean the file puck.toml?", self.run_tool("simulate", "puck", code=2)[1])
+
+    def test_tolerances_below_rounding_are_told(self):
+        _, err = self.run_tool("simulate", "stick-slip", "--rtol", "1e-20", "--atol", "1e-20", "--set",
+                               "simulate.max_steps=10", code=3)
+        self.assertIn("more digits than numbers have", err)
+
+
+class Colours(tool.ToolTest):
+    def on_a_terminal(self, **environment):
+        import os
+        import pty
+        import subprocess
+        seen, shown = pty.openpty()
+        process = subprocess.Popen([tool.TOOL, "simulate", "none"], stderr=shown, stdout=subprocess.DEVNULL,
+                                   env=os.environ | {"TERM": "xterm"} | environment)
+        self.assertEqual(process.wait(timeout=60), 2)
+        os.close(shown)
+        text = os.read(seen, 4096).decode()
+        os.close(seen)
+        return text
+
+    def test_only_on_terminals_and_where_they_are_wanted(self):
+        self.assertIn("\x1b[1;31merror:\x1b[0m", self.on_a_terminal(NO_COLOR=""))
+        self.assertNotIn("\x1b", self.on_a_terminal(NO_COLOR="1"))
+        self.assertNotIn("\x1b", self.on_a_terminal(NO_COLOR="", TERM="dumb"))
+        self.assertNotIn("\x1b", self.run_tool("simulate", "none", code=2)[1])
+
+
+class Editors(tool.ToolTest):
+    def test_the_schema_knows_every_key_of_the_catalogue(self):
+        schema = json.loads(self.run_tool("schema", code=0)[0])
+        import tomllib
+        for path in sorted((tool.SOURCE / "models").glob("*.toml")):
+            self.check(tomllib.loads(path.read_text(encoding="utf-8")), schema, schema, path.stem)
+
+    def check(self, value, schema, root, place):
+        """What of JSON schema the file uses: properties, additionalProperties, items, anyOf, $ref, required, enum."""
+        problems = self.problems(value, schema, root, place)
+        self.assertEqual(problems, [])
+
+    def problems(self, value, schema, root, place):
+        if "$ref" in schema:
+            schema = root["$defs"][schema["$ref"].split("/")[-1]]
+        if "anyOf" in schema:
+            tried = [self.problems(value, option, root, place) for option in schema["anyOf"]]
+            return [] if any(not found for found in tried) else tried[0]
+        types = {"object": dict, "array": list, "string": str, "boolean": bool, "number": (int, float)}
+        wanted = schema.get("type", [])
+        wanted = [wanted] if isinstance(wanted, str) else wanted
+        if wanted and not any(isinstance(value, types[name]) for name in wanted):
+            return [f"{place}: {value!r} is no {wanted}"]
+        if "enum" in schema and value not in schema["enum"]:
+            return [f"{place}: {value!r}"]
+        found = []
+        if isinstance(value, dict) and "properties" in schema or isinstance(value, dict) and "additionalProperties" in schema:
+            for key in schema.get("required", []):
+                if key not in value:
+                    found.append(f"{place}: no {key}")
+            for key, member in value.items():
+                known = schema.get("properties", {}).get(key, schema.get("additionalProperties", True))
+                if known is False:
+                    found.append(f"{place}: unknown {key}")
+                elif known is not True:
+                    found += self.problems(member, known, root, f"{place}.{key}")
+        if isinstance(value, list) and "items" in schema:
+            for i, item in enumerate(value):
+                found += self.problems(item, schema["items"], root, f"{place}[{i}]")
+        return found
+
+    def test_the_schema_refuses_what_the_reader_refuses(self):
+        schema = json.loads(self.run_tool("schema", code=0)[0])
+        for wrong in ({"modle": {}}, {"model": {}}, {"model": {"name": "m"}, "simulate": {"rtoll": 1}},
+                      {"model": {"name": "m"}, "jumps": [{"when": "x"}]},
+                      {"model": {"name": "m"}, "outputs": {"x": {"unit": "m"}}}):
+            self.assertNotEqual(self.problems(wrong, schema, schema, ""), [], wrong)
+
+    def test_completion(self):
+        import shutil
+        import subprocess
+        for shell in ("bash", "zsh", "fish"):
+            script, _ = self.run_tool("completion", shell, code=0)
+            for word in ("simulate", "--integrator" if shell != "fish" else "integrator", "diff"):
+                self.assertIn(word, script)
+            self.assertNotIn("options-page", script)
+            if shutil.which(shell) and shell != "fish":
+                path = self.write("script", script)
+                subprocess.run([shell, "-n", path], check=True)
+        self.assertIn("did you mean 'fish'?", self.run_tool("completion", "fisch", code=2)[1])
+
+    def test_the_manual_page_has_every_command(self):
+        page, _ = self.run_tool("man-page", code=0)
+        for word in (".SS simulate", ".SS diff", "\\fB\\-\\-integrator", "SALTUS_CACHE"):
+            self.assertIn(word, page)
+        self.assertNotIn("options", page.split(".SS")[1].split("\n")[0])
+
+    def test_bash_completes_names_of_parameters(self):
+        import os
+        import subprocess
+        script, _ = self.run_tool("completion", "bash", code=0)
+        self.write("script", script)
+        self.write("m.toml", PUCK.replace("[simulate]", "[simulat]"))  # a broken model is read as far as it goes
+        environment = os.environ | {"PATH": f"{os.path.dirname(tool.TOOL)}:{os.environ['PATH']}"}
+
+        def completed(*words):
+            line = "; ".join(["source ./script", f"COMP_WORDS=({' '.join(words)})", f"COMP_CWORD={len(words) - 1}",
+                              "_saltus 2>/dev/null", 'printf "%s\\n" "${COMPREPLY[@]}"'])
+            done = subprocess.run(["bash", "-c", line], cwd=self.folder, capture_output=True, text=True, env=environment,
+                                  check=True)
+            return done.stdout.split()
+        self.assertEqual(completed("saltus", "sim"), ["simulate"])
+        self.assertIn("stick-slip", completed("saltus", "simulate", "stick"))
+        self.assertEqual(completed("saltus", "simulate", "m.toml", "--set", "m"), ["mu="])
+        self.assertIn("--rtol", completed("saltus", "simulate", "m.toml", "--rt"))
+
+
+if __name__ == "__main__":
+    tool.main()
