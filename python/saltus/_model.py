@@ -12,9 +12,20 @@ import warnings
 
 from . import _core
 from ._errors import ModelWarning
-from ._progress import progress_line
+from ._progress import progress_line, progress_of_runs
 from ._result import Result
-from ._settings import Value, check_path, optimize_options, settings_of, simulate_options
+from ._settings import (
+    Value,
+    check_path,
+    empty_axis,
+    is_list,
+    optimize_options,
+    settings_of,
+    simulate_options,
+    sweep_name,
+    text_of,
+)
+from ._sweep import Sweep
 
 Settings = typing.Mapping[str, Value]
 
@@ -135,6 +146,62 @@ class Model:
         _warn(warned)
         return Result(run)
 
+    def sweep(
+        self,
+        over: Settings | None = None,
+        *,
+        zip: bool = False,
+        sample: typing.Mapping[str, str] | None = None,
+        runs: int | None = None,
+        seed: int = 1,
+        keep: str = "final",
+        jobs: int = 0,
+        until: float | None = None,
+        set: Settings | None = None,
+        progress: bool = False,
+        **options: Value,
+    ) -> Sweep:
+        """Simulates the model with many values, by all processors (or `jobs` threads).
+
+        `over` has a list of values for every name that is changed: parameters, initial values, options; a keyword with
+        a list is the same (``mu=np.linspace(0.1, 0.5, 50)``). Several make a grid, with `zip` they go one by one.
+        `sample` has distributions (``{"v": "normal(3, 0.1)"}``), of which every point of the grid gets `runs` samples;
+        they depend on `seed` and the number of the run only. `keep` is what is left of the runs: "final", "events" or
+        "trajectory". A run that stops early is a row with its status. Nothing depends on the number of threads.
+
+        >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2, 0.3], until=5)
+        >>> len(s), s.done, s["belt"].tolist()
+        (3, True, [0.1, 0.2, 0.3])
+        """
+        swept = dict(over or {})
+        for name in [name for name, value in options.items() if is_list(value) and name != "times"]:
+            swept[sweep_name(name, self._core.method)] = options.pop(name)
+        typed, chosen = simulate_options({"until": until, **options}, self._core.method)
+        axes = {name: text_of(values)[1:-1] for name, values in swept.items() if len(values) > 0 or empty_axis(name)}
+        shape = tuple(len(values) for values in swept.values()) if not zip and sample is None else ()
+        warned: list[str] = []
+        with progress_of_runs(self.name, progress) as tell:
+            try:
+                found = self._core.sweep(
+                    [*settings_of(set), *typed],
+                    chosen,
+                    [f"{name}={values}" for name, values in axes.items()],
+                    zip,
+                    [f"{name}={text}" for name, text in (sample or {}).items()],
+                    runs,
+                    seed,
+                    keep,
+                    jobs,
+                    tell,
+                    warned,
+                )
+            except BaseException as stopped:
+                if isinstance(getattr(stopped, "result", None), tuple):
+                    stopped.result = Sweep(stopped.result, shape)  # type: ignore[attr-defined]
+                raise
+        _warn(warned)
+        return Sweep(found, shape)
+
     def check(self, *, set: Settings | None = None) -> str:
         """What `saltus check` prints: states, switching functions and their kinds, methods, warnings.
 
@@ -155,7 +222,7 @@ class Model:
         typed, chosen = simulate_options({"until": until, **options}, self._core.method)
         warned: list[str] = []
         with _own_results():
-            run = getattr(self._core, command)([*settings_of(set), *typed], chosen, tell, warned, *more)
+            run: _core.Run = getattr(self._core, command)([*settings_of(set), *typed], chosen, tell, warned, *more)
         _warn(warned)
         return run
 

@@ -30,6 +30,20 @@ def progress_line(name: str, wanted: bool) -> typing.Iterator[Tell | None]:
         bar.update(max(0.0, 100.0 - bar.n))
 
 
+@contextlib.contextmanager
+def progress_of_runs(name: str, wanted: bool) -> typing.Iterator[typing.Callable[[float, float], None] | None]:
+    """A function of (runs done, runs), or None if nothing is wanted."""
+    if not wanted:
+        yield None
+        return
+
+    def tell(done: float, total: float) -> None:
+        print(f"\r{name}: {done:.0f} of {total:.0f} runs", end="", file=sys.stderr, flush=True)
+
+    yield tell
+    print(file=sys.stderr)
+
+
 def _plain(name: str) -> typing.Iterator[Tell]:
     width = 0
 

@@ -9,7 +9,7 @@ import typing
 
 import numpy as np
 
-from . import _core
+from . import _card, _core, _data, _plot
 from ._errors import Stopped
 
 Array = np.ndarray
@@ -56,7 +56,7 @@ class Final:
     def __getitem__(self, name: str) -> float:
         if name not in self._named:
             raise _unknown(name, list(self._named))
-        return self._named[name]
+        return float(self._named[name])
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:.6g}" for name, value in self._named.items())
@@ -68,7 +68,7 @@ class Events(list[_core.Event]):
 
     def table(self) -> typing.Any:
         """A table of pandas: a row for every event."""
-        pandas = _needed("pandas", "data")
+        pandas = needed("pandas", "data")
         return pandas.DataFrame(
             {
                 "t": [event.t for event in self],
@@ -179,19 +179,24 @@ class Result:
         block, index = columns[name]
         return self.t if index is None else getattr(self._run, block)[:, index]
 
+    @property
+    def names(self) -> list[str]:
+        """All names of columns: ``t``, states, controls, outputs, modes and selections."""
+        return list(self._columns)
+
     @functools.cached_property
     def _columns(self) -> dict[str, tuple[str, int | None]]:
-        columns: dict[str, tuple[str, int | None]] = {}
+        columns: dict[str, tuple[str, int | None]] = {"t": ("t", None)}
         for block, names in (
+            ("x", self.states),
+            ("u", self.controls),
+            ("outputs", self.output_names),
             ("mode", [f"mode({name})" for name in self.switching_functions]),
             ("alpha", [f"alpha({name})" for name in self.switching_functions]),
             ("theta", [f"theta({name})" for name in self._run.regions]),
-            ("outputs", self.output_names),
-            ("u", self.controls),
-            ("x", self.states),
         ):
-            columns.update({name: (block, index) for index, name in enumerate(names)})
-        columns["t"] = ("t", None)
+            for index, name in enumerate(names):
+                columns.setdefault(name, (block, index))
         return columns
 
     @functools.cached_property
@@ -227,11 +232,13 @@ class Result:
 
     @functools.cached_property
     def _stored(self) -> dict[str, typing.Any]:
-        return json.loads(self._run.json(False))
+        stored: dict[str, typing.Any] = json.loads(self._run.json(False))
+        return stored
 
     def to_dict(self) -> dict[str, typing.Any]:
         """Everything, as :meth:`save` writes it (docs/result-file.md)."""
-        return json.loads(self._run.json(True))
+        stored: dict[str, typing.Any] = json.loads(self._run.json(True))
+        return stored
 
     @property
     def optimization(self) -> dict[str, typing.Any] | None:
@@ -280,6 +287,41 @@ class Result:
         _core.write_file(os.fspath(path), page)
         return None
 
+    def plot(self, names: typing.Sequence[str] | None = None, axes: typing.Any = None) -> typing.Any:
+        """Draws columns over time (matplotlib): all states, controls and outputs, or those of `names`.
+
+        Sliding is shaded, events are marked, the two sides of a jump are not joined. Returns the axes, one for every
+        name; `axes` of a figure of your own are drawn into.
+
+        >>> axes = saltus.catalogue("stick-slip").simulate(until=10).plot(["v"])
+        >>> axes[0].get_ylabel()
+        'v'
+        """
+        return _plot.plot(self, names, axes)
+
+    def phase(self, x: str, y: str, axis: typing.Any = None) -> typing.Any:
+        """Draws one column over another (matplotlib); the line is thick where the solution slides. Returns the axes.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=10).phase("q", "v").get_xlabel()
+        'q'
+        """
+        return _plot.phase(self, x, y, axis)
+
+    def frame(self) -> typing.Any:
+        """A table of pandas, a row for every row of the result, with the time as its index.
+
+        >>> list(saltus.catalogue("stick-slip").simulate(until=10).frame().columns)
+        ['q', 'v', 'mode(slip)', 'alpha(slip)']
+        """
+        return _data.frame(self)
+
+    def dataset(self) -> typing.Any:
+        """A data set of xarray: the columns over ``row``, with ``t`` as a coordinate."""
+        return _data.dataset(self)
+
+    def _repr_html_(self) -> str:
+        return _card.card(self)
+
     def __repr__(self) -> str:
         return (
             f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, "
@@ -323,7 +365,7 @@ def _unknown(name: str, known: list[str]) -> KeyError:
     return KeyError(f"the result has no {name!r}; {hint}")
 
 
-def _needed(package: str, extra: str) -> typing.Any:
+def needed(package: str, extra: str) -> typing.Any:
     import importlib
 
     try:

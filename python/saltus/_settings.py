@@ -12,6 +12,8 @@ from ._errors import ModelError
 
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
 Option = tuple[str, str, str]
+_SIMULATE = frozenset(_core.simulate_keys())
+_OPTIMIZE = frozenset(_core.optimize_keys())
 
 
 def text_of(value: Value) -> str:
@@ -58,7 +60,6 @@ def simulate_options(
     keywords = {name.rstrip("_"): value for name, value in keywords.items() if value is not None}
     method = str(keywords.get("method", method))
     tables = ["output", "event", "smoothed", "timestepping" if method == "timestepping" else "fesd"]
-    known = set(_core.simulate_keys())
     settings: list[str] = []
     options: list[Option] = []
     for name, value in _flat(keywords):
@@ -66,23 +67,38 @@ def simulate_options(
             settings.append(f"simulate.{name}={text_of(value)}")
             continue
         keys = [name] + [f"{table}.{name}" for table in tables]
-        key = next((key for key in keys if key in known), name)
+        key = next((key for key in keys if key in _SIMULATE), name)
         options.append((f"simulate.{key}", text_of(value), f"{name}={_shown(value)}"))
     return settings, options
 
 
 def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], list[Option]]:
     """The same of [optimize]: `tolerance` is mpcc.tolerance. Keys of the problem itself are settings."""
-    known = set(_core.optimize_keys())
     settings: list[str] = []
     options: list[Option] = []
     for name, value in _flat({name.rstrip("_"): value for name, value in keywords.items() if value is not None}):
-        key = next((key for key in (name, f"mpcc.{name}") if key in known), None)
+        key = next((key for key in (name, f"mpcc.{name}") if key in _OPTIMIZE), None)
         if key is None:
             settings.append(f"optimize.{name}={text_of(value)}")
         else:
             options.append((f"optimize.{key}", text_of(value), f"{name}={_shown(value)}"))
     return settings, options
+
+
+def is_list(value: Value) -> bool:
+    """Whether a keyword has several values."""
+    return isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim == 1)
+
+
+def sweep_name(name: str, method: str) -> str:
+    """What a keyword with several values changes: an option by its last word, else a name of the model."""
+    ((key, _, _),) = simulate_options({name: 0}, method)[1]
+    return key if key.removeprefix("simulate.") in _SIMULATE else name
+
+
+def empty_axis(name: str) -> bool:
+    """Refuses a list without values."""
+    raise ModelError(f"{name}: an empty list of values", f"{name}: an empty list of values", "at least one value")
 
 
 def _shown(value: Value) -> str:

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "errors.hpp"
+#include "model.hpp"
 #include "parts.hpp"
 #include "result.hpp"
 #include "saltus/cli/check_text.hpp"
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/optimum_record.hpp"
+#include "saltus/cli/run_command.hpp"
 #include "saltus/io/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/model/ocp.hpp"
@@ -30,55 +32,6 @@ namespace nb = nanobind;
 
 namespace saltus::python {
 namespace {
-
-/// An option, as the tool spells it, its value as text, and what was written in Python: for messages.
-using Option = std::tuple<std::string, std::string, std::string>;
-
-/// What a call of Python asks for beside the model file.
-struct Request {
-  std::vector<std::string> settings;  ///< NAME=VALUE, as behind --set
-  std::vector<Option> options;
-};
-
-/// A model file, read once, and the system it was last built into.
-class Model {
- public:
-  explicit Model(const std::string& model) : input_(value_or_raise(cli::read_input(model, {}))) {}
-  Model(const std::string& text, const std::string& name)
-      : input_{name, value_or_raise(io::parse_model(text, name)), {}} {}
-
-  [[nodiscard]] const cli::ModelInput& input() const { return input_; }
-
-  [[nodiscard]] cli::ModelInput stated(const Request& request) const {
-    auto input = input_;
-    for (const auto& setting : request.settings) value_or_raise(cli::apply_setting(input, setting));
-    for (const auto& [key, value, written] : request.options) {
-      value_or_raise(io::set_option(input.file, key, value, {written, 0, 0}));
-      input.settings.push_back(key + "=" + value);
-    }
-    return input;
-  }
-
-  /// The system of a request. Options change nothing of it: one that is asked for with the same settings again is
-  /// there.
-  [[nodiscard]] std::shared_ptr<const model::System> system(const cli::ModelInput& input, const Request& request) {
-    if (built_ && settings_ == request.settings) return built_;
-    auto system = model::build(input.file.description, input.overrides);
-    if (!system) raise(io::located(system.error(), input.file));
-    built_ = std::make_shared<const model::System>(std::move(*system));
-    settings_ = request.settings;
-    return built_;
-  }
-
- private:
-  cli::ModelInput input_;
-  std::shared_ptr<const model::System> built_;
-  std::vector<std::string> settings_;
-};
-
-void append(nb::list& warnings, const std::vector<std::string>& more) {
-  for (const auto& warning : more) warnings.append(warning);
-}
 
 /// The run as an object of Python; raises what came during it.
 nb::object finished(Expected<result::Result> result, const cli::ModelInput& input,
@@ -96,6 +49,7 @@ nb::object run_simulation(Model& model, const Request& request, nb::object progr
                           Compute compute) {
   const auto input = model.stated(request);
   value_or_raise(io::check_options(input.file));
+  if (request.methods == cli::RunMethods::chosen) append(warnings, cli::options_without_effect(input.file));
   const auto system = model.system(input, request);
   append(warnings, system->warnings);
   Watch watch(std::move(progress));
@@ -110,16 +64,16 @@ nb::object run_simulation(Model& model, const Request& request, nb::object progr
 
 nb::object simulate(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
                     nb::list warnings) {
-  const Request request{std::move(settings), std::move(options)};
-  if (!request.options.empty() || !request.settings.empty()) {
-    append(warnings, cli::options_without_effect(model.stated(request).file));
-  }
-  return run_simulation(model, request, std::move(progress), std::move(warnings), pipeline::simulate);
+  const Request request{std::move(settings), std::move(options), cli::RunMethods::chosen};
+  return run_simulation(model, request, std::move(progress), std::move(warnings),
+                        [&](const auto& system, const auto& options, const auto& observers) {
+                          return pipeline::simulate(system, options, observers, &model.kernels());
+                        });
 }
 
 nb::object compare(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
                    nb::list warnings) {
-  return run_simulation(model, {std::move(settings), std::move(options)}, std::move(progress), std::move(warnings),
+  return run_simulation(model, {std::move(settings), std::move(options), cli::RunMethods::several}, std::move(progress), std::move(warnings),
                         pipeline::compare);
 }
 
@@ -128,7 +82,7 @@ nb::object order(Model& model, std::vector<std::string> settings, std::vector<Op
   pipeline::OrderOptions what;
   if (!schemes.empty()) what.schemes = value_or_raise(pipeline::parse_schemes(schemes));
   if (!steps.empty()) what.steps = value_or_raise(pipeline::parse_steps(steps));
-  return run_simulation(model, {std::move(settings), std::move(options)}, std::move(progress), std::move(warnings),
+  return run_simulation(model, {std::move(settings), std::move(options), cli::RunMethods::several}, std::move(progress), std::move(warnings),
                         [&](const auto& system, const auto& simulate, const auto& observers) {
                           return pipeline::order(system, simulate, what, observers);
                         });
@@ -136,7 +90,7 @@ nb::object order(Model& model, std::vector<std::string> settings, std::vector<Op
 
 nb::object optimize(Model& model, std::vector<std::string> settings, std::vector<Option> options,
                     const std::string& start, nb::object on_step, nb::list warnings) {
-  auto input = model.stated({std::move(settings), std::move(options)});
+  auto input = model.stated({std::move(settings), std::move(options), cli::RunMethods::several});
   value_or_raise(io::check_optimize_options(input.file));
   if (!start.empty()) input.file.optimize->start_result = start;
   value_or_raise(io::read_start_result(input.file));
@@ -161,7 +115,7 @@ nb::object optimize(Model& model, std::vector<std::string> settings, std::vector
 }
 
 std::string check(Model& model, std::vector<std::string> settings) {
-  const auto input = model.stated({std::move(settings), {}});
+  const auto input = model.stated({std::move(settings), {}, cli::RunMethods::several});
   auto text = cli::check_text(input);
   if (!text) raise(io::located(text.error(), input.file));
   return *text;
@@ -170,8 +124,8 @@ std::string check(Model& model, std::vector<std::string> settings) {
 }  // namespace
 
 void add_model(nb::module_& module) {
-  nb::class_<Model>(module, "Model", "A model file.")
-      .def(nb::init<const std::string&>())
+  nb::class_<Model> type(module, "Model", "A model file.");
+  type.def(nb::init<const std::string&>())
       .def(nb::init<const std::string&, const std::string&>())
       .def_prop_ro("name", [](const Model& self) { return self.input().file.description.name; })
       .def_prop_ro("description", [](const Model& self) { return self.input().file.description.description; })
@@ -187,6 +141,7 @@ void add_model(nb::module_& module) {
       .def("optimize", optimize, nb::arg("settings"), nb::arg("options"), nb::arg("start"), nb::arg("on_step").none(),
            nb::arg("warnings"))
       .def("check", check, nb::arg("settings"));
+  add_sweep(type);
 }
 
 }  // namespace saltus::python

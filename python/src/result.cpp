@@ -57,11 +57,7 @@ void add_block(nb::class_<Run>& type, const char* name) {
   });
 }
 
-nb::object array_of(const std::vector<double>& values) {
-  auto* copy = new std::vector<double>(values);
-  const nb::capsule owner(copy, [](void* memory) noexcept { delete static_cast<std::vector<double>*>(memory); });
-  return nb::cast(nb::ndarray<nb::numpy, const double>(copy->data(), {copy->size()}, owner));
-}
+nb::object array_of(const std::vector<double>& values) { return owned_array(values); }
 nb::object array_of(const std::optional<std::vector<double>>& values) {
   return values ? array_of(*values) : nb::none();
 }
@@ -181,6 +177,12 @@ void add_names(nb::class_<Run>& type) {
 }
 
 }  // namespace
+
+nb::object owned_array(std::vector<double> values) {
+  auto* kept = new std::vector<double>(std::move(values));
+  const nb::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<double>*>(memory); });
+  return nb::cast(nb::ndarray<nb::numpy, const double>(kept->data(), {kept->size()}, owner));
+}
 
 void add_result(nb::module_& module) {
   add_event(module);

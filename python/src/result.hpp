@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nanobind/nanobind.h>
+
 #include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
 
@@ -25,5 +27,8 @@ struct Run {
   Block<double> x, u, alpha, outputs, theta;
   Block<int> mode;
 };
+
+/// An array of Python with its own numbers.
+nanobind::object owned_array(std::vector<double> values);
 
 }  // namespace saltus::python

@@ -17,27 +17,21 @@ bool Watch::look(const pipeline::StepRecord* step) {
   const auto now = Clock::now();
   if (now < next_) return false;
   next_ = now + interval;
-  const nb::gil_scoped_acquire held;
-  try {
+  attempt([&] {
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (step != nullptr && !progress_.is_none()) {
       progress_(step->t, step->from, step->until, step->steps, step->events);
     }
-  } catch (nb::python_error& error) {
-    came_.emplace(std::move(error));
-    return true;
-  }
-  return false;
+  });
+  return came_.has_value();
 }
 
 void Watch::call(const nb::object& function, const std::string& line) {
-  if (came_) return;
-  const nb::gil_scoped_acquire held;
-  try {
-    function(nb::str(line.c_str()));
-  } catch (nb::python_error& error) {
-    came_.emplace(std::move(error));
-  }
+  attempt([&] { function(nb::str(line.c_str())); });
+}
+
+void Watch::tell(const nb::object& function, double done, double total) {
+  attempt([&] { function(done, total); });
 }
 
 void Watch::raise_what_came(const nb::object& result) {

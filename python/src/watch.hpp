@@ -21,10 +21,24 @@ class Watch {
   [[nodiscard]] bool look(const pipeline::StepRecord* step = nullptr);
   /// Calls `function` with a line of text; what it raises ends the run.
   void call(const nanobind::object& function, const std::string& line);
+  /// Calls `function` with two numbers; likewise.
+  void tell(const nanobind::object& function, double done, double total);
   /// Raises that exception, with `result` as its attribute.
   void raise_what_came(const nanobind::object& result);
 
  private:
+  /// Keeps what `action` raises; does nothing if something has come before.
+  template <class Action>
+  void attempt(Action action) {
+    if (came_) return;
+    const nanobind::gil_scoped_acquire held;
+    try {
+      action();
+    } catch (nanobind::python_error& error) {
+      came_.emplace(std::move(error));
+    }
+  }
+
   using Clock = std::chrono::steady_clock;
   static constexpr auto interval = std::chrono::milliseconds(50);
 

@@ -19,6 +19,7 @@ struct Command {
 };
 
 [[nodiscard]] Command add_simulate(CLI::App& app);
+[[nodiscard]] Command add_sweep(CLI::App& app);
 [[nodiscard]] Command add_optimize(CLI::App& app);
 [[nodiscard]] Command add_compare(CLI::App& app);
 [[nodiscard]] Command add_order(CLI::App& app);

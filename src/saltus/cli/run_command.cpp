@@ -123,8 +123,7 @@ ExitCode report_stops(const result::Result& result, const RunArguments& argument
 
 }  // namespace
 
-void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts,
-                     const std::vector<std::string>& suffixes, const std::string& out_help) {
+void add_model_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts) {
   command
       .add_option("MODEL", arguments.model,
                   "model file, a name of the catalogue (saltus models), or - for standard input")
@@ -139,6 +138,12 @@ void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->take_all();
+  command.add_flag("--quiet", arguments.quiet, "no table, no progress");
+}
+
+void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts,
+                     const std::vector<std::string>& suffixes, const std::string& out_help) {
+  add_model_options(command, arguments, shortcuts);
   arguments.outputs.suffixes = suffixes;
   command.add_option("--out", arguments.outputs.files, out_help)
       ->type_name(suffixes.size() == 1 ? "FILE" + suffixes.front() : "FILE")
@@ -148,7 +153,13 @@ void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const
       ->type_name("FORMAT");
   command.add_option("--report", arguments.outputs.report, "write a page with pictures that works offline")
       ->type_name("FILE.html");
-  command.add_flag("--quiet", arguments.quiet, "no table, no progress");
+}
+
+Expected<ModelInput> stated_model(const RunArguments& arguments) {
+  auto input = read_input(arguments.model, arguments.settings);
+  if (!input) return input;
+  if (auto done = apply_shortcuts(arguments, *input); !done) return tl::unexpected(done.error());
+  return input;
 }
 
 Expected<void> apply_shortcuts(const RunArguments& arguments, ModelInput& input) {

@@ -1,6 +1,7 @@
 // What the commands that run a model have in common: their options, and the way from there to table and files.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "saltus/cli/exit_code.hpp"
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/outputs.hpp"
+#include "saltus/io/toml_model.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/result.hpp"
@@ -33,6 +35,17 @@ struct Shortcut {
 /// --until, as every command has it.
 inline constexpr Shortcut until_shortcut{"--until", "simulate.until", "T", "end time"};
 
+/// The flags of commands that simulate.
+inline constexpr std::array simulate_shortcuts{
+    until_shortcut,
+    Shortcut{"--method", "simulate.method", "METHOD", "event, fesd, timestepping or smoothed"},
+    Shortcut{"--rtol", "simulate.rtol", "R", "relative tolerance"},
+    Shortcut{"--atol", "simulate.atol", "A", "absolute tolerance"},
+    Shortcut{"--integrator", "simulate.event.integrator", "I", "dopri5, dop853, radau5 or taylor"},
+    Shortcut{"--branch", "simulate.event.branches", "report|all|K",
+             "report, all or K: follow other admissible motions, at most K trajectories"},
+};
+
 /// Whether a command runs the method that was chosen, or several.
 enum class RunMethods { chosen, several };
 
@@ -46,6 +59,13 @@ struct RunArguments {
   bool quiet = false;
   RunMethods methods = RunMethods::several;
 };
+
+/// Adds MODEL, the shortcuts, --set and --quiet to a command.
+/// @param arguments  filled when the command line is parsed; must stay where it is
+void add_model_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts);
+
+/// The model with the settings and shortcuts applied.
+[[nodiscard]] Expected<ModelInput> stated_model(const RunArguments& arguments);
 
 /// Adds MODEL, the shortcuts, --set, --out, --report and --quiet to a command.
 /// @param arguments  filled when the command line is parsed; must stay where it is

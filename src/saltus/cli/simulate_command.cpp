@@ -11,16 +11,6 @@
 namespace saltus::cli {
 namespace {
 
-constexpr std::array simulate_shortcuts{
-    until_shortcut,
-    Shortcut{"--method", "simulate.method", "METHOD", "event, fesd, timestepping or smoothed"},
-    Shortcut{"--rtol", "simulate.rtol", "R", "relative tolerance"},
-    Shortcut{"--atol", "simulate.atol", "A", "absolute tolerance"},
-    Shortcut{"--integrator", "simulate.event.integrator", "I", "dopri5, dop853, radau5 or taylor"},
-    Shortcut{"--branch", "simulate.event.branches", "report|all|K",
-             "report, all or K: follow other admissible motions, at most K trajectories"},
-};
-
 constexpr const char* simulate_footer =
     "--set simulate.KEY=VALUE reaches every key of [simulate]: saltus simulate --help-all lists them.\n"
     "\nExample:\n  saltus simulate stick-slip --until 20 --set belt=0.3 --out stick-slip.json --report "
@@ -42,7 +32,9 @@ Command add_simulate(CLI::App& app) {
   command->add_option("--events", arguments->events, "events in the table: N at each end (10), or all")
       ->type_name("N|all");
   command->footer(simulate_footer);
-  return {"simulate", [arguments] { return run_model("simulate", *arguments, pipeline::simulate); }, all_keys()};
+  const auto compute = [](const model::System& system, const pipeline::SimulateOptions& options,
+                          const pipeline::Observers& observers) { return pipeline::simulate(system, options, observers); };
+  return {"simulate", [arguments, compute] { return run_model("simulate", *arguments, compute); }, all_keys()};
 }
 
 }  // namespace saltus::cli

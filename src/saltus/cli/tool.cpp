@@ -81,7 +81,7 @@ ExitCode run(int argc, char** argv) {
   app.footer("Example:\n  saltus simulate stick-slip");
   app.get_formatter()->column_width(26);
   const std::vector<Command> commands{
-      add_simulate(app),    add_optimize(app), add_compare(app),    add_order(app),          add_check(app),
+      add_simulate(app),    add_sweep(app),    add_optimize(app), add_compare(app),    add_order(app),          add_check(app),
       add_mpcc(app),        add_models(app),   add_report(app),     add_diff(app),           add_new(app),
       add_cite(app),        add_schema(app),   add_completion(app), add_complete_names(app), add_man_page(app),
       add_options_page(app)};

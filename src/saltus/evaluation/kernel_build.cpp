@@ -73,6 +73,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
 
   const RootLimits limited = limit_roots(free.f, phi(casadi::Slice(0, n_psi)), symbols(), system.parameter_values);
   free.f = limited.f;
+  by_values = limited.by_values;
   rooted = limited.rooted;
   continued_roots = limited.continued;
   const std::vector<SX> arguments{t, x, p, alpha};

@@ -68,7 +68,8 @@ struct ModelKernel::Implementation {
   std::vector<casadi::SX> rootless;             ///< event functions with limited roots
   std::vector<std::vector<bool>> roots_inside;  ///< of these, by switching function
   std::map<int, int> rootless_numbers;          ///< of these, by event function
-  std::size_t fixed_parameters = 0;             ///< the first of `parameters`: never changed
+  std::size_t fixed_parameters = 0;             ///< the first of `parameters`: changed by set_parameters() only
+  bool by_values = false;                       ///< expressions may depend on their values
   Motion free;
   std::vector<HeldGuard> jump_guards;  ///< by event function, from first_jump_guard on
   int first_jump_guard = 0;

@@ -1,4 +1,5 @@
 // The right-hand side: free, or with guards of jumps held at zero.
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -71,6 +72,19 @@ Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
   }
   self.field_use.motion = self.motion = &known->second;
   return {};
+}
+
+bool ModelKernel::set_parameters(const std::vector<double>& values) {
+  auto& self = *implementation_;
+  SALTUS_ASSERT(values.size() == self.fixed_parameters);
+  if (self.by_values || !self.rootless.empty() || !self.regions.groups().empty()) return false;
+  std::copy(values.begin(), values.end(), self.parameters.begin());
+  for (int cell = 0; cell < self.cells.size(); ++cell) self.cells.move(cell, 0, self.parameters);
+  for (auto& gradient : self.gradients) gradient.constant.clear();
+  self.free.linear_always.reset();
+  for (auto& [functions, motion] : self.held) motion.linear_always.reset();
+  self.field_use.motion = self.motion = &self.free;
+  return true;
 }
 
 void ModelKernel::hold_pressure(double t, const double* x, const double* alpha, double* pressure) const {

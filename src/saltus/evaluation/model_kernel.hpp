@@ -96,6 +96,11 @@ class ModelKernel {
   /// and cannot be had.
   [[nodiscard]] static Expected<ModelKernel> compile(const model::System& system, NativeCode native = NativeCode::off);
 
+  /// The kernel of a system with the same structure (model::structure) and these parameters, as if it was just compiled
+  /// and bit by bit; what was compiled stays.
+  /// @return false, and nothing has changed, where expressions depend on values (roots) or on what was before.
+  [[nodiscard]] bool set_parameters(const std::vector<double>& values);
+
   ModelKernel(ModelKernel&&) noexcept;
   ModelKernel& operator=(ModelKernel&&) noexcept;
   ~ModelKernel();

@@ -306,12 +306,14 @@ class Limiter {
 
 RootLimits limit_roots(const SX& f, const SX& psi, const ModelSymbols& symbols, const std::vector<double>& parameters) {
   const std::vector<bool> none(at(psi.numel()), false);
-  RootLimits unchanged{f, none, none};
+  RootLimits unchanged{f, none, none, false};
   if (psi.numel() == 0 || f.numel() == 0) return unchanged;
   const casadi::Function tape("tape", {symbols.t, symbols.x, symbols.p, symbols.alpha}, {SX::densify(f)});
   if (!has_roots(tape)) return unchanged;
   Limiter limiter(tape, psi, symbols, parameters);
-  return limiter.run() ? limiter.result() : unchanged;
+  auto limited = limiter.run() ? limiter.result() : unchanged;
+  limited.by_values = true;
+  return limited;
 }
 
 }  // namespace saltus::evaluation

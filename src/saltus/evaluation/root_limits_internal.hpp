@@ -14,6 +14,7 @@ struct RootLimits {
   casadi::SX f;
   std::vector<bool> rooted;     ///< n_psi: whether a root of something that is 0 with psi_j was found in f
   std::vector<bool> continued;  ///< n_psi: and whether it is 0 beyond the surface of its region
+  bool by_values = false;       ///< f has roots: what became of them may depend on the values of parameters
 };
 
 /// Replaces sqrt(e) and e^q, q > 0 no integer, by

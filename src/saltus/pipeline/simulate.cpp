@@ -236,7 +236,7 @@ result::Result frame(const model::System& system, const SimulateOptions& options
 }  // namespace
 
 Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
-                                  const Observers& observers) {
+                                  const Observers& observers, KernelStore* kernels) {
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   if (options.method == Method::fesd || options.method == Method::timestepping) {
@@ -249,15 +249,17 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   if (!integrand_or) return tl::unexpected(integrand_or.error());
   integration_or->layers = integrand_or->layers();
   integration_or->output.selections = integrand_or->selections();
-  auto kernel = evaluation::ModelKernel::compile(integrand_or->system(), native_code(options.native));
-  if (!kernel) return tl::unexpected(kernel.error());
+  KernelStore of_this_run;
+  if (kernels == nullptr) kernels = &of_this_run;
+  auto kept = kernels->take(integrand_or->system(), native_code(options.native));
+  if (!kept) return tl::unexpected(kept.error());
 
   auto integration = *integration_or;
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
     const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;
     auto run =
-        integrand_or->restated(event_integrator::integrate(*kernel, integrand_or->system(), integration, observer));
+        integrand_or->restated(event_integrator::integrate(kept->kernel, integrand_or->system(), integration, observer));
     Followed followed{frame(system, options), std::move(run.branch_points), std::move(run.family_numbers), run.chosen};
     auto& result = followed.result;
     result.families = std::move(run.families);
@@ -272,7 +274,9 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
     begin = end;
     return followed;
   };
-  return follow_branches(run_one, {options.event.trajectories, options.event.members});
+  auto result = follow_branches(run_one, {options.event.trajectories, options.event.members});
+  kernels->give_back(std::move(*kept));
+  return result;
 }
 
 }  // namespace saltus::pipeline

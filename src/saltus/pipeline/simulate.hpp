@@ -1,9 +1,14 @@
 // Model in, trajectory out.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <mutex>
+#include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate_options.hpp"
 #include "saltus/result/result.hpp"
@@ -26,10 +31,32 @@ struct Observers {
   std::function<Proceed(const StepRecord&)> on_step;  ///< may be empty; `stop` ends with stopped_by_user
 };
 
+/// Kernels that were compiled before, for runs of systems with the same structure: of one model with other parameters
+/// and initial values. For any number of threads.
+class KernelStore {
+ public:
+  struct Kept {
+    std::vector<std::uint64_t> structure;
+    evaluation::NativeCode native = evaluation::NativeCode::off;
+    evaluation::ModelKernel kernel;
+  };
+  /// A kernel of the system: one that waits here, or a new one; as of ModelKernel::compile. Results are the same.
+  [[nodiscard]] Expected<Kept> take(const model::System& system, evaluation::NativeCode native);
+  void give_back(Kept kept);
+
+ private:
+  /// More than threads that run at a time; what is beyond is dropped.
+  static constexpr std::size_t most_kept = 64;
+  std::mutex mutex_;
+  std::vector<Kept> waiting_;
+  std::size_t next_ = 0;  ///< to be changed for a newer one
+};
+
 /// Simulates a system with the chosen method; follows other admissible modes if asked to (EventOptions::trajectories).
+/// @param kernels  from earlier runs, and for later ones; may be null
 /// @return the result whatever the numerics did (see Result::status); an Error only for options that do not fit the
 ///         system (unknown names in initial_mode, until not after from, a method that is not available).
 [[nodiscard]] Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
-                                                const Observers& observers = {});
+                                                const Observers& observers = {}, KernelStore* kernels = nullptr);
 
 }  // namespace saltus::pipeline

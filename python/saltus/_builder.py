@@ -1,0 +1,247 @@
+"""Models stated in Python."""
+
+from __future__ import annotations
+
+import json
+import typing
+
+from ._expression import Expression, Operand, expression, owner_of, refuse
+from ._model import Model
+from ._result import Result
+from ._settings import Value
+
+Rates = typing.Mapping[typing.Any, Operand]
+
+
+class Builder:
+    """States a model step by step, in the names and rules of model files.
+
+    >>> m = saltus.Builder("brake")
+    >>> mu = m.parameter("mu", 2)
+    >>> x, v = m.state("x", 0), m.state("v", 3)
+    >>> m.rate(x, v)
+    >>> m.rate(v, -0.4*x - mu*saltus.sign(v))
+    >>> r = m.simulate(until=6)
+    >>> r.status, [e.kind for e in r.events]
+    ('completed', ['enter_sliding'])
+
+    What is stated is the text of a model file: :meth:`to_toml`. Expressions that switch are functions of this package
+    (``saltus.sign``, ``saltus.if_``, ``saltus.max``), conditions are joined by ``& | ~``.
+    """
+
+    def __init__(self, name: str, description: str = "", inclusion: str | None = None) -> None:
+        self.name = name
+        self._model: dict[str, Value] = {"name": name}
+        if description:
+            self._model["description"] = description
+        if inclusion is not None:
+            self._model["inclusion"] = inclusion
+        self._taken: set[str] = set()
+        self._parts: dict[str, dict[str, typing.Any]] = {
+            part: {}
+            for part in ("parameters", "states", "controls", "definitions", "switching", "dynamics", "outputs", "tables")
+        }
+        self._modes: list[dict[str, typing.Any]] = []
+        self._jumps: list[dict[str, typing.Any]] = []
+        self._events: list[dict[str, typing.Any]] = []
+        self._inputs: dict[str, Expression] = {}
+
+    # Names ---------------------------------------------------------------------------------------------------------
+
+    def parameter(self, name: str, value: Operand) -> Expression:
+        """A constant that ``set`` may change."""
+        return self._declare("parameters", name, self._own(value))
+
+    def state(self, name: str, initial: Operand, *, lower: Operand = None, upper: Operand = None) -> Expression:
+        """A state with its initial value; bounds matter to optimisation only."""
+        return self._declare("states", name, self._bounded(initial, lower, upper))
+
+    def control(self, name: str, initial: Operand = 0, *, lower: Operand = None, upper: Operand = None) -> Expression:
+        """A control, constant unless it has an :meth:`input`."""
+        return self._declare("controls", name, self._bounded(initial, lower, upper))
+
+    def define(self, name: str, value: Operand) -> Expression:
+        """A name for an expression."""
+        return self._declare("definitions", name, self._own(value))
+
+    def switching(self, name: str, psi: Operand) -> Expression:
+        """A name for a switching function: that of its column in results, and of psi in expressions."""
+        return self._declare("switching", name, self._own(psi))
+
+    def table(
+        self, name: str, x: typing.Sequence[float], y: typing.Sequence[float], kind: str = "linear"
+    ) -> typing.Callable[[Operand], Expression]:
+        """A function through points, "linear" or "cubic" between them, constant outside.
+
+        >>> m = saltus.Builder("m")
+        >>> road = m.table("road", [0, 1, 2], [0, 0.1, 0])
+        >>> road(m.state("s", 0))
+        road(s)
+        """
+        self._declare("tables", name, {"x": [float(v) for v in x], "y": [float(v) for v in y], "kind": kind})
+
+        def value(argument: Operand) -> Expression:
+            made = self._own(argument)
+            return Expression(f"{name}({made.text})", owner=self)
+
+        return value
+
+    # What happens --------------------------------------------------------------------------------------------------
+
+    def rate(self, state: Expression | str, value: Operand) -> None:
+        """The derivative of a state with respect to time; once for every state."""
+        name = self._state(state)
+        if name in self._parts["dynamics"]:
+            raise refuse(f"the state '{name}' has two rates", "add them: m.rate(x, a + b)")
+        self._parts["dynamics"][name] = self._own(value)
+
+    def output(self, name: str, value: Operand) -> None:
+        """A quantity that results have beside the states."""
+        self._declare("outputs", name, self._own(value))
+
+    def input(self, control: Expression | str, value: Operand) -> None:
+        """A control during simulations, an expression of time and parameters."""
+        self._inputs[self._name_in("controls", control)] = self._own(value)
+
+    def event(
+        self, when: Expression, *, name: str | None = None, direction: str | None = None, stop: bool = False
+    ) -> None:
+        """Records the zeros of an expression, or the edges of a condition; `direction` is "up", "down" or "both"."""
+        entry = {"when": self._own(when), "name": name, "direction": direction, "stop": stop or None}
+        self._events.append(_given(entry))
+
+    def mode(self, when: Expression, rates: Rates, *, group: str | None = None) -> None:
+        """Rates that hold, added to others, where a condition does; the modes of a group cover everything once."""
+        self._modes.append(_given({"when": self._own(when), "group": group, "dynamics": self._rates(rates)}))
+
+    def otherwise(self, rates: Rates, *, group: str | None = None) -> None:
+        """The mode that holds where no other one of its group does."""
+        self._modes.append(_given({"when": "otherwise", "group": group, "dynamics": self._rates(rates)}))
+
+    def region(
+        self, indicator: Operand, rates: Rates, *, name: str | None = None, group: str | None = None
+    ) -> None:
+        """A mode that holds where its indicator is the smallest one of its group."""
+        entry = {"name": name, "indicator": self._own(indicator), "group": group, "dynamics": self._rates(rates)}
+        self._modes.append(_given(entry))
+
+    def jump(
+        self,
+        when: Expression | None = None,
+        set: Rates = {},
+        *,
+        direction: str | None = None,
+        at: typing.Sequence[Operand] | None = None,
+        every: Operand = None,
+        name: str | None = None,
+        at_start: bool = False,
+        priority: Operand = None,
+        delay: Operand = None,
+        persistent: bool = True,
+        values: str | None = None,
+    ) -> None:
+        """Gives states new values, all at once: when a condition becomes true, when an expression passes 0 in a
+        `direction`, `at` given times, or `every` so often. All keys: docs/model-file.md."""
+        entry = {
+            "when": None if when is None else self._own(when),
+            "direction": direction,
+            "at": None if at is None else [self._own(time) for time in at],
+            "every": None if every is None else self._own(every),
+            "set": self._rates(set),
+            "name": name,
+            "at_start": at_start or None,
+            "priority": None if priority is None else self._own(priority),
+            "delay": None if delay is None else self._own(delay),
+            "persistent": None if persistent else False,
+            "values": values,
+        }
+        self._jumps.append(_given(entry))
+
+    # What becomes of it --------------------------------------------------------------------------------------------
+
+    def to_toml(self) -> str:
+        """The model file that states the same."""
+        parts = [f"[model]\n{_lines(self._model)}"]
+        for part in ("parameters", "states", "controls", "definitions", "switching", "dynamics"):
+            if self._parts[part]:
+                parts.append(f"[{part}]\n{_lines(self._parts[part])}")
+        for part, entries in (("modes", self._modes), ("jumps", self._jumps), ("events", self._events)):
+            parts.extend(f"[[{part}]]\n{_lines(entry)}" for entry in entries)
+        if self._parts["outputs"]:
+            parts.append(f"[outputs]\n{_lines(self._parts['outputs'])}")
+        parts.extend(f"[tables.{name}]\n{_lines(table)}" for name, table in self._parts["tables"].items())
+        if self._inputs:
+            parts.append(f"[simulate]\n{_lines({'inputs': self._inputs})}")
+        return "\n".join(parts)
+
+    def model(self) -> Model:
+        """The model, to be simulated. Raises :class:`ModelError` for what is missing."""
+        moved = {name for entry in self._modes for name in entry["dynamics"]}
+        for name in self._parts["states"]:
+            if name not in self._parts["dynamics"] and name not in moved:
+                raise refuse(f"the state '{name}' has no rate", f"state it: m.rate({name}, …)")
+        return Model.from_text(self.to_toml(), f"<{self.name}>")
+
+    def simulate(self, until: float | None = None, **options: typing.Any) -> Result:
+        """:meth:`Model.simulate` of :meth:`model`."""
+        return self.model().simulate(until, **options)
+
+    # Checks --------------------------------------------------------------------------------------------------------
+
+    def _declare(self, part: str, name: str, value: typing.Any) -> Expression:
+        if name in self._taken and part != "outputs":
+            raise refuse(f"the name '{name}' is taken", "every name of a model is declared once")
+        self._taken.add(name)
+        self._parts[part][name] = value
+        return Expression(name, owner=self)
+
+    def _own(self, value: Operand) -> Expression:
+        made = expression(value)
+        owner_of(Expression("", owner=self), made)
+        return made
+
+    def _bounded(self, initial: Operand, lower: Operand, upper: Operand) -> typing.Any:
+        if lower is None and upper is None:
+            return self._own(initial)
+        given = _given({"initial": initial, "lower": lower, "upper": upper})
+        return {name: self._own(value) for name, value in given.items()}
+
+    def _name_in(self, part: str, name: Expression | str) -> str:
+        text = name.text if isinstance(name, Expression) else name
+        if isinstance(name, Expression):
+            self._own(name)
+        if text not in self._parts[part]:
+            known = ", ".join(self._parts[part]) or "none"
+            raise refuse(f"'{text}' is none of the {part} of this builder", f"known: {known}")
+        return text
+
+    def _state(self, state: Expression | str) -> str:
+        return self._name_in("states", state)
+
+    def _rates(self, rates: Rates) -> dict[str, Expression]:
+        return {self._state(state): self._own(value) for state, value in rates.items()}
+
+    def __repr__(self) -> str:
+        return f"<saltus.Builder {self.name!r}: {', '.join(self._parts['states'])}>"
+
+
+def _given(entries: dict[str, typing.Any]) -> dict[str, typing.Any]:
+    return {name: value for name, value in entries.items() if value is not None}
+
+
+def _lines(entries: typing.Mapping[str, typing.Any]) -> str:
+    return "".join(f"{name} = {_toml(value)}\n" for name, value in entries.items())
+
+
+def _toml(value: typing.Any) -> str:
+    if isinstance(value, Expression):
+        return json.dumps(value.text, ensure_ascii=False)
+    if isinstance(value, typing.Mapping):
+        return "{ " + ", ".join(f"{name} = {_toml(entry)}" for name, entry in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(entry) for entry in value) + "]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    return json.dumps(str(value), ensure_ascii=False)

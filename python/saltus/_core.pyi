@@ -1,0 +1,131 @@
+"""The extension module: what the Python of the package calls."""
+
+import typing
+
+import numpy as np
+from numpy.typing import NDArray
+
+version: str
+Floats = NDArray[np.float64]
+Option = tuple[str, str, str]
+
+class Alternative:
+    mode: list[int]
+    alpha: Floats
+    regions: list[list[str]]
+
+class Event:
+    t: float
+    kind: str
+    name: str | None
+    surfaces: list[str]
+    mode_before: list[int] | None
+    mode_after: list[int] | None
+    alpha_before: Floats | None
+    alpha_after: Floats | None
+    regions_before: list[list[str]] | None
+    regions_after: list[list[str]] | None
+    x: Floats
+    x_after: Floats
+    unique: bool | None
+    alternatives: list[Alternative]
+    reason: str
+
+class Run:
+    model: str
+    description: str
+    parameters: list[tuple[str, float]]
+    command: str
+    method: str
+    states: list[str]
+    controls: list[str]
+    output_names: list[str]
+    switching_functions: list[str]
+    regions: list[str]
+    termination: str
+    done: bool
+    message: str
+    time_reached: float
+    t: Floats
+    x: Floats
+    u: Floats
+    alpha: Floats
+    mode: NDArray[np.int32]
+    outputs: Floats
+    theta: Floats
+    events: list[Event]
+    final: dict[str, typing.Any]
+    branches: list[Run]
+    sensitivities: dict[str, typing.Any] | None
+    def table(self) -> str: ...
+    def json(self, surfaces: bool) -> str: ...
+    def page(self) -> str: ...
+    def save(self, path: str) -> None: ...
+
+class Model:
+    name: str
+    description: str
+    path: str
+    method: str
+    can_optimize: bool
+    @typing.overload
+    def __init__(self, model: str) -> None: ...
+    @typing.overload
+    def __init__(self, text: str, name: str) -> None: ...
+    def simulate(
+        self,
+        settings: list[str],
+        options: list[Option],
+        progress: typing.Callable[..., None] | None,
+        warnings: list[str],
+    ) -> Run: ...
+    def compare(
+        self,
+        settings: list[str],
+        options: list[Option],
+        progress: typing.Callable[..., None] | None,
+        warnings: list[str],
+    ) -> Run: ...
+    def order(
+        self,
+        settings: list[str],
+        options: list[Option],
+        progress: typing.Callable[..., None] | None,
+        warnings: list[str],
+        schemes: str,
+        steps: str,
+    ) -> Run: ...
+    def optimize(
+        self,
+        settings: list[str],
+        options: list[Option],
+        start: str,
+        on_step: typing.Callable[[str], None] | None,
+        warnings: list[str],
+    ) -> Run: ...
+    def sweep(
+        self,
+        settings: list[str],
+        options: list[Option],
+        over: list[str],
+        paired: bool,
+        samples: list[str],
+        runs: int | None,
+        seed: int,
+        keep: str,
+        jobs: int,
+        progress: typing.Callable[[float, float], None] | None,
+        warnings: list[str],
+    ) -> tuple[dict[str, typing.Any], list[Run], list[str]]: ...
+    def check(self, settings: list[str]) -> str: ...
+
+def run_tool(arguments: list[str]) -> int: ...
+def models() -> list[str]: ...
+def find_catalogue(name: str) -> str: ...
+def set_shared_folder(folder: str) -> None: ...
+def write_file(path: str, content: str) -> None: ...
+def plotly_source() -> str: ...
+def simulate_keys() -> list[str]: ...
+def optimize_keys() -> list[str]: ...
+def load(path: str) -> Run: ...
+def parse_result(text: str) -> Run: ...

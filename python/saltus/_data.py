@@ -1,0 +1,34 @@
+"""Results as tables of pandas and data sets of xarray."""
+
+from __future__ import annotations
+
+import typing
+
+import numpy as np
+
+if typing.TYPE_CHECKING:
+    from ._result import Result
+
+
+def frame(r: Result) -> typing.Any:
+    """A row for every row of the result, with the time as its index."""
+    from ._result import needed
+
+    pandas = needed("pandas", "data")
+    columns = {name: np.array(r[name]) for name in r.names if name != "t"}
+    return pandas.DataFrame(columns, index=pandas.Index(np.array(r.t), name="t"))
+
+
+def dataset(r: Result) -> typing.Any:
+    """Variables over `row`, of which `t` is a coordinate: two rows of one time, before and behind an event, stay two."""
+    from ._result import needed
+
+    xarray = needed("xarray", "data")
+    variables = {name: ("row", np.array(r[name])) for name in r.names if name != "t"}
+    attributes = {
+        "model": r.model,
+        "method": r.method,
+        "status": str(r.status),
+        **{f"parameter.{name}": value for name, value in r.parameters.items()},
+    }
+    return xarray.Dataset(variables, coords={"t": ("row", np.array(r.t))}, attrs=attributes)

@@ -1,0 +1,85 @@
+"""Pictures by matplotlib."""
+
+from __future__ import annotations
+
+import typing
+
+from ._shape import broken_at_jumps, slides, sliding_spans
+
+if typing.TYPE_CHECKING:
+    from ._result import Result
+
+SLIDING = "#d95f02"
+LINE = "#1f5fa8"
+MARKS = {
+    "crossing": ("|", "#555555"),
+    "enter_sliding": (">", SLIDING),
+    "leave_sliding": ("<", SLIDING),
+    "change_sliding": ("D", SLIDING),
+    "jump": ("o", "#7570b3"),
+    "accumulation": ("*", "#e7298a"),
+    "user": ("^", "#1b9e77"),
+}
+
+
+def _matplotlib() -> typing.Any:
+    from ._result import needed
+
+    needed("matplotlib", "plot")
+    return needed("matplotlib.pyplot", "plot")
+
+
+def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typing.Any:
+    """A row of axes for every name; sliding is shaded, every event marked at its value."""
+    pyplot = _matplotlib()
+    wanted = list(names) if names is not None else [*r.states, *r.controls, *r.output_names]
+    columns = {name: r[name] for name in wanted}
+    if axes is None:
+        _, axes = pyplot.subplots(
+            len(wanted), 1, sharex=True, squeeze=False, figsize=(8, 1.2 + 1.4 * len(wanted)), layout="constrained"
+        )
+        axes = axes[:, 0]
+    axes = list(getattr(axes, "flat", [axes]))
+    for axis, (name, column) in zip(axes, columns.items(), strict=True):
+        for begin, end in sliding_spans(r):
+            axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
+        axis.plot(*broken_at_jumps(r, r.t, column), color=LINE, linewidth=1.2)
+        _mark_events(axis, r, column)
+        axis.set_ylabel(name)
+        axis.margins(x=0)
+    axes[0].set_title(r.model)
+    axes[-1].set_xlabel("t")
+    return axes
+
+
+def _mark_events(axis: typing.Any, r: Result, column: typing.Any) -> None:
+    for kind, (mark, colour) in MARKS.items():
+        rows = [_row_before(r, event.t) for event in r.events if event.kind == kind]
+        if rows:
+            axis.plot(r.t[rows], column[rows], mark, color=colour, markersize=5, linestyle="none", label=kind)
+
+
+def _row_before(r: Result, t: float) -> int:
+    return int(r.t.searchsorted(t, side="left"))
+
+
+def phase(r: Result, x: str, y: str, axis: typing.Any) -> typing.Any:
+    """One column over another; where the solution slides the line is thick."""
+    pyplot = _matplotlib()
+    if axis is None:
+        _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")
+    across, up = broken_at_jumps(r, r[x], r[y])
+    axis.plot(across, up, color=LINE, linewidth=1.2)
+    held = slides(r)
+    here, there = r[x].astype(float), r[y].astype(float)
+    here[~held] = float("nan")
+    axis.plot(*broken_at_jumps(r, here, there), color=SLIDING, linewidth=2.6, solid_capstyle="butt")
+    for kind, (mark, colour) in MARKS.items():
+        rows = [_row_before(r, event.t) for event in r.events if event.kind == kind]
+        if rows:
+            axis.plot(r[x][rows], r[y][rows], mark, color=colour, markersize=5, linestyle="none", label=kind)
+    axis.plot(r[x][0], r[y][0], "o", color="black", markersize=4)
+    axis.set_xlabel(x)
+    axis.set_ylabel(y)
+    axis.set_title(r.model)
+    return axis

@@ -1,0 +1,60 @@
+"""What pictures need of a result: curves that break at jumps, spans of sliding, marks of events."""
+
+from __future__ import annotations
+
+import typing
+
+import numpy as np
+
+if typing.TYPE_CHECKING:
+    from ._result import Result
+
+Array = np.ndarray
+
+
+def broken_at_jumps(r: Result, *columns: Array) -> list[Array]:
+    """The columns with a NaN between the two rows of every jump, so that no line joins them."""
+    jumps = sorted({event.t for event in r.events if event.kind == "jump"})
+    if not jumps:
+        return list(columns)
+    # Behind the first row of a time: the other rows of it lie on the other side.
+    places = np.searchsorted(r.t, jumps, side="left") + 1
+    return [np.insert(column.astype(float), places, np.nan) for column in columns]
+
+
+def sliding_spans(r: Result) -> list[tuple[float, float]]:
+    """Intervals of time in which the solution slides on at least one surface, joined where they touch."""
+    if r.mode.shape[1] == 0 or len(r.t) < 2:
+        return []
+    slides = np.any(r.mode == 0, axis=1)
+    # Between two rows the mode is that of both; at an event the rows differ and have no length between them.
+    held = slides[:-1] & slides[1:] & (np.diff(r.t) > 0)
+    spans: list[tuple[float, float]] = []
+    for i in np.flatnonzero(held):
+        begin, end = float(r.t[i]), float(r.t[i + 1])
+        if spans and spans[-1][1] == begin:
+            spans[-1] = (spans[-1][0], end)
+        else:
+            spans.append((begin, end))
+    return spans
+
+
+def slides(r: Result) -> Array:
+    """Of every row, whether the solution slides there."""
+    return np.any(r.mode == 0, axis=1) if r.mode.shape[1] else np.zeros(len(r.t), dtype=bool)
+
+
+def thinned(t: Array, y: Array, most: int) -> tuple[Array, Array]:
+    """At most about `most` points: of every stretch the smallest and the largest value, in their order."""
+    if len(t) <= most:
+        return t, y
+    edges = np.linspace(0, len(t), most // 2 + 1).astype(int)
+    chosen: list[int] = []
+    for begin, end in zip(edges[:-1], edges[1:]):
+        part = y[begin:end]
+        if np.isnan(part).any():
+            chosen.extend(range(begin, end))
+            continue
+        chosen.extend(sorted({begin + int(np.argmin(part)), begin + int(np.argmax(part))}))
+    index = np.array(chosen)
+    return t[index], y[index]

@@ -1,0 +1,69 @@
+"""Many runs of one model, and their table."""
+
+from __future__ import annotations
+
+import typing
+
+import numpy as np
+
+from . import _core
+from ._result import Result, needed
+
+Array = np.ndarray
+
+
+class Sweep:
+    """All runs of a sweep: ``results[i]``, and one table of them.
+
+    ``table`` has a column for the number of the run, for what was changed (``"v(0)"`` for the initial value of a state
+    v), for the status, and what was kept of the runs: values at the end, events, or rows of trajectories.
+    """
+
+    def __init__(self, found: tuple[dict[str, typing.Any], list[_core.Run], list[str]], shape: tuple[int, ...]) -> None:
+        columns, runs, names = found
+        self.table: dict[str, Array] = {name: np.asarray(values) for name, values in columns.items()}
+        self.results: list[Result] = [Result(run) for run in runs]
+        self.names: list[str] = names
+        self._shape = shape
+
+    def __len__(self) -> int:
+        return len(self.results)
+
+    def __getitem__(self, name: str) -> Array:
+        """A column of the table."""
+        return self.table[name]
+
+    @property
+    def done(self) -> bool:
+        """Whether all runs did what was asked."""
+        return all(result.status.done for result in self.results)
+
+    def frame(self) -> typing.Any:
+        """The table as one of pandas."""
+        return needed("pandas", "data").DataFrame(self.table)
+
+    def dataset(self) -> typing.Any:
+        """A data set of xarray: of a grid with its axes as dimensions, else over ``run``. Needs ``keep="final"``."""
+        xarray = needed("xarray", "data")
+        columns = dict(self.table)
+        if len(columns["run"]) != len(self) or len(columns["run"]) and columns["run"][-1] != len(self):
+            raise ValueError('a data set has a value for every run: sweep(..., keep="final")')
+        swept = list(columns)[1 : 1 + len(self.names)]
+        if len(self._shape) != len(swept) or int(np.prod(self._shape)) != len(self):
+            coordinates = {"run": columns.pop("run"), **{name: ("run", columns.pop(name)) for name in swept}}
+            return xarray.Dataset({name: ("run", values) for name, values in columns.items()}, coords=coordinates)
+        coordinates = {}
+        for axis, name in enumerate(swept):
+            values = columns.pop(name).reshape(self._shape)
+            coordinates[name] = np.moveaxis(values, axis, 0).reshape(self._shape[axis], -1)[:, 0]
+        return xarray.Dataset(
+            {name: (swept, values.reshape(self._shape)) for name, values in columns.items()}, coords=coordinates
+        )
+
+    def __repr__(self) -> str:
+        counts: dict[str, int] = {}
+        for result in self.results:
+            counts[str(result.status)] = counts.get(str(result.status), 0) + 1
+        return f"<saltus.Sweep of {len(self)} runs over {', '.join(self.names)}: " + ", ".join(
+            f"{count} {status}" for status, count in sorted(counts.items())
+        ) + ">"

@@ -1,0 +1,75 @@
+// A model file as Python holds it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+
+#include "errors.hpp"
+#include "saltus/cli/model_input.hpp"
+#include "saltus/cli/run_command.hpp"
+#include "saltus/model/build.hpp"
+#include "saltus/pipeline/simulate.hpp"
+
+namespace saltus::python {
+
+/// An option, as the tool spells it, its value as text, and what was written in Python: for messages.
+using Option = std::tuple<std::string, std::string, std::string>;
+
+/// What a call of Python asks for beside the model file.
+struct Request {
+  std::vector<std::string> settings;  ///< NAME=VALUE, as behind --set
+  std::vector<Option> options;
+  cli::RunMethods methods = cli::RunMethods::several;
+};
+
+/// A model file, read once, and the system it was last built into.
+class Model {
+ public:
+  explicit Model(const std::string& model) : input_(value_or_raise(cli::read_input(model, {}))) {}
+  Model(const std::string& text, const std::string& name)
+      : input_{name, value_or_raise(io::parse_model(text, name)), {}} {}
+
+  [[nodiscard]] const cli::ModelInput& input() const { return input_; }
+
+  [[nodiscard]] pipeline::KernelStore& kernels() { return *kernels_; }
+
+  [[nodiscard]] cli::ModelInput stated(const Request& request) const {
+    auto input = input_;
+    for (const auto& setting : request.settings) value_or_raise(cli::apply_setting(input, setting));
+    for (const auto& [key, value, written] : request.options) {
+      value_or_raise(io::set_option(input.file, key, value, {written, 0, 0}));
+      input.settings.push_back(key + "=" + value);
+    }
+    return input;
+  }
+
+  /// The system of a request. Options change nothing of it: one that is asked for with the same settings again is
+  /// there.
+  [[nodiscard]] std::shared_ptr<const model::System> system(const cli::ModelInput& input, const Request& request) {
+    if (built_ && settings_ == request.settings) return built_;
+    auto system = model::build(input.file.description, input.overrides);
+    if (!system) raise(io::located(system.error(), input.file));
+    built_ = std::make_shared<const model::System>(std::move(*system));
+    settings_ = request.settings;
+    return built_;
+  }
+
+ private:
+  cli::ModelInput input_;
+  std::shared_ptr<const model::System> built_;
+  std::vector<std::string> settings_;
+  std::unique_ptr<pipeline::KernelStore> kernels_ = std::make_unique<pipeline::KernelStore>();
+};
+
+inline void append(nanobind::list& warnings, const std::vector<std::string>& more) {
+  for (const auto& warning : more) warnings.append(warning);
+}
+
+void add_sweep(nanobind::class_<Model>& type);
+
+}  // namespace saltus::python

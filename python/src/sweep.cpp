@@ -1,0 +1,103 @@
+#include <atomic>
+#include <optional>
+#include <thread>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "errors.hpp"
+#include "model.hpp"
+#include "parts.hpp"
+#include "result.hpp"
+#include "saltus/cli/sweep_input.hpp"
+#include "saltus/cli/sweep_table.hpp"
+#include "watch.hpp"
+
+namespace nb = nanobind;
+
+namespace saltus::python {
+namespace {
+
+pipeline::Keep keep_named(const std::string& word) {
+  if (word == "final") return pipeline::Keep::final;
+  if (word == "events") return pipeline::Keep::events;
+  if (word == "trajectory") return pipeline::Keep::trajectory;
+  raise({ErrorCode::invalid_option, "keep='" + word + "': expected final, events or trajectory",
+         suggest(word, {"final", "events", "trajectory"}), {}, {}});
+}
+
+/// A column as an array that owns its numbers, or as a list of words.
+nb::object column_of(std::variant<std::vector<double>, std::vector<std::string>> values) {
+  if (auto* words = std::get_if<std::vector<std::string>>(&values)) return nb::cast(std::move(*words));
+  return owned_array(std::move(std::get<std::vector<double>>(values)));
+}
+
+/// What Python asks a sweep for, as the tool spells it.
+struct Sweep {
+  cli::SweepRequest request;
+  std::string keep;
+  std::size_t jobs = 1;
+};
+
+nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::object progress, nb::list warnings) {
+  const auto plan = value_or_raise(cli::SweepPlan::make(what.request));
+  const auto keep = keep_named(what.keep);
+  const auto input = model.stated(asked);
+  const auto first = value_or_raise(cli::input_of_run(input, plan, 0));
+  append(warnings, cli::options_without_effect(first.file));
+  Watch watch{nb::none()};
+  std::atomic<bool> stopped = false;
+  const auto caller = std::this_thread::get_id();
+  pipeline::SweepObservers observers;
+  // Signals are for the thread that called; what it hears holds for all.
+  observers.is_interrupted = [&] {
+    if (std::this_thread::get_id() == caller && watch.look()) stopped = true;
+    return stopped.load();
+  };
+  const auto total = static_cast<double>(plan.runs());
+  if (!progress.is_none()) {
+    observers.on_run = [&](std::size_t done) {
+      if (std::this_thread::get_id() == caller) watch.tell(progress, static_cast<double>(done), total);
+    };
+  }
+  const auto runs = [&] {
+    const nb::gil_scoped_release released;
+    return pipeline::sweep({plan.runs(), keep, what.jobs},
+                           [&](std::size_t run) { return cli::state_run(input, plan, run); }, observers);
+  }();
+  if (!runs) raise(io::located(runs.error(), input.file));
+  nb::dict columns;
+  for (auto& column : cli::sweep_table(plan, *runs, keep)) {
+    columns[nb::str(column.name.c_str())] = column_of(std::move(column.values));
+  }
+  nb::list results;
+  for (const auto& run : *runs) {
+    results.append(nb::cast(Run{std::make_shared<result::Result>(run.result), nullptr, {}, {}, {}, {}, {}, {}}));
+  }
+  nb::object found = nb::make_tuple(columns, results, plan.names());
+  watch.raise_what_came(found);
+  return found;
+}
+
+}  // namespace
+
+void add_sweep(nb::class_<Model>& type) {
+  type.def(
+      "sweep",
+      [](Model& model, std::vector<std::string> settings, std::vector<Option> options, std::vector<std::string> over,
+         bool paired, std::vector<std::string> samples, std::optional<long> runs, std::uint64_t seed, std::string keep,
+         std::size_t jobs, nb::object progress, nb::list warnings) {
+        const Request asked{std::move(settings), std::move(options), cli::RunMethods::chosen};
+        const std::size_t threads = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
+        const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, true}, std::move(keep), threads};
+        return sweep(model, asked, what, std::move(progress), std::move(warnings));
+      },
+      nb::arg("settings"), nb::arg("options"), nb::arg("over"), nb::arg("paired"), nb::arg("samples"),
+      nb::arg("runs").none(), nb::arg("seed"), nb::arg("keep"), nb::arg("jobs"), nb::arg("progress").none(),
+      nb::arg("warnings"));
+}
+
+}  // namespace saltus::python

@@ -1,0 +1,210 @@
+"""Models stated in Python: the same text, the same bits, and what is wrong with them."""
+
+import math
+
+import numpy as np
+import pytest
+
+import saltus
+
+
+def stick_slip():
+    m = saltus.Builder("stick-slip")
+    belt = m.parameter("belt", 0.2)
+    q, v = m.state("q", 0.04), m.state("v", -0.01)
+    slip = m.switching("slip", v - belt)
+    m.rate(q, v)
+    m.rate(v, -q + saltus.if_(slip > 0, -1 / (1 - belt + v), 1 / (1 + belt - v)))
+    return m
+
+
+def dry_friction_oscillator():
+    m = saltus.Builder("dry-friction-oscillator")
+    mu = m.parameter("mu", 0.4)
+    x, v = m.state("x", 3), m.state("v", 0)
+    m.rate(x, v)
+    m.rate(v, -x - mu * saltus.sign(v))
+    return m
+
+
+def bouncing_ball():
+    m = saltus.Builder("bouncing-ball")
+    g, e = m.parameter("g", 9.8), m.parameter("e", 0.9)
+    y, v = m.state("y", 10), m.state("v", 0)
+    m.rate(y, v)
+    m.rate(v, -g)
+    m.jump(y, {v: -e * v}, direction="down", name="bounce")
+    return m
+
+
+def quadrants():
+    m = saltus.Builder("quadrants")
+    x1, x2 = m.state("x1", 0.1), m.state("x2", 0.1)
+    right, upper = m.switching("right", x1), m.switching("upper", x2)
+    m.mode(((right < 0) & (upper > 0)) | ((right > 0) & (upper < 0)), {x1: -0.1 * x1 + x2, x2: -4 * x1 - 0.1 * x2})
+    m.otherwise({x1: -0.1 * x1 + 4 * x2, x2: -x1 - 0.1 * x2})
+    return m
+
+
+def thermostat():
+    m = saltus.Builder("thermostat")
+    outside, power = m.parameter("outside", 18), m.parameter("power", 2)
+    low, high = m.parameter("low", 22), m.parameter("high", 23.5)
+    T, heating = m.state("T", 15), m.state("heating", 1)
+    m.rate(T, -0.1 * (T - outside) + power * heating)
+    m.rate(heating, 0)
+    m.jump(T > high, {heating: 0}, name="too_warm")
+    m.jump(T < low, {heating: 1}, name="too_cold")
+    return m
+
+
+def welander():
+    m = saltus.Builder("welander")
+    mixing_rate, salt_weight = m.parameter("mixing_rate", 5), m.parameter("salt_weight", 1.2)
+    T, S = m.state("T", 0.5), m.state("S", 0.3)
+    dense = m.switching("dense", salt_weight * S - T + 0.01)
+    mixing = m.define("mixing", saltus.if_(dense > 0, mixing_rate, 0))
+    m.rate(T, 1 - T - mixing * T)
+    m.rate(S, (1 - S) / 2 - mixing * S)
+    m.output("density", salt_weight * S - T)
+    return m
+
+
+@pytest.mark.parametrize(
+    "builder", [stick_slip, dry_friction_oscillator, bouncing_ball, quadrants, thermostat, welander], ids=lambda f: f.__name__
+)
+def test_catalogue_models_restated_are_equal_bit_by_bit(builder):
+    shipped = saltus.catalogue(builder.__name__.replace("_", "-"))
+    until = shipped.simulate().t[-1]
+    a, b = shipped.simulate(until, output="steps"), builder().simulate(until, output="steps")
+    assert a.x.tobytes() == b.x.tobytes()
+    assert a.alpha.tobytes() == b.alpha.tobytes()
+    assert a.switching_functions == b.switching_functions
+    assert [(e.t, e.kind, e.name, e.surfaces, e.reason) for e in a.events] == [
+        (e.t, e.kind, e.name, e.surfaces, e.reason) for e in b.events
+    ]
+    # What it wrote is read as the same model again.
+    c = saltus.Model.from_text(builder().to_toml()).simulate(until, output="steps")
+    assert c.x.tobytes() == b.x.tobytes()
+
+
+@pytest.fixture
+def m():
+    m = saltus.Builder("m")
+    m.state("x", 1)
+    m.state("y", 2)
+    return m
+
+
+@pytest.mark.parametrize(
+    ("expression", "text", "value"),
+    [
+        (lambda x, y: x - (y - 3), "x-(y-3)", 2),
+        (lambda x, y: x - y - 3, "x-y-3", -4),
+        (lambda x, y: x + (y + 3), "x+(y+3)", 6),
+        (lambda x, y: x / (y * 3), "x/(y*3)", 1 / 6),
+        (lambda x, y: x / y * 3, "x/y*3", 1.5),
+        (lambda x, y: (x + y) * 3, "(x+y)*3", 9),
+        (lambda x, y: -(x + y), "-(x+y)", -3),
+        (lambda x, y: -(x * y), "-(x*y)", -2),
+        (lambda x, y: -x * y, "-x*y", -2),
+        (lambda x, y: -(x**y), "-x^y", -1),
+        (lambda x, y: (-y) ** 2, "(-y)^2", 4),
+        (lambda x, y: y ** -x, "y^-x", 0.5),
+        (lambda x, y: y**x**y, "y^x^y", 2),
+        (lambda x, y: (y**3) ** y, "(y^3)^y", 64),
+        (lambda x, y: 2**y, "2^y", 4),
+        (lambda x, y: (-2) ** y, "(-2)^y", 4),
+        (lambda x, y: x - (-2), "x--2", 3),
+        (lambda x, y: 1e-9 * x, "1e-9*x", 1e-9),
+        (lambda x, y: np.float64(0.1) * x, "0.1*x", 0.1),
+        (lambda x, y: +y, "+y", 2),
+        (lambda x, y: abs(x - y), "abs(x-y)", 1),
+        (lambda x, y: y % 3, "mod(y,3)", None),
+        (lambda x, y: np.sqrt(y + 2), "sqrt(y+2)", 2),
+        (lambda x, y: saltus.max(x, 3), "max(x,3)", 3),
+        (lambda x, y: saltus.if_((x < 0) | ~(y > 1), 5, saltus.hypot(3, 4)), "if(x<0 or not y>1,5,hypot(3,4))", 5),
+        (lambda x, y: saltus.if_(~((x < 0) & (y > 1)), 5, 6), "if(not (x<0 and y>1),5,6)", 5),
+        (lambda x, y: saltus.pi * x, "pi*x", math.pi),
+        (lambda x, y: np.array([[2.0, 1.0]]) @ np.array([x, y]), "2.0*x+1.0*y", 4),
+    ],
+)
+def test_operators_mean_what_they_mean_in_python(m, expression, text, value):
+    x, y = saltus.Expression("x", owner=m), saltus.Expression("y", owner=m)
+    made = expression(x, y)
+    made = made.item() if isinstance(made, np.ndarray) else made
+    assert made.text == text
+    if value is None:
+        return
+    m.rate("x", 0)
+    m.rate("y", 0)
+    m.output("z", made)
+    assert m.simulate(1e-3)["z"][0] == pytest.approx(value, rel=1e-15)
+
+
+def refused(action, *words):
+    with pytest.raises(saltus.ModelError) as said:
+        action()
+    for word in words:
+        assert word in str(said.value), str(said.value)
+    assert said.value.remedy
+
+
+def test_what_python_must_not_decide(m):
+    x, y = saltus.Expression("x", owner=m), saltus.Expression("y", owner=m)
+    refused(lambda: 1 if x > 0 else 2, "saltus.if_")
+    refused(lambda: (x > 0) and (y > 0), "& |")
+    refused(lambda: 0 < x < 1, "(a < x) & (x < b)")
+    refused(lambda: max(x, y), "saltus.max")
+    refused(lambda: not x, "x > 0")
+    refused(lambda: math.sin(x), "saltus.sin")
+    refused(lambda: float(x), "saltus.sin")
+    refused(lambda: x > 0 & y > 0, "(x > 0) & (y > 0)")
+    refused(lambda: list(x), "arrays")
+    refused(lambda: x + "1", "'1'")
+    refused(lambda: x + float("nan"), "finite")
+    refused(lambda: saltus.max(x), "2 arguments")
+    refused(lambda: saltus.if_(x, 1, 2), "if_")
+
+
+def test_what_a_model_cannot_be(m):
+    x = saltus.Expression("x", owner=m)
+    refused(m.model, "'x' has no rate", "m.rate(x")
+    m.rate(x, 1)
+    refused(lambda: m.rate(x, 2), "two rates")
+    refused(lambda: m.rate("z", 2), "'z'", "x, y")
+    refused(lambda: m.parameter("x", 2), "taken")
+    other = saltus.Builder("other")
+    a = other.state("a", 0)
+    refused(lambda: m.rate("y", a), "another builder")
+    refused(lambda: x + a, "another builder")
+    refused(lambda: m.rate(a, 1), "another builder")
+    m.rate("y", x)
+    m.state("bad name", 0)
+    m.rate("bad name", 0)
+    with pytest.raises(saltus.ModelError):
+        m.model()
+
+
+def test_tables_inputs_events_and_regions():
+    m = saltus.Builder("all", "what there is")
+    s, w = m.state("s", 0.0), m.state("w", 0.5)
+    u = m.control("u", 1, lower=-1, upper=1)
+    road = m.table("road", [0, 1, 2], [0, 1, 0])
+    m.rate(s, u)
+    m.rate(w, road(s) - w)
+    m.input(u, saltus.cos(saltus.t))
+    m.event(w - 0.4, name="low", direction="down")
+    m.event(s > 0.5, name="far", stop=True)
+    m.region((s - 1) ** 2, {s: 0.0}, name="near")
+    m.region((s + 1) ** 2, {s: 0.1}, name="far_off")
+    r = m.simulate(2)
+    assert r.status == "stopped_by_event"
+    assert r.events[-1].name == "far"
+    assert r["u"].tolist() == np.cos(r.t).tolist()
+    m = saltus.Builder("clock")
+    n = m.state("n", 0)
+    m.rate(n, 0)
+    m.jump(set={n: n + 1}, every=0.5)
+    m.jump(set={n: n * 10}, at=[1.25])
+    assert m.simulate(2.1).final["n"] == 22

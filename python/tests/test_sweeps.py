@@ -1,0 +1,148 @@
+"""Sweeps: tables that do not depend on threads, equal to single runs, told what is wrong."""
+
+import subprocess
+
+import numpy as np
+import pytest
+
+import saltus
+
+
+def run_tool(tool, folder, *arguments, code=0):
+    done = subprocess.run([tool, "sweep", *arguments], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == code, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+@pytest.fixture(scope="module")
+def slip():
+    return saltus.catalogue("stick-slip")
+
+
+def test_every_run_is_the_run_alone(slip):
+    s = slip.sweep({"v": [-0.1, 0.0]}, belt=[0.1, 0.2, 0.3], until=5, keep="trajectory", jobs=2)
+    assert s.names == ["v", "belt"]
+    assert s["v(0)"][0] == -0.1
+    i = 0
+    for v in (-0.1, 0.0):
+        for belt in (0.1, 0.2, 0.3):
+            alone = saltus.catalogue("stick-slip").simulate(until=5, set={"v": v, "belt": belt})
+            assert s.results[i].x.tobytes() == alone.x.tobytes()
+            assert [e.t for e in s.results[i].events] == [e.t for e in alone.events]
+            assert s.results[i].to_dict()["statistics"]["rhs_evaluations"] == alone.to_dict()["statistics"]["rhs_evaluations"]
+            i += 1
+
+
+@pytest.mark.parametrize("name", ["bouncing-ball", "relay-feedback", "two-belts", "quarter-car", "super-twisting", "thermostat"])
+def test_kernels_that_are_used_again_give_the_same_bits(name):
+    """Parameters change in a kernel that has run before; a fresh model compiles its own."""
+    used = saltus.catalogue(name)
+    parameters = used.simulate(max_steps=5).parameters
+    values = [{}, *({parameter: value * 1.0625} for parameter, value in parameters.items()), {}]
+    for setting in values:
+        try:
+            fresh = saltus.catalogue(name).simulate(set=setting, max_steps=400)
+        except saltus.ModelError:
+            continue
+        again = used.simulate(set=setting, max_steps=400)
+        assert again.x.tobytes() == fresh.x.tobytes(), setting
+        assert str(again.status) == str(fresh.status)
+        assert again.to_dict()["statistics"]["rhs_evaluations"] == fresh.to_dict()["statistics"]["rhs_evaluations"]
+
+
+def test_the_table_does_not_depend_on_threads(tool, tmp_path):
+    arguments = ["stick-slip", "--until", "4", "--over", "belt=0.05:0.3:20", "--sample", "v=normal(0,0.1)",
+                 "--sample", "q=uniform(-1,1)", "--runs", "10", "--seed", "7"]
+    for keep in ("final", "events", "trajectory"):
+        for jobs in ("1", "3"):
+            run_tool(tool, tmp_path, *arguments, "--keep", keep, "--jobs", jobs, "--out", f"{jobs}.csv", "--quiet")
+        assert (tmp_path / "1.csv").read_bytes() == (tmp_path / "3.csv").read_bytes()
+    run_tool(tool, tmp_path, *arguments, "--out", "a.csv")
+    header, *rows = (tmp_path / "a.csv").read_text().splitlines()
+    assert header == "run,belt,v(0),q(0),status,t,q,v,events"
+    cells = [row.split(",") for row in rows]
+    belts = list(dict.fromkeys(float(row[1]) for row in cells))
+    assert belts == pytest.approx(np.linspace(0.05, 0.3, 20), rel=1e-15)
+    table = saltus.catalogue("stick-slip").sweep(
+        {"belt": belts}, until=4, sample={"v": "normal(0,0.1)", "q": "uniform(-1,1)"}, runs=10, seed=7
+    )
+    assert len(rows) == len(table) == 200
+    assert [float(row[6]) for row in cells] == table["q"].tolist()
+    samples = np.array([float(row[3]) for row in cells])
+    assert samples.min() >= -1 and samples.max() <= 1 and len(set(samples)) == 200
+    other = run_tool(tool, tmp_path, *arguments[:-1], "8", "--out", "b.csv")
+    assert "200 completed" in other
+    assert (tmp_path / "b.csv").read_bytes() != (tmp_path / "a.csv").read_bytes()
+
+
+def test_pairs_and_archives(tool, tmp_path):
+    out = run_tool(tool, tmp_path, "stick-slip", "--until", "3", "--over", "belt=0.1,0.2,0.3", "--over", "v=0:0.2:3",
+                   "--zip", "--out", "s.npz")
+    assert "3 completed" in out
+    table = np.load(tmp_path / "s.npz")
+    assert table["belt"].tolist() == [0.1, 0.2, 0.3]
+    assert table["v(0)"].tolist() == [0.0, 0.1, 0.2]
+    assert table["status"].tolist() == ["completed"] * 3
+    run_tool(tool, tmp_path, "stick-slip", "--over", "simulate.event.integrator=dopri5,dop853", "--until", "3", "--out", "i.csv")
+    assert (tmp_path / "i.csv").read_text().splitlines()[1].startswith("1,dopri5,completed,3,")
+
+
+def test_a_run_that_stops_early_is_a_row(tool, tmp_path):
+    out = run_tool(tool, tmp_path, "stick-slip", "--over", "simulate.max_steps=5,100000", "--until", "3", "--out", "s.csv", code=3)
+    assert "1 of 2 runs stopped early; run 1: iteration_limit" in out
+    rows = [row.split(",") for row in (tmp_path / "s.csv").read_text().splitlines()]
+    assert [row[2] for row in rows] == ["status", "iteration_limit", "completed"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--over", "bellt=1,2"], "did you mean 'belt'"),
+        (["--over", "belt=1:2:0"], "empty range"),
+        (["--over", "belt=1:2:1"], "empty range"),
+        (["--over", "belt=1:2"], "FROM:TO:NUMBER"),
+        (["--over", "belt=1,,2"], "empty value"),
+        (["--over", "belt"], "NAME="),
+        ([], "nothing is changed"),
+        (["--sample", "v=normal(0,0.1)"], "--runs"),
+        (["--over", "belt=1,2", "--runs", "5"], "nothing is sampled"),
+        (["--sample", "v=normal(0,0.1)", "--runs", "0"], "at least 1 run"),
+        (["--sample", "v=normal(0,-1)", "--runs", "5"], "standard deviation"),
+        (["--sample", "v=uniform(1,0)", "--runs", "5"], "lower end"),
+        (["--sample", "v=norml(0,1)", "--runs", "5"], "did you mean 'normal'"),
+        (["--sample", "v=normal(0)", "--runs", "5"], "two numbers"),
+        (["--over", "belt=0:1:10000", "--over", "v=0:1:10000"], "--yes"),
+        (["--over", "belt=1,2", "--over", "belt=1,2"], "changed twice"),
+        (["--over", "belt=1,2", "--over", "v=1,2,3", "--zip"], "--zip"),
+        (["--over", "belt=1,2", "--keep", "everything"], "final, events or trajectory"),
+        (["--over", "belt=1,2", "--jobs", "-1"], "--jobs"),
+        (["--over", "belt=1,x"], "run 2 of 2"),
+    ],
+)
+def test_what_is_wrong(tool, tmp_path, arguments, words):
+    out = run_tool(tool, tmp_path, "stick-slip", "--until", "3", *arguments, "--out", "s.csv", code=2)
+    assert words in out
+    assert not (tmp_path / "s.csv").exists()
+
+
+def test_outputs_that_cannot_be(tool, tmp_path):
+    for out in ("s.txt", "no-folder/s.csv"):
+        run_tool(tool, tmp_path, "stick-slip", "--over", "belt=1,2", "--out", out, code=2)
+    assert "--out" in run_tool(tool, tmp_path, "stick-slip", "--over", "belt=1,2", code=2)
+
+
+def test_in_python(slip):
+    with pytest.raises(saltus.ModelError, match="did you mean 'belt'"):
+        slip.sweep(bellt=[1, 2])
+    with pytest.raises(saltus.ModelError, match="empty list"):
+        slip.sweep(belt=[])
+    s = slip.sweep(belt=np.linspace(0.1, 0.3, 3), rtol=[1e-6, 1e-8], until=3)
+    data = s.dataset()
+    assert data["v"].dims == ("belt", "simulate.rtol")
+    assert data["v"].shape == (3, 2)
+    assert data["v"].sel(belt=0.2, **{"simulate.rtol": 1e-8}).item() == slip.simulate(until=3).final["v"]
+    assert len(s.frame()) == 6
+    events = slip.sweep(belt=[0.1, 0.2], until=5, keep="events")
+    assert len(events["t"]) == sum(len(r.events) for r in events.results)
+    with pytest.raises(ValueError, match="final"):
+        events.dataset()

@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <thread>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "saltus/cli/commands.hpp"
+#include "saltus/cli/interrupt.hpp"
+#include "saltus/cli/run_command.hpp"
+#include "saltus/cli/sweep_input.hpp"
+#include "saltus/cli/sweep_table.hpp"
+#include "saltus/cli/terminal.hpp"
+#include "saltus/io/atomic_file.hpp"
+
+namespace saltus::cli {
+namespace {
+
+using pipeline::Keep;
+
+struct SweepArguments {
+  RunArguments run;
+  SweepRequest request;
+  std::string keep = "final";
+  std::string out;
+  long jobs = 0;
+};
+
+Expected<Keep> keep_named(const std::string& word) {
+  const std::map<std::string, Keep> known{
+      {"final", Keep::final}, {"events", Keep::events}, {"trajectory", Keep::trajectory}};
+  if (const auto found = known.find(word); found != known.end()) return found->second;
+  return tl::unexpected(Error{ErrorCode::invalid_option,
+                              fmt::format("--keep {}: expected final, events or trajectory", word),
+                              suggest(word, {"final", "events", "trajectory"}),
+                              {},
+                              {}});
+}
+
+Expected<std::size_t> jobs_of(long jobs) {
+  if (jobs >= 0 && jobs <= 4096) {
+    return jobs > 0 ? static_cast<std::size_t>(jobs) : std::max(1U, std::thread::hardware_concurrency());
+  }
+  return tl::unexpected(Error{ErrorCode::invalid_option,
+                              fmt::format("--jobs {}: expected a number of threads, 1 to 4096", jobs),
+                              "without it there are as many as processors",
+                              {},
+                              {}});
+}
+
+Expected<void> check_output(const SweepArguments& arguments, const std::string& input) {
+  const auto suffix = std::filesystem::path(arguments.out).extension();
+  if (suffix != ".csv" && suffix != ".npz") {
+    return tl::unexpected(Error{ErrorCode::io_failure,
+                                fmt::format("--out {}: the name must end in .csv or .npz", arguments.out),
+                                "the suffix says what is written",
+                                {},
+                                {}});
+  }
+  std::error_code unknown;
+  if (std::filesystem::equivalent(arguments.out, input, unknown)) {
+    return tl::unexpected(
+        Error{ErrorCode::io_failure, fmt::format("--out {}: this file is the input", arguments.out), "", {}, {}});
+  }
+  return io::check_writable(arguments.out);
+}
+
+/// Zip archives of NumPy's older kind end there.
+constexpr double most_archive_bytes = 4e9;
+
+Expected<void> write_table(const std::string& file, const std::vector<TableColumn>& table) {
+  if (std::filesystem::path(file).extension() == ".csv") return io::write_file(file, to_csv(table));
+  double bytes = 0.0;
+  for (const auto& column : table) {
+    bytes += 64.0 * static_cast<double>(std::visit([](const auto& values) { return values.size(); }, column.values));
+  }
+  if (bytes > most_archive_bytes) {
+    return tl::unexpected(Error{ErrorCode::io_failure, fmt::format("--out {}: the table is too large for .npz", file),
+                                "write .csv, or several sweeps", {}, {}});
+  }
+  return io::write_file(file, to_npz(table));
+}
+
+/// "98 completed, 2 iteration_limit"
+std::string statuses(const std::vector<pipeline::SweepRun>& runs) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& run : runs) ++counts[std::string(result::name(run.result.status.termination))];
+  std::vector<std::string> parts;
+  for (const auto& [status, count] : counts) parts.push_back(fmt::format("{} {}", count, status));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs) {
+  const auto stopped = [](const auto& run) { return !is_done(run.result.status.termination); };
+  const auto first = std::find_if(runs.begin(), runs.end(), stopped);
+  if (first == runs.end()) return ExitCode::done;
+  const auto& status = first->result.status;
+  print_error(fmt::format("{} of {} runs stopped early; run {}: {}{}{}", std::count_if(runs.begin(), runs.end(), stopped),
+                          runs.size(), first - runs.begin() + 1, name(status.termination),
+                          status.message.empty() ? "" : ": ", status.message));
+  return ExitCode::stopped_early;
+}
+
+ExitCode run_sweep(const SweepArguments& arguments) {
+  const auto plan = SweepPlan::make(arguments.request);
+  if (!plan) return refuse(plan.error());
+  const auto keep = keep_named(arguments.keep);
+  if (!keep) return refuse(keep.error());
+  const auto jobs = jobs_of(arguments.jobs);
+  if (!jobs) return refuse(jobs.error());
+  const auto model = stated_model(arguments.run);
+  if (!model) return refuse(model.error());
+  if (auto writable = check_output(arguments, model->path); !writable) return refuse(writable.error());
+  const auto first = input_of_run(*model, *plan, 0);
+  if (!first) return refuse(first.error());
+  for (const auto& warning : options_without_effect(first->file)) print_error(fmt::format("warning: {}", warning));
+
+  catch_interrupt();
+  pipeline::SweepObservers observers;
+  observers.is_interrupted = interrupted;
+  const bool shown = !arguments.run.quiet && ::isatty(STDERR_FILENO) == 1;
+  const std::size_t every = std::max<std::size_t>(1, plan->runs() / 200);
+  if (shown) {
+    observers.on_run = [&](std::size_t done) {
+      if (done % every == 0) fmt::print(stderr, "\r{} of {} runs", done, plan->runs());
+      if (done == plan->runs()) fmt::print(stderr, "\r{:40}\r", "");
+    };
+  }
+  const auto state = [&](std::size_t run) { return state_run(*model, *plan, run); };
+  const auto runs = pipeline::sweep({plan->runs(), *keep, *jobs}, state, observers);
+  if (!runs) return refuse(io::located(runs.error(), model->file));
+  if (auto written = write_table(arguments.out, sweep_table(*plan, *runs, *keep)); !written) {
+    return refuse(written.error());
+  }
+  if (!arguments.run.quiet) print(fmt::format("{} runs: {}\n{}\n", runs->size(), statuses(*runs), arguments.out));
+  return report_stopped_runs(*runs);
+}
+
+}  // namespace
+
+Command add_sweep(CLI::App& app) {
+  auto* command = app.add_subcommand("sweep", "simulate a model with many values and write one table");
+  // Shared: the parser fills it after this function has returned, the command reads it.
+  auto arguments = std::make_shared<SweepArguments>();
+  add_model_options(*command, arguments->run, simulate_shortcuts);
+  const auto several = [&](const char* flag, std::vector<std::string>& values, const char* help, const char* type) {
+    command->add_option(flag, values, help)->type_name(type)->expected(1)->take_all();
+  };
+  auto& request = arguments->request;
+  several("--over", request.over, "values of a parameter, an initial value or an option; several make a grid",
+          "NAME=FROM:TO:NUMBER|V1,V2,…");
+  command->add_flag("--zip", request.paired, "values one by one instead of a grid");
+  several("--sample", request.samples, "random values: normal(m,s), uniform(a,b), lognormal(m,s)", "NAME=DISTRIBUTION");
+  command->add_option("--runs", request.runs, "samples (of every point of the grid)")->type_name("N");
+  command->add_option("--seed", request.seed, "of the random numbers (1)")->type_name("N");
+  command->add_flag("--yes", request.confirmed, fmt::format("also more than {} runs", unconfirmed_runs));
+  command->add_option("--keep", arguments->keep, "a row for every run, for every event, or for every time (final)")
+      ->type_name("final|events|trajectory");
+  command->add_option("--jobs", arguments->jobs, "threads (as many as processors); the table does not depend on it")
+      ->type_name("N");
+  command->add_option("--out", arguments->out, "the table")->type_name("FILE.csv|.npz")->required();
+  command->footer(
+      "Example:\n  saltus sweep stick-slip --over belt=0.05:0.3:100 --over v=-0.1,0,0.1 --out belt.csv");
+  return {"sweep", [arguments] { return run_sweep(*arguments); }};
+}
+
+}  // namespace saltus::cli

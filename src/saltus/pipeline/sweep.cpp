@@ -1,0 +1,132 @@
+#include "saltus/pipeline/sweep.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/base/symbolic_lock.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+double bytes_of(const result::Trajectory& rows) {
+  if (rows.t.empty()) return 0.0;
+  const auto numbers = 1 + rows.x.front().size() + rows.u.front().size() + rows.alpha.front().size() +
+                       rows.outputs.front().size() + rows.mode.front().size();
+  constexpr std::size_t of_containers = 5 * 32;
+  return static_cast<double>(rows.t.size()) * static_cast<double>(8 * numbers + of_containers);
+}
+
+void leave_what_is_kept(SweepRun& run, Keep keep) {
+  run.events = run.result.events.size();
+  if (keep == Keep::trajectory) return;
+  run.result.trajectory = {};
+  run.result.branches.clear();
+  run.result.options.clear();
+  run.result.elements.reset();
+  if (keep == Keep::final) run.result.events = {};
+}
+
+/// What all threads work on.
+class Workshop {
+ public:
+  Workshop(const SweepOptions& options, StateRun state, const SweepObservers& observers)
+      : options_(options), state_(state), observers_(observers), runs_(options.runs) {
+    watch_.on_step = [this](const StepRecord&) { return interrupted() ? Proceed::stop : Proceed::on; };
+  }
+
+  /// Takes runs in their order until there are none: whatever comes before a failure has been begun.
+  void work() {
+    for (std::size_t i = next_++; i < runs_.size() && !failed_; i = next_++) {
+      if (interrupted()) {
+        runs_[i].result.status = {result::Termination::stopped_by_user, "not begun", std::numeric_limits<double>::quiet_NaN()};
+      } else if (auto done = one(i); !done) {
+        fail(i, done.error());
+      }
+      const std::lock_guard guard(mutex_);
+      ++done_;
+      if (observers_.on_run) observers_.on_run(done_);
+    }
+  }
+
+  [[nodiscard]] Expected<std::vector<SweepRun>> outcome() && {
+    if (!error_) return std::move(runs_);
+    return tl::unexpected(with_context(std::move(*error_), fmt::format("in run {} of {}", failed_run_ + 1, runs_.size())));
+  }
+
+ private:
+  [[nodiscard]] bool interrupted() const { return observers_.is_interrupted && observers_.is_interrupted(); }
+
+  Expected<void> one(std::size_t i) {
+    std::optional<StatedRun> stated;
+    {
+      const SymbolicLock lock;
+      auto made = state_(i);
+      if (!made) return tl::unexpected(made.error());
+      stated.emplace(std::move(*made));
+    }
+    auto result = simulate(stated->system, stated->options, watch_, &kernels_);
+    {
+      const SymbolicLock lock;
+      stated.reset();
+    }
+    if (!result) return tl::unexpected(result.error());
+    runs_[i].result = std::move(*result);
+    leave_what_is_kept(runs_[i], options_.keep);
+    const double kept = bytes_of(runs_[i].result.trajectory);
+    if (kept > 0.0 && (kept_bytes_ += kept) > most_kept_bytes) {
+      return tl::unexpected(Error{ErrorCode::invalid_option,
+                                  fmt::format("the trajectories of all runs need more than {:.0f} GB", most_kept_bytes / 1e9),
+                                  "keep events or final, or ask for fewer rows: simulate.output.points",
+                                  {},
+                                  {}});
+    }
+    return {};
+  }
+
+  void fail(std::size_t run, const Error& error) {
+    const std::lock_guard guard(mutex_);
+    if (!error_ || run < failed_run_) {
+      error_ = error;
+      failed_run_ = run;
+    }
+    failed_ = true;
+  }
+
+  const SweepOptions& options_;
+  StateRun state_;
+  const SweepObservers& observers_;
+  std::vector<SweepRun> runs_;
+  KernelStore kernels_;
+  Observers watch_;
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> failed_ = false;
+  std::atomic<double> kept_bytes_ = 0.0;
+  std::mutex mutex_;
+  std::size_t done_ = 0;
+  std::optional<Error> error_;
+  std::size_t failed_run_ = 0;
+};
+
+}  // namespace
+
+Expected<std::vector<SweepRun>> sweep(const SweepOptions& options, StateRun state, const SweepObservers& observers) {
+  SALTUS_ASSERT(options.jobs >= 1);
+  Workshop workshop(options, state, observers);
+  std::vector<std::thread> helpers;
+  for (std::size_t k = 1; k < std::min(options.jobs, options.runs); ++k) {
+    helpers.emplace_back([&workshop] { workshop.work(); });
+  }
+  workshop.work();
+  for (auto& helper : helpers) helper.join();
+  return std::move(workshop).outcome();
+}
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,54 @@
+// One model many times: every run with its own values.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/base/function_ref.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/pipeline/simulate.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::pipeline {
+
+/// What is left of a run: its end; its events, too; or everything.
+enum class Keep { final, events, trajectory };
+
+struct SweepOptions {
+  std::size_t runs = 0;
+  Keep keep = Keep::final;
+  std::size_t jobs = 1;  ///< threads, >= 1
+};
+
+/// One run: a system with its values, and the options.
+struct StatedRun {
+  model::System system;
+  SimulateOptions options;
+};
+/// States run number i, from 0. Called by all threads, one at a time, under the symbolic lock.
+using StateRun = FunctionRef<Expected<StatedRun>(std::size_t run)>;
+
+struct SweepObservers {
+  std::function<void(std::size_t done)> on_run;  ///< after every run, by any thread, one at a time; may be empty
+  std::function<bool()> is_interrupted;          ///< after every step, by all threads; may be empty
+};
+
+struct SweepRun {
+  result::Result result;
+  std::size_t events = 0;  ///< how many there were, also where they are not kept
+};
+
+/// Memory that kept trajectories may take; beyond it a sweep is refused.
+inline constexpr double most_kept_bytes = 4e9;
+
+/// Simulates all runs. What is computed does not depend on the number of threads; kernels are compiled once per thread
+/// and structure.
+/// @return a run for each, whatever its numerics did; one that was not begun before an interruption is stopped_by_user
+///         at its start. An Error for the first run that cannot be stated or started ("in run 17" in its context), or
+///         if what is kept is too much.
+[[nodiscard]] Expected<std::vector<SweepRun>> sweep(const SweepOptions& options, StateRun state,
+                                                    const SweepObservers& observers = {});
+
+}  // namespace saltus::pipeline
