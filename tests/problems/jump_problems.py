@@ -126,7 +126,7 @@ def problems():
     yield decay_between("thermostat", 20, 15, number("0.1"), number("2"), number("18"), number("22"), number("23.5"),
                         ("too_warm", "too_cold"))
     yield decay_between("temperature-control", 3, 15, number("0.2"), number("10"), number("0"), number("18"),
-                        number("20"), ("off", "on"))
+                        number("20"), ("heating", "heating"))
     yield hiskens_pai()
     yield simple_jump()
     yield two_balls_spring()

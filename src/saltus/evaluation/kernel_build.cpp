@@ -89,6 +89,11 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   compile_conditions(system);
   jumps = JumpFunctions(system, arguments, input, first_jump_guard);
   cells.compile(arguments, system, input);
+  if (const auto& touching = system.contacts; !touching.empty()) {
+    contact_function = ModelFunction("saltus_contacts", arguments,
+                                     {touching.gap, touching.velocity, touching.rows, touching.responses,
+                                      with_inputs(touching.acceleration), touching.friction, touching.restitution});
+  }
 }
 
 void ModelKernel::Implementation::find_structure() {

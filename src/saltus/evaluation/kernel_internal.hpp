@@ -59,6 +59,7 @@ struct ModelKernel::Implementation {
   ModelFunction functions, scales, output_function, input_function;
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
   JumpFunctions jumps;
+  ModelFunction contact_function;  ///< null without contacts
   std::vector<bool> affine, time_only;
   std::vector<bool> rooted, continued_roots;  ///< n_psi
   AffineRowFunctions affine_rows;

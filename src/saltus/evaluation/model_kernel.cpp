@@ -6,6 +6,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 
 namespace saltus::evaluation {
@@ -82,6 +83,22 @@ double ModelKernel::jump_priority(int jump, double t, const double* x, const dou
 double ModelKernel::jump_delay(int jump, double t, const double* x, const double* alpha) const {
   auto& self = *implementation_;
   return self.jumps.delay(jump, {&t, x, self.parameters.data(), alpha});
+}
+
+void ModelKernel::contacts(double t, const double* x, const double* alpha, ContactValues& values) const {
+  auto& self = *implementation_;
+  const auto m = self.contact_function.function().numel_out(0), n = self.contact_function.function().size2_out(2);
+  values.gap.resize(m);
+  values.velocity.resize(2 * m);
+  values.rows.resize(2 * m, n);
+  values.responses.resize(n, 2 * m);
+  values.acceleration.resize(2 * m);
+  values.friction.resize(m);
+  values.restitution.resize(m);
+  self.contact_function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+                        std::array<double*, 7>{values.gap.data(), values.velocity.data(), values.rows.data(),
+                                               values.responses.data(), values.acceleration.data(),
+                                               values.friction.data(), values.restitution.data()});
 }
 
 const std::vector<RegionRange>& ModelKernel::region_groups() const { return implementation_->regions.groups(); }

@@ -16,6 +16,8 @@ struct System;
 
 namespace saltus::evaluation {
 
+struct ContactValues;
+
 /// Whether the functions that every step needs run as native code: compiled C, cached by content. Bit-identical to the
 /// interpreter. `automatic`: from the cache, or compiled once a run is long enough that it pays; interpreted where
 /// there is no compiler.
@@ -162,6 +164,9 @@ class ModelKernel {
   void jump_values(int jump, double t, const double* x, const double* alpha, double* values) const;
   [[nodiscard]] double jump_priority(int jump, double t, const double* x, const double* alpha) const;
   [[nodiscard]] double jump_delay(int jump, double t, const double* x, const double* alpha) const;
+
+  /// Gaps, velocities and what moves them; only for systems with contacts.
+  void contacts(double t, const double* x, const double* alpha, ContactValues& values) const;
 
   /// From now on field(), lie_derivative() and depends() are those of the held system
   ///   xdot = f + D mu,  d_k = (d set_k/dx - I) w_k,  w_k = d/dx (d g_k/dt) restricted to the continuous states that

@@ -253,7 +253,15 @@ std::vector<SurfaceFunction> surface_functions(const model::System& system) {
   for (const auto& column : system.columns) {
     add(composer.function(column.function), column.name, SurfaceOwner::switching_function);
   }
-  for (const auto& jump : system.jumps) {
+  const auto& contacts = system.contacts.contacts;
+  for (std::size_t k = 0; k < system.jumps.size(); ++k) {
+    const auto& jump = system.jumps[k];
+    const auto contact = std::find_if(contacts.begin(), contacts.end(),
+                                      [k](const auto& one) { return one.jump == static_cast<int>(k); });
+    if (contact != contacts.end()) {  // its guards depend on its mode
+      add(composer.compose(system.contacts.gap(contact - contacts.begin())), jump.name, SurfaceOwner::jump);
+      continue;
+    }
     for (casadi_int i = 0; i < jump.guards.numel(); ++i) {
       add(composer.compose(jump.guards(i)), jump.name, SurfaceOwner::jump);
     }

@@ -263,8 +263,8 @@ bool Holding::correct(std::vector<double>& x) {
 }
 
 bool Holding::project(double t, const std::vector<double>& alpha, std::vector<double>& x) {
-  if (guards_.empty()) return false;
-  bool changed = false;
+  bool changed = contacts_ != nullptr && contacts_->project(t, alpha, x);
+  if (guards_.empty()) return changed;
   // Newton with a slope good to ten digits: the second step is at rounding, the others settle its last bits.
   for (int iteration = 0; iteration < 4; ++iteration) {
     const bool placed = find_positions(t, alpha, x) && correct(x);

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::event_integrator {
@@ -40,6 +41,8 @@ class Holding {
   [[nodiscard]] std::optional<std::string> hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, double t,
                                                 const std::vector<double>& alpha, std::vector<double>& x);
   void release_all();
+  /// Contacts are held at zero with the guards.
+  void keep(Contacts* contacts) { contacts_ = contacts; }
   /// Puts x on g = 0, dg/dt = 0; returns whether it changed.
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
   /// Whether the jump of a guard at zero can keep it there: what it sets has an influence on dg/dt, and stops or turns
@@ -71,6 +74,7 @@ class Holding {
 
   const evaluation::ModelKernel& kernel_;
   const model::System& system_;
+  Contacts* contacts_ = nullptr;
   std::vector<HeldGuard> guards_, followers_;
   double pressing_ = 0.0;       ///< the largest |d^2 g/dt^2| without a hold that was met: what counts as none
   std::vector<int> absorbing_;  ///< states that the jumps in question set

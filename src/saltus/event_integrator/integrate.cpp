@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/regions.hpp"
+#include "saltus/event_integrator/contact/contact_results.hpp"
 #include "saltus/event_integrator/run_internal.hpp"
 #include "saltus/event_integrator/start.hpp"
 #include "saltus/event_integrator/thin_layers.hpp"
@@ -53,6 +54,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       slope_beyond_(at(kernel.states())),
       user_events_(kernel, system),
       jumps_(kernel, system, options.from),
+      contacts_(kernel, system),
       holding_(kernel, system),
       shortest_switch_lap_(3 * system.switching.size(), 0.0),
       last_guard_(system.jumps.size(), {{-1, -1}, -1}),
@@ -69,6 +71,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       evaluations_before_(kernel.field_evaluations()),
       series_(options.until - options.from) {
   mode_tolerances_ = tolerances_;
+  holding_.keep(&contacts_);
   for (int j = 0; j < kernel.switching_functions(); ++j) {
     if (kernel.root_is_continued(j)) {
       continued_roots_.push_back(j);
@@ -231,6 +234,7 @@ bool Run::begin() {
 CompactIntegration Run::to_end() {
   if (begin()) {
     while (running_ && t_ < options_.until) {
+      contacts_.forget_impulses(x_);
       if (result_.statistics.steps + result_.statistics.rejected >= options_.max_steps) {
         fail(Termination::iteration_limit, fmt::format("max_steps = {} reached at {}{}", options_.max_steps, where(),
                                                        model::vanishing_norm(surroundings_.system, t_, x_)));
@@ -273,15 +277,19 @@ Integration integrate(const evaluation::ModelKernel& kernel, const model::System
                       const IntegrationOptions& options, const StepObserver& observer) {
   CompactIntegration run = integrate_compact(kernel, system, options, observer);
   auto& recording = run.recording;
-  return {std::move(run.status),
-          recording.last(system),
-          recording.events(system),
-          recording.trajectory(system),
-          run.statistics,
-          std::move(recording.branch_points),
-          run.chosen,
-          recording.listed_families(system),
-          recording.family_numbers()};
+  Integration integration{std::move(run.status),
+                          recording.last(system),
+                          recording.events(system),
+                          recording.trajectory(system),
+                          run.statistics,
+                          std::move(recording.branch_points),
+                          run.chosen,
+                          recording.listed_families(system),
+                          recording.family_numbers()};
+  if (!system.contacts.empty()) {
+    show_contacts(system, integration.final, integration.events, integration.trajectory);
+  }
+  return integration;
 }
 
 }  // namespace saltus::event_integrator

@@ -44,6 +44,8 @@ class Jumps {
   /// What is wrong with a delay, priority or value that was evaluated; empty if nothing is.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
+  /// Whether the condition of a jump held when it was read last.
+  [[nodiscard]] bool holds(int jump) const { return truth_[static_cast<std::size_t>(jump)] != 0U; }
   /// Whether a guard depends on discrete states and constants only: compared exactly, changed by jumps only.
   [[nodiscard]] bool is_discrete_guard(int function) const;
   /// The sign of a guard (event function) that triggers its jump, with all others as they are: -1 or 1; 0 if it has no

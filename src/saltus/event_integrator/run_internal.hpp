@@ -13,6 +13,7 @@
 
 #include "saltus/event_integrator/accumulation.hpp"
 #include "saltus/event_integrator/cells.hpp"
+#include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/event_search.hpp"
 #include "saltus/event_integrator/families.hpp"
 #include "saltus/event_integrator/field_memory.hpp"
@@ -203,6 +204,9 @@ class Run {
   bool jump(const ModeState& before, const std::vector<double>& x_before, Landing& landing);
   bool settle_jumps(Landing& landing);
   bool execute_jump(Landing& landing);
+  bool begin_contacts(Landing& landing);
+  bool move_contacts();
+  void settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before);
   bool decide_behind_jumps(Landing& landing);
   bool hold_resting(Landing& landing);
   bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
@@ -327,6 +331,7 @@ class Run {
   std::vector<bool> user_zeros_;  ///< these
   std::vector<int> executed_;     ///< jumps, in their order
   std::vector<int> freed_;        ///< surfaces that a guard has kept at zero, which was released by the event in hand
+  Contacts contacts_;
   Holding holding_;
   EventSeries jump_series_;
   EventSeries switch_laps_;                  ///< of switches, by surface and mode behind, while they tighten

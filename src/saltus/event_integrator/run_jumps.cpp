@@ -143,6 +143,7 @@ bool Run::execute_jump(Landing& landing) {
   ExecutedJump& executed = landing.executed.append();
   executed.x = x_;
   executed.jump = jumps_.execute(jump_point(), x_);
+  if (contacts_.owns(executed.jump) && !move_contacts()) return false;
   executed.x_after = x_;
   if (!cells_.empty()) cell_change_ = std::max(cell_change_, cells_.locate(t_, x_.data(), state_.alpha));
   drop_zeros(landing);
@@ -229,6 +230,14 @@ void Run::give_directions(Landing& landing) {
     if (!vanish[user] || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
     const Motion motion = motion_of(function, landing);
     signs[user] = static_cast<int>(motion.side.drift);
+    if (contacts_.guards(function)) {
+      // Its mode holds from here on, whatever the roundings of its derivatives say.
+      orders[user] = signs[user] < 0 ? std::clamp(motion.order, 1, 2) : 2;
+      signs[user] = -1;
+      if (!contains(landing.zeros, function)) landing.zeros.push_back(function);
+      landing.zero_values[at(function)] = values[at(function)];
+      continue;
+    }
     // What is left of a rate that was held at 0, and of its derivative where holding ends, is rounding.
     const int ahead = motion.order > 1 ? side_ahead(surroundings_, state_, at_this_time(), x_, function) : 0;
     if (ahead != 0) signs[user] = ahead;
@@ -304,6 +313,7 @@ bool Run::begin_jumps(Landing& landing) {
   state_.mode.assign(at(kernel_.switching_functions()), 0);
   state_.alpha.assign(state_.mode.size(), 0.5);
   state_.alpha = selections_at(surroundings_, t_, x_.data(), state_.alpha);
+  if (!begin_contacts(landing)) return false;
   read_user_signs(landing);
   jumps_.begin(jump_point());
   if (jumps_have_problem()) return false;

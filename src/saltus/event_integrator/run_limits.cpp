@@ -85,6 +85,9 @@ void Run::follow_limit(const SeriesLimit& limit) {
   if (!state_.sliding.empty()) state_.alpha = field_.alpha();
   const ModeState before = state_;
   const std::vector<double> x_last = x_;
+  if (std::any_of(limit.events.begin(), limit.events.end(), [&](int jump) { return contacts_.owns(jump); })) {
+    return settle_contacts(limit, x_last, before);
+  }
   std::vector<HeldGuard> guards = holding_.resting();
   std::vector<int> jumps;
   double rate = 0.0;

@@ -53,6 +53,7 @@ std::vector<HeldGuard> Run::guards_kept_by_sliding(Landing& landing, const Resti
   if (state_.sliding.empty() || !holding_.guards().empty()) return kept;
   const auto& vanish = search_.user_zeros();
   for (int jump = 0; jump < static_cast<int>(surroundings_.system.jumps.size()); ++jump) {
+    if (contacts_.owns(jump)) continue;
     for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       if (!vanish[at(function - kernel_.switching_functions())] || jumps_.is_discrete_guard(function)) continue;
@@ -90,6 +91,7 @@ Run::RestingGuards Run::pressed_guards(Landing& landing) {
   }
   const auto& vanish = search_.user_zeros();
   for (const int jump : jumps) {
+    if (contacts_.owns(jump)) continue;
     for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const bool at_zero = vanish[at(function - kernel_.switching_functions())];
@@ -166,6 +168,7 @@ void Run::leave_guards(Landing& landing) {
   std::vector<int> orders(signs.size(), 1);
   bool any = false;
   for (int jump = 0; jump < static_cast<int>(surroundings_.system.jumps.size()); ++jump) {
+    if (contacts_.owns(jump)) continue;
     for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const auto user = at(function - kernel_.switching_functions());

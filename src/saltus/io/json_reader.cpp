@@ -65,6 +65,9 @@ result::Event read_recorded_event(JsonReader& reader, const Json& json, const st
   reader.read_member(json, path, "alpha_after", event.alpha_after);
   reader.read_if_there(json, path, "regions_before", event.regions_before);
   reader.read_if_there(json, path, "regions_after", event.regions_after);
+  reader.read_if_there(json, path, "contact_modes_before", event.contact_modes_before);
+  reader.read_if_there(json, path, "contact_modes_after", event.contact_modes_after);
+  reader.read_if_there(json, path, "impulse", event.impulse);
   reader.read_member(json, path, "x", event.x);
   reader.read_member(json, path, "x_after", event.x_after);
   reader.read_member(json, path, "unique", event.unique);
@@ -92,6 +95,7 @@ void read_trajectory(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_member(json, path, "outputs", trajectory.outputs);
   reader.read_if_there(json, path, "regions", trajectory.regions);
   reader.read_if_there(json, path, "theta", trajectory.theta);
+  reader.read_if_there(json, path, "contact_modes", trajectory.contact_modes);
 }
 
 result::AffineSurface read_affine(JsonReader& reader, const Json& json, const std::string& path) {
@@ -140,6 +144,7 @@ void read_final(JsonReader& reader, const Json& json, const std::string& path, r
   reader.read_member(json, path, "outputs", final.outputs);
   reader.read_if_there(json, path, "regions", final.regions);
   reader.read_if_there(json, path, "theta", final.theta);
+  reader.read_if_there(json, path, "contact_modes", final.contact_modes);
 }
 
 void read_option_record(JsonReader& reader, const Json& json, const std::string& path, result::OptionRecord& options) {
@@ -231,6 +236,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   if (json.is_object() && json.contains("region_groups")) {
     read_list(reader, json["region_groups"], path + "/region_groups", result.region_groups, read_region_group);
   }
+  reader.read_if_there(json, path, "contacts", result.contacts);
   read_part(reader, json, path, "final", read_final, result.final);
   read_part(reader, json, path, "events", read_recorded_events, result.events);
   read_part(reader, json, path, "trajectory", read_trajectory, result.trajectory);

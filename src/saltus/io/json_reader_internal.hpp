@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "saltus/base/error.hpp"
+#include "saltus/result/result.hpp"
 
 namespace saltus::io {
 
@@ -96,6 +97,10 @@ class JsonReader {
   }
   void read(const Json& json, const std::string& path, std::string& target) {
     json.is_string() ? void(target = json.get<std::string>()) : mismatch(path, "a text", json);
+  }
+  void read(const Json& json, const std::string& path, result::ContactMode& target) {
+    const auto mode = json.is_string() ? result::contact_mode_named(json.get<std::string>()) : std::nullopt;
+    mode ? void(target = *mode) : mismatch(path, "a mode of a contact", json);
   }
   template <class Element>
   void read(const Json& json, const std::string& path, std::vector<Element>& target) {

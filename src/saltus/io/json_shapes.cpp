@@ -65,6 +65,20 @@ void check_active(JsonReader& reader, const std::string& path, const result::Reg
   }
 }
 
+void check_contacts(JsonReader& reader, const std::string& path, const result::Result& result) {
+  const std::size_t contacts = result.contacts.size();
+  check_rows(reader, path + "/trajectory/contact_modes", result.trajectory.contact_modes,
+             contacts == 0 ? 0 : result.trajectory.t.size(), contacts);
+  check_length(reader, path + "/final/contact_modes", result.final.contact_modes, contacts);
+  for (std::size_t i = 0; i < result.events.size(); ++i) {
+    const auto& event = result.events[i];
+    const auto here = fmt::format("{}/events/{}", path, i);
+    check_length(reader, here + "/contact_modes_before", event.contact_modes_before, contacts);
+    check_length(reader, here + "/contact_modes_after", event.contact_modes_after, contacts);
+    if (event.impulse) check_length(reader, here + "/impulse", *event.impulse, contacts);
+  }
+}
+
 void check_regions(JsonReader& reader, const std::string& path, const result::Result& result) {
   const auto& groups = result.region_groups;
   const auto& trajectory = result.trajectory;
@@ -125,6 +139,7 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, columns);
   check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, columns);
   check_regions(reader, path, result);
+  check_contacts(reader, path, result);
   check_rows(reader, path + "/trajectory/outputs", trajectory.outputs, times, result.outputs.size());
   check_length(reader, path + "/final/x", result.final.x, result.states.size());
   check_length(reader, path + "/final/mode", result.final.mode, columns);

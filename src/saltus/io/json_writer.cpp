@@ -75,6 +75,12 @@ Json departure_json(const result::Departure& departure) {
   return json;
 }
 
+Json contact_modes_json(const std::vector<result::ContactMode>& modes) {
+  Json json = Json::array();
+  for (const auto mode : modes) json.push_back(name(mode));
+  return json;
+}
+
 void append_event(TextStream& stream, const result::Event& event, std::size_t indent) {
   ObjectStream object(stream, indent);
   const auto put = [&](const char* key, const auto& value) { append_json(object.key(key), value); };
@@ -88,6 +94,11 @@ void append_event(TextStream& stream, const result::Event& event, std::size_t in
   put("alpha_after", event.alpha_after);
   if (event.regions_before) object.member("regions_before", *event.regions_before);
   if (event.regions_after) object.member("regions_after", *event.regions_after);
+  if (!event.contact_modes_before.empty()) {
+    object.member("contact_modes_before", contact_modes_json(event.contact_modes_before));
+    object.member("contact_modes_after", contact_modes_json(event.contact_modes_after));
+  }
+  if (event.impulse) object.member("impulse", *event.impulse);
   put("x", event.x);
   put("x_after", event.x_after);
   object.key("unique") += !event.unique ? "null" : *event.unique ? "true" : "false";
@@ -110,6 +121,7 @@ Json final_json(const result::Final& final) {
     json["regions"] = final.regions;
     json["theta"] = final.theta;
   }
+  if (!final.contact_modes.empty()) json["contact_modes"] = contact_modes_json(final.contact_modes);
   return json;
 }
 
@@ -127,6 +139,10 @@ void append_trajectory(TextStream& stream, const result::Trajectory& trajectory,
   if (!trajectory.regions.empty()) {
     rows("regions", trajectory.regions);
     rows("theta", trajectory.theta);
+  }
+  if (!trajectory.contact_modes.empty()) {
+    object.list("contact_modes", trajectory.contact_modes,
+                [&](const auto& row, std::size_t) { stream.text() += contact_modes_json(row).dump(); });
   }
   object.end();
 }
@@ -188,6 +204,7 @@ void append_head(ObjectStream& object, const result::Result& result) {
   Json groups = Json::array();
   for (const auto& group : result.region_groups) groups.push_back({{"name", group.name}, {"modes", group.modes}});
   if (!groups.empty()) object.member("region_groups", groups);
+  if (!result.contacts.empty()) object.member("contacts", result.contacts);
   object.member("final", final_json(result.final));
 }
 

@@ -143,8 +143,8 @@ constexpr std::array settable{
 };
 
 /// Tables of a model file whose entries have no name of their own, or that --set does not reach for another reason.
-constexpr std::array fixed{"modes",     "events",   "jumps",         "tables",
-                           "mechanics", "contacts", "time_freezing", "sensitivity"};
+constexpr std::array fixed{"modes",    "events",        "jumps",       "tables",    "mechanics",
+                           "contacts", "time_freezing", "sensitivity", "hysteresis"};
 
 tl::unexpected<Error> not_settable(std::string_view key, std::string_view table) {
   if (std::find(fixed.begin(), fixed.end(), table) != fixed.end()) {

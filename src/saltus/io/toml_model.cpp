@@ -41,6 +41,9 @@ constexpr std::array sections{
     Section{"dynamics", read_into<&model::Description::dynamics>},
     Section{"modes", read_modes},
     Section{"jumps", read_jumps},
+    Section{"hysteresis", read_hysteresis},
+    Section{"mechanics", read_mechanics},
+    Section{"contacts", read_contacts},
     Section{"outputs", read_outputs},
     Section{"events", read_events},
     Section{"tables", read_tables},
@@ -54,8 +57,6 @@ struct LaterTable {
   std::string_view written;
 };
 constexpr std::array later_tables{
-    LaterTable{"mechanics", "[mechanics]"},
-    LaterTable{"contacts", "[[contacts]]"},
     LaterTable{"sensitivity", "[sensitivity]"},
 };
 
@@ -69,7 +70,8 @@ std::vector<std::string> known_tables() {
 void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   for (const auto& section : sections) {
     if (section.name != entry.key) continue;
-    const bool is_array = entry.key == "events" || entry.key == "modes" || entry.key == "jumps";
+    constexpr std::array arrays{"events", "modes", "jumps", "hysteresis", "contacts"};
+    const bool is_array = std::find(arrays.begin(), arrays.end(), entry.key) != arrays.end();
     reader.enter(is_array ? fmt::format("[[{}]]", entry.key) : fmt::format("[{}]", entry.key));
     section.read(reader, entry, model);
     reader.enter("");

@@ -17,6 +17,9 @@ void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
 void read_events(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_modes(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_jumps(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_mechanics(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_contacts(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_hysteresis(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& model);

@@ -90,11 +90,14 @@ class Assembly {
       system_.discrete_states.push_back(rate.written == 0 && constant_value(graph_.tape(), f_.back()) == 0.0 &&
                                         !in_regions_[f_.size() - 1]);
     }
-    for (const auto& output : statement_.outputs) {
-      system_.output_names.push_back(output.name);
-      outputs.push_back(output.expression);
-      if (auto error = take_root(output.expression, others_)) return error;
+    for (const auto* stated : {&statement_.outputs, &statement_.automatic_outputs}) {
+      for (const auto& output : *stated) {
+        system_.output_names.push_back(output.name);
+        outputs.push_back(output.expression);
+        if (auto error = take_root(output.expression, others_)) return error;
+      }
     }
+    system_.contacts = statement_.contacts;
     system_.t = statement_.time;
     system_.x = column(x);
     system_.p = column(p);

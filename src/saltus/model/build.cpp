@@ -11,7 +11,9 @@
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/build_internal.hpp"
 #include "saltus/model/discrete_states_internal.hpp"
+#include "saltus/model/hysteresis/hysteresis_internal.hpp"
 #include "saltus/model/jumps_internal.hpp"
+#include "saltus/model/mechanics/mechanics_internal.hpp"
 #include "saltus/model/mistakes.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
@@ -59,10 +61,10 @@ class Build {
       for (const auto& entry : quantities_->expressions) scope_.note_names(entry.expression);
     }
     using Step = MaybeError (Build::*)();
-    constexpr Step steps[] = {&Build::names,  &Build::overrides, &Build::parameters, &Build::controls,
-                              &Build::states, &Build::bounds,    &Build::switching,  &Build::dynamics,
-                              &Build::modes,  &Build::outputs,   &Build::quantities, &Build::events,
-                              &Build::jumps,  &Build::inputs,    &Build::definitions};
+    constexpr Step steps[] = {
+        &Build::names,     &Build::overrides,  &Build::parameters, &Build::controls, &Build::states,     &Build::bounds,
+        &Build::switching, &Build::dynamics,   &Build::modes,      &Build::outputs,  &Build::quantities, &Build::events,
+        &Build::jumps,     &Build::hysteresis, &Build::mechanics,  &Build::inputs,   &Build::definitions};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return error;
     }
@@ -80,6 +82,14 @@ class Build {
     return std::nullopt;
   }
 
+  [[nodiscard]] bool is_mechanical(const std::string& name) const {
+    if (!description_.mechanics) return false;
+    const auto lists = [&](const std::vector<StateName>& names) {
+      return std::any_of(names.begin(), names.end(), [&](const StateName& entry) { return entry.name == name; });
+    };
+    return lists(description_.mechanics->positions) || lists(description_.mechanics->velocities);
+  }
+
   /// A state without right-hand side, which only the assembly refuses.
   void tell_of_still_states(std::vector<Error>& found) const {
     for (const auto& entry : description_.states) {
@@ -89,7 +99,7 @@ class Build {
       const auto& modes = description_.modes;
       const bool moved = moves(description_.dynamics) ||
                          std::any_of(modes.begin(), modes.end(), [&](const auto& m) { return moves(m.dynamics); });
-      if (!moved) found.push_back(no_right_hand_side(entry.name, entry.location));
+      if (!moved && !is_mechanical(entry.name)) found.push_back(no_right_hand_side(entry.name, entry.location));
     }
   }
 
@@ -100,7 +110,7 @@ class Build {
       const Meaning* meaning = scope_.names().find(entry.name);
       const bool settable =
           meaning != nullptr && (meaning->kind == NameKind::parameter || meaning->kind == NameKind::state ||
-                                 meaning->kind == NameKind::control);
+                                 meaning->kind == NameKind::control || meaning->kind == NameKind::hysteresis);
       if (!settable) return not_settable(entry, meaning);
       const auto value = scope_.value(*entry.value, Reach::constants, fmt::format("the value of '{}'", entry.name));
       if (!value) return with_context(value.error(), fmt::format("in --set {}", entry.name));
@@ -117,7 +127,8 @@ class Build {
   }
 
   Error not_settable(const Override& entry, const Meaning* meaning) const {
-    const auto known = scope_.names().of({NameKind::parameter, NameKind::state, NameKind::control});
+    const auto known =
+        scope_.names().of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::hysteresis});
     const std::string found =
         meaning == nullptr ? "which is not in the model" : fmt::format("which is {}", with_article(meaning->kind));
     return {meaning == nullptr ? ErrorCode::unknown_name : ErrorCode::invalid_option,
@@ -180,6 +191,7 @@ class Build {
       const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++});
       statement_.states.push_back({.name = entry.name, .symbol = symbol, .location = entry.location});
     }
+    declare_hysteresis(description_, recognition_, statement_);
     statement_.switching.resize(description_.switching.size());
     return std::nullopt;
   }
@@ -232,6 +244,9 @@ class Build {
     });
   }
 
+  /// Behind the jumps, as are those of contacts: their numbers are those of the file.
+  MaybeError hysteresis() { return state_all_hysteresis(description_, scope_, recognition_, statement_, set_values_); }
+
   MaybeError dynamics() {
     return take_each(description_.dynamics, [&](const NamedExpression& entry) -> MaybeError {
       const Meaning* meaning = scope_.names().find(entry.name);
@@ -252,6 +267,12 @@ class Build {
       state.dynamics_location = entry.expression->location;
       return std::nullopt;
     });
+  }
+
+  MaybeError mechanics() {
+    auto stated = mechanics_of(description_, scope_, statement_);
+    if (!stated) return stated.error();
+    return *stated ? state_mechanics(recognition_, statement_, **stated) : std::nullopt;
   }
 
   MaybeError modes() {

@@ -10,6 +10,8 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/function_ref.hpp"
+#include "saltus/model/hysteresis/hysteresis_internal.hpp"
+#include "saltus/model/mechanics/mechanics_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
 #include "saltus/model/names_internal.hpp"
 #include "saltus/model/statement_internal.hpp"
@@ -22,6 +24,9 @@ struct Builder::Parts {
   Recognition recognition;
   Statement statement;
   NameTable names;
+  std::optional<MechanicsStatement> mechanics;
+  std::vector<std::pair<std::string, ContactOptions>> contacts;
+  std::vector<SX> gaps;
   std::optional<Error> error;
 
   void fail(Error mistake) {
@@ -120,6 +125,34 @@ struct Builder::Parts {
     known->modes.push_back(std::move(mode));
   }
 
+  std::optional<Error> add_mechanics(Statement& whole) {
+    if (!mechanics && contacts.empty()) return std::nullopt;
+    if (!mechanics) return Error{ErrorCode::invalid_model, "contacts without mechanics()", "call mechanics()", {}, {}};
+    MechanicsStatement stated = *mechanics;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const auto& [name, options] = contacts[i];
+      ContactStatement contact{.name = name, .gap = gaps[i]};
+      contact.friction = entry(options.friction, "friction of " + name);
+      contact.restitution = entry(options.restitution, "restitution of " + name);
+      if (!options.tangent.empty()) contact.tangent = SX::zeros(1, static_cast<casadi_int>(stated.positions.size()));
+      for (const auto& [position, value] : options.tangent) {
+        const auto place = std::find_if(stated.positions.begin(), stated.positions.end(), [&, &wanted = position](int state) {
+          return whole.states[at(state)].name == wanted;
+        });
+        if (place == stated.positions.end()) {
+          return Error{ErrorCode::unknown_name,
+                       fmt::format("the tangent of '{}' has the entry '{}', which is no position", name, position),
+                       "a tangent is a row over the positions",
+                       {},
+                       {}};
+        }
+        contact.tangent(0, place - stated.positions.begin()) = entry(value, "tangent of " + name);
+      }
+      stated.contacts.push_back(std::move(contact));
+    }
+    return state_mechanics(recognition, whole, stated);
+  }
+
   /// The cells of points without mistake; null with the mistake kept.
   std::shared_ptr<const CellTable> cells(const std::string& kind, const std::string& name,
                                          const std::optional<PointMistake>& mistake, FunctionRef<CellTable()> make) {
@@ -187,6 +220,19 @@ SX Builder::discrete_state(const std::string& name, double initial) {
   auto& states = parts_->statement.states;
   if (!parts_->declare(name, NameKind::state, states.size())) return SX(0.0);
   parts_->add_state(name, {.initial = initial}, VariableKind::discrete);
+  return SX(states.back().symbol);
+}
+
+SX Builder::hysteresis(const std::string& name, const SX& input, const HysteresisValues& values) {
+  auto& states = parts_->statement.states;
+  if (!parts_->declare(name, NameKind::hysteresis, states.size())) return SX(0.0);
+  const SXElem e = parts_->entry(input, "input of " + name);
+  parts_->add_state(name, {.initial = values.initial}, VariableKind::discrete);
+  const auto state = static_cast<int>(states.size()) - 1;
+  if (auto error = state_hysteresis(parts_->recognition, parts_->statement, state, e,
+                                    {name, values.on, values.off, values.initial, {}})) {
+    parts_->fail(*error);
+  }
   return SX(states.back().symbol);
 }
 
@@ -278,6 +324,52 @@ void Builder::dynamics(const std::string& state, const SX& rate) {
                   {}});
   }
   entry->dynamics = e;
+}
+
+void Builder::mechanics(const Mechanics& mechanics) {
+  if (parts_->mechanics) {
+    parts_->fail({ErrorCode::invalid_model, "mechanics() was called twice", "state one mechanical system", {}, {}});
+    return;
+  }
+  MechanicsStatement stated{.mass = mechanics.mass,
+                            .potential = parts_->entry(mechanics.potential, "potential"),
+                            .coriolis = mechanics.coriolis};
+  for (const auto& [names, numbers] : {std::pair{&mechanics.positions, &stated.positions},
+                                       std::pair{&mechanics.velocities, &stated.velocities}}) {
+    for (const auto& name : *names) {
+      const auto* state = parts_->find(parts_->statement.states, name, NameKind::state);
+      if (state == nullptr) return;
+      numbers->push_back(static_cast<int>(state - parts_->statement.states.data()));
+    }
+  }
+  const auto n = static_cast<casadi_int>(stated.positions.size());
+  if (mechanics.mass.is_empty()) stated.mass = SX::eye(n);
+  if (stated.velocities.size() != stated.positions.size() || stated.mass.size1() != n || stated.mass.size2() != n) {
+    parts_->fail({ErrorCode::invalid_model,
+                  fmt::format("{} positions, {} velocities and a mass matrix of {} x {}", n, stated.velocities.size(),
+                              stated.mass.size1(), stated.mass.size2()),
+                  "every position has a velocity, and the mass matrix a row and a column for each",
+                  {},
+                  {}});
+    return;
+  }
+  stated.force = SX::zeros(n, 1);
+  for (const auto& [name, force] : mechanics.force) {
+    const auto place = std::find(mechanics.velocities.begin(), mechanics.velocities.end(), name);
+    if (place == mechanics.velocities.end()) {
+      parts_->fail({ErrorCode::unknown_name, fmt::format("a force on '{}', which is no velocity", name),
+                    suggest(name, mechanics.velocities), {}, {}});
+      return;
+    }
+    stated.force(place - mechanics.velocities.begin()) = parts_->entry(force, "force on " + name);
+  }
+  parts_->mechanics = std::move(stated);
+}
+
+void Builder::contact(const std::string& name, const SX& gap, const ContactOptions& options) {
+  if (!parts_->declare(name, NameKind::contact, parts_->contacts.size())) return;
+  parts_->gaps.push_back(SX(parts_->entry(gap, "gap of " + name)));
+  parts_->contacts.emplace_back(name, options);
 }
 
 void Builder::mode(const Condition& when, const std::map<std::string, SX>& rates, const std::string& group) {
@@ -375,6 +467,7 @@ Expected<System> Builder::build() {
   try {
     Statement statement = parts_->statement;  // more may be stated later
     if (auto error = add_modes(parts_->recognition, statement)) return tl::unexpected(*error);
+    if (auto error = parts_->add_mechanics(statement)) return tl::unexpected(*error);
     return assemble(parts_->recognition, statement);
   } catch (const std::exception& exception) {
     return tl::unexpected(

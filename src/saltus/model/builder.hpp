@@ -25,6 +25,12 @@ struct Values {
   double upper = std::numeric_limits<double>::infinity();
 };
 
+/// Thresholds of a hysteresis, different ones, in the unit of its input, and 0 or 1 at the start.
+struct HysteresisValues {
+  double on = 1.0, off = 0.0;
+  double initial = 0.0;
+};
+
 /// What is done at an event of the user, and which crossings count.
 struct EventOptions {
   std::optional<std::string> name{};  ///< event1, event2, … by position if absent
@@ -40,6 +46,22 @@ struct JumpOptions {
   casadi::SX delay = 0.0;             ///< >= 0, evaluated when triggered
   bool persistent = true;             ///< false: dropped if the condition becomes false before
   JumpValues values = JumpValues::at_trigger;
+};
+
+/// M(q) dv/dt = force - grad potential - coriolis + forces of contacts, dq/dt = v (interface.md, [mechanics]).
+struct Mechanics {
+  std::vector<std::string> positions{}, velocities{};  ///< states, in the same order
+  casadi::SX mass{};                               ///< n x n over positions and parameters; 0 x 0: identity
+  casadi::SX potential = 0.0;                      ///< over positions and parameters: its gradient is subtracted
+  Coriolis coriolis = Coriolis::in_force;
+  std::map<std::string, casadi::SX> force{};  ///< by velocity; absent: 0
+};
+
+/// gap >= 0, with friction along a tangent (interface.md, [[contacts]]).
+struct ContactOptions {
+  std::map<std::string, casadi::SX> tangent{};  ///< by position; empty: frictionless
+  casadi::SX friction = 0.0;                    ///< >= 0, over parameters
+  casadi::SX restitution = 0.0;                 ///< in [0, 1], over parameters
 };
 
 /// Builds a System step by step; the names, the rules and the errors are those of the model file.
@@ -72,6 +94,11 @@ class Builder {
   /// A state that changes by jumps only: its rate is 0, and a comparison of such states is decided as written where
   /// both sides are equal.
   casadi::SX discrete_state(const std::string& name, double initial);
+  /// A name that is 0 or 1: a discrete state that becomes 1 where `input` rises through `on` and 0 where it falls
+  /// through `off` (on > off), or the other way round (on < off). A jump of the same name changes it. Where the input
+  /// is beyond a threshold at the start, the side it is on holds, with a warning.
+  /// @param input  over states and parameters
+  casadi::SX hysteresis(const std::string& name, const casadi::SX& input, const HysteresisValues& values);
   casadi::SX control(const std::string& name, const Values& values);
   /// Declares the switching function psi under a name and returns psi itself.
   casadi::SX switching(const std::string& name, const casadi::SX& psi);
@@ -102,6 +129,11 @@ class Builder {
 
   /// d state / dt; at most once for every state, and exactly once for one that no mode mentions.
   void dynamics(const std::string& state, const casadi::SX& rate);
+  /// Gives positions and velocities their dynamics; once at most. The result has the output `energy`.
+  void mechanics(const Mechanics& mechanics);
+  /// Bodies that do not pass through each other: gap over positions, parameters and time, >= 0 at the start. The result
+  /// has the outputs gap(name), force(name), friction(name), impulse(name).
+  void contact(const std::string& name, const casadi::SX& gap, const ContactOptions& options = {});
   /// One mode of a group: where the condition holds, the rates are added to those of dynamics() and of the modes of
   /// other groups; a state that is not among them gets 0. The modes of a group cover every sign pattern of their
   /// switching functions exactly once.

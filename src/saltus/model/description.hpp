@@ -8,6 +8,8 @@
 #include "saltus/base/error.hpp"
 #include "saltus/expression/syntax_tree.hpp"
 #include "saltus/model/cells.hpp"
+#include "saltus/model/hysteresis/hysteresis_description.hpp"
+#include "saltus/model/mechanics/mechanics_description.hpp"
 #include "saltus/model/ocp_description.hpp"
 
 namespace saltus::model {
@@ -116,6 +118,9 @@ struct Description {
   std::vector<NamedExpression> outputs;
   std::vector<UserEventDescription> events;
   std::vector<JumpDescription> jumps;
+  std::vector<HysteresisDescription> hysteresis;
+  std::optional<MechanicsDescription> mechanics;
+  std::vector<ContactDescription> contacts;
   std::vector<TableDescription> tables;
   std::vector<NamedExpression> inputs;  ///< values of controls during a simulation, over t and parameters
   std::vector<SampledInput> sampled_inputs;

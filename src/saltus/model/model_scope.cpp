@@ -30,6 +30,8 @@ std::optional<Error> ModelScope::declare_names() {
   collect(description_.switching, NameKind::switching, found);
   collect(description_.outputs, NameKind::output, found);
   collect(description_.tables, NameKind::table, found);
+  collect(description_.hysteresis, NameKind::hysteresis, found);
+  collect(description_.contacts, NameKind::contact, found);
   int position = 0;
   for (const auto& event : description_.events) {
     const std::string name = event.name.value_or(fmt::format("event{}", position + 1));
@@ -79,7 +81,8 @@ Error ModelScope::unknown(const std::string& name, const SourceLocation& locatio
   std::vector<std::string> known;
   if (reach_ >= Reach::everything) {
     known =
-        names_.of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::definition, NameKind::switching});
+        names_.of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::definition, NameKind::switching,
+                   NameKind::hysteresis});
     known.insert(known.end(), {"t", "pi"});
   } else {
     if (reach_ == Reach::earlier_parameters) {
@@ -140,6 +143,8 @@ Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meani
       return statement_.parameters[index].symbol;
     case NameKind::state:
       return statement_.states[index].symbol;
+    case NameKind::hysteresis:  // behind the states
+      return statement_.states[description_.states.size() + index].symbol;
     case NameKind::control:
       return statement_.controls[index].symbol;
     case NameKind::definition:
@@ -155,6 +160,7 @@ Expected<SXElem> ModelScope::meant(const std::string& name, const Meaning& meani
     case NameKind::event:
     case NameKind::jump:
     case NameKind::table:
+    case NameKind::contact:
       break;
   }
   if (meaning.kind == NameKind::table) {

@@ -27,6 +27,10 @@ std::string with_article(NameKind kind) {
       return "a jump";
     case NameKind::table:
       return "a table";
+    case NameKind::hysteresis:
+      return "a hysteresis";
+    case NameKind::contact:
+      return "a contact";
   }
   return "";
 }

@@ -10,7 +10,7 @@
 
 namespace saltus::model {
 
-enum class NameKind { parameter, state, control, definition, switching, output, event, jump, table };
+enum class NameKind { parameter, state, control, definition, switching, output, event, jump, table, hysteresis, contact };
 
 /// "a parameter", "a state" …
 [[nodiscard]] std::string with_article(NameKind kind);

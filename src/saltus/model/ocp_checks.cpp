@@ -161,6 +161,16 @@ std::optional<Error> check_initial_states(const Ocp& ocp, const Description& des
 std::optional<Error> check(Ocp& ocp, const Description& description) {
   const auto& system = ocp.system;
   const SourceLocation& location = description.optimize->location;
+  if (!description.hysteresis.empty()) {
+    return mistake("[optimize] does not cover [[hysteresis]] yet",
+                   "write it by hand with frozen time ([time_freezing] clock), as in `saltus models hysteresis-car`",
+                   description.hysteresis.front().location, ErrorCode::not_available);
+  }
+  if (!system.contacts.empty()) {
+    return mistake("[optimize] does not cover [[contacts]] yet",
+                   "simulate the model with the method \"event\", or freeze time by hand ([time_freezing] clock)",
+                   description.contacts.front().location, ErrorCode::not_available);
+  }
   if (!system.jumps.empty()) {
     return mistake("[optimize] does not cover [[jumps]]",
                    "states that jump at contacts or by hysteresis have forms of their own: time frozen by hand "

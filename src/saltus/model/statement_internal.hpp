@@ -130,6 +130,8 @@ struct Statement {
   std::vector<OutputStatement> outputs;
   std::vector<EventStatement> events;
   std::vector<JumpStatement> jumps;
+  ContactSystem contacts;
+  std::vector<OutputStatement> automatic_outputs;  ///< behind the others
   std::vector<std::string> warnings;
 };
 

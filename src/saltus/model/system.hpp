@@ -10,6 +10,7 @@
 
 #include "saltus/model/cells.hpp"
 #include "saltus/model/description.hpp"
+#include "saltus/model/mechanics/contact_system.hpp"
 
 namespace saltus::model {
 
@@ -137,6 +138,7 @@ struct System {
   std::vector<Cell> cells;            ///< arguments hold symbols of earlier ones only
   std::vector<bool> discrete_states;  ///< n_x: dynamics 0, changed by jumps only
   std::vector<ModeGroup> mode_groups;
+  ContactSystem contacts;  ///< empty unless bodies touch
 
   bool multi_affine = true;                        ///< f_as_written is, in the alphas of listed functions, by its form
   std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ on a surface

@@ -29,6 +29,16 @@ void note_names_of(const OcpDescription& problem, ModelScope& scope) {
   for (const auto& guess : problem.guess) scope.note_names(guess.expression);
 }
 
+void note_names_of(const MechanicsDescription& mechanics, ModelScope& scope) {
+  for (const auto& row : mechanics.mass) note_all(row, scope);
+  scope.note_names(mechanics.potential);
+  for (const auto& entry : mechanics.force) scope.note_names(entry.force);
+  for (const auto& shape : mechanics.draw) {
+    scope.note_names(shape.radius);
+    for (const auto& point : shape.points) note_all({point[0], point[1]}, scope);
+  }
+}
+
 }  // namespace
 
 void note_names(const Description& description, ModelScope& scope) {
@@ -47,6 +57,14 @@ void note_names(const Description& description, ModelScope& scope) {
     note_all({jump.when, jump.every, jump.priority, jump.delay}, scope);
     note_all(jump.at, scope);
     for (const auto& entry : jump.set) scope.note_names(entry.expression);
+  }
+  for (const auto& entry : description.hysteresis) note_all({entry.input, entry.on, entry.off, entry.initial}, scope);
+  if (description.mechanics) note_names_of(*description.mechanics, scope);
+  for (const auto& contact : description.contacts) {
+    note_all({contact.gap, contact.friction, contact.restitution}, scope);
+    for (const auto& tangent : contact.tangents) {
+      for (const auto& entry : tangent) scope.note_names(entry.value);
+    }
   }
   if (!description.optimize) return;
   note_names_of(*description.optimize, scope);

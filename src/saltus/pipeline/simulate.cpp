@@ -223,6 +223,8 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   }
   result.method = name(options.method);
   result.states = system.state_names;
+  if (!system.contacts.empty()) result.states.resize(at(system.contacts.first_hidden));
+  for (const auto& contact : system.contacts.contacts) result.contacts.push_back(contact.name);
   result.controls = system.control_names;
   result.outputs = system.output_names;
   for (const auto& column : system.columns) result.switching_functions.push_back(column.name);

@@ -25,15 +25,46 @@ std::string_view name(EventKind kind) {
       return "jump";
     case EventKind::user:
       return "user";
+    case EventKind::impact:
+      return "impact";
+    case EventKind::contact:
+      return "contact";
+    case EventKind::lift_off:
+      return "lift_off";
+    case EventKind::stick:
+      return "stick";
+    case EventKind::slip:
+      return "slip";
   }
   __builtin_unreachable();
 }
 
 std::optional<EventKind> event_kind_named(std::string_view name_of_one) {
-  constexpr auto last = static_cast<int>(EventKind::user);
+  constexpr auto last = static_cast<int>(EventKind::slip);
   for (int i = 0; i <= last; ++i) {
     const auto kind = static_cast<EventKind>(i);
     if (name(kind) == name_of_one) return kind;
+  }
+  return std::nullopt;
+}
+
+std::string_view name(ContactMode mode) {
+  switch (mode) {
+    case ContactMode::open:
+      return "open";
+    case ContactMode::closed:
+      return "closed";
+    case ContactMode::stick:
+      return "stick";
+    case ContactMode::slip:
+      return "slip";
+  }
+  __builtin_unreachable();
+}
+
+std::optional<ContactMode> contact_mode_named(std::string_view name_of_one) {
+  for (const auto mode : {ContactMode::open, ContactMode::closed, ContactMode::stick, ContactMode::slip}) {
+    if (name(mode) == name_of_one) return mode;
   }
   return std::nullopt;
 }

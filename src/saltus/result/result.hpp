@@ -23,7 +23,21 @@ namespace saltus::result {
 /// k in {-1, 0, 1}^n_psi: the sign of psi_j, 0 while the solution slides on psi_j = 0.
 using Mode = std::vector<int>;
 
-enum class EventKind { start, crossing, enter_sliding, leave_sliding, change_sliding, accumulation, jump, user };
+enum class EventKind {
+  start,
+  crossing,
+  enter_sliding,
+  leave_sliding,
+  change_sliding,
+  accumulation,
+  jump,
+  user,
+  impact,    ///< of contacts, with impulses
+  contact,   ///< touch-down without an impact
+  lift_off,  ///< the normal force ends
+  stick,
+  slip,
+};
 [[nodiscard]] std::string_view name(EventKind kind);
 /// The inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<EventKind> event_kind_named(std::string_view name);
@@ -33,6 +47,12 @@ enum class EventKind { start, crossing, enter_sliding, leave_sliding, change_sli
 
 /// The active modes of every group by `indicator`, in the order of the model; empty without such groups.
 using Regions = std::vector<std::vector<std::string>>;
+
+/// Of one contact: its gap is positive; or 0 without friction, with friction that holds, with friction that yields.
+enum class ContactMode { open, closed, stick, slip };
+[[nodiscard]] std::string_view name(ContactMode mode);
+/// The inverse of name; nullopt if there is none of that name.
+[[nodiscard]] std::optional<ContactMode> contact_mode_named(std::string_view name);
 
 /// A group of modes by `indicator`, of which those with the smallest one are active.
 struct RegionGroup {
@@ -67,6 +87,8 @@ struct Event {
   std::optional<Mode> mode_before, mode_after;
   std::optional<std::vector<double>> alpha_before, alpha_after;
   std::optional<Regions> regions_before, regions_after;
+  std::vector<ContactMode> contact_modes_before{}, contact_modes_after{};  ///< by contact; empty without contacts
+  std::optional<std::vector<std::array<double, 2>>> impulse{};  ///< of an impact, by contact: normal, tangential
   std::vector<double> x, x_after;
   std::optional<bool> unique = true;  ///< nullopt: not decided
   std::vector<Alternative> alternatives;
@@ -83,6 +105,7 @@ struct Trajectory {
   /// With groups by `indicator` a row per time, else none: the active modes, and the weights of all (region_labels).
   std::vector<Regions> regions{};
   std::vector<std::vector<double>> theta{};
+  std::vector<std::vector<ContactMode>> contact_modes{};  ///< with contacts a row per time, else none
 };
 
 /// 1 for a row behind another one at the same time, like the one behind an event; else 0.
@@ -98,6 +121,7 @@ struct Final {
   std::vector<double> outputs;
   Regions regions{};
   std::vector<double> theta{};  ///< of all modes by `indicator`
+  std::vector<ContactMode> contact_modes{};
 };
 
 /// A file that the model file, or a setting, names.
@@ -199,6 +223,7 @@ struct Result {
   Status status;
   std::vector<std::string> states, controls, switching_functions, outputs;
   std::vector<RegionGroup> region_groups;
+  std::vector<std::string> contacts;
   Final final;
   std::vector<Event> events;
   Trajectory trajectory;

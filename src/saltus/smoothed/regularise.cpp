@@ -281,6 +281,10 @@ void Regulariser::finish() {
       if (expression->numel() > 0) continuous(*expression);
     }
   }
+  auto& contacts = system.contacts;
+  for (SX* expression : {&contacts.acceleration, &contacts.normal_force, &contacts.tangential_force}) {
+    if (expression->numel() > 0) continuous(*expression);
+  }
   system.alpha = alpha_.empty() ? SX(0, 1) : SX::vertcat(alpha_);
   // Nothing jumps: no selection is ever interpolated.
   system.inclusion = model::Inclusion::filippov;

@@ -35,7 +35,8 @@ std::string remark_of(const model::System& system, std::size_t state) {
 }
 
 void take_quantities(const model::System& system, const result::Captions& captions, ModelOverview& overview) {
-  for (std::size_t i = 0; i < system.state_names.size(); ++i) {
+  const auto states = system.contacts.empty() ? system.state_names.size() : at(system.contacts.first_hidden);
+  for (std::size_t i = 0; i < states; ++i) {
     overview.states.push_back({system.state_names[i], system.initial_state[i], system.state_lower[i],
                                system.state_upper[i], caption_of(captions, system.state_names[i]),
                                remark_of(system, i)});
@@ -193,6 +194,12 @@ ModelOverview overview_of(const model::Description& description, const model::Sy
   for (std::size_t i = 0; i < description.jumps.size(); ++i) {
     overview.jumps.push_back(
         {system.jumps[i].name, when_text(description.jumps[i]), equations_of(description.jumps[i].set)});
+  }
+  for (const auto& entry : description.hysteresis) {
+    overview.jumps.push_back({entry.name,
+                              fmt::format("on at {} = {}, off at {}", to_spaced_text(*entry.input),
+                                          to_spaced_text(*entry.on), to_spaced_text(*entry.off)),
+                              {{entry.name, fmt::format("1 - {}", entry.name), {}}}});
   }
   overview.inclusion = system.inclusion == model::Inclusion::filippov ? "filippov" : "aizerman_pyatnitskii";
   overview.multi_affine = system.multi_affine;

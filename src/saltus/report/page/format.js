@@ -61,6 +61,11 @@ saltus.kinds = {
   accumulation: {label: "accumulation", symbol: "hourglass", sign: "⋈", look: "accumulation", planeSymbol: "hourglass"},
   jump: {label: "jump", symbol: "star", sign: "★", look: "jump", planeSymbol: "star"},
   user: {label: "user event", symbol: "square", sign: "■"},
+  impact: {label: "impact", symbol: "star", sign: "✶", look: "jump", planeSymbol: "star"},
+  contact: {label: "contact", symbol: "triangle-down", sign: "▽"},
+  lift_off: {label: "lift-off", symbol: "triangle-up", sign: "△"},
+  stick: {label: "stick", symbol: "square", sign: "■"},
+  slip: {label: "slip", symbol: "diamond", sign: "◇"},
 };
 saltus.kindSign = (kind) => saltus.kinds[kind]?.sign ?? "";
 saltus.kindLabel = (kind) => saltus.kinds[kind]?.label ?? kind;

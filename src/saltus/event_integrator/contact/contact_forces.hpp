@@ -1,0 +1,35 @@
+// The forces of contacts that last.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/event_integrator/contact/contact_point.hpp"
+
+namespace saltus::event_integrator {
+
+enum class ContactMode { open, closed, stick, slip_up, slip_down };
+
+/// Modes of all contacts, and their forces.
+struct ContactForces {
+  std::vector<ContactMode> modes;
+  Eigen::VectorXd forces;        ///< 2 m
+  Eigen::VectorXd acceleration;  ///< 2 m, with them
+  /// What is left until the first of the modes ends, relative to its terms: a normal force or acceleration, the
+  /// distance to the edge of a friction cone. Negative: a mode does not hold.
+  double margin = 0.0;
+};
+
+/// The forces in given modes; contacts that are not in `resting` are open. False where the modes contradict each other.
+[[nodiscard]] bool forces_in(const ContactPoint& point, const std::vector<int>& resting,
+                             const std::vector<ContactMode>& modes, ContactForces& result);
+
+/// Modes in which contacts at rest (gap and its rate 0) may go on: 0 <= normal force, complementary to 0 <= normal
+/// acceleration; |tangential force| <= friction normal force, with equality against the slip or, where there is none,
+/// against the tangential acceleration. Found by trying all combinations, those with most contact first.
+/// @param excluded  by contact: a mode that is known to end here; open contacts have no say
+[[nodiscard]] std::vector<ContactForces> admissible_forces(const ContactPoint& point, const std::vector<int>& resting,
+                                                           const std::vector<std::vector<ContactMode>>& excluded);
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,116 @@
+#include "saltus/event_integrator/contact/contact_results.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using result::EventKind;
+
+class Shown {
+ public:
+  explicit Shown(const model::ContactSystem& contacts) : contacts_(contacts) {}
+
+  [[nodiscard]] std::vector<result::ContactMode> modes(const std::vector<double>& x) const {
+    std::vector<result::ContactMode> result;
+    for (const auto& contact : contacts_.contacts) {
+      const bool closed = x[at(contact.closed)] != 0.0;
+      result.push_back(!closed                      ? result::ContactMode::open
+                       : !contact.has_friction      ? result::ContactMode::closed
+                       : x[at(contact.slip)] != 0.0 ? result::ContactMode::slip
+                                                    : result::ContactMode::stick);
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<std::array<double, 2>> impulses(const std::vector<double>& before,
+                                                            const std::vector<double>& x) const {
+    std::vector<std::array<double, 2>> result;
+    for (const auto& contact : contacts_.contacts) {
+      const auto k = at(contact.impulse);
+      result.push_back({x[k] - before[k], x[k + 1] - before[k + 1]});
+    }
+    return result;
+  }
+
+  void cut(std::vector<double>& x) const {
+    if (x.size() > at(contacts_.first_hidden)) x.resize(at(contacts_.first_hidden));
+  }
+
+  [[nodiscard]] bool owns(const std::string& name) const {
+    return std::any_of(contacts_.contacts.begin(), contacts_.contacts.end(),
+                       [&](const auto& contact) { return contact.name == name; });
+  }
+
+  /// An event of contacts, from the modes on both sides and the impulses; false if there is nothing to tell.
+  bool tell(result::Event& event) const {
+    const auto before = modes(event.x), after = modes(event.x_after);
+    auto impulse = impulses(event.x, event.x_after);
+    event.surfaces.clear();
+    event.name.reset();
+    bool hit = false, closes = false, opens = false, sticks = false;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const bool pushed = impulse[i][0] != 0.0 || impulse[i][1] != 0.0;
+      if (before[i] == after[i] && !pushed) continue;
+      event.surfaces.push_back(contacts_.contacts[i].name);
+      hit = hit || pushed;
+      closes = closes || before[i] == result::ContactMode::open;
+      opens = opens || after[i] == result::ContactMode::open;
+      sticks = sticks || after[i] == result::ContactMode::stick;
+    }
+    if (event.surfaces.empty()) return false;
+    event.kind = hit      ? EventKind::impact
+                 : closes ? EventKind::contact
+                 : opens  ? EventKind::lift_off
+                 : sticks ? EventKind::stick
+                          : EventKind::slip;
+    event.reason = hit      ? "bodies collide: the impulses end their approach"
+                   : closes ? "bodies touch without approaching"
+                   : opens  ? "the normal force ends"
+                   : sticks ? "friction holds what has come to rest"
+                            : "the tangential force reaches the edge of the friction cone, or the slip turns around";
+    if (hit) event.impulse = std::move(impulse);
+    return true;
+  }
+
+ private:
+  const model::ContactSystem& contacts_;
+};
+
+}  // namespace
+
+void show_contacts(const model::System& system, result::Final& final, std::vector<result::Event>& events,
+                   result::Trajectory& trajectory) {
+  const Shown shown(system.contacts);
+  std::vector<result::Event> told;
+  for (auto& event : events) {
+    const bool of_contact = event.kind == EventKind::jump && event.name && shown.owns(*event.name);
+    const bool empty = of_contact && !shown.tell(event);
+    if (empty && !told.empty() && told.back().t == event.t) {
+      // Several contacts may end at once; the first of their jumps has changed all.
+      if (event.mode_after)
+        std::tie(told.back().mode_after, told.back().alpha_after) = std::tie(event.mode_after, event.alpha_after);
+    }
+    if (empty) continue;
+    event.contact_modes_before = shown.modes(event.x);
+    event.contact_modes_after = shown.modes(event.x_after);
+    shown.cut(event.x);
+    shown.cut(event.x_after);
+    told.push_back(std::move(event));
+  }
+  events = std::move(told);
+  for (auto& x : trajectory.x) {
+    trajectory.contact_modes.push_back(shown.modes(x));
+    shown.cut(x);
+  }
+  final.contact_modes = shown.modes(final.x);
+  shown.cut(final.x);
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,337 @@
+#include "saltus/event_integrator/contact/contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include "saltus/base/at.hpp"
+#include "saltus/event_integrator/contact/impact.hpp"
+#include "saltus/event_integrator/small_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double small_velocity =
+    1e-9;  ///< relative size of velocities that count as none at an event: location and projection
+
+}  // namespace
+
+Contacts::Contacts(const evaluation::ModelKernel& kernel, const model::System& system)
+    : kernel_(kernel), system_(system.contacts), contacts_(system.contacts.contacts) {
+  if (contacts_.empty()) return;
+  guards_.assign(at(kernel.event_functions()), false);
+  for (const auto& contact : contacts_) {
+    const auto guards = static_cast<int>(system.jumps[at(contact.jump)].guards.numel());
+    for (int g = 0; g < guards; ++g) guards_[at(kernel.jump_guard(contact.jump, g))] = true;
+  }
+}
+
+bool Contacts::owns(int jump) const {
+  return std::any_of(contacts_.begin(), contacts_.end(), [jump](const auto& contact) { return contact.jump == jump; });
+}
+
+ContactPoint Contacts::point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
+  kernel_.contacts(t, x.data(), alpha.data(), values_);
+  ContactPoint point;
+  point.influence = values_.rows * values_.responses;
+  point.velocity = values_.velocity;
+  point.acceleration = values_.acceleration;
+  point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<Eigen::Index>(i)) : 0.0);
+  }
+  return point;
+}
+
+ContactMode Contacts::mode_of(int contact, const std::vector<double>& x) const {
+  const auto& entry = contacts_[at(contact)];
+  if (x[at(entry.closed)] == 0.0) return ContactMode::open;
+  if (!entry.has_friction) return ContactMode::closed;
+  if (x[at(entry.slip)] == 0.0) return ContactMode::stick;
+  return x[at(entry.share)] > 0.0 ? ContactMode::slip_up : ContactMode::slip_down;
+}
+
+/// Whether the gap is 0: by the mode, by the event, or to the rounding of its terms.
+bool Contacts::touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const {
+  if (x[at(contacts_[at(contact)].closed)] != 0.0 || contains(ended, contact)) return true;
+  double terms = 0.0;
+  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
+    terms += std::abs(values_.rows(contact, static_cast<Eigen::Index>(k)) * x[at(system_.positions[k])]);
+  }
+  return std::abs(values_.gap(contact)) <= std::max(64.0 * rounding_unit * terms, 1e-12);  // as at a start
+}
+
+/// Velocities that are 0 by their modes, or to their rounding, are 0; so is that of a slip that ends.
+void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
+                     const std::vector<int>& ended) const {
+  const int m = point.contacts();
+  VectorXd terms = VectorXd::Zero(2 * m);
+  double fastest = moment.time_scale * point.acceleration.cwiseAbs().maxCoeff();
+  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+    const double speed = std::abs(x[at(system_.velocities[k])]);
+    terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * speed;
+    fastest = std::max(fastest, speed);
+  }
+  for (int row = 0; row < 2 * m; ++row) {
+    const int contact = row % m;
+    const auto mode = mode_of(contact, x);
+    const bool slips = mode == ContactMode::slip_up || mode == ContactMode::slip_down;
+    const bool slip_ends =
+        slips && contains(ended, contact) && std::abs(point.velocity(row)) <= small_velocity * fastest;
+    const bool held = row < m ? mode != ContactMode::open : mode == ContactMode::stick || slip_ends;
+    if (held || std::abs(point.velocity(row)) <= 16.0 * rounding_unit * terms(row)) point.velocity(row) = 0.0;
+  }
+}
+
+std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const std::vector<int>& ended,
+                                             std::vector<double>& x) {
+  ContactPoint point = point_at(moment.t, moment.alpha, x);
+  clean(moment, point, x, ended);
+  std::vector<int> touching;
+  std::vector<std::vector<ContactMode>> excluded(contacts_.size());
+  for (int i = 0; i < point.contacts(); ++i) {
+    if (!touches(i, x, ended)) continue;
+    touching.push_back(i);
+    if (contains(ended, i)) excluded[at(i)].push_back(mode_of(i, x));
+  }
+  const bool closing =
+      std::any_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) < 0.0; });
+  if (closing) {
+    if (!collide(moment, touching, std::nullopt, point, x)) {
+      return fmt::format("the impact of {} at t = {:.17g} has no end: bodies jam, or normals depend on each other",
+                         names(touching), moment.t);
+    }
+    excluded.assign(contacts_.size(), {});
+  }
+  return find_modes(moment, touching, std::move(excluded), point, x);
+}
+
+std::optional<std::string> Contacts::settle(const ContactMoment& moment, const std::vector<int>& jumps,
+                                            std::vector<double>& x) {
+  std::vector<int> touching;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    auto& closed = x[at(contacts_[i].closed)];
+    if (!contains(jumps, contacts_[i].jump) && closed == 0.0) continue;
+    touching.push_back(static_cast<int>(i));
+    if (closed == 0.0) x[at(contacts_[i].active)] = 1.0;
+    closed = 1.0;
+  }
+  static_cast<void>(project(moment.t, moment.alpha, x));
+  ContactPoint point = point_at(moment.t, moment.alpha, x);
+  clean(moment, point, x, {});
+  return find_modes(moment, touching, std::vector<std::vector<ContactMode>>(contacts_.size()), point, x);
+}
+
+/// The impulses, and the velocities behind them; false where there are none.
+bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
+                       ContactPoint& point, std::vector<double>& x) {
+  const auto impulses = impact(point, touching, pushed);
+  if (!impulses) return false;
+  const int m = point.contacts();
+  const VectorXd change = values_.responses * *impulses;
+  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+    x[at(system_.velocities[k])] += change(static_cast<Eigen::Index>(k));
+  }
+  for (int i = 0; i < m; ++i) {
+    x[at(contacts_[at(i)].impulse)] += (*impulses)(i);
+    x[at(contacts_[at(i)].impulse + 1)] += (*impulses)(m + i);
+  }
+  const double size = point.velocity.cwiseAbs().maxCoeff();
+  point = point_at(moment.t, moment.alpha, x);
+  for (Eigen::Index row = 0; row < point.velocity.size(); ++row) {
+    if (std::abs(point.velocity(row)) <= small_velocity * small_velocity * size + 64.0 * rounding_unit * size)
+      point.velocity(row) = 0.0;
+  }
+  return true;
+}
+
+std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, const std::vector<int>& touching,
+                                                std::vector<std::vector<ContactMode>> excluded, ContactPoint& point,
+                                                std::vector<double>& x) {
+  const auto at_rest = [&] {
+    std::vector<int> resting;
+    for (const int i : touching) {
+      if (std::abs(point.normal_velocity(i)) == 0.0) resting.push_back(i);
+    }
+    return resting;
+  };
+  auto resting = at_rest();
+  auto found = admissible_forces(point, resting, excluded);
+  if (found.empty()) found = admissible_forces(point, resting, std::vector<std::vector<ContactMode>>(contacts_.size()));
+  // Painleve: no forces keep the contacts closed, and none let them open. An impact without a collision follows.
+  for (std::size_t k = 0; found.empty() && k < resting.size(); ++k) {
+    if (point.friction[at(resting[k])] == 0.0) continue;
+    auto x_behind = x;
+    auto point_behind = point;
+    if (!collide(moment, touching, resting[k], point_behind, x_behind)) continue;
+    x = std::move(x_behind);
+    point = std::move(point_behind);
+    resting = at_rest();
+    found = admissible_forces(point, resting, std::vector<std::vector<ContactMode>>(contacts_.size()));
+  }
+  if (found.empty()) {
+    return fmt::format(
+        "no contact forces continue the motion of {} at t = {:.17g} (Painleve's paradox, or bodies that "
+        "jam)",
+        names(touching), moment.t);
+  }
+  const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, resting, found, x);
+  enter(point, found[chosen], x);
+  static_cast<void>(project(moment.t, moment.alpha, x));
+  return std::nullopt;
+}
+
+/// Of modes that hold here the one that holds a little later with the largest margin.
+std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<int>& resting,
+                                 const std::vector<ContactForces>& found, const std::vector<double>& x) {
+  std::size_t best = 0;
+  double largest = -std::numeric_limits<double>::infinity();
+  const double h = 1e-3 * moment.time_scale;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    auto ahead = x;
+    const ContactPoint here = point_at(moment.t, moment.alpha, x);
+    enter(here, found[k], ahead);
+    std::vector<double> rate(x.size());
+    kernel_.field(moment.t, ahead.data(), moment.alpha.data(), rate.data());
+    for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += h * rate[i];
+    ContactPoint later = point_at(moment.t + h, moment.alpha, ahead);
+    for (const int i : resting) {
+      // The sign of the slip is that of the mode.
+      if (found[k].modes[at(i)] == ContactMode::stick) later.velocity(later.contacts() + i) = 0.0;
+    }
+    ContactForces forces;
+    if (!forces_in(later, resting, found[k].modes, forces)) continue;
+    const double held = std::min(found[k].margin, forces.margin);
+    if (held > largest) {
+      largest = held;
+      best = k;
+    }
+  }
+  return best;
+}
+
+/// The discrete states of these modes. Of rows that depend on each other the first ones hold; the others follow, and a
+/// tangential force that does keeps its share of the friction cone.
+void Contacts::enter(const ContactPoint& point, const ContactForces& found, std::vector<double>& x) const {
+  const int m = point.contacts();
+  std::vector<Eigen::VectorXd> basis;
+  const auto independent = [&](int row) {
+    Eigen::VectorXd e = values_.rows.row(row).transpose();
+    const double size = e.norm();
+    for (const auto& b : basis) e -= b.dot(e) * b;
+    for (const auto& b : basis) e -= b.dot(e) * b;
+    if (!(e.norm() > 1e-9 * size)) return false;
+    basis.push_back(e.normalized());
+    return true;
+  };
+  for (int i = 0; i < m; ++i) {
+    const auto& contact = contacts_[at(i)];
+    const bool closed = found.modes[at(i)] != ContactMode::open;
+    x[at(contact.closed)] = closed ? 1.0 : 0.0;
+    x[at(contact.active)] = closed && independent(i) ? 1.0 : 0.0;
+    x[at(contact.stick)] = x[at(contact.slip)] = x[at(contact.share)] = 0.0;
+  }
+  for (int i = 0; i < m; ++i) {
+    const auto& contact = contacts_[at(i)];
+    const auto mode = found.modes[at(i)];
+    if (mode == ContactMode::stick) {
+      if (independent(m + i)) {
+        x[at(contact.stick)] = 1.0;
+      } else if (const double limit = point.friction[at(i)] * found.forces(i); limit > 0.0) {
+        x[at(contact.share)] = std::clamp(-found.forces(m + i) / limit, -1.0, 1.0);
+      }
+    } else if (mode == ContactMode::slip_up || mode == ContactMode::slip_down) {
+      x[at(contact.share)] = mode == ContactMode::slip_up ? 1.0 : -1.0;
+      // Held by another one that sticks: it is at the edge of its cone.
+      x[at(contact.slip)] = 1.0;
+    }
+  }
+}
+
+std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
+  std::vector<int> rows;
+  const auto m = static_cast<int>(contacts_.size());
+  for (int i = 0; i < m; ++i) {
+    if (x[at(contacts_[at(i)].active)] != 0.0) rows.push_back(i);
+  }
+  for (int i = 0; i < m; ++i) {
+    if (x[at(contacts_[at(i)].stick)] != 0.0) rows.push_back(m + i);
+  }
+  return rows;
+}
+
+void Contacts::correct_positions(std::vector<double>& x) const {
+  std::vector<int> rows;
+  for (const int row : held_rows(x)) {
+    if (row < static_cast<int>(contacts_.size())) rows.push_back(row);
+  }
+  if (rows.empty()) return;
+  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
+  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
+  const VectorXd change = response * influence.ldlt().solve(values_.gap(rows));
+  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
+    x[at(system_.positions[k])] -= change(static_cast<Eigen::Index>(k));
+  }
+}
+
+void Contacts::correct_velocities(std::vector<double>& x) const {
+  const auto rows = held_rows(x);
+  if (rows.empty()) return;
+  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
+  const Eigen::MatrixXd normal = values_.rows(rows, Eigen::all);
+  const VectorXd change = response * (normal * response).ldlt().solve(values_.velocity(rows));
+  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+    x[at(system_.velocities[k])] -= change(static_cast<Eigen::Index>(k));
+  }
+  // A velocity that sticks by itself is 0, not its rounding.
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto row = static_cast<Eigen::Index>(r);
+    if (rows[r] < static_cast<int>(contacts_.size()) || (normal.row(row).array() != 0.0).count() != 1) continue;
+    Eigen::Index only = 0;
+    static_cast<void>(normal.row(row).cwiseAbs().maxCoeff(&only));
+    x[at(system_.velocities[static_cast<std::size_t>(only)])] = 0.0;
+  }
+}
+
+bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+  if (none() || held_rows(x).empty()) return false;
+  const auto before = x;
+  // The gap of a step is within its tolerances: two corrections leave rounding.
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    kernel_.contacts(t, x.data(), alpha.data(), values_);
+    const auto x_before = x;
+    correct_positions(x);
+    if (x == x_before) break;
+  }
+  correct_velocities(x);
+  return x != before;
+}
+
+void Contacts::forget_impulses(std::vector<double>& x) const {
+  for (const auto& contact : contacts_) x[at(contact.impulse)] = x[at(contact.impulse + 1)] = 0.0;
+}
+
+std::optional<int> Contacts::jump_with_impulse(const std::vector<double>& x) const {
+  for (const auto& contact : contacts_) {
+    if (x[at(contact.impulse)] != 0.0) return contact.jump;
+  }
+  return std::nullopt;
+}
+
+void Contacts::copy_modes(const std::vector<double>& from, std::vector<double>& x) const {
+  const auto first = static_cast<std::ptrdiff_t>(system_.first_hidden);
+  if (!none()) std::copy(from.begin() + first, from.end(), x.begin() + first);
+}
+
+std::string Contacts::names(const std::vector<int>& contacts) const {
+  std::string text;
+  for (const int i : contacts) text += (text.empty() ? "'" : ", '") + contacts_[at(i)].name + "'";
+  return text;
+}
+
+}  // namespace saltus::event_integrator

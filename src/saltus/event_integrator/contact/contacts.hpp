@@ -1,0 +1,89 @@
+// [[contacts]] in a run: impacts, modes, and what holds closed gaps at zero.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/evaluation/contact_functions.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/contact/contact_forces.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::event_integrator {
+
+/// Where contacts are asked for a new mode.
+struct ContactMoment {
+  double t = 0.0;
+  const std::vector<double>& alpha;
+  double time_scale = 0.0;  ///< over which the fields change little
+};
+
+/// Changes the discrete states that say the modes of contacts, and velocities at impacts. Everything else of a contact
+/// (its forces, when a mode ends) is an expression of the system (model::ContactSystem).
+class Contacts {
+ public:
+  Contacts(const evaluation::ModelKernel& kernel, const model::System& system);
+
+  [[nodiscard]] bool none() const { return contacts_.empty(); }
+  /// Whether a jump is that of a contact.
+  [[nodiscard]] bool owns(int jump) const;
+  /// Whether an event function is a guard of such a jump.
+  [[nodiscard]] bool guards(int function) const {
+    return !guards_.empty() && guards_[static_cast<std::size_t>(function)];
+  }
+  /// Those whose jumps are in a list, or for which a condition on their jumps holds.
+  template <class Condition>
+  [[nodiscard]] std::vector<int> with_jumps(Condition condition) const {
+    std::vector<int> result;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      if (condition(contacts_[i].jump)) result.push_back(static_cast<int>(i));
+    }
+    return result;
+  }
+  /// The jump of the first contact with an impulse.
+  [[nodiscard]] std::optional<int> jump_with_impulse(const std::vector<double>& x) const;
+  /// Gives the modes of another state.
+  void copy_modes(const std::vector<double>& from, std::vector<double>& x) const;
+
+  /// Velocities behind the impacts at a point, if any, and the modes there. `ended` lists the contacts whose mode ends
+  /// here; x is at the zero of what ended it. Returns what is wrong if nothing follows.
+  [[nodiscard]] std::optional<std::string> resolve(const ContactMoment& moment, const std::vector<int>& ended,
+                                                   std::vector<double>& x);
+  /// Bounces of these contacts (by their jumps) have come to an end: their gaps close without an impact.
+  [[nodiscard]] std::optional<std::string> settle(const ContactMoment& moment, const std::vector<int>& jumps,
+                                                  std::vector<double>& x);
+  /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
+  bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
+  /// Impulses belong to one instant.
+  void forget_impulses(std::vector<double>& x) const;
+
+ private:
+  [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  [[nodiscard]] ContactMode mode_of(int contact, const std::vector<double>& x) const;
+  void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
+             const std::vector<int>& ended) const;
+  [[nodiscard]] bool touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const;
+  bool collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
+               ContactPoint& point, std::vector<double>& x);
+  [[nodiscard]] std::optional<std::string> find_modes(const ContactMoment& moment, const std::vector<int>& touching,
+                                                      std::vector<std::vector<ContactMode>> excluded,
+                                                      ContactPoint& point, std::vector<double>& x);
+  [[nodiscard]] std::size_t best_ahead(const ContactMoment& moment, const std::vector<int>& resting,
+                                       const std::vector<ContactForces>& found, const std::vector<double>& x);
+  void enter(const ContactPoint& point, const ContactForces& found, std::vector<double>& x) const;
+  void correct_positions(std::vector<double>& x) const;
+  void correct_velocities(std::vector<double>& x) const;
+  [[nodiscard]] std::vector<int> held_rows(const std::vector<double>& x) const;
+  [[nodiscard]] std::string names(const std::vector<int>& contacts) const;
+
+  const evaluation::ModelKernel& kernel_;
+  const model::ContactSystem& system_;
+  const std::vector<model::Contact>& contacts_;
+  std::vector<bool> guards_;  ///< by event function; empty without contacts
+  evaluation::ContactValues values_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,80 @@
+// Reader of [[contacts]].
+#include <fmt/format.h>
+
+#include "saltus/io/toml_sections_internal.hpp"
+
+namespace saltus::io {
+namespace {
+
+const std::vector<std::string> contact_keys{"name", "gap", "tangent", "tangents", "friction", "restitution"};
+
+class ContactReader {
+ public:
+  ContactReader(TomlReader& reader, const SourceLocation& location) : reader_(reader) { contact_.location = location; }
+
+  model::ContactDescription read(const TomlTable& table) {
+    for (const auto& entry : table) read_key(entry);
+    if (contact_.name.empty()) missing("name", "write name = \"ground\"");
+    if (!contact_.gap) missing("gap", "write gap = \"z\": what must not be negative, over positions, parameters and t");
+    return std::move(contact_);
+  }
+
+ private:
+  void read_key(const TomlEntry& entry) {
+    const auto& [key, location, value] = entry;
+    if (key == "name") {
+      contact_.name = reader_.string(value, "a name in quotes");
+      contact_.location = value.location;
+    } else if (key == "gap") {
+      contact_.gap = reader_.expression(value);
+    } else if (key == "tangent") {
+      contact_.tangents.push_back(tangent(value));
+    } else if (key == "tangents") {
+      const auto* list = std::get_if<TomlArray>(&value.value);
+      if (list == nullptr) return reader_.wrong_type("a list of two tangents, [{ x = 1 }, { y = 1 }]", value);
+      for (const auto& one : *list) contact_.tangents.push_back(tangent(one));
+    } else if (key == "friction") {
+      contact_.friction = reader_.expression(value);
+    } else if (key == "restitution") {
+      contact_.restitution = reader_.expression(value);
+    } else {
+      reader_.unknown_key(entry, contact_keys);
+    }
+  }
+
+  std::vector<model::TangentEntry> tangent(const TomlValue& value) {
+    std::vector<model::TangentEntry> row;
+    const auto* table = reader_.table(value, "a row over the positions, e.g. { x = 1 }");
+    if (table == nullptr) return row;
+    for (const auto& entry : *table) row.push_back({entry.key, reader_.expression(entry.value), entry.location});
+    if (row.empty()) fail("the tangent is empty", "write tangent = { x = 1 }, or leave it out", value.location);
+    return row;
+  }
+
+  void missing(const char* key, const char* remedy) {
+    fail(fmt::format("this contact has no `{}`", key), remedy, contact_.location);
+  }
+  void fail(std::string message, std::string remedy, const SourceLocation& location) {
+    reader_.fail({ErrorCode::parse_failure, std::move(message), std::move(remedy), location, {}});
+  }
+
+  TomlReader& reader_;
+  model::ContactDescription contact_;
+};
+
+}  // namespace
+
+void read_contacts(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  const auto* array = std::get_if<TomlArray>(&entry.value.value);
+  if (array == nullptr) {
+    reader.wrong_type("tables that begin with [[contacts]]", entry.value);
+    return;
+  }
+  for (const auto& value : *array) {
+    const auto* table = reader.table(value, "a table with `name` and `gap`");
+    if (table == nullptr) return;
+    model.description.contacts.push_back(ContactReader(reader, value.location).read(*table));
+  }
+}
+
+}  // namespace saltus::io

@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/model/mechanics/contacts_internal.hpp"
+#include "saltus/model/mechanics/smooth_check_internal.hpp"
+#include "saltus/model/mechanics/symbolic_ldl_internal.hpp"
+#include "saltus/model/start_values_internal.hpp"
+
+namespace saltus::model {
+
+using casadi::SX;
+
+namespace {
+
+Error mechanics_error(const SourceLocation& location, std::string message, std::string remedy) {
+  return {ErrorCode::invalid_model, std::move(message), std::move(remedy), location, {"in [mechanics]"}};
+}
+
+class MechanicsBuild {
+ public:
+  MechanicsBuild(Recognition& recognition, Statement& statement, const MechanicsStatement& mechanics)
+      : recognition_(recognition),
+        statement_(statement),
+        mechanics_(mechanics),
+        q_(symbols_of(statement, mechanics.positions)),
+        v_(symbols_of(statement, mechanics.velocities)) {}
+
+  [[nodiscard]] std::optional<Error> run() {
+    if (auto error = check_free_of_dynamics()) return error;
+    const SX mass = SX::densify(mechanics_.mass);
+    for (const SXElem& e : mass.nonzeros()) {
+      if (auto error = check_reach(e, "the mass matrix", mechanics_.mass_location)) return error;
+    }
+    if (auto error = check_reach(mechanics_.potential.scalar(), "the potential", mechanics_.potential_location)) {
+      return error;
+    }
+    if (auto error = check_symmetry()) return error;
+    const SymbolicLdl factors(mechanics_.mass);
+    if (auto error = check_definite(factors.pivots())) return error;
+    SX force = total_force();
+    if (!mechanics_.contacts.empty()) {
+      const MotionWithoutContacts motion{mechanics_.positions, mechanics_.velocities, factors, force};
+      auto with_contacts = add_contacts(recognition_, statement_, mechanics_.contacts, motion);
+      if (!with_contacts) return with_contacts.error();
+      force = *with_contacts;
+    }
+    set_dynamics(factors.solve(force));
+    const SX kinetic = SX::mtimes(v_.T(), SX::mtimes(mechanics_.mass, v_)) / 2.0;
+    statement_.automatic_outputs.push_back({"energy", SX::densify(kinetic + mechanics_.potential).scalar()});
+    return std::nullopt;
+  }
+
+ private:
+  [[nodiscard]] std::optional<Error> check_reach(const SXElem& expression, const std::string& what,
+                                                 const SourceLocation& location) {
+    const auto node = recognition_.graph.add(expression);
+    if (!node) return with_location(node.error(), location);
+    return check_smooth(recognition_, statement_, *node, {mechanics_.positions, false, what, location});
+  }
+
+  [[nodiscard]] const std::string& name_of(int state) const { return statement_.states[at(state)].name; }
+
+  [[nodiscard]] std::optional<Error> check_free_of_dynamics() const {
+    for (const auto& [states, what, rate] : {std::tuple{&mechanics_.positions, "position", "its velocity"},
+                                             std::tuple{&mechanics_.velocities, "velocity", "given by `force`"}}) {
+      for (const int state : *states) {
+        const auto place = place_of_dynamics(state);
+        if (!place) continue;
+        return mechanics_error(
+            *place, fmt::format("'{}' is a {} of [mechanics] and has a right-hand side, too", name_of(state), what),
+            fmt::format("remove it: its rate is {}", rate));
+      }
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<SourceLocation> place_of_dynamics(int state) const {
+    if (statement_.states[at(state)].dynamics) return statement_.states[at(state)].dynamics_location;
+    for (const auto& group : statement_.mode_groups) {
+      for (const auto& mode : group.modes) {
+        for (const auto& rate : mode.rates) {
+          if (rate.state == state) return rate.location;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] Expected<double> at_start(const SXElem& expression) {
+    return recognition_.graph.add(expression).map([&](int node) {
+      return value_at_start(recognition_, statement_, node);
+    });
+  }
+
+  [[nodiscard]] std::optional<Error> check_symmetry() {
+    const SX mass = SX::densify(mechanics_.mass);
+    for (casadi_int i = 0; i < mass.size1(); ++i) {
+      for (casadi_int j = 0; j < i; ++j) {
+        const auto below = at_start(SX(mass(i, j)).scalar()), above = at_start(SX(mass(j, i)).scalar());
+        if (!below) return below.error();
+        if (!above) return above.error();
+        // Rounding of two ways to write the same expression.
+        if (std::abs(*below - *above) <= 1e-12 * std::max(std::abs(*below), std::abs(*above))) continue;
+        return mechanics_error(
+            mechanics_.mass_location,
+            fmt::format(
+                "the mass matrix is not symmetric: row {}, column {} is {}, row {}, column {} is {} at the start",
+                i + 1, j + 1, *below, j + 1, i + 1, *above),
+            "write the same expression in both places");
+      }
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<Error> check_definite(const SX& pivots) {
+    for (casadi_int i = 0; i < pivots.numel(); ++i) {
+      const auto pivot = at_start(SX(pivots(i)).scalar());
+      if (!pivot) return pivot.error();
+      const auto diagonal = at_start(SX(SX::densify(mechanics_.mass)(i, i)).scalar());
+      // What is left of a diagonal entry that the rows above determine is their rounding.
+      if (*pivot > 1e-13 * std::abs(*diagonal) && std::isfinite(*pivot)) continue;
+      return mechanics_error(
+          mechanics_.mass_location,
+          fmt::format("the mass matrix is not positive definite at the start: row {} ('{}') depends on the rows above, "
+                      "or has no positive mass (pivot {})",
+                      i + 1, name_of(mechanics_.velocities[static_cast<std::size_t>(i)]), *pivot),
+          "every velocity needs a positive mass or inertia of its own");
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] SX total_force() const {
+    SX force = mechanics_.force - SX::gradient(mechanics_.potential, q_);
+    if (mechanics_.coriolis == Coriolis::in_force) return force;
+    const SX momentum = SX::mtimes(mechanics_.mass, v_);
+    const SX kinetic = SX::mtimes(v_.T(), momentum) / 2.0;
+    return force - SX::mtimes(SX::jacobian(momentum, q_), v_) + SX::gradient(kinetic, q_);
+  }
+
+  void set_dynamics(const SX& acceleration) {
+    for (std::size_t i = 0; i < mechanics_.positions.size(); ++i) {
+      auto& position = statement_.states[at(mechanics_.positions[i])];
+      auto& velocity = statement_.states[at(mechanics_.velocities[i])];
+      position.dynamics = velocity.symbol;
+      velocity.dynamics = SX(acceleration(static_cast<casadi_int>(i))).scalar();
+      position.dynamics_location = velocity.dynamics_location = mechanics_.location;
+    }
+  }
+
+  Recognition& recognition_;
+  Statement& statement_;
+  const MechanicsStatement& mechanics_;
+  SX q_, v_;
+};
+
+}  // namespace
+
+SX symbols_of(const Statement& statement, const std::vector<int>& states) {
+  std::vector<SXElem> symbols;
+  for (const int state : states) symbols.push_back(statement.states[at(state)].symbol);
+  return column(symbols);
+}
+
+std::optional<Error> state_mechanics(Recognition& recognition, Statement& statement,
+                                     const MechanicsStatement& mechanics) {
+  return MechanicsBuild(recognition, statement, mechanics).run();
+}
+
+}  // namespace saltus::model

@@ -1,0 +1,46 @@
+// [mechanics] becomes right-hand sides, [[contacts]] with it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/model/model_scope_internal.hpp"
+
+namespace saltus::model {
+
+/// One contact in expressions of the statement it belongs to.
+struct ContactStatement {
+  std::string name;
+  casadi::SX gap{};
+  casadi::SX tangent{};  ///< 1 x n over the positions; 0 x 0 without
+  casadi::SX friction = 0.0, restitution = 0.0;
+  SourceLocation location{}, gap_location{}, friction_location{}, restitution_location{};
+};
+
+/// A mechanical system in expressions of the statement it belongs to.
+struct MechanicsStatement {
+  std::vector<int> positions{}, velocities{};  ///< states, in the same order
+  casadi::SX mass{};                           ///< n x n
+  casadi::SX potential = 0.0;
+  casadi::SX force{};  ///< n
+  Coriolis coriolis = Coriolis::in_force;
+  std::vector<ContactStatement> contacts{};
+  SourceLocation location{}, mass_location{}, potential_location{};
+};
+
+/// The symbols of some states, as a column.
+[[nodiscard]] casadi::SX symbols_of(const Statement& statement, const std::vector<int>& states);
+
+/// Resolves [mechanics] and [[contacts]] of a description; nothing without.
+[[nodiscard]] Expected<std::optional<MechanicsStatement>> mechanics_of(const Description& description,
+                                                                       ModelScope& scope, const Statement& statement);
+
+/// Gives positions and velocities their right-hand sides, dq/dt = v and dv/dt = M^-1 (force - grad potential -
+/// coriolis + forces of contacts), and appends the outputs of the contacts and `energy`, v'M v/2 + potential. The
+/// initial values of the states are known.
+/// @return the mistake: a right-hand side that is there already; a mass matrix or potential that depends on more than
+///         positions and parameters; a mass matrix that is not symmetric or not positive definite at the start
+[[nodiscard]] std::optional<Error> state_mechanics(Recognition& recognition, Statement& statement,
+                                                   const MechanicsStatement& mechanics);
+
+}  // namespace saltus::model

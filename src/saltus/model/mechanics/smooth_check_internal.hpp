@@ -1,0 +1,24 @@
+// What mass matrices, potentials and gaps may speak of.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/model/statement_internal.hpp"
+
+namespace saltus::model {
+
+/// An expression of positions and parameters, smooth.
+struct SmoothOf {
+  const std::vector<int>& positions;
+  bool and_time = false;
+  std::string what;  ///< "the potential"
+  SourceLocation location;
+};
+
+/// Refuses an expression (by its node) that switches or that depends on anything else.
+[[nodiscard]] std::optional<Error> check_smooth(const Recognition& recognition, const Statement& statement, int node,
+                                                const SmoothOf& allowed);
+
+}  // namespace saltus::model

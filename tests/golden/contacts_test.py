@@ -1,0 +1,146 @@
+"""[mechanics] and [[contacts]] from outside: closed forms, the members of the result, and malformed models."""
+
+import json
+import math
+
+import tool
+
+BALL = """[model]
+name = "ball"
+[parameters]
+mu = 0.3
+[states]
+x = 0
+z = 1
+vx = 4
+vz = 0
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+potential = "10*z"
+[[contacts]]
+name = "ground"
+gap = "z"
+tangent = { x = 1 }
+friction = "mu"
+[simulate]
+until = 2
+"""
+
+PENDULUM = """[model]
+name = "double pendulum"
+[states]
+a = 0.5
+b = -0.3
+va = 1
+vb = -2
+[definitions]
+c = "cos(a - b)"
+[mechanics]
+positions = ["a", "b"]
+velocities = ["va", "vb"]
+mass = [[2, "c"], ["c", 1]]
+coriolis = "auto"
+potential = "-19.62*cos(a) - 9.81*cos(b)"
+[simulate]
+until = 2
+rtol = 1e-11
+atol = 1e-12
+"""
+
+# name: (old, new, line, expected parts of the message…)
+MALFORMED = {
+    "unknown position": ('["x", "z"]', '["x", "y"]', 11, "found 'y'"),
+    "velocity without its position": ('positions = ["x", "z"]', 'positions = ["z"]', 12, "the velocity 'vz' has no position"),
+    "position without its velocity": ('velocities = ["vx", "vz"]', 'velocities = ["vx"]', 11,
+                                      "the position 'z' has no velocity"),
+    "listed twice": ('velocities = ["vx", "vz"]', 'velocities = ["vx", "x"]', 12, "'x' is listed twice"),
+    "no positions": ('positions = ["x", "z"]\n', "", 10, "no `positions`"),
+    "mass of wrong size": ('potential = "10*z"', 'mass = [[1, 0]]', 13, "1 rows, and there are 2 velocities"),
+    "mass with a short row": ('potential = "10*z"', 'mass = [[1, 0], [1]]', 13, "row 2 of the mass matrix has 1 entries"),
+    "mass not symmetric": ('potential = "10*z"', 'mass = [[1, 0.5], [0.4, 1]]', 13, "not symmetric", "0.4", "0.5"),
+    "mass singular": ('potential = "10*z"', 'mass = [[1, 1], [1, 1]]', 13, "not positive definite", "row 2 ('vz')"),
+    "mass of a velocity": ('potential = "10*z"', 'mass = [["1 + vx^2", 0], [0, 1]]', 13, "depends on 'vx'"),
+    "potential of time": ('"10*z"', '"10*z*t"', 13, "depends on 't'"),
+    "force on a position": ('potential = "10*z"', 'force = { x = 1 }', 13, "a force on 'x'", "'vx'"),
+    "coriolis misspelt": ('potential = "10*z"', 'coriolis = "automatic"', 13, '"auto"'),
+    "key misspelt": ('potential = "10*z"', 'potentail = "10*z"', 13, "did you mean 'potential'"),
+    "dynamics of a position": ("[mechanics]", "[dynamics]\nx = 'vx'\n[mechanics]", 11, "'x' is a position of [mechanics]"),
+    "dynamics of a velocity": ("[mechanics]", "[dynamics]\nvz = '-10'\n[mechanics]", 11, "'vz' is a velocity of [mechanics]"),
+    "gap without positions": ('gap = "z"', 'gap = "mu"', 16, "no position in it"),
+    "gap of a velocity": ('gap = "z"', 'gap = "z + vz"', 16, "depends on 'vz'"),
+    "gap negative": ('gap = "z"', 'gap = "z - 2"', 16, "is -1 at the start"),
+    "no gap": ('gap = "z"\n', "", 15, "no `gap`"),
+    "no name": ('name = "ground"\n', "", 14, "no `name`"),
+    "tangent over velocities": ("{ x = 1 }", "{ vx = 1 }", 17, "no position", "the position whose rate this velocity is"),
+    "friction without tangent": ("tangent = { x = 1 }\n", "", 17, "friction and no `tangent`"),
+    "friction negative": ('friction = "mu"', "friction = -1", 18, "friction of 'ground' is -1"),
+    "friction of a state": ('friction = "mu"', 'friction = "z"', 18, "no constant"),
+    "restitution": ('friction = "mu"', "restitution = 1.5", 18, "restitution of 'ground' is 1.5", "[0, 1]"),
+    "name twice": ("[simulate]", '[[contacts]]\nname = "ground"\ngap = "z"\n[simulate]', 20, "already a contact"),
+    "contact key misspelt": ('friction = "mu"', 'fricton = "mu"', 18, "did you mean 'friction'"),
+    "contacts without mechanics": ('[mechanics]\npositions = ["x", "z"]\nvelocities = ["vx", "vz"]\npotential = "10*z"\n',
+                                   "[dynamics]\nx = 'vx'\nz = 'vz'\nvx = 0\nvz = -10\n", 16, "without [mechanics]"),
+}
+
+
+class Contacts(tool.ToolTest):
+    def result(self, text, *arguments, code=0):
+        self.run_tool("simulate", self.write("m.toml", text), "--out", "r.json", *arguments, code=code)
+        return json.loads((self.folder / "r.json").read_text())
+
+    def test_a_ball_lands_slides_and_stops(self):
+        result = self.result(BALL, "--rtol", "1e-11", "--atol", "1e-13")
+        self.assertEqual(result["states"], ["x", "z", "vx", "vz"])
+        self.assertEqual(result["contacts"], ["ground"])
+        self.assertEqual(result["outputs"], ["gap(ground)", "force(ground)", "friction(ground)", "impulse(ground)", "energy"])
+        impact, stick = result["events"]
+        self.assertEqual((impact["kind"], stick["kind"]), ("impact", "stick"))
+        self.assertEqual(impact["surfaces"], ["ground"])
+        self.assertAlmostEqual(impact["t"], math.sqrt(0.2), delta=1e-10)
+        speed = 4 - 0.3 * math.sqrt(20)
+        self.assertAlmostEqual(impact["x_after"][2], speed, delta=1e-10)
+        self.assertAlmostEqual(impact["impulse"][0][0], math.sqrt(20), delta=1e-9)
+        self.assertAlmostEqual(impact["impulse"][0][1], -0.3 * math.sqrt(20), delta=1e-9)
+        self.assertEqual(impact["contact_modes_before"], ["open"])
+        self.assertEqual(impact["contact_modes_after"], ["slip"])
+        self.assertAlmostEqual(stick["t"] - impact["t"], speed / 3, delta=1e-9)
+        self.assertEqual(stick["contact_modes_after"], ["stick"])
+        self.assertEqual(result["final"]["contact_modes"], ["stick"])
+        self.assertEqual(result["final"]["x"][2], 0.0)
+        rows = result["trajectory"]
+        self.assertEqual(len(rows["contact_modes"]), len(rows["t"]))
+        self.assertGreaterEqual(min(outputs[0] for outputs in rows["outputs"]), -1e-12)
+        energy = [outputs[4] for outputs in rows["outputs"]]
+        self.assertTrue(all(b <= a + 1e-9 for a, b in zip(energy, energy[1:])))
+        self.run_tool("report", "r.json", "--out", "r.html", code=0)
+
+    def test_coriolis_terms_keep_the_energy(self):
+        result = self.result(PENDULUM)
+        energy = [outputs[0] for outputs in result["trajectory"]["outputs"]]
+        self.assertEqual(result["outputs"], ["energy"])
+        self.assertLess(max(energy) - min(energy), 1e-8)
+
+    def test_check_tells_the_contacts(self):
+        out, _ = self.run_tool("check", self.write("m.toml", BALL), code=0)
+        self.assertNotIn("ground.", out)  # modes are no states of the user
+
+    def test_finite_elements_say_no(self):
+        _, err = self.run_tool("simulate", self.write("m.toml", BALL), "--method", "fesd", code=2)
+        self.assertIn("[[contacts]]", err)
+
+    def test_malformed(self):
+        for number, (name, (old, new, line, *expected)) in enumerate(MALFORMED.items()):
+            with self.subTest(name):
+                self.assertIn(old, BALL)
+                file = self.write(f"m{number}.toml", BALL.replace(old, new, 1))
+                out, err = self.run_tool("simulate", file.name, "--out", "s.json", code=2)
+                self.assertEqual(out, "")
+                first = [text for text in err.splitlines() if "error: " in text][0]
+                self.assertTrue(first.startswith(f"m{number}.toml:{line}:"), err)
+                for part in expected:
+                    self.assertIn(part, err)
+
+
+if __name__ == "__main__":
+    tool.main()
