@@ -102,8 +102,8 @@ FILES = {
     "native": (after("native = 'never'\n"), 13, "native", 'expected "auto" or "on" or "off"'),
     "native a boolean": (after("native = true\n"), 13, 'expected "auto" or "on" or "off", found true'),
     # later versions
-    "mechanics": (after("[mechanics]\npositions = ['x']\n"), 13, "[mechanics]", "a later one brings it"),
-    "contacts": (after("[[contacts]]\nname = 'c'\n"), 13, "[[contacts]]", "a later one brings it"),
+    "mechanics": (after("[mechanics]\npositions = ['x']\n"), 13, "[mechanics] has no `velocities`"),
+    "contacts": (after("[[contacts]]\nname = 'c'\n"), 14, "no `gap`"),
     "optimize horizon": (after("[optimize]\nhorizon = 0\n"), "14:11", "expected a length of time > 0, found 0"),
     "optimize key": (after("[optimize]\nhorizn = 1\n"), "14:1", "unknown option optimize.horizn", "'optimize.horizon'"),
     "optimize intervals": (after("[optimize]\ncontrol_intervals = 0\n"), "14:21", "expected a whole number >= 1, found 0"),

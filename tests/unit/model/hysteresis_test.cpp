@@ -13,7 +13,9 @@ Expected<System> with(const Written& written, const std::string& speed = "12") {
   Description description = describe({.parameters = {{"a", "2"}},
                                       .states = {{"v", speed}},
                                       .dynamics = {{"v", "a*(1 + 2*turbo) + if(turbo == 1, 1, 0) + t"}}});
-  HysteresisDescription turbo{.name = "turbo", .location = {"model.toml", 30, 1}};
+  HysteresisDescription turbo;
+  turbo.name = "turbo";
+  turbo.location = {"model.toml", 30, 1};
   turbo.input = parsed(written.input, {"model.toml", 31, 9});
   turbo.on = parsed(written.on, {"model.toml", 32, 9});
   turbo.off = parsed(written.off, {"model.toml", 33, 9});
@@ -67,7 +69,9 @@ TEST(Hysteresis, MistakesAreNamed) {
 
 TEST(Hysteresis, ItsNameIsItsOwn) {
   Description description = describe({.states = {{"v", "0"}}, .dynamics = {{"v", "1"}}});
-  HysteresisDescription twin{.name = "v", .location = {"model.toml", 30, 1}};
+  HysteresisDescription twin;
+  twin.name = "v";
+  twin.location = {"model.toml", 30, 1};
   twin.input = twin.on = parsed("v", {});
   twin.off = parsed("0", {});
   description.hysteresis.push_back(twin);

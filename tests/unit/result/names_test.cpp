@@ -25,8 +25,8 @@ TEST(Names, TerminationsReadBackAndAreThoseOfTheContract) {
 }
 
 TEST(Names, EventKindsReadBackAndAreThoseOfTheContract) {
-  for (const auto* word :
-       {"start", "crossing", "enter_sliding", "leave_sliding", "change_sliding", "accumulation", "jump", "user"}) {
+  for (const auto* word : {"start", "crossing", "enter_sliding", "leave_sliding", "change_sliding", "accumulation",
+                           "jump", "user", "impact", "contact", "lift_off", "stick", "slip"}) {
     const auto kind = event_kind_named(word);
     ASSERT_TRUE(kind.has_value()) << word;
     EXPECT_EQ(name(*kind), word);

@@ -6,7 +6,8 @@
 namespace saltus::io {
 namespace {
 
-model::HysteresisDescription read_one(TomlReader& reader, const TomlTable& table, const SourceLocation& location) {
+model::HysteresisDescription read_hysteresis_entry(TomlReader& reader, const TomlTable& table,
+                                                   const SourceLocation& location) {
   model::HysteresisDescription hysteresis;
   hysteresis.location = location;
   for (const auto& entry : table) {
@@ -47,7 +48,7 @@ void read_hysteresis(TomlReader& reader, const TomlEntry& entry, ModelFile& mode
   for (const auto& value : *array) {
     const auto* table = reader.table(value, "a table with `name`, `input`, `on` and `off`");
     if (table == nullptr) return;
-    model.description.hysteresis.push_back(read_one(reader, *table, value.location));
+    model.description.hysteresis.push_back(read_hysteresis_entry(reader, *table, value.location));
   }
 }
 

@@ -1,0 +1,80 @@
+// Random bodies with random contacts: nothing passes through, no energy comes from nowhere, every run ends.
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include "run_model.hpp"
+
+namespace saltus::event_integrator::testing {
+namespace {
+
+using casadi::SX;
+
+/// Positions at 0 in a potential well, random velocities, mass matrix, and contacts with curved gaps around.
+class RandomBodies {
+ public:
+  explicit RandomBodies(unsigned seed) : generator_(seed), n_(2 + seed % 3), contacts_(1 + seed % 3) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      positions_.push_back("q" + std::to_string(i));
+      q_.push_back(model_.state(positions_.back(), {0.0}));
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      velocities_.push_back("v" + std::to_string(i));
+      static_cast<void>(model_.state(velocities_.back(), {between(-1.0, 1.0)}));
+    }
+    SX potential = 0.0;
+    for (const SX& q : q_) potential += 0.5 * q * q;
+    const auto n = static_cast<casadi_int>(n_);
+    SX factor(n, n);
+    for (casadi_int i = 0; i < n; ++i) {
+      for (casadi_int j = 0; j < n; ++j) factor(i, j) = between(-1.0, 1.0);
+    }
+    model_.mechanics({.positions = positions_,
+                      .velocities = velocities_,
+                      .mass = SX::mtimes(factor, factor.T()) + 0.3 * SX::eye(n),
+                      .potential = potential});
+    for (std::size_t k = 0; k < contacts_; ++k) add_contact("c" + std::to_string(k), seed % 2 == 1);
+  }
+
+  [[nodiscard]] Integration run() { return run_model(model_, 5.0, {1e-9, 1e-11}); }
+  [[nodiscard]] std::size_t contacts() const { return contacts_; }
+
+ private:
+  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+
+  void add_contact(const std::string& name, bool with_friction) {
+    SX gap = between(0.05, 0.5) + 0.1 * q_[0] * q_[0];
+    model::ContactOptions options;
+    for (std::size_t j = 0; j < n_; ++j) {
+      gap += between(-1.0, 1.0) * q_[j];
+      if (with_friction) options.tangent[positions_[j]] = between(-1.0, 1.0);
+    }
+    if (with_friction) options.friction = between(0.0, 1.0);
+    options.restitution = between(0.0, 1.0);
+    model_.contact(name, gap, options);
+  }
+
+  std::mt19937 generator_;
+  std::size_t n_, contacts_;
+  model::Builder model_{"bodies"};
+  std::vector<std::string> positions_, velocities_;
+  std::vector<SX> q_;
+};
+
+TEST(RandomContacts, NothingPassesThroughAndNoEnergyIsMade) {
+  for (unsigned seed = 1; seed <= 18; ++seed) {
+    RandomBodies bodies(seed);
+    const auto run = bodies.run();
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << seed << ": " << run.status.message;
+    const std::size_t stride = seed % 2 == 1 ? 4 : 3;  // outputs of a contact, with its friction and without
+    double energy = std::numeric_limits<double>::infinity();
+    for (const auto& outputs : run.trajectory.outputs) {
+      for (std::size_t k = 0; k < bodies.contacts(); ++k) EXPECT_GE(outputs[k * stride], -1e-12) << seed;
+      EXPECT_LE(outputs.back(), energy + 1e-8) << seed;  // the tolerance of the steps between
+      energy = outputs.back();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator::testing
