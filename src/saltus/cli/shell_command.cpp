@@ -201,7 +201,7 @@ ExitCode print_names(const std::string& model) {
     for (const auto& entry : catalogue()) names.insert(entry.name);
   } else if (const auto path = find_model(model); path && *path != "-") {
     if (const auto text = io::read_model_text(*path)) {
-      const auto described = io::diagnose_model(*text, path->string()).model.description;
+      const auto described = io::diagnose_model(text->text, text->name).model.description;
       for (const auto& entry : described.parameters) names.insert(entry.name);
       for (const auto& entry : described.states) names.insert(entry.name);
       for (const auto& entry : described.controls) names.insert(entry.name);

@@ -56,9 +56,9 @@ std::u32string decoded(const std::string& text) {
 }
 
 /// Entries of the archive, each over the lines of a result and its branches.
-class Columns {
+class ColumnWriter {
  public:
-  Columns(const std::vector<result::TreeEntry>& parts, ZipStream& zip) : parts_(parts), zip_(zip) {}
+  ColumnWriter(const std::vector<result::TreeEntry>& parts, ZipStream& zip) : parts_(parts), zip_(zip) {}
 
   /// @param lines  of a part of the result
   void set_lines(std::string prefix, std::size_t (*lines)(const result::Result&)) {
@@ -130,7 +130,7 @@ class Columns {
   std::size_t (*lines_)(const result::Result&) = nullptr;
 };
 
-void add_rows(const result::Result& result, Columns& columns) {
+void add_rows(const result::Result& result, ColumnWriter& columns) {
   columns.set_lines("", [](const result::Result& part) { return part.trajectory.t.size(); });
   using Part = const result::Result&;
   const auto of = [](auto member) {
@@ -159,7 +159,7 @@ double entry(const std::optional<List>& list, std::size_t i) {
   return list ? static_cast<double>((*list)[i]) : std::numeric_limits<double>::quiet_NaN();
 }
 
-void add_events(const result::Result& result, Columns& columns) {
+void add_events(const result::Result& result, ColumnWriter& columns) {
   columns.set_lines("events.", [](const result::Result& part) { return part.events.size(); });
   using Part = const result::Result&;
   columns.numbers<double>("t", "<f8", [](Part part, std::size_t k) { return part.events[k].t; });
@@ -192,7 +192,7 @@ void add_events(const result::Result& result, Columns& columns) {
 bool write_npz(const result::Result& result, Sink sink) {
   ZipStream zip(sink);
   const auto parts = result::tree(result);
-  Columns columns(parts, zip);
+  ColumnWriter columns(parts, zip);
   const auto add_branch = [&] {
     if (!result.branches.empty()) columns.words("branch", [](const auto& part, std::size_t) { return part.label; });
   };
