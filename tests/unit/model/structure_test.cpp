@@ -13,7 +13,7 @@ namespace {
 using casadi::SX;
 
 /// x' = a x - sign(x - b) and what `more` adds to it.
-System built(double a, double b, const SX& factor = 1.0) {
+System with_coefficients(double a, double b, const SX& factor = 1.0) {
   Builder model("m");
   const SX pa = model.parameter("a", a), pb = model.parameter("b", b), x = model.state("x", {1.0});
   model.dynamics("x", factor * pa * x - model.sign(x - pb));
@@ -21,15 +21,15 @@ System built(double a, double b, const SX& factor = 1.0) {
 }
 
 TEST(Structure, IsTheSameForOtherParametersAndInitialValues) {
-  EXPECT_EQ(structure(built(1.0, 2.0)), structure(built(3.0, -4.0)));
-  System other = built(1.0, 2.0);
+  EXPECT_EQ(structure(with_coefficients(1.0, 2.0)), structure(with_coefficients(3.0, -4.0)));
+  System other = with_coefficients(1.0, 2.0);
   other.initial_state[0] = 7.0;
-  EXPECT_EQ(structure(built(1.0, 2.0)), structure(other));
+  EXPECT_EQ(structure(with_coefficients(1.0, 2.0)), structure(other));
 }
 
 TEST(Structure, HasEveryOperationAndConstant) {
-  EXPECT_NE(structure(built(1.0, 2.0)), structure(built(1.0, 2.0, 2.0)));
-  EXPECT_NE(structure(built(1.0, 2.0, 3.0)), structure(built(1.0, 2.0, 2.0)));
+  EXPECT_NE(structure(with_coefficients(1.0, 2.0)), structure(with_coefficients(1.0, 2.0, 2.0)));
+  EXPECT_NE(structure(with_coefficients(1.0, 2.0, 3.0)), structure(with_coefficients(1.0, 2.0, 2.0)));
 }
 
 TEST(Structure, TellsSharedExpressionsFromEqualOnes) {
