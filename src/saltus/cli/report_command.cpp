@@ -120,9 +120,8 @@ Command add_report(CLI::App& app) {
       ->type_name("X,Y");
   command->add_flag("--open", arguments->open, "show the page with $BROWSER, else xdg-open");
   command->footer(
-      "Examples:\n  saltus simulate stick-slip --out stick-slip.json && saltus report stick-slip.json\n"
-      "  saltus report stick-slip.json --figure plane.svg --phase q,v\n"
-      "  saltus report first.json second.json --out both.html");
+      "Example:\n  saltus simulate stick-slip --out stick-slip.json && saltus report stick-slip.json --figure "
+      "plane.svg --phase q,v");
   return {"report", [arguments] { return run_report(*arguments); }};
 }
 
