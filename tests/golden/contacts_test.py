@@ -92,6 +92,7 @@ class Contacts(tool.ToolTest):
     def test_a_ball_lands_slides_and_stops(self):
         result = self.result(BALL, "--rtol", "1e-11", "--atol", "1e-13")
         self.assertEqual(result["states"], ["x", "z", "vx", "vz"])
+        self.assertEqual(list(result["model"]["initial_state"]), result["states"])
         self.assertEqual(result["contacts"], ["ground"])
         self.assertEqual(result["outputs"], ["gap(ground)", "force(ground)", "friction(ground)", "impulse(ground)", "energy"])
         impact, stick = result["events"]

@@ -223,7 +223,10 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   }
   result.method = name(options.method);
   result.states = system.state_names;
-  if (!system.contacts.empty()) result.states.resize(at(system.contacts.first_hidden));
+  if (!system.contacts.empty()) {
+    result.states.resize(at(system.contacts.first_hidden));
+    result.model.initial_state.resize(result.states.size());
+  }
   for (const auto& contact : system.contacts.contacts) result.contacts.push_back(contact.name);
   result.controls = system.control_names;
   result.outputs = system.output_names;
