@@ -9,7 +9,7 @@ namespace {
 
 /// Little-endian, so many bytes.
 void append_bytes(std::string& record, std::uint64_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i) record += static_cast<char>((value >> (8 * i)) & 0xffU);
+  for (int i = 0; i < bytes; ++i, value >>= 8) record += static_cast<char>(value & 0xffU);
 }
 
 constexpr std::uint64_t elsewhere = 0xffffffffU;  // the number stands in the zip64 part
