@@ -54,6 +54,52 @@ until = 10
 """
 
 
+# S4 is set back whenever it passes S2, which falls to 1/2: there the jumps change nothing any more.
+SET_BACK = """[model]
+name = "set-back"
+[states]
+S1 = 1
+S2 = 2
+S4 = 0
+[dynamics]
+S1 = "-0.1*S1"
+S2 = "-0.3*S2"
+S4 = "S1"
+[[jumps]]
+name = "back"
+when = "S4 > S2"
+set = { S1 = 1, S4 = 0.5 }
+[simulate]
+until = 10
+"""
+
+# Two jumps with one condition: the first takes it away from the second.
+TWO_PRIORITIES = """[model]
+name = "two-priorities"
+[states]
+first = 0
+second = 0
+last = 0
+[dynamics]
+first = 0
+second = 0
+last = 0
+[[jumps]]
+name = "rising"
+when = "t - last >= 0.01"
+priority = "t"
+persistent = false
+set = { last = "t", first = "first + 1" }
+[[jumps]]
+name = "constant"
+when = "t - last >= 0.01"
+priority = "5.001"
+persistent = false
+set = { last = "t", second = "second + 1" }
+[simulate]
+until = 10
+"""
+
 GATED = """[model]
 name = "gated"
 [states]
@@ -107,6 +153,24 @@ class DiscreteStates(tool.ToolTest):
             self.assertAlmostEqual(found, expected, delta=1e-9)
         self.assertEqual([(event["kind"], round(event["t"], 9)) for event in result["events"]],
                          [("jump", 1.0), ("crossing", 1.5), ("jump", 2.0), ("jump", 3.5)])
+
+    def test_jumps_end_where_they_change_nothing_any_more(self):
+        result = self.simulated(SET_BACK)
+        self.assertEqual(result["status"]["termination"], "completed")
+        limit = result["events"][-1]
+        self.assertEqual(limit["kind"], "accumulation")
+        end = math.log(4) / 0.3
+        self.assertAlmostEqual(limit["t"], end, delta=1e-8)
+        grown = 0.5 + 10 * (1 - math.exp(-0.1 * (10 - end)))
+        for found, expected in zip(result["final"]["x"], [math.exp(-0.1 * (10 - end)), 2 * math.exp(-3), grown]):
+            self.assertAlmostEqual(found, expected, delta=1e-7)
+
+    def test_one_condition_of_two_jumps_becomes_true_at_once(self):
+        result = self.simulated(TWO_PRIORITIES)
+        self.assertEqual(len(result["events"]), 1000)
+        wrong = [event["t"] for event in result["events"]
+                 if event["surfaces"] != ["constant" if event["t"] < 5.001 else "rising"]]
+        self.assertEqual(wrong, [])
 
     def test_a_model_without_states_has_outputs_and_events_of_time(self):
         result = self.simulated(CLOCK)

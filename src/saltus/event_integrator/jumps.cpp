@@ -152,6 +152,11 @@ void Jumps::update(const JumpPoint& point) {
   find_next_time();
 }
 
+void Jumps::accept(const std::vector<int>& jumps, const JumpPoint& point) {
+  kernel_.functions(point.t, point.x.data(), point.alpha.data(), values_.data());
+  for (const int jump : jumps) truth_[at(jump)] = truth(jump, point);
+}
+
 void Jumps::trigger(int jump, const JumpPoint& point) {
   const double delay = kernel_.jump_delay(jump, point.t, point.x.data(), point.alpha.data());
   if (!(delay >= 0.0 && std::isfinite(delay))) {

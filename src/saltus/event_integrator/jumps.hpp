@@ -34,6 +34,9 @@ class Jumps {
   /// of jumps with persistent = false whose condition is false are dropped.
   void update(const JumpPoint& point);
 
+  /// Reads the conditions without triggering: those that came true at a limit where their jumps change nothing.
+  void accept(const std::vector<int>& jumps, const JumpPoint& point);
+
   /// When the next given or delayed time comes; infinity without. Exact: the very double of `at`, from + k every, or
   /// t + delay.
   [[nodiscard]] double next_time() const { return next_time_; }

@@ -122,8 +122,8 @@ void Locator::set_hit(const Hit& hit) {
   const EventFunction& function = search_.functions()[hit.function];
   if (function.offset == 0.0) return;
   dense_->evaluate(0.5 * hit.theta, x_.data());
-  evaluate(start_.t + 0.5 * hit.theta * dense_->h, x_.data(), earlier_);
-  if (function.has_left(earlier_[place_])) left_ = function.offset;
+  evaluate(start_.t + 0.5 * hit.theta * dense_->h, x_.data(), beside_);
+  if (function.has_left(beside_[place_])) left_ = function.offset;
 }
 
 /// Newton for the function of `hit`; the last trial is the result.
@@ -180,12 +180,20 @@ bool Locator::correct(const Hit& hit) {
   return true;
 }
 
-/// Values of the candidates shortly before the trial's end, into `earlier_`; returns how long before.
+/// Values of the candidates shortly before the trial's end, into `beside_`; returns how long before.
 double Locator::look_back() {
   const double back = 1e-3 * trial_.h;
   dense_->evaluate((trial_.h - back) / dense_->h, x_.data());
-  evaluate(start_.t + trial_.h - back, x_.data(), earlier_);
+  evaluate(start_.t + trial_.h - back, x_.data(), beside_);
   return back;
+}
+
+/// Values of the candidates shortly behind the start of the step, into `beside_`; returns how long behind.
+double Locator::look_ahead() {
+  constexpr double share = 1e-3;
+  dense_->evaluate(share, x_.data());
+  evaluate(start_.t + share * dense_->h, x_.data(), beside_);
+  return share * dense_->h;
 }
 
 /// A function whose sign has changed beyond rounding at the located time: its zero lies earlier.
@@ -199,19 +207,22 @@ std::optional<std::size_t> Locator::earlier_function(std::size_t located) const 
 }
 
 /// Functions that reach zero together with the located one: at zero to rounding of their values or of time, and away
-/// from it shortly before (a surface just left is still near zero, but moving away).
+/// from it shortly before, or shortly behind where the event is at the start of the step (a surface just left is still
+/// near zero, but moving away).
 void Locator::find_vanishing_with(std::size_t located) {
   const auto& candidates = search_.candidates();
   located_.functions.assign(1, located);
-  if (trial_.h == 0.0 || candidates.size() == 1) return;
-  const double back = look_back();
+  if (candidates.size() == 1) return;
+  const bool at_start = trial_.h == 0.0;
+  const double step = at_start ? look_ahead() : look_back();
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const std::size_t i = candidates[k];
     if (i == located || sign(i) == 0) continue;
-    const double ahead = earlier_[k] * sign(i);
-    const double rate = (ahead - trial_.values[k] * sign(i)) / back;
+    const double distance = at_start ? -beside_[k] * sign(i) : beside_[k] * sign(i);
+    const double here = at_start ? -trial_.values[k] * sign(i) : trial_.values[k] * sign(i);
+    const double rate = (distance - here) / step;
     const double resolution = std::max(search_.noise(i), 2.0 * rate * time_resolution());
-    if (ahead > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[k]) <= resolution) {
+    if (distance > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[k]) <= resolution) {
       located_.functions.push_back(i);
     }
   }
@@ -230,7 +241,7 @@ const Located* Locator::locate(const StepStart& start, const ode::DenseStep& den
     hit = {function, h / dense.h, 0.0, search_.functions()[function].sign};
     // NOTE: not value / h, which leads Newton to h - h: 0, or a rounding beside it, where the step starts.
     const double back = look_back();
-    hit.slope = (value - earlier_[*earlier]) / back;
+    hit.slope = (value - beside_[*earlier]) / back;
     if (!(hit.slope * hit.sign < 0.0)) hit.slope = 2.0 * value / h;
     if (!correct(hit)) return nullptr;
   }

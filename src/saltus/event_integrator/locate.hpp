@@ -61,6 +61,7 @@ class Locator {
   void set_hit(const Hit& hit);
   [[nodiscard]] bool is_finite_at(const Trial& trial) const { return std::isfinite(trial.values[place_]); }
   double look_back();
+  double look_ahead();
   void find_vanishing_with(std::size_t located);
   [[nodiscard]] bool vanishes(double value) const;
   /// Its place among the candidates.
@@ -85,7 +86,7 @@ class Locator {
   double left_ = 0.0;      ///< its offset, where it has moved away from the zero at the start
   Trial trial_, moved_;
   std::vector<double> slope_, slope_ahead_;  ///< f at the end of the trial, and just ahead of it
-  std::vector<double> x_, earlier_;
+  std::vector<double> x_, beside_;
   Located located_;
 };
 

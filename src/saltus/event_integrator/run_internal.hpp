@@ -211,6 +211,7 @@ class Run {
   bool hold_resting(Landing& landing);
   bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
   bool free_passing(Landing& landing);
+  bool change_nothing(const std::vector<int>& jumps, Landing& landing);
   bool find_resting(RestingSurfaces& resting);
   std::vector<int> surfaces_keeping(int function);
   RestingGuards pressed_guards(Landing& landing);

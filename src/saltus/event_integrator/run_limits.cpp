@@ -73,6 +73,38 @@ bool Run::release(const Located& located) {
   return true;
 }
 
+/// Whether jumps change nothing at their limit, and their conditions come true there by what they do not set: the
+/// conditions then hold behind it, and nothing fires again. Their guards are at zero in `landing`.
+bool Run::change_nothing(const std::vector<int>& jumps, Landing& landing) {
+  std::vector<double> slope(x_.size());
+  kernel_.field(t_, x_.data(), state_.alpha.data(), slope.data());
+  std::vector<bool> vanish = search_.user_zeros();
+  for (const int jump : jumps) {
+    const auto& targets = surroundings_.system.jumps[at(jump)].targets;
+    std::vector<double> values(targets.size());
+    kernel_.jump_values(jump, t_, x_.data(), state_.alpha.data(), values.data());
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const double x = x_[at(targets[i])];
+      if (!(std::abs(values[i] - x) <= tolerances_.atol + tolerances_.rtol * std::abs(x))) return false;
+      slope[at(targets[i])] = 0.0;
+    }
+    bool comes_true = false;
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      const Rate rate = rate_along_field(function, t_, x_.data(), slope.data());
+      const double resolved = tolerances_.atol * rate.slope + tolerances_.rtol * rate.magnitude;
+      if (jumps_.is_discrete_guard(function) || !(std::abs(landing.zero_values[at(function)]) <= resolved)) continue;
+      comes_true = jumps_.trigger_sign(jump, g, jump_point(), 0) * rate.value > 0.0;
+      if (!comes_true) return false;
+      landing.zeros.push_back(function);
+      vanish[at(function - kernel_.switching_functions())] = true;
+    }
+    if (!comes_true) return false;
+  }
+  search_.set_user_signs(search_.user_signs(), vanish);
+  return true;
+}
+
 /// If the jumps up to here have a limit that nothing else precedes, the run goes on from there.
 void Run::accumulate_jumps() {
   if (jumps_.none()) return;
@@ -112,13 +144,14 @@ void Run::follow_limit(const SeriesLimit& limit) {
     row(t_, x_);
     last_event_time_ = t_;
   };
-  if (jumps.empty()) {
+  const bool ends = jumps.empty() && change_nothing(limit.events, landing);
+  if (jumps.empty() && !ends) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but no guard of theirs is left at 0: what follows is not "
                      "determined",
                      jump_names(limit.events), t_));
   }
-  if (running_ && hold(std::move(guards), {}, landing) &&
+  if (running_ && !ends && hold(std::move(guards), {}, landing) &&
       !(holding_.largest_rate(t_, state_.alpha, x_) <= 1e-3 * rate)) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but their guards cannot be at rest at 0 together",
@@ -126,6 +159,7 @@ void Run::follow_limit(const SeriesLimit& limit) {
   }
   if (!running_ || !free_passing(landing) || !decide_behind_jumps(landing)) return accumulated();
   give_directions(landing);
+  if (ends) jumps_.accept(limit.events, jump_point());
   accumulated();
   go_on_from_limit();
 }
