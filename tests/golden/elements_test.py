@@ -42,6 +42,24 @@ class Elements(tool.ToolTest):
             self.assertEqual(result["statistics"]["rejected"], 0, scheme)
             self.assertAlmostEqual(result["final"]["x"][0], 0.125, delta=1e-12)
 
+    def test_no_switch_of_many_surfaces_is_lost(self):
+        # Blocks whose friction changes sign at nearly the same times: one event or two, but the same surfaces.
+        blocks = range(16)
+        rates = [f'v{i} = "{f"q{i - 1}" if i else 0} - 2.5*q{i} + {f"q{i + 1}" if i < 15 else 0} - sign(v{i} - 0.2)"'
+                 for i in blocks]
+        model = self.write("chain.toml", "\n".join(
+            ["[model]", 'name = "chain"', "[states]", *(f"q{i} = {0.1 * (7 * i % 5 - 2):.1f}" for i in blocks),
+             *(f"v{i} = 0" for i in blocks), "[dynamics]", *(f'q{i} = "v{i}"' for i in blocks), *rates]))
+        switches = []
+        for method in ("event", "fesd"):
+            self.run_tool("simulate", model, "--method", method, "--until", "10", "--quiet", "--out", "r.json", code=0)
+            events = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["events"]
+            switches.append(sorted((name, event["kind"], event["t"]) for event in events for name in event["surfaces"]))
+        self.assertGreater(len(switches[0]), 20)
+        self.assertEqual([entry[:2] for entry in switches[0]], [entry[:2] for entry in switches[1]])
+        for (_, _, expected), (_, _, found) in zip(*switches):
+            self.assertAlmostEqual(found, expected, delta=1e-3)
+
     def test_indicators_that_are_not_finite_are_told(self):
         self.write("m.toml", """
 [model]

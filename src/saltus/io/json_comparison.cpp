@@ -86,7 +86,7 @@ result::OrderSeries read_series(JsonReader& reader, const Json& json, const std:
 Json comparison_json(const result::Comparison& comparison) {
   Json runs = Json::array();
   for (const auto& run : comparison.runs) runs.push_back(run_json(run));
-  return {{"reference", comparison.reference}, {"runs", std::move(runs)}};
+  return {{"reference", comparison.reference}, {"time", or_null(comparison.time)}, {"runs", std::move(runs)}};
 }
 
 void read_comparison(JsonReader& reader, const Json& json, const std::string& path,
@@ -94,6 +94,7 @@ void read_comparison(JsonReader& reader, const Json& json, const std::string& pa
   comparison.emplace();
   std::int64_t reference = 0;
   reader.read_member(json, path, "reference", reference);
+  if (json.is_object() && json.contains("time")) reader.read_member(json, path, "time", comparison->time);
   if (const auto* runs = reader.member(json, path, "runs")) {
     read_list(reader, *runs, path + "/runs", comparison->runs, read_run);
   }

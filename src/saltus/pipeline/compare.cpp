@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/pipeline/observers_internal.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 #include "saltus/pipeline/recorded_internal.hpp"
+#include "saltus/pipeline/values_at.hpp"
 #include "saltus/result/comparison.hpp"
 
 namespace saltus::pipeline {
@@ -51,12 +56,22 @@ std::string elements_text(const SimulateOptions& options, const std::string& met
                      number(".steps"));
 }
 
+/// Rows of runs at which they can be compared where one of them does not get to the end.
+constexpr int compared_rows = 200;
+
+std::vector<double> times_to_compare(double from, double until) {
+  std::vector<double> times;
+  for (int i = 1; i < compared_rows; ++i) times.push_back(from + (until - from) * i / compared_rows);
+  times.push_back(until);
+  return times;
+}
+
 /// The reference first.
 std::vector<PlannedRun> plan(SimulateOptions options) {
   options.event.trajectories = 1;
   std::vector<PlannedRun> runs{reference_run(options)};
-  // Only the reference is drawn: rows of the others would be thrown away.
-  options.output = AtTimes{{*options.until}};
+  // Only the reference is drawn; the others have rows where they can be compared.
+  options.output = AtTimes{times_to_compare(options.from, *options.until)};
   runs.push_back(event_run(options, Integrator::dopri5, "dopri5"));
   runs.push_back(event_run(options, Integrator::dop853, "dop853"));
   runs.push_back(event_run(options, Integrator::radau5, "radau5"));
@@ -76,17 +91,83 @@ std::vector<PlannedRun> plan(SimulateOptions options) {
 
 bool is_switch(const result::Event& event) { return event.kind != EventKind::start && event.kind != EventKind::user; }
 
-/// The run as a row. The events of a smoothed system are borders of layers, not switches.
+std::optional<double> largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() != b.size()) return std::nullopt;
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    // max would drop the NaN of a component without a value
+    if (const double difference = std::abs(a[i] - b[i]); !(difference <= most)) most = difference;
+  }
+  return std::isfinite(most) ? std::optional(most) : std::nullopt;
+}
+
+/// A run as a row without its states. The events of a smoothed system are borders of layers, not switches.
 ComparedRun row(const PlannedRun& planned, const result::Result& found, const result::Result& reference) {
-  ComparedRun run{planned.method, planned.variant, "", found.status, found.final.x, {}, {}, {}, {}, found.statistics};
-  const auto [state, time] = agreement(found, reference);
-  run.state_difference = state;
+  ComparedRun run{planned.method, planned.variant, "", found.status, {}, {}, {}, {}, {}, found.statistics};
   if (planned.options.method == Method::smoothed) return run;
   const auto times = switch_times(found);
   run.switches = static_cast<std::int64_t>(times.size());
   if (!times.empty()) run.last_switch = times.back();
-  run.switch_time_difference = time;
+  run.switch_time_difference = agreement(found, reference).switch_time_difference;
   return run;
+}
+
+/// Runs as rows, and their states at the times of comparison until all have been made.
+class ComparedStates {
+ public:
+  ComparedStates(double from, double until) : from_(from), until_(until) {}
+
+  /// The states of the last run of `comparison`.
+  void add(const result::Result& found) { states_.push_back({found.final.t, found.final.x, found.trajectory}); }
+  void add_none() { states_.emplace_back(); }
+
+  /// The end; or, where a run stopped early, the last time that all reach which got to a hundredth of the way.
+  [[nodiscard]] std::optional<double> common_time() const {
+    double reached = until_;
+    for (const auto& one : states_) {
+      if (one.t - from_ >= 0.01 * (until_ - from_)) reached = std::min(reached, one.t);
+    }
+    if (reached == until_) return until_;
+    const auto times = times_to_compare(from_, until_);
+    const auto behind = std::upper_bound(times.begin(), times.end(), reached);
+    return behind == times.begin() ? std::nullopt : std::optional(*std::prev(behind));
+  }
+
+  /// Of one run at the common time; empty where it has none.
+  [[nodiscard]] std::vector<double> at_time(std::size_t run, double t) const {
+    const auto& one = states_[run];
+    if (one.t == t) return one.x;
+    const auto place = std::find(one.rows.t.rbegin(), one.rows.t.rend(), t);
+    return place == one.rows.t.rend() ? std::vector<double>{} : one.rows.x[at(one.rows.t.rend() - place) - 1];
+  }
+
+ private:
+  struct Run {
+    double t = -std::numeric_limits<double>::infinity();
+    std::vector<double> x;
+    result::Trajectory rows;
+  };
+  double from_, until_;
+  std::vector<Run> states_;
+};
+
+/// States at one time, and how far they are from the reference's there.
+Expected<void> compare_states(const model::System& system, const SimulateOptions& reference,
+                              const ComparedStates& states, result::Comparison& comparison) {
+  comparison.time = states.common_time();
+  if (!comparison.time) return {};
+  auto expected = states.at_time(0, *comparison.time);
+  if (expected.empty()) {  // the reference has rows of its own
+    const auto there = values_at(system, reference, {*comparison.time});
+    if (!there) return tl::unexpected(there.error());
+    expected = there->x.front();
+  }
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    auto& run = comparison.runs[i];
+    run.x = i == 0 ? expected : states.at_time(i, *comparison.time);
+    if (!run.x.empty()) run.state_difference = largest_difference(run.x, expected);
+  }
+  return {};
 }
 
 }  // namespace
@@ -116,17 +197,9 @@ std::vector<double> switch_times(const result::Result& result) {
 }
 
 Agreement agreement(const result::Result& found, const result::Result& reference) {
-  const auto largest = [](const std::vector<double>& a, const std::vector<double>& b) -> std::optional<double> {
-    if (a.size() != b.size()) return std::nullopt;
-    double most = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      // max would drop the NaN of a component without a value
-      if (const double difference = std::abs(a[i] - b[i]); !(difference <= most)) most = difference;
-    }
-    return std::isfinite(most) ? std::optional(most) : std::nullopt;
-  };
   if (!is_done(found.status.termination) || !is_done(reference.status.termination)) return {};
-  return {largest(found.final.x, reference.final.x), largest(switch_times(found), switch_times(reference))};
+  return {largest_difference(found.final.x, reference.final.x),
+          largest_difference(switch_times(found), switch_times(reference))};
 }
 
 Expected<result::Result> compare(const model::System& system, const SimulateOptions& options,
@@ -138,6 +211,8 @@ Expected<result::Result> compare(const model::System& system, const SimulateOpti
   if (!reference) return reference;
   result::Comparison comparison;
   comparison.runs.push_back(row(planned.front(), *reference, *reference));
+  ComparedStates states(options.from, *options.until);
+  states.add(*reference);
   for (std::size_t i = 1; i < planned.size(); ++i) {
     const auto& next = planned[i];
     const auto observed = watch.next();
@@ -146,11 +221,16 @@ Expected<result::Result> compare(const model::System& system, const SimulateOpti
       const auto found = simulate(system, next.options, observed);
       if (found) {
         comparison.runs.push_back(row(next, *found, *reference));
+        states.add(*found);
         continue;
       }
       refusal = found.error().message;
     }
     comparison.runs.push_back({next.method, next.variant, std::move(refusal), {}, {}, {}, {}, {}, {}, {}});
+    states.add_none();
+  }
+  if (const auto done = compare_states(system, planned.front().options, states, comparison); !done) {
+    return tl::unexpected(done.error());
   }
   reference->command = "compare";
   reference->comparison = std::move(comparison);

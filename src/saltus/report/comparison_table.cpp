@@ -26,10 +26,9 @@ std::string difference(const std::optional<double>& value) { return or_dash(valu
 std::string seconds(double value) { return fmt::format("{:.3g}", value); }
 
 Row run_row(const result::ComparedRun& run, bool is_reference, std::size_t states) {
-  const bool done = is_done(run.status.termination);
   Row row{run.method, run.variant};
   for (std::size_t i = 0; i < states; ++i) {
-    row.push_back(i < run.x.size() && done ? fmt::format("{:.10g}", run.x[i]) : "–");
+    row.push_back(i < run.x.size() ? fmt::format("{:.10g}", run.x[i]) : "–");
   }
   row.push_back(or_dash(run.switches, "{}"));
   row.push_back(or_dash(run.last_switch, "{:.10g}"));
@@ -68,6 +67,16 @@ std::string not_unique(const result::Result& reference) {
                                              found->t));
 }
 
+/// When the states were compared, in words.
+std::string compared_states(const result::Result& result, const result::Comparison& comparison) {
+  if (!comparison.time) return "no states, as runs stopped at their start";
+  const auto early = [](const result::ComparedRun& run) { return run.reason.empty() && !is_done(run.status.termination); };
+  const bool stopped = std::any_of(comparison.runs.begin(), comparison.runs.end(), early);
+  return stopped && *comparison.time < result.final.t
+             ? fmt::format("states at t = {:.12g}, the last time that the runs have in common", *comparison.time)
+             : fmt::format("end states at t = {:.12g}", *comparison.time);
+}
+
 }  // namespace
 
 std::string comparison_table(const result::Result& result, const result::Comparison& comparison) {
@@ -100,7 +109,7 @@ std::string comparison_table(const result::Result& result, const result::Compari
                         stop.status.time_reached, stop.runs.size() > 1 ? " (the first)" : "", stop.status.message));
   }
   std::string text =
-      paragraph("compared", fmt::format("end states at t = {:.12g}{}, and the times of switches", result.final.t,
+      paragraph("compared", fmt::format("{}{}, and the times of switches", compared_states(result, comparison),
                                         states < result.states.size() ? ", the first components" : ""));
   text += aligned(rows);
   text += not_unique(result);

@@ -18,16 +18,17 @@ struct ComparedRun {
   std::string variant;  ///< what tells it from the others of its method: "dop853", "radau_iia 2, stewart"
   std::string reason;   ///< why there is no run; empty if there is one, and only then the rest holds
   Status status;
-  std::vector<double> x;                         ///< n_x, at the time reached
+  std::vector<double> x;                         ///< n_x, at the time of the comparison; empty if not reached
   std::optional<std::int64_t> switches;          ///< changes of mode and jumps; nullopt for a method without modes
   std::optional<double> last_switch;             ///< its time
-  std::optional<double> state_difference;        ///< max_i |x_i - x_i of the reference|; nullopt if one stopped early
+  std::optional<double> state_difference;        ///< max_i |x_i - x_i of the reference| at that time
   std::optional<double> switch_time_difference;  ///< max_k |t_k - t_k of the reference|; nullopt if the numbers differ
   Statistics statistics;
 };
 
 struct Comparison {
   std::vector<ComparedRun> runs;
+  std::optional<double> time;  ///< of the states: the end, or the last time that all runs (but hopeless ones) reach
   std::size_t reference = 0;  ///< number in `runs`
 };
 
