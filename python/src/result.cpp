@@ -14,7 +14,7 @@
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json_result.hpp"
-#include "saltus/pipeline/surfaces.hpp"
+#include "saltus/pipeline/vector_field.hpp"
 #include "saltus/report/html.hpp"
 #include "saltus/report/table.hpp"
 
@@ -89,7 +89,7 @@ void add_event(nb::module_& module) {
 
 /// The surfaces are looked for when the first report or file wants them.
 void want_surfaces(Run& run) {
-  if (run.system && run.result->surfaces.empty()) run.result->surfaces = pipeline::surfaces(*run.system, *run.result);
+  if (run.system && run.result->surfaces.empty()) pipeline::add_drawings(*run.system, *run.result);
 }
 
 nb::object sensitivities(const Run& run) {

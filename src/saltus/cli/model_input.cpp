@@ -107,6 +107,7 @@ void complete_record(const ModelInput& input, result::Result& result) {
   result.model.file = input.file.description.file;
   result.model.text = input.file.text;
   result.model.settings = input.settings;
+  result.model.captions = input.file.captions;
   if (!result.left_at) result.model.files = input.file.files;
   for (const auto& value : input.file.description.inputs) {
     result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));

@@ -15,7 +15,7 @@
 #include "saltus/cli/source_excerpt.hpp"
 #include "saltus/cli/terminal.hpp"
 #include "saltus/model/build.hpp"
-#include "saltus/pipeline/surfaces.hpp"
+#include "saltus/pipeline/vector_field.hpp"
 #include "saltus/report/table.hpp"
 #include "saltus/result/cause.hpp"
 
@@ -31,7 +31,7 @@ Expected<result::Result> compute_all(const RunArguments& arguments, const ModelI
   auto result = compute(*system, input.file.simulate, watched(progress));
   if (!result) return result;
   complete_record(input, *result);
-  if (outputs.show_surfaces()) result->surfaces = pipeline::surfaces(*system, *result);
+  if (outputs.show_surfaces()) pipeline::add_drawings(*system, *result);
   return result;
 }
 

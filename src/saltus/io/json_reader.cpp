@@ -31,6 +31,15 @@ void read_model(JsonReader& reader, const Json& json, const std::string& path, r
   if (json.contains("initial_state")) {
     read_part(reader, json, path, "initial_state", read_numbers, model.initial_state);
   }
+  if (json.contains("captions") && json["captions"].is_object()) {
+    for (const auto& [name, caption] : json["captions"].items()) {
+      const auto place = path + "/captions/" + name;
+      result::Caption read;
+      reader.read_if_there(caption, place, "unit", read.unit);
+      reader.read_if_there(caption, place, "label", read.label);
+      model.captions.emplace_back(name, read);
+    }
+  }
   reader.read_if_there(json, path, "file", model.file);
   reader.read_if_there(json, path, "text", model.text);
   reader.read_if_there(json, path, "set", model.settings);
@@ -202,6 +211,26 @@ void read_departure(JsonReader& reader, const Json& json, const std::string& pat
   reader.read_member(json, path, "parameter", left_at->member->parameter);
 }
 
+void read_arrows(JsonReader& reader, const Json& json, const std::string& path, result::Arrows& arrows) {
+  reader.read_member(json, path, "x", arrows.x);
+  reader.read_member(json, path, "y", arrows.y);
+  reader.read_member(json, path, "dx", arrows.dx);
+  reader.read_member(json, path, "dy", arrows.dy);
+  const auto size = arrows.x.size();
+  if (arrows.y.size() != size || arrows.dx.size() != size || arrows.dy.size() != size) {
+    reader.fail(path, "expected x, y, dx and dy of one length");
+  }
+}
+
+void read_vector_field(JsonReader& reader, const Json& json, const std::string& path,
+                       std::optional<result::VectorField>& field) {
+  field.emplace();
+  reader.read_member(json, path, "t", field->t);
+  read_part(reader, json, path, "free", read_arrows, field->free);
+  read_part(reader, json, path, "sides", read_arrows, field->sides);
+  read_part(reader, json, path, "sliding", read_arrows, field->sliding);
+}
+
 result::Result read_whole(JsonReader& reader, const Json& json, const std::string& path, int depth);
 
 void read_branches(JsonReader& reader, const Json& json, const std::string& path, int depth, result::Result& result) {
@@ -244,6 +273,9 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   // Results of versions before surfaces were recorded have none.
   if (json.is_object() && json.contains("surfaces")) {
     read_part(reader, json, path, "surfaces", read_surfaces, result.surfaces);
+  }
+  if (json.is_object() && json.contains("vector_field")) {
+    read_part(reader, json, path, "vector_field", read_vector_field, result.vector_field);
   }
   if (!result.optimization) read_part(reader, json, path, "statistics", read_statistics, result.statistics);
   read_part(reader, json, path, "options", read_option_record, result.options);

@@ -26,6 +26,9 @@ Json model_json(const result::ModelRecord& model) {
   json["parameters"] = numbers_json(model.parameters);
   json["initial_state"] = numbers_json(model.initial_state);
   json["description"] = model.description;
+  for (const auto& [name, caption] : model.captions) {
+    json["captions"][name] = {{"unit", caption.unit}, {"label", caption.label}};
+  }
   if (model.text.empty()) return json;
   json["file"] = model.file;
   json["text"] = model.text;
@@ -174,6 +177,17 @@ Json surface_json(const result::Surface& surface) {
   return json;
 }
 
+Json arrows_json(const result::Arrows& arrows) {
+  return {{"x", arrows.x}, {"y", arrows.y}, {"dx", arrows.dx}, {"dy", arrows.dy}};
+}
+
+Json vector_field_json(const result::VectorField& field) {
+  return {{"t", field.t},
+          {"free", arrows_json(field.free)},
+          {"sides", arrows_json(field.sides)},
+          {"sliding", arrows_json(field.sliding)}};
+}
+
 Json options_json(const result::OptionRecord& options) {
   Json json = Json::object();
   for (const auto& [name, value] : options) {
@@ -218,6 +232,7 @@ void append_whole(TextStream& stream, const result::Result& result, std::size_t 
   Json surfaces = Json::array();
   for (const auto& surface : result.surfaces) surfaces.push_back(surface_json(surface));
   object.member("surfaces", surfaces);
+  if (result.vector_field) object.member("vector_field", vector_field_json(*result.vector_field));
   object.member("statistics", result.optimization ? optimization_statistics_json(result.optimization->statistics)
                                                   : statistics_json(result.statistics));
   object.member("options", options_json(result.options));

@@ -17,24 +17,6 @@ namespace {
 /// Room around the trajectory, as a fraction of its range: a surface beside it should be seen, too.
 constexpr double margin = 0.25;
 
-/// What a drawing of one state shows; a state that does not move gets room of its own size.
-Interval drawn_range(const result::Result& result, int state) {
-  const auto column = static_cast<std::size_t>(state);
-  double least = result.final.x[column], greatest = least;
-  const auto include = [&](const std::vector<double>& x) {
-    const double value = x[column];
-    // Negated, so that a range that begins with NaN takes the first number.
-    if (!std::isfinite(value)) return;
-    if (!(least <= value)) least = value;
-    if (!(greatest >= value)) greatest = value;
-  };
-  for (const auto& x : result.trajectory.x) include(x);
-  for (const auto& event : result.events) include(event.x), include(event.x_after);
-  const double width = greatest - least;
-  const double room = width > 0.0 ? margin * width : std::max(0.5 * std::abs(least), 0.5);
-  return {least - room, greatest + room};
-}
-
 /// >= 0 on the part of the surface that is one.
 double least_margin(const evaluation::SurfaceFunction& function, double t, const double* coordinates) {
   double least = 0.0;
@@ -117,6 +99,23 @@ result::SurfaceRole role_of(evaluation::SurfaceOwner owner) {
 result::AffineSurface form_of(const evaluation::AffineForm& form) { return {form.gradient, form.rate, form.constant}; }
 
 }  // namespace
+
+Interval drawn_range(const result::Result& result, int state) {
+  const auto column = static_cast<std::size_t>(state);
+  double least = result.final.x[column], greatest = least;
+  const auto include = [&](const std::vector<double>& x) {
+    const double value = x[column];
+    // Negated, so that a range that begins with NaN takes the first number.
+    if (!std::isfinite(value)) return;
+    if (!(least <= value)) least = value;
+    if (!(greatest >= value)) greatest = value;
+  };
+  for (const auto& x : result.trajectory.x) include(x);
+  for (const auto& event : result.events) include(event.x), include(event.x_after);
+  const double width = greatest - least;
+  const double room = width > 0.0 ? margin * width : std::max(0.5 * std::abs(least), 0.5);
+  return {least - room, greatest + room};
+}
 
 std::vector<result::Surface> surfaces(const model::System& system, const result::Result& result) {
   std::vector<result::Surface> surfaces;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "saltus/model/system.hpp"
+#include "saltus/pipeline/level_curves.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::pipeline {
@@ -13,6 +14,10 @@ inline constexpr int most_surfaces_with_curves = 64;
 
 /// Times, both ends of the run among them, at which a curve that moves is drawn.
 inline constexpr int times_of_moving_surface = 9;
+
+/// What a drawing of one state shows: its range in the trajectory and a quarter of it on either side; a state that does
+/// not move gets room of its own size.
+[[nodiscard]] Interval drawn_range(const result::Result& result, int state);
 
 /// Where the switching functions and the guards of jumps of `system` are zero and where two of its regions by
 /// `indicator` meet, within the range of the trajectory and a quarter of it on either side. Depends on the trajectory,

@@ -225,6 +225,23 @@ json sensitivities_data(const std::optional<result::Sensitivities>& sensitivitie
           {"parameters", head(sensitivities->parameters, columns_in_page)}};
 }
 
+json captions_data(const result::Captions& captions) {
+  json data = json::object();
+  for (const auto& [name, caption] : captions) data[name] = {{"unit", caption.unit}, {"label", caption.label}};
+  return data;
+}
+
+json vector_field_data(const std::optional<result::VectorField>& field) {
+  if (!field) return nullptr;
+  const auto arrows = [](const result::Arrows& list) {
+    return json{{"x", list.x}, {"y", list.y}, {"dx", list.dx}, {"dy", list.dy}};
+  };
+  return {{"t", field->t},
+          {"free", arrows(field->free)},
+          {"sides", arrows(field->sides)},
+          {"sliding", arrows(field->sliding)}};
+}
+
 /// The branches of a tree, parents first; branch i of the list is entry i + 1 of the tree, entry 0 the root.
 json branches_data(const std::vector<result::TreeEntry>& tree, std::size_t limit) {
   json branches = json::array();
@@ -316,6 +333,8 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"not_followed", not_followed},
           {"families", families_data(tree)},
           {"surfaces", std::move(surfaces)},
+          {"captions", captions_data(result.model.captions)},
+          {"vector_field", vector_field_data(result.vector_field)},
           {"elements", elements_data(result.elements)},
           {"sensitivities", sensitivities_data(result.sensitivities)},
           {"optimization", optimization_data(result, share_of_trajectory)},

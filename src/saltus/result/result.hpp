@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "saltus/result/caption.hpp"
 #include "saltus/result/comparison.hpp"
 #include "saltus/result/elements.hpp"
 #include "saltus/result/optimization.hpp"
@@ -142,6 +143,7 @@ struct ModelRecord {
   std::string text{};                   ///< of the model file
   std::vector<NamedFile> files{};       ///< of a branch none: they are its root's
   std::vector<std::string> settings{};  ///< NAME=VALUE, in their order: of --set, then of the other options
+  Captions captions{};                  ///< units and labels of its quantities
 };
 
 /// What a surface belongs to.
@@ -179,6 +181,19 @@ struct Surface {
   /// Of other functions of one state (points) or two (polylines), within the range of the trajectory and a margin; at
   /// several times if it depends on time; none for functions of more states.
   std::vector<SurfaceCurve> curves;
+};
+
+/// Arrows of a drawing: where they begin and along what.
+struct Arrows {
+  std::vector<double> x, y, dx, dy;
+};
+
+/// The field of a model with two states at one time: what a phase plane needs.
+struct VectorField {
+  double t = 0.0;
+  Arrows free;     ///< on a grid
+  Arrows sides;    ///< just beside surfaces where the field jumps
+  Arrows sliding;  ///< on those parts of surfaces where solutions slide
 };
 
 /// Dotted option name ("simulate.event.integrator") and its value in force; a vector for output times.
@@ -230,6 +245,7 @@ struct Result {
   Statistics statistics;  ///< of an optimisation those of Optimization are written instead
   OptionRecord options;
   std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)
+  std::optional<VectorField> vector_field;  ///< of a model with two states, if asked for (pipeline::vector_field)
 
   std::optional<Sensitivities> sensitivities;  ///< of the end state, if asked for
   std::optional<Elements> elements;            ///< of methods made of finite elements, unless there are too many

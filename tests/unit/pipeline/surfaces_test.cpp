@@ -7,6 +7,7 @@
 
 #include "saltus/model/builder.hpp"
 #include "saltus/pipeline/simulate.hpp"
+#include "saltus/pipeline/vector_field.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -229,6 +230,51 @@ TEST(Surfaces, CurvedBordersOfRegionsAreCutAtTheTriplePoint) {
     }
     EXPECT_LT(nearest, 1e-3) << border.name;
   }
+}
+
+TEST(VectorField, ArrowsAreTheFieldsOfBothSidesAndTheSlidingOne) {
+  // x' = 1, y' = -3 sign(y) + x: slides on y = 0 while |x| < 3, with the field (1, 0).
+  model::Builder model("field");
+  const SX x = model.state("x", {-4.0}), y = model.state("y", {1.0});
+  model.dynamics("x", 1);
+  model.dynamics("y", -3 * model.sign(y) + x);
+  const auto system = model.build();
+  ASSERT_TRUE(system.has_value());
+  SimulateOptions options;
+  options.until = 8.0;
+  auto result = simulate(*system, options);
+  ASSERT_TRUE(result.has_value());
+  add_drawings(*system, *result);
+  ASSERT_TRUE(result->vector_field.has_value());
+  const auto& field = *result->vector_field;
+  ASSERT_EQ(field.free.x.size(), 400U);
+  for (std::size_t i = 0; i < field.free.x.size(); ++i) {
+    EXPECT_EQ(field.free.dx[i], 1.0);
+    EXPECT_EQ(field.free.dy[i], (field.free.y[i] > 0.0 ? -3.0 : 3.0) + field.free.x[i]);
+  }
+  EXPECT_GT(field.sides.x.size(), 20U);
+  for (std::size_t i = 0; i < field.sides.x.size(); ++i) {
+    EXPECT_NEAR(field.sides.dy[i], (field.sides.y[i] > 0.0 ? -3.0 : 3.0) + field.sides.x[i], 1e-12);
+  }
+  EXPECT_GT(field.sliding.x.size(), 3U);
+  for (std::size_t i = 0; i < field.sliding.x.size(); ++i) {
+    EXPECT_EQ(field.sliding.y[i], 0.0);
+    EXPECT_LT(std::abs(field.sliding.x[i]), 3.0);
+    EXPECT_NEAR(field.sliding.dy[i], 0.0, 1e-12);
+  }
+}
+
+TEST(VectorField, ModelsWithoutAPlaneHaveNone) {
+  model::Builder model("line");
+  const SX x = model.state("x", {1.0});
+  model.dynamics("x", -model.sign(x));
+  const auto system = model.build();
+  ASSERT_TRUE(system.has_value());
+  SimulateOptions options;
+  options.until = 2.0;
+  const auto result = simulate(*system, options);
+  ASSERT_TRUE(result.has_value());
+  EXPECT_FALSE(vector_field(*system, *result).has_value());
 }
 
 }  // namespace

@@ -93,6 +93,9 @@ saltus.pairTable = (pairs) => saltus.element(
             ([name, value]) => saltus.element(
                 "tr", {}, saltus.element("td", {title: name}, name), saltus.element("td", {class: "digits"}, value)))));
 
+/** A value with the unit of its name. */
+saltus.inUnit = (result, name, value) => `${saltus.exact(value)} ${saltus.captionOf(result, name).unit}`.trim();
+
 saltus.finalCard = (result) => {
   const {final} = result;
   const names = [...result.states, ...result.output_names];
@@ -101,7 +104,7 @@ saltus.finalCard = (result) => {
       (name, i) => [name, saltus.modeBoxes([final.mode[i] ?? null]), saltus.selection(final.alpha[i])]);
   return saltus.card(
       "End state",
-      saltus.pairTable([["t", saltus.exact(final.t)], ...names.map((name, i) => [name, saltus.exact(values[i])])]),
+      saltus.pairTable([["t", saltus.exact(final.t)], ...names.map((name, i) => [name, saltus.inUnit(result, name, values[i])])]),
       ...(surfaces.length > 0 ? [saltus.plainTable(["ψ", "mode", "α"], surfaces)] : []),
       ...(result.regions.length > 0 ?
               [saltus.plainTable(

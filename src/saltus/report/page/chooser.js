@@ -100,8 +100,9 @@ saltus.columnList = (result, choice, text, apply) => {
   const fits = (label) => label.toLowerCase().includes(text.toLowerCase());
   const words = {state: "state", output: "output", input: "input", alpha: "selection", theta: "weight"};
   const columns = saltus.columns(result).flatMap((column, i) => {
-    const label = saltus.columnLabel(column);
-    const sort = `${words[column.sort]}${saltus.moves(column.values) ? "" : ", constant"}`;
+    const label = saltus.columnTitle(column);
+    const about = column.caption?.label ? `, ${column.caption.label}` : "";
+    const sort = `${words[column.sort]}${about}${saltus.moves(column.values) ? "" : ", constant"}`;
     return fits(label) ? [tick(label, sort, shown.has(i), (on) => saltus.showColumn(choice, i, on))] : [];
   });
   const modes = saltus.bands(result).flatMap(

@@ -7,6 +7,12 @@ saltus.columnTables = {state: "x", output: "outputs", input: "u", alpha: "alpha"
 /** A column as it is called in drawings: selections by their sign. */
 saltus.columnLabel = ({name, sort}) => ({alpha: `α(${name})`, theta: `θ(${name})`})[sort] ?? name;
 
+/** The same on an axis: with its unit. */
+saltus.columnTitle = (column) => `${saltus.columnLabel(column)}${column.caption?.unit ? ` [${column.caption.unit}]` : ""}`;
+
+/** Unit and label of a name, as the model states them. */
+saltus.captionOf = (result, name) => result.captions?.[name] ?? {unit: "", label: ""};
+
 /** The values of a column in a trajectory, that of a branch for example. */
 saltus.columnOf = (trajectory, {sort, index}) =>
     sort === "time" ? trajectory.t : trajectory[saltus.columnTables[sort]][index];
@@ -36,6 +42,7 @@ saltus.columns = (result) => {
       sort,
       index,
       values,
+      caption: ["state", "output", "input"].includes(sort) ? saltus.captionOf(result, name) : null,
       stepwise: sort === "input" && saltus.isStepwise(values),
       discrete: sort === "state" && saltus.isDiscrete(trajectory.t, values),
     };

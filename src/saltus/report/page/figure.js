@@ -193,7 +193,7 @@ saltus.panelLabels = (panel, stack, palette, result) => {
   const first = panel.height / 2 - ((panel.curves.length - 1) / 2) * step;
   return panel.curves.map((curve, i) => {
     const colour = saltus.curveColour(panel, i, palette);
-    return label(saltus.columnLabel(curve), first + i * step, colour);
+    return label(saltus.columnTitle(curve), first + i * step, colour);
   });
 };
 

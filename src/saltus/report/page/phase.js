@@ -128,7 +128,7 @@ saltus.eventCoordinate = (result, i, axis) => {
   return values[saltus.rowsAtOneTime(t, saltus.nearestRow(t, event.t))[1]];
 };
 
-saltus.axisLabel = (result, axis) => saltus.columnLabel(saltus.axes(result)[axis]);
+saltus.axisLabel = (result, axis) => saltus.columnTitle(saltus.axes(result)[axis]);
 
 /** A choice of one column per axis; `changed` is called after every change of `choice`. */
 saltus.axisPickers = (result, choice, changed) => {

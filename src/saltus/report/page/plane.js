@@ -156,6 +156,9 @@ saltus.phasePlane = (result, timeline, select, address) => {
     return {input, label: saltus.element("label", {class: "controls", title}, input, text)};
   };
   const equal = box("equal scales", "one unit is as long on both axes");
+  const field = box("vector field", "where solutions go, at the end of the run; for models with two states");
+  field.input.checked = true;
+  field.label.hidden = result.vector_field === null;
   const logs = ["log x", "log y"].map((text) => box(text, "a logarithmic axis; shows what is positive"));
   const draw = () => {
     const palette = saltus.palette();
@@ -165,7 +168,8 @@ saltus.phasePlane = (result, timeline, select, address) => {
     const surfaces = saltus.planeSurfaces(result, choice, view, palette, scales.logs);
     note.textContent = saltus.surfaceNote({...surfaces, absent: saltus.surfacesNotDrawn(result, choice)}, view.at);
     return Plotly.react(
-        holder, [...surfaces.traces, ...saltus.planeTraces(result, choice, view, palette)],
+        holder, [...(field.input.checked ? saltus.fieldTraces(result, choice, view, palette, scales.logs) : []),
+                 ...surfaces.traces, ...saltus.planeTraces(result, choice, view, palette)],
         saltus.planeLayout(result, choice, view, holder, palette, scales), saltus.plotConfig);
   };
   const [first, second] = saltus.axisPickers(result, choice, chosen);
@@ -174,7 +178,7 @@ saltus.phasePlane = (result, timeline, select, address) => {
       saltus.element(
           "header", {}, saltus.element("h2", {title: "within the time shown above"}, "Phase plane"),
           saltus.element("span", {class: "controls"}, second, " over ", first), ...logs.map(({label}) => label),
-          equal.label, saltus.element("span", {class: "controls grow"}),
+          equal.label, field.label, saltus.element("span", {class: "controls grow"}),
           ...saltus.saveButtons(result, holder, "phase-plane")),
       holder, note);
   const start = () => {

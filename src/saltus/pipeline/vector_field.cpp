@@ -1,0 +1,216 @@
+#include "saltus/pipeline/vector_field.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "saltus/base/at.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/pipeline/surfaces.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using Point = std::array<double, 2>;
+
+/// Arrows along the surfaces: as many on a length of the box.
+constexpr int arrows_along = 14;
+/// How far beside a surface its arrows begin, as a fraction of the box.
+constexpr double beside = 0.012;
+
+class FieldOfTwoStates {
+ public:
+  FieldOfTwoStates(evaluation::ModelKernel kernel, double t, std::array<Interval, 2> box)
+      : kernel_(std::move(kernel)), t_(t), box_(box), psi_(at(kernel_.event_functions())) {}
+
+  /// Selections of the signs of psi; a function that depends on selections is read again.
+  [[nodiscard]] std::vector<double> selections(const Point& x) {
+    std::vector<double> alpha(at(kernel_.switching_functions()), 0.5);
+    for (std::size_t round = 0; round <= alpha.size(); ++round) {
+      kernel_.functions(t_, x.data(), alpha.data(), psi_.data());
+      const auto before = alpha;
+      for (std::size_t j = 0; j < alpha.size(); ++j) alpha[j] = psi_[j] > 0.0 ? 1.0 : psi_[j] < 0.0 ? 0.0 : 0.5;
+      if (alpha == before) break;
+    }
+    return alpha;
+  }
+
+  [[nodiscard]] Point field(const Point& x, const std::vector<double>& alpha) const {
+    Point slope{};
+    kernel_.field(t_, x.data(), alpha.data(), slope.data());
+    return slope;
+  }
+
+  void add(const Point& x, const Point& slope, result::Arrows& arrows) const {
+    if (!std::isfinite(slope[0]) || !std::isfinite(slope[1]) || (slope[0] == 0.0 && slope[1] == 0.0)) return;
+    arrows.x.push_back(x[0]);
+    arrows.y.push_back(x[1]);
+    arrows.dx.push_back(slope[0]);
+    arrows.dy.push_back(slope[1]);
+  }
+
+  void add_grid(result::Arrows& arrows) {
+    for (int i = 0; i < field_cells; ++i) {
+      for (int j = 0; j < field_cells; ++j) {
+        const Point x{along(0, (i + 0.5) / field_cells), along(1, (j + 0.5) / field_cells)};
+        add(x, field(x, selections(x)), arrows);
+      }
+    }
+  }
+
+  /// The fields of both sides of surface j at a point of it, and the sliding one.
+  void add_surface(int j, const Point& x, result::VectorField& arrows) {
+    auto alpha = selections(x);
+    Point normal{};
+    double rate = 0.0;
+    kernel_.gradient(j, t_, x.data(), alpha.data(), normal.data(), &rate);
+    const auto at_selection = [&](double value) {
+      alpha[at(j)] = value;
+      return field(x, alpha);
+    };
+    const auto velocity = [&](const Point& slope) { return rate + normal[0] * slope[0] + normal[1] * slope[1]; };
+    const Point below = at_selection(0.0), above = at_selection(1.0);
+    const double change = std::abs(above[0] - below[0]) + std::abs(above[1] - below[1]);
+    const double size = std::abs(above[0]) + std::abs(above[1]) + std::abs(below[0]) + std::abs(below[1]);
+    const Point offset = off_surface(normal);
+    if (!(change > 1e-9 * size) || !std::isfinite(offset[0] + offset[1])) return;
+    add({x[0] + offset[0], x[1] + offset[1]}, above, arrows.sides);
+    add({x[0] - offset[0], x[1] - offset[1]}, below, arrows.sides);
+    if (!(velocity(below) > 0.0 && velocity(above) < 0.0)) return;
+    const double selected = change_of_sign([&](double value) { return velocity(at_selection(value)) < 0.0; });
+    add(x, at_selection(selected), arrows.sliding);
+  }
+
+  /// Places along a line through the box, evenly spaced by the box's measure.
+  void add_along(int j, const std::vector<Point>& line, result::VectorField& arrows) {
+    double next = 0.5 / arrows_along, passed = 0.0;
+    for (std::size_t k = 1; k < line.size(); ++k) {
+      const auto& from = line[k - 1];
+      const auto& to = line[k];
+      const double length = std::hypot((to[0] - from[0]) / width(0), (to[1] - from[1]) / width(1));
+      for (; next <= passed + length; next += 1.0 / arrows_along) {
+        const double part = (next - passed) / length;
+        add_surface(j, {from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])}, arrows);
+      }
+      passed += length;
+    }
+  }
+
+  [[nodiscard]] double width(std::size_t i) const { return box_[i].to - box_[i].from; }
+  [[nodiscard]] double along(std::size_t i, double part) const { return box_[i].from + part * width(i); }
+  [[nodiscard]] const std::array<Interval, 2>& box() const { return box_; }
+
+ private:
+  /// A small step to the side where psi > 0, across the surface as it is drawn.
+  [[nodiscard]] Point off_surface(const Point& normal) const {
+    const Point scaled{normal[0] * width(0), normal[1] * width(1)};
+    const double length = std::hypot(scaled[0], scaled[1]);
+    return {beside * width(0) * scaled[0] / length, beside * width(1) * scaled[1] / length};
+  }
+
+  evaluation::ModelKernel kernel_;
+  double t_;
+  std::array<Interval, 2> box_;
+  std::vector<double> psi_;
+};
+
+/// The line a x + b y + c = 0 within the box; nothing without one.
+std::vector<Point> line_in_box(const Point& gradient, double constant, const std::array<Interval, 2>& box) {
+  // Along the axis on which the gradient is smaller, measured by the box, the other coordinate is a function.
+  const bool by_first = std::abs(gradient[0]) * (box[0].to - box[0].from) <= std::abs(gradient[1]) * (box[1].to - box[1].from);
+  const std::size_t free = by_first ? 0 : 1, bound = by_first ? 1 : 0;
+  if (gradient[bound] == 0.0) return {};
+  const auto other = [&](double value) { return -(constant + gradient[free] * value) / gradient[bound]; };
+  std::vector<Point> line;
+  constexpr int pieces = 256;
+  for (int i = 0; i <= pieces; ++i) {
+    Point x{};
+    x[free] = box[free].from + (box[free].to - box[free].from) * i / pieces;
+    x[bound] = other(x[free]);
+    if (x[bound] >= box[bound].from && x[bound] <= box[bound].to) line.push_back(x);
+  }
+  return line;
+}
+
+double form_at(const result::AffineSurface& form, const Point& gradient, double t, const Point& x) {
+  return gradient[0] * x[0] + gradient[1] * x[1] + form.rate * t + form.constant;
+}
+
+/// The gradient over both states.
+Point in_plane(const result::AffineSurface& form, const result::Surface& surface, const result::Result& result) {
+  Point gradient{};
+  for (std::size_t k = 0; k < surface.states.size(); ++k) {
+    gradient[surface.states[k] == result.states[0] ? 0 : 1] = form.gradient[k];
+  }
+  return gradient;
+}
+
+void add_lines(int j, const result::Surface& surface, const result::Result& result, FieldOfTwoStates& field,
+               result::VectorField& arrows) {
+  if (surface.affine) {
+    const Point gradient = in_plane(*surface.affine, surface, result);
+    auto line = line_in_box(gradient, surface.affine->rate * arrows.t + surface.affine->constant, field.box());
+    for (const auto& form : surface.within) {
+      const Point margin = in_plane(form, surface, result);
+      std::erase_if(line, [&](const Point& x) { return form_at(form, margin, arrows.t, x) < 0.0; });
+    }
+    return field.add_along(j, line, arrows);
+  }
+  for (const auto& curve : surface.curves) {
+    if (curve.t && *curve.t != arrows.t) continue;
+    std::vector<Point> line;
+    if (curve.coordinates.size() == 2) {
+      for (std::size_t k = 0; k < curve.coordinates[0].size(); ++k) {
+        line.push_back({curve.coordinates[0][k], curve.coordinates[1][k]});
+      }
+      field.add_along(j, line, arrows);
+      continue;
+    }
+    const std::size_t own = surface.states.front() == result.states[0] ? 0 : 1;
+    for (const double value : curve.coordinates.front()) {
+      Point from{field.box()[0].from, field.box()[1].from}, to{field.box()[0].to, field.box()[1].to};
+      from[own] = to[own] = value;
+      field.add_along(j, {from, to}, arrows);
+    }
+  }
+}
+
+bool is_plane(const model::System& system, const result::Result& result) {
+  const auto is_set = [](bool discrete) { return discrete; };
+  return result.states.size() == 2 && system.state_names == result.states && system.cells.empty() &&
+         system.mode_groups.empty() && system.contacts.empty() &&
+         std::none_of(system.discrete_states.begin(), system.discrete_states.end(), is_set);
+}
+
+}  // namespace
+
+std::optional<result::VectorField> vector_field(const model::System& system, const result::Result& result) {
+  if (!is_plane(system, result)) return std::nullopt;
+  const std::array<Interval, 2> box{drawn_range(result, 0), drawn_range(result, 1)};
+  for (const auto& [from, to] : box) {
+    if (!std::isfinite(from) || !std::isfinite(to) || !(from < to)) return std::nullopt;
+  }
+  auto kernel = evaluation::ModelKernel::compile(system);
+  if (!kernel) return std::nullopt;
+  result::VectorField arrows;
+  arrows.t = result.final.t;
+  FieldOfTwoStates field(std::move(*kernel), arrows.t, box);
+  field.add_grid(arrows.free);
+  for (const auto& surface : result.surfaces) {
+    const auto named = [&](const model::SwitchingFunction& function) { return function.name == surface.name; };
+    const auto found = std::find_if(system.switching.begin(), system.switching.end(), named);
+    if (surface.role != result::SurfaceRole::switching || found == system.switching.end()) continue;
+    add_lines(static_cast<int>(found - system.switching.begin()), surface, result, field, arrows);
+  }
+  return arrows;
+}
+
+void add_drawings(const model::System& system, result::Result& result) {
+  result.surfaces = surfaces(system, result);
+  result.vector_field = vector_field(system, result);
+}
+
+}  // namespace saltus::pipeline
