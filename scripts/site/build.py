@@ -16,6 +16,7 @@ BUILD = ROOT / "build"
 SOURCE, SITE = BUILD / "site_source", BUILD / "site"
 sys.path.insert(0, str(Path(__file__).parent))
 
+import accessible  # noqa: E402
 import built  # noqa: E402
 import tables  # noqa: E402
 
@@ -79,7 +80,10 @@ def main(quick):
     )
     if done.returncode != 0:
         sys.exit(done.returncode)
+    accessible.mend(SITE)
     built.check(SITE)
+    if complaints := accessible.ask(SITE, ROOT / ".venv/axe/axe.min.js"):
+        sys.exit("\n".join(complaints))
     print(f"build/site/index.html, {time.monotonic() - begin:.0f} s")
 
 

@@ -19,6 +19,8 @@ def check(site):
         shown = page.relative_to(site)
         if found := LOADED.search(text):
             complaints.append(f"{shown}: loads {found.group(0)}")
+        if re.search(r"<pre(?![^>]*tabindex)[\s>]", text) or 'role="heading">' in text:
+            complaints.append(f"{shown}: a block or heading that keys or readers do not reach")
         for target, anchor in LINK.findall(text):
             if re.match(r"[a-z]+:", target):
                 continue
