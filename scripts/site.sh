@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/install.sh python
-.venv/bin/python3 -c 'import sphinx, furo, myst_nb, ipykernel, scipy' 2>/dev/null ||
+.venv/bin/python3 -c 'import sphinx, furo, myst_nb, ipykernel, breathe, scipy' 2>/dev/null ||
   .venv/bin/python3 -m pip install --quiet --disable-pip-version-check --requirement scripts/requirements-site.txt
 if ! command -v doxygen >/dev/null && command -v apt-get >/dev/null && [[ $(id -u) -eq 0 ]]; then
   apt-get install -y -qq --no-install-recommends doxygen >&2 || echo "going on without doxygen: no C++ reference" >&2
