@@ -1,6 +1,6 @@
 # Two commands for everybody; everything else is a CMake preset (CMakePresets.json) or a script (scripts/).
 .DEFAULT_GOAL := help
-.PHONY: help demo test install wheel format clean
+.PHONY: help demo test install wheel package site format clean
 export OPENBLAS_NUM_THREADS := 1
 
 help:
@@ -8,6 +8,8 @@ help:
 	@echo "make test     install what is missing, build, run every test (release and sanitizers)"
 	@echo "make install  build and install to PREFIX (default /usr/local)"
 	@echo "make wheel    build the Python package into build/wheel"
+	@echo "make package  build a tarball, a .deb and an archive of the source into build/package"
+	@echo "make site     build the documentation into build/site, running all that it shows"
 	@echo "make format   clang-format every source"
 	@echo "make clean    remove build/ and demo/"
 
@@ -32,6 +34,12 @@ wheel:
 	cmake --build build/release --target saltus_python
 	.venv/bin/python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps python/ \
 	  --wheel-dir build/wheel --config-settings=build-dir=../build/release
+
+package:
+	@scripts/package.sh
+
+site:
+	@scripts/site.sh
 
 format:
 	@scripts/format.sh

@@ -36,6 +36,17 @@ if(TARGET saltus_tool)
   saltus_install_made(saltus ${CMAKE_INSTALL_DATADIR}/bash-completion/completions completion bash)
   saltus_install_made(_saltus ${CMAKE_INSTALL_DATADIR}/zsh/site-functions completion zsh)
   saltus_install_made(saltus.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d completion fish)
+  # Small libraries of the distribution that others may not have.
+  foreach(small fmt tomlplusplus)
+    find_library(SALTUS_LIBRARY_${small} NAMES ${small})
+    mark_as_advanced(SALTUS_LIBRARY_${small})
+    if(SALTUS_LIBRARY_${small} MATCHES "\\.so$")
+      file(REAL_PATH ${SALTUS_LIBRARY_${small}} library)
+      # The name that programs look for ends behind the first number.
+      string(REGEX REPLACE "^.*/(lib[^/]*\\.so\\.[0-9]+).*$" "\\1" wanted ${library})
+      install(FILES ${library} DESTINATION ${CMAKE_INSTALL_LIBDIR}/saltus RENAME ${wanted})
+    endif()
+  endforeach()
   install(FILES $<TARGET_SONAME_FILE:casadi::casadi> ${SALTUS_IPOPT_LIBRARIES}
       ${SALTUS_HIGHS_LIBRARIES} DESTINATION ${CMAKE_INSTALL_LIBDIR}/saltus)
 endif()
@@ -47,10 +58,14 @@ find_file(SALTUS_PLOTLY_JS NAMES plotly.min.js plotly/package_data/plotly.min.js
 if(SALTUS_PLOTLY_JS)
   install(FILES ${SALTUS_PLOTLY_JS} DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus)
 endif()
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus)
+install(FILES LICENSE CITATION.cff README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.bib" PATTERN "*.png" PATTERN "_static" EXCLUDE)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus)
 install(FILES ${PROJECT_SOURCE_DIR}/.venv/plotly/NOTICES.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/saltus
   RENAME plotly-notices.txt OPTIONAL)
 
 # All that an installation contains, without the tests.
 add_custom_target(saltus_libraries)
 add_dependencies(saltus_libraries ${saltus_modules})
+include(cmake/package.cmake)

@@ -103,6 +103,9 @@ class Model:
         on_step: typing.Callable[[str], None] | None,
         warnings: list[str],
     ) -> Run: ...
+    def values_at(
+        self, run: Run, settings: list[str], options: list[Option], times: list[float], before: bool
+    ) -> Run: ...
     def sweep(
         self,
         settings: list[str],
@@ -114,6 +117,7 @@ class Model:
         seed: int,
         keep: str,
         jobs: int,
+        share: tuple[int, int],
         progress: typing.Callable[[float, float], None] | None,
         warnings: list[str],
     ) -> tuple[dict[str, typing.Any], list[Run], list[str]]: ...

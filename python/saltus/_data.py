@@ -10,11 +10,14 @@ if typing.TYPE_CHECKING:
     from ._result import Result
 
 
-def frame(r: Result) -> typing.Any:
-    """A row for every row of the result, with the time as its index."""
+def frame(r: Result, grid: typing.Any = None) -> typing.Any:
+    """A row for every row of the result, or for every time of a grid, with the time as its index."""
     from ._result import needed
 
     pandas = needed("pandas", "data")
+    if grid is not None:
+        span = r.span
+        r = r.at(np.linspace(*span, int(grid)) if np.ndim(grid) == 0 else grid)
     columns = {name: np.array(r[name]) for name in r.names if name != "t"}
     return pandas.DataFrame(columns, index=pandas.Index(np.array(r.t), name="t"))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import importlib.metadata
 import importlib.util
 import pathlib
 
@@ -16,12 +15,23 @@ def _folder() -> pathlib.Path:
     spec = importlib.util.find_spec("casadi")
     if spec is None or spec.origin is None:
         raise ImportError(f"saltus needs the package casadi {CASADI}: pip install 'casadi=={CASADI}.*'")
-    found = importlib.metadata.version("casadi")
+    folder = pathlib.Path(spec.origin).parent
+    found = _version(folder)
     if ".".join(found.split(".")[:2]) != CASADI:
         raise ImportError(
             f"saltus was built with casadi {CASADI} and found casadi {found}: pip install 'casadi=={CASADI}.*'"
         )
-    return pathlib.Path(spec.origin).parent
+    return folder
+
+
+def _version(folder: pathlib.Path) -> str:
+    """Of the package casadi: by the name of its record, as the module that reads it takes longer than all else."""
+    records = sorted(folder.parent.glob("casadi-*.dist-info"))
+    if len(records) == 1:
+        return records[0].name.removeprefix("casadi-").removesuffix(".dist-info")
+    import importlib.metadata
+
+    return importlib.metadata.version("casadi")
 
 
 def load() -> None:

@@ -15,6 +15,7 @@ from ._errors import ModelWarning
 from ._progress import progress_line, progress_of_runs
 from ._result import Result
 from ._settings import (
+    Option,
     Value,
     check_path,
     empty_axis,
@@ -25,7 +26,7 @@ from ._settings import (
     sweep_name,
     text_of,
 )
-from ._sweep import Sweep
+from ._sweep import Sweep, SweepArguments, sweep_by, with_results
 
 Settings = typing.Mapping[str, Value]
 
@@ -99,7 +100,8 @@ class Model:
         3.0
         """
         with progress_line(self.name, progress) as tell:
-            return Result(self._run("simulate", until, set, options, tell))
+            run, settings, chosen = self._run("simulate", until, set, options, tell)
+        return Result(run, (self, settings, chosen))
 
     def compare(self, until: float | None = None, *, set: Settings | None = None, **options: Value) -> Result:
         """Simulates the model by every engine; ``comparison`` of the result has a row for each.
@@ -108,7 +110,7 @@ class Model:
         >>> rows[0]["method"]
         'event'
         """
-        return Result(self._run("compare", until, set, options, None))
+        return Result(self._run("compare", until, set, options, None)[0])
 
     def order(
         self,
@@ -121,7 +123,7 @@ class Model:
     ) -> Result:
         """Measures how errors fall with the step; ``order`` of the result has a series for every scheme."""
         more = (",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps))
-        return Result(self._run("order", until, set, options, None, more))
+        return Result(self._run("order", until, set, options, None, more)[0])
 
     def optimize(
         self,
@@ -159,6 +161,7 @@ class Model:
         until: float | None = None,
         set: Settings | None = None,
         progress: bool = False,
+        executor: typing.Any = None,
         **options: Value,
     ) -> Sweep:
         """Simulates the model with many values, by all processors (or `jobs` threads).
@@ -168,6 +171,9 @@ class Model:
         `sample` has distributions (``{"v": "normal(3, 0.1)"}``), of which every point of the grid gets `runs` samples;
         they depend on `seed` and the number of the run only. `keep` is what is left of the runs: "final", "events" or
         "trajectory". A run that stops early is a row with its status. Nothing depends on the number of threads.
+
+        `executor` is one of concurrent.futures, or of a library that has its interface (mpi4py.futures,
+        dask.distributed, Ray): it gets shares of the runs, each with `jobs` threads (one without it).
 
         >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2, 0.3], until=5)
         >>> len(s), s.done, s["belt"].tolist()
@@ -179,28 +185,28 @@ class Model:
         typed, chosen = simulate_options({"until": until, **options}, self._core.method)
         axes = {name: text_of(values)[1:-1] for name, values in swept.items() if len(values) > 0 or empty_axis(name)}
         shape = tuple(len(values) for values in swept.values()) if not zip and sample is None else ()
+        arguments: SweepArguments = (
+            [*settings_of(set), *typed],
+            chosen,
+            [f"{name}={values}" for name, values in axes.items()],
+            zip,
+            [f"{name}={text}" for name, text in (sample or {}).items()],
+            runs,
+            seed,
+            keep,
+        )
+        if executor is not None:
+            return Sweep(sweep_by(executor, self, arguments, max(1, jobs)), shape)
         warned: list[str] = []
         with progress_of_runs(self.name, progress) as tell:
             try:
-                found = self._core.sweep(
-                    [*settings_of(set), *typed],
-                    chosen,
-                    [f"{name}={values}" for name, values in axes.items()],
-                    zip,
-                    [f"{name}={text}" for name, text in (sample or {}).items()],
-                    runs,
-                    seed,
-                    keep,
-                    jobs,
-                    tell,
-                    warned,
-                )
+                found = self._core.sweep(*arguments, jobs, (1, 1), tell, warned)
             except BaseException as stopped:
                 if isinstance(getattr(stopped, "result", None), tuple):
-                    stopped.result = Sweep(stopped.result, shape)  # type: ignore[attr-defined]
+                    stopped.result = Sweep(with_results(stopped.result), shape)  # type: ignore[attr-defined]
                 raise
         _warn(warned)
-        return Sweep(found, shape)
+        return Sweep(with_results(found), shape)
 
     def check(self, *, set: Settings | None = None) -> str:
         """What `saltus check` prints: states, switching functions and their kinds, methods, warnings.
@@ -218,13 +224,14 @@ class Model:
         options: Settings,
         tell: typing.Callable[..., None] | None,
         more: tuple[str, ...] = (),
-    ) -> _core.Run:
+    ) -> tuple[_core.Run, list[str], list[Option]]:
         typed, chosen = simulate_options({"until": until, **options}, self._core.method)
         warned: list[str] = []
         with _own_results():
-            run: _core.Run = getattr(self._core, command)([*settings_of(set), *typed], chosen, tell, warned, *more)
+            settings = [*settings_of(set), *typed]
+            run: _core.Run = getattr(self._core, command)(settings, chosen, tell, warned, *more)
         _warn(warned)
-        return run
+        return run, settings, chosen
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
         return self._made

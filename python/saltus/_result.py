@@ -89,6 +89,10 @@ class Sensitivities(typing.NamedTuple):
     parameters: list[str]
 
 
+#: The model, settings and options of a simulation, with which it can be run once more.
+Again = tuple[typing.Any, list[str], list[tuple[str, str, str]]]
+
+
 class Result:
     """What a run computed: rows, events, the end, and why it ended.
 
@@ -101,8 +105,9 @@ class Result:
     False
     """
 
-    def __init__(self, run: _core.Run) -> None:
+    def __init__(self, run: _core.Run, again: Again | None = None) -> None:
         self._run = run
+        self._again = again
 
     # What was computed ---------------------------------------------------------------------------------------------
 
@@ -261,6 +266,43 @@ class Result:
         """The series of :meth:`Model.order`."""
         return self._stored.get("order")
 
+    # Between the rows ----------------------------------------------------------------------------------------------
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last time of the solution."""
+        return float(self.t[0]), float(self.status.time_reached)
+
+    def __call__(self, t: typing.Any, side: str = "right") -> Array:
+        """The state at any time, or at several, from the polynomials of the steps; at an event `side` says which of both.
+
+        The model is simulated once more with rows at these times: ask for many at once. Of one time an array (n_x,), of
+        several (number, n_x).
+
+        >>> r = saltus.catalogue("stick-slip").simulate(until=10)
+        >>> r(0.5).shape, r([1, 2, 3]).shape
+        ((2,), (3, 2))
+        """
+        values = self.at(t, side).x
+        return values[0] if np.ndim(t) == 0 else values
+
+    def at(self, t: typing.Any, side: str = "right") -> Result:
+        """All columns at any times: a result with a row for each of them, in their order.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=10).at([1, 2])["v"].shape
+        (2,)
+        """
+        if side not in ("left", "right"):
+            raise ValueError(f"side={side!r}: expected 'left' or 'right', of an event at this time")
+        times = np.atleast_1d(np.asarray(t, dtype=float)).ravel()
+        if self._again is None:
+            raise ValueError(
+                "this result has its rows only (it was loaded, optimised, or is one of several): simulate its model to "
+                "have it at other times"
+            )
+        model, settings, options = self._again
+        return Result(model._core.values_at(self._run, settings, options, times.tolist(), side == "left"))
+
     # What to do with it --------------------------------------------------------------------------------------------
 
     def require(self) -> Result:
@@ -307,13 +349,15 @@ class Result:
         """
         return _plot.phase(self, x, y, axis)
 
-    def frame(self) -> typing.Any:
+    def frame(self, grid: typing.Any = None) -> typing.Any:
         """A table of pandas, a row for every row of the result, with the time as its index.
+
+        With `grid` a row for each of these times, or for so many at equal distances.
 
         >>> list(saltus.catalogue("stick-slip").simulate(until=10).frame().columns)
         ['q', 'v', 'mode(slip)', 'alpha(slip)']
         """
-        return _data.frame(self)
+        return _data.frame(self, grid)
 
     def dataset(self) -> typing.Any:
         """A data set of xarray: the columns over ``row``, with ``t`` as a coordinate."""
@@ -333,7 +377,7 @@ class Result:
         return self._run.table()
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
-        return _restored, (self._run.json(True),)
+        return _restored, (self._run.json(True), self._again)
 
 
 class Page:
@@ -353,8 +397,8 @@ def load(path: str | os.PathLike[str]) -> Result:
     return Result(_core.load(os.fspath(path)))
 
 
-def _restored(text: str) -> Result:
-    return Result(_core.parse_result(text))
+def _restored(text: str, again: Again | None = None) -> Result:
+    return Result(_core.parse_result(text), again)
 
 
 def _unknown(name: str, known: list[str]) -> KeyError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import typing
 
 import numpy as np
@@ -11,6 +12,45 @@ from ._result import Result, needed
 
 Array = np.ndarray
 
+#: Columns, results, and the names of what was changed.
+Found = tuple[dict[str, typing.Any], list[Result], list[str]]
+#: What the library's sweep takes before its number of threads.
+SweepArguments = tuple[
+    list[str], list[tuple[str, str, str]], list[str], bool, list[str], typing.Optional[int], int, str
+]
+
+
+def with_results(found: tuple[dict[str, typing.Any], list[_core.Run], list[str]]) -> Found:
+    """What the library found, with its runs as results."""
+    columns, runs, names = found
+    return columns, [Result(run) for run in runs], names
+
+
+def share_of(model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]) -> Found:
+    """One share of a sweep, in whatever process."""
+    return with_results(model._core.sweep(*arguments, jobs, share, None, []))
+
+
+def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments, jobs: int) -> Found:
+    """A sweep by an executor: a few shares for each of its workers, put together in their order."""
+    if not callable(getattr(executor, "submit", None)):
+        raise TypeError(
+            f"executor={type(executor).__name__}: expected one of concurrent.futures, with a method submit, "
+            "e.g. ProcessPoolExecutor()"
+        )
+    number = 4 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
+    futures = [executor.submit(share_of, model, arguments, jobs, (i + 1, number)) for i in range(number)]
+    try:
+        found = [future.result() for future in futures]
+    except BaseException:
+        for future in futures:
+            future.cancel()
+        raise
+    columns = max((part[0] for part in found), key=len)
+    parts = [part for part in found if part[1]]
+    joined = {name: np.concatenate([np.asarray(part[0][name]) for part in parts]) for name in columns}
+    return joined, [result for part in parts for result in part[1]], found[0][2]
+
 
 class Sweep:
     """All runs of a sweep: ``results[i]``, and one table of them.
@@ -19,10 +59,10 @@ class Sweep:
     v), for the status, and what was kept of the runs: values at the end, events, or rows of trajectories.
     """
 
-    def __init__(self, found: tuple[dict[str, typing.Any], list[_core.Run], list[str]], shape: tuple[int, ...]) -> None:
-        columns, runs, names = found
+    def __init__(self, found: Found, shape: tuple[int, ...]) -> None:
+        columns, results, names = found
         self.table: dict[str, Array] = {name: np.asarray(values) for name, values in columns.items()}
-        self.results: list[Result] = [Result(run) for run in runs]
+        self.results: list[Result] = results
         self.names: list[str] = names
         self._shape = shape
 

@@ -25,6 +25,7 @@
 #include "saltus/pipeline/option_effects.hpp"
 #include "saltus/pipeline/order.hpp"
 #include "saltus/pipeline/simulate.hpp"
+#include "saltus/pipeline/values_at.hpp"
 #include "saltus/report/mpcc_table.hpp"
 #include "watch.hpp"
 
@@ -114,6 +115,35 @@ nb::object optimize(Model& model, std::vector<std::string> settings, std::vector
   return finished(std::move(result), input, nullptr, watch);
 }
 
+/// Values of a run at any times, as a run with one row for each of them.
+nb::object values_at(Model& model, const Run& run, std::vector<std::string> settings, std::vector<Option> options,
+                     const std::vector<double>& times, bool before) {
+  const Request request{std::move(settings), std::move(options), cli::RunMethods::chosen};
+  const auto input = model.stated(request);
+  const auto system = model.system(input, request);
+  Watch watch{nb::none()};
+  auto rows = [&] {
+    const nb::gil_scoped_release released;
+    const auto side = before ? pipeline::SideOfEvent::before : pipeline::SideOfEvent::behind;
+    return pipeline::values_at(*system, input.file.simulate, times, side, watch.observers());
+  }();
+  if (!rows) raise(io::located(rows.error(), input.file));
+  const auto& of = *run.result;
+  auto values = std::make_shared<result::Result>();
+  values->model = of.model;
+  values->method = of.method;
+  values->states = of.states;
+  values->controls = of.controls;
+  values->outputs = of.outputs;
+  values->switching_functions = of.switching_functions;
+  values->region_groups = of.region_groups;
+  values->status = of.status;
+  values->trajectory = std::move(*rows);
+  nb::object found = nb::cast(Run{std::move(values), nullptr, {}, {}, {}, {}, {}, {}});
+  watch.raise_what_came(found);
+  return found;
+}
+
 std::string check(Model& model, std::vector<std::string> settings) {
   const auto input = model.stated({std::move(settings), {}, cli::RunMethods::several});
   auto text = cli::check_text(input);
@@ -140,6 +170,8 @@ void add_model(nb::module_& module) {
            nb::arg("schemes"), nb::arg("steps"))
       .def("optimize", optimize, nb::arg("settings"), nb::arg("options"), nb::arg("start"), nb::arg("on_step").none(),
            nb::arg("warnings"))
+      .def("values_at", values_at, nb::arg("run"), nb::arg("settings"), nb::arg("options"), nb::arg("times"),
+           nb::arg("before"))
       .def("check", check, nb::arg("settings"));
   add_sweep(type);
 }

@@ -5,6 +5,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -12,6 +13,7 @@
 #include "model.hpp"
 #include "parts.hpp"
 #include "result.hpp"
+#include "saltus/cli/sweep/share.hpp"
 #include "saltus/cli/sweep_input.hpp"
 #include "saltus/cli/sweep_table.hpp"
 #include "watch.hpp"
@@ -40,6 +42,7 @@ struct Sweep {
   cli::SweepRequest request;
   std::string keep;
   std::size_t jobs = 1;
+  cli::Share share;
 };
 
 nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::object progress, nb::list warnings) {
@@ -57,7 +60,8 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
     if (std::this_thread::get_id() == caller && watch.look()) stopped = true;
     return stopped.load();
   };
-  const auto total = static_cast<double>(plan.runs());
+  const std::size_t begin = what.share.begin(plan.runs()), count = what.share.end(plan.runs()) - begin;
+  const auto total = static_cast<double>(count);
   if (!progress.is_none()) {
     observers.on_run = [&](std::size_t done) {
       if (std::this_thread::get_id() == caller) watch.tell(progress, static_cast<double>(done), total);
@@ -65,12 +69,12 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
   }
   const auto runs = [&] {
     const nb::gil_scoped_release released;
-    return pipeline::sweep({plan.runs(), keep, what.jobs},
-                           [&](std::size_t run) { return cli::state_run(input, plan, run); }, observers);
+    return pipeline::sweep({count, keep, what.jobs, begin},
+                           [&](std::size_t run) { return cli::state_run(input, plan, begin + run); }, observers);
   }();
   if (!runs) raise(io::located(runs.error(), input.file));
   nb::dict columns;
-  for (auto& column : cli::sweep_table(plan, *runs, keep)) {
+  for (auto& column : cli::sweep_table(plan, *runs, keep, begin)) {
     columns[nb::str(column.name.c_str())] = column_of(std::move(column.values));
   }
   nb::list results;
@@ -89,14 +93,15 @@ void add_sweep(nb::class_<Model>& type) {
       "sweep",
       [](Model& model, std::vector<std::string> settings, std::vector<Option> options, std::vector<std::string> over,
          bool paired, std::vector<std::string> samples, std::optional<long> runs, std::uint64_t seed, std::string keep,
-         std::size_t jobs, nb::object progress, nb::list warnings) {
+         std::size_t jobs, std::pair<std::size_t, std::size_t> share, nb::object progress, nb::list warnings) {
         const Request asked{std::move(settings), std::move(options), cli::RunMethods::chosen};
         const std::size_t threads = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
-        const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, true}, std::move(keep), threads};
+        const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, true}, std::move(keep), threads, {share.first, share.second}};
         return sweep(model, asked, what, std::move(progress), std::move(warnings));
       },
       nb::arg("settings"), nb::arg("options"), nb::arg("over"), nb::arg("paired"), nb::arg("samples"),
-      nb::arg("runs").none(), nb::arg("seed"), nb::arg("keep"), nb::arg("jobs"), nb::arg("progress").none(),
+      nb::arg("runs").none(), nb::arg("seed"), nb::arg("keep"), nb::arg("jobs"), nb::arg("share"),
+      nb::arg("progress").none(),
       nb::arg("warnings"));
 }
 

@@ -42,8 +42,12 @@ def test_casadi_is_there_once_whoever_comes_first(order):
 
 def test_another_casadi_is_refused_in_one_sentence():
     out = run_python("""
-        import importlib.metadata
-        importlib.metadata.version = lambda name: "3.6.7"
+        import importlib.machinery, importlib.util, pathlib, tempfile
+        site = pathlib.Path(tempfile.mkdtemp())
+        (site / "casadi").mkdir()
+        (site / "casadi-3.6.7.dist-info").mkdir()
+        spec = importlib.machinery.ModuleSpec("casadi", None, origin=str(site / "casadi/__init__.py"))
+        importlib.util.find_spec = lambda name: spec
         try:
             import saltus
         except ImportError as error:

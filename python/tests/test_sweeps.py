@@ -116,7 +116,7 @@ def test_a_run_that_stops_early_is_a_row(tool, tmp_path):
         (["--over", "belt=1,2", "--over", "v=1,2,3", "--zip"], "--zip"),
         (["--over", "belt=1,2", "--keep", "everything"], "final, events or trajectory"),
         (["--over", "belt=1,2", "--jobs", "-1"], "--jobs"),
-        (["--over", "belt=1,x"], "run 2 of 2"),
+        (["--over", "belt=1,x"], "in run 2\n"),
     ],
 )
 def test_what_is_wrong(tool, tmp_path, arguments, words):
@@ -146,3 +146,89 @@ def test_in_python(slip):
     assert len(events["t"]) == sum(len(r.events) for r in events.results)
     with pytest.raises(ValueError, match="final"):
         events.dataset()
+
+
+class Inline:
+    """An executor without processes: what it gets and gives went through pickle."""
+
+    _max_workers = 2
+
+    def submit(self, function, *arguments):
+        import concurrent.futures
+        import pickle
+
+        future = concurrent.futures.Future()
+        function, arguments = pickle.loads(pickle.dumps((function, arguments)))
+        try:
+            future.set_result(pickle.loads(pickle.dumps(function(*arguments))))
+        except Exception as error:
+            future.set_exception(pickle.loads(pickle.dumps(error)))
+        return future
+
+
+def test_an_executor_gives_the_same_table(slip):
+    how = {"belt": np.linspace(0.1, 0.3, 13), "until": 5, "keep": "events"}
+    alone, shared = slip.sweep(**how), slip.sweep(**how, executor=Inline())
+    assert list(shared.table) == list(alone.table)
+    for name, column in alone.table.items():
+        assert shared[name].tolist() == column.tolist()
+    assert [e.t for r in shared.results for e in r.events] == [e.t for r in alone.results for e in r.events]
+    assert slip.sweep(belt=[0.1, 0.2], until=5, executor=Inline()).dataset()["q"].shape == (2,)
+
+
+def test_processes_and_their_mistakes(slip):
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    with ProcessPoolExecutor(1, mp_context=get_context("forkserver")) as pool:
+        assert slip.sweep(belt=[0.1, 0.2], until=2, executor=pool)["q"].tolist() == slip.sweep(belt=[0.1, 0.2], until=2)["q"].tolist()
+    with pytest.raises(saltus.ModelError, match="in run 1"):
+        slip.sweep(belt=["what"], nope=[1, 2], until=2, executor=Inline())
+    with pytest.raises(TypeError, match="submit"):
+        slip.sweep(belt=[0.1], until=2, executor=4)
+
+
+def shares(tool, folder, number, *arguments):
+    for i in range(1, number + 1):
+        run_tool(tool, folder, *arguments, "--task", f"{i}/{number}", "--out", f"s{i}.csv", "--quiet")
+    return [f"s{i}.csv" for i in range(number, 0, -1)]
+
+
+@pytest.mark.parametrize("keep", ["final", "events"])
+def test_shares_are_the_whole(tool, tmp_path, keep):
+    sweep = ["stick-slip", "--until", "4", "--over", "belt=0.05:0.3:7", "--keep", keep]
+    files = shares(tool, tmp_path, 3, *sweep)
+    for suffix in ("csv", "npz"):
+        run_tool(tool, tmp_path, *sweep, "--out", f"whole.{suffix}")
+        run_tool(tool, tmp_path, "--join", *files, "--out", f"joined.{suffix}", "--report", "joined.html")
+        assert (tmp_path / f"whole.{suffix}").read_bytes() == (tmp_path / f"joined.{suffix}").read_bytes()
+
+
+def test_shares_that_do_not_fit(tool, tmp_path):
+    sweep = ["stick-slip", "--until", "1", "--over", "belt=0.1,0.2"]
+    files = shares(tool, tmp_path, 2, *sweep)
+    said = run_tool(tool, tmp_path, "--join", files[0], "--out", "x.csv", code=2)
+    assert "there is no 1" in said and "--task 1/2" in said
+    assert "there already" in run_tool(tool, tmp_path, "--join", *files, files[0], "--out", "x.csv", code=2)
+    run_tool(tool, tmp_path, *sweep, "--set", "q=0.3", "--task", "1/2", "--out", "other.csv")
+    assert "another sweep" in run_tool(tool, tmp_path, "--join", files[0], "other.csv", "--out", "x.csv", code=2)
+    run_tool(tool, tmp_path, *sweep, "--out", "all.csv")
+    assert "no share" in run_tool(tool, tmp_path, "--join", "all.csv", "--out", "x.csv", code=2)
+    for task in ("3/2", "0/2", "1", "1/2x", "-1/2"):
+        assert "expected I/N" in run_tool(tool, tmp_path, *sweep, "--task", task, "--out", "x.csv", code=2)
+    assert "2 runs only" in run_tool(tool, tmp_path, *sweep, "--task", "1/3", "--out", "x.csv", code=2)
+    assert not (tmp_path / "x.csv").exists()
+
+
+def test_the_page_of_a_sweep(tool, tmp_path):
+    import json
+    import re
+
+    run_tool(tool, tmp_path, "stick-slip", "--until", "2", "--over", "belt=0.1,0.2", "--over", "v=0,0.1", "--report", "p.html")
+    page = (tmp_path / "p.html").read_text()
+    data = json.loads(re.search(r'id="sweep">(.*)</script>', page).group(1))
+    assert data["swept"] == ["belt", "v(0)"] and data["names"] == ["belt", "v"] and data["grid"]
+    assert data["columns"]["belt"] == [0.1, 0.1, 0.2, 0.2]
+    assert data["command"] == "saltus simulate stick-slip --until 2"
+    assert not re.search(r"(src|href)=", page)
+    assert ".html" in run_tool(tool, tmp_path, "stick-slip", "--over", "belt=1,2", "--report", "p.txt", code=2)

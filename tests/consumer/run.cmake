@@ -40,6 +40,27 @@ function(build_and_run name folder)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
+# CasADi of the active Python is found by itself; where it has none, one sentence says where it was expected.
+function(configure_with_python python)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=VIRTUAL_ENV --unset=CONDA_PREFIX
+    ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${work_dir}/build/python -G ${generator} --fresh
+    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_PREFIX_PATH=${work_dir}/prefix -D saltus_python=${python} -D wanted_version=${version}
+    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  set(result "${result}" PARENT_SCOPE)
+  string(REGEX REPLACE "[ \n]+" " " output "${output}")
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+file(WRITE ${work_dir}/build/python_without "#!/bin/sh\necho /nowhere/casadi/cmake\n")
+file(CHMOD ${work_dir}/build/python_without PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+configure_with_python(${work_dir}/build/python_without)
+if(result EQUAL 0 OR NOT output MATCHES "CasADi was expected in .* the active Python .* pip install")
+  message(FATAL_ERROR "find_package without CasADi said\n${output}")
+endif()
+configure_with_python(${source_dir}/.venv/bin/python3)
+if(EXISTS ${source_dir}/.venv/bin/python3 AND NOT result EQUAL 0)
+  message(FATAL_ERROR "find_package did not find CasADi of the active Python:\n${output}")
+endif()
+
 build_and_run(consumer ${CMAKE_CURRENT_LIST_DIR}/project)
 build_and_run(first_simulation ${source_dir}/examples/01_first_simulation)
 if(NOT output MATCHES "t = 1\\.2001[0-9]+  enter_sliding" OR NOT output MATCHES "at rest at x = 1\\.8920")
@@ -50,6 +71,12 @@ build_and_run(small_mpcc ${source_dir}/examples/02_small_mpcc)
 if(NOT output MATCHES "completed: f = 1 at")
   message(FATAL_ERROR "examples/02_small_mpcc printed\n${output}")
 endif()
+
+foreach(file LICENSE CITATION.cff docs/python.md examples/01_first_simulation/main.cpp)
+  if(NOT EXISTS ${work_dir}/prefix/share/doc/saltus/${file})
+    message(FATAL_ERROR "share/doc/saltus/${file} was not installed")
+  endif()
+endforeach()
 
 # The installed tool has no other library path than its own, and finds the catalogue and plotly beside itself.
 if(EXISTS ${work_dir}/prefix/bin/saltus)

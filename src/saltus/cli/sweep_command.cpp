@@ -12,6 +12,8 @@
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/run_command.hpp"
+#include "saltus/cli/sweep/page.hpp"
+#include "saltus/cli/sweep/share.hpp"
 #include "saltus/cli/sweep_input.hpp"
 #include "saltus/cli/sweep_table.hpp"
 #include "saltus/cli/terminal.hpp"
@@ -27,6 +29,9 @@ struct SweepArguments {
   SweepRequest request;
   std::string keep = "final";
   std::string out;
+  std::string page;
+  std::string task;
+  std::vector<std::string> join;
   long jobs = 0;
 };
 
@@ -52,7 +57,28 @@ Expected<std::size_t> jobs_of(long jobs) {
                               {}});
 }
 
+Error misuse(std::string message, std::string remedy) {
+  return {ErrorCode::invalid_option, std::move(message), std::move(remedy), {}, {}};
+}
+
 Expected<void> check_output(const SweepArguments& arguments, const std::string& input) {
+  if (arguments.out.empty() && (arguments.page.empty() || !arguments.task.empty())) {
+    return tl::unexpected(misuse("--out is missing", "add --out table.csv, or --report page.html"));
+  }
+  if (!arguments.page.empty()) {
+    if (!arguments.task.empty()) {
+      return tl::unexpected(misuse("--report of a share", "the page shows all shares: sweep --join … --report page.html"));
+    }
+    if (!arguments.page.ends_with(".html")) {
+      return tl::unexpected(misuse(fmt::format("--report {}: the name must end in .html", arguments.page), ""));
+    }
+    if (auto writable = io::check_writable(arguments.page); !writable) return writable;
+  }
+  if (arguments.out.empty()) return {};
+  if (!arguments.task.empty() && !arguments.out.ends_with(".csv")) {
+    return tl::unexpected(misuse(fmt::format("--out {}: the share of a task is written as .csv", arguments.out),
+                                 "sweep --join makes one table of all, .csv or .npz"));
+  }
   const auto suffix = std::filesystem::path(arguments.out).extension();
   if (suffix != ".csv" && suffix != ".npz") {
     return tl::unexpected(Error{ErrorCode::io_failure,
@@ -69,20 +95,17 @@ Expected<void> check_output(const SweepArguments& arguments, const std::string& 
   return io::check_writable(arguments.out);
 }
 
-/// Zip archives of NumPy's older kind end there.
-constexpr double most_archive_bytes = 4e9;
-
 Expected<void> write_table(const std::string& file, const std::vector<TableColumn>& table) {
   if (std::filesystem::path(file).extension() == ".csv") return io::write_file(file, to_csv(table));
-  double bytes = 0.0;
-  for (const auto& column : table) {
-    bytes += 64.0 * static_cast<double>(std::visit([](const auto& values) { return values.size(); }, column.values));
+  return io::stream_file(file, [&](io::Sink sink) { return write_npz(table, sink); });
+}
+
+Expected<void> write_files(const SweepArguments& arguments, const std::vector<TableColumn>& table, const SweepPage& page) {
+  if (!arguments.out.empty()) {
+    if (auto written = write_table(arguments.out, table); !written) return written;
   }
-  if (bytes > most_archive_bytes) {
-    return tl::unexpected(Error{ErrorCode::io_failure, fmt::format("--out {}: the table is too large for .npz", file),
-                                "write .csv, or several sweeps", {}, {}});
-  }
-  return io::write_file(file, to_npz(table));
+  if (arguments.page.empty()) return {};
+  return io::write_file(arguments.page, sweep_page(table, page));
 }
 
 /// "98 completed, 2 iteration_limit"
@@ -106,6 +129,7 @@ ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs) {
 }
 
 ExitCode run_sweep(const SweepArguments& arguments) {
+  if (arguments.run.model.empty()) return refuse(misuse("MODEL is missing", "see: saltus help sweep"));
   const auto plan = SweepPlan::make(arguments.request);
   if (!plan) return refuse(plan.error());
   const auto keep = keep_named(arguments.keep);
@@ -119,25 +143,59 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   if (!first) return refuse(first.error());
   for (const auto& warning : options_without_effect(first->file)) print_error(fmt::format("warning: {}", warning));
 
+  const auto share = arguments.task.empty() ? Expected<Share>(Share{}) : parse_share(arguments.task, plan->runs());
+  if (!share) return refuse(share.error());
+  const std::size_t begin = share->begin(plan->runs()), count = share->end(plan->runs()) - begin;
   catch_interrupt();
   pipeline::SweepObservers observers;
   observers.is_interrupted = interrupted;
   const bool shown = !arguments.run.quiet && ::isatty(STDERR_FILENO) == 1;
-  const std::size_t every = std::max<std::size_t>(1, plan->runs() / 200);
+  const std::size_t every = std::max<std::size_t>(1, count / 200);
   if (shown) {
     observers.on_run = [&](std::size_t done) {
-      if (done % every == 0) fmt::print(stderr, "\r{} of {} runs", done, plan->runs());
-      if (done == plan->runs()) fmt::print(stderr, "\r{:40}\r", "");
+      if (done % every == 0) fmt::print(stderr, "\r{} of {} runs", done, count);
+      if (done == count) fmt::print(stderr, "\r{:40}\r", "");
     };
   }
-  const auto state = [&](std::size_t run) { return state_run(*model, *plan, run); };
-  const auto runs = pipeline::sweep({plan->runs(), *keep, *jobs}, state, observers);
+  const auto state = [&](std::size_t run) { return state_run(*model, *plan, begin + run); };
+  const auto runs = pipeline::sweep({count, *keep, *jobs, begin}, state, observers);
   if (!runs) return refuse(io::located(runs.error(), model->file));
-  if (auto written = write_table(arguments.out, sweep_table(*plan, *runs, *keep)); !written) {
-    return refuse(written.error());
+  auto table = sweep_table(*plan, *runs, *keep, begin);
+  if (!arguments.task.empty()) {
+    table.front().name = share_heading(*share, sweep_mark(*model, arguments.request, arguments.keep));
   }
-  if (!arguments.run.quiet) print(fmt::format("{} runs: {}\n{}\n", runs->size(), statuses(*runs), arguments.out));
+  const bool grid = !arguments.request.paired && arguments.request.samples.empty();
+  const SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid};
+  if (auto written = write_files(arguments, table, page); !written) return refuse(written.error());
+  if (!arguments.run.quiet) {
+    print(fmt::format("{} runs: {}\n{}\n", runs->size(), statuses(*runs),
+                      arguments.out.empty() ? arguments.page : arguments.out));
+  }
   return report_stopped_runs(*runs);
+}
+
+/// What MODEL and the files behind it are with --join: all are shares.
+ExitCode run_join(const SweepArguments& arguments) {
+  if (!arguments.run.model.empty() || !arguments.request.over.empty() || !arguments.request.samples.empty() ||
+      !arguments.task.empty()) {
+    return refuse(misuse("--join takes the tables of shares, and no model", "saltus sweep --join 1.csv 2.csv --out all.csv"));
+  }
+  if (auto writable = check_output(arguments, ""); !writable) return refuse(writable.error());
+  const auto table = join_shares(arguments.join);
+  if (!table) return refuse(table.error());
+  // Which columns were changed stands in no share; they are those between the run and its status.
+  const auto status = std::find_if(table->begin(), table->end(), [](const auto& column) { return column.name == "status"; });
+  SweepPage page{"Sweep", "saltus simulate MODEL", {}, true};
+  for (auto column = table->begin() + 1; column < status; ++column) {
+    const auto& name = column->name;
+    page.names.push_back(name.ends_with("(0)") ? name.substr(0, name.size() - 3) : name);
+  }
+  if (auto written = write_files(arguments, *table, page); !written) return refuse(written.error());
+  if (!arguments.run.quiet) {
+    print(fmt::format("{} shares, {} rows\n{}\n", arguments.join.size(), rows_of(table->front()),
+                      arguments.out.empty() ? arguments.page : arguments.out));
+  }
+  return ExitCode::done;
 }
 
 }  // namespace
@@ -162,10 +220,17 @@ Command add_sweep(CLI::App& app) {
       ->type_name("final|events|trajectory");
   command->add_option("--jobs", arguments->jobs, "threads (as many as processors); the table does not depend on it")
       ->type_name("N");
-  command->add_option("--out", arguments->out, "the table")->type_name("FILE.csv|.npz")->required();
+  command->add_option("--out", arguments->out, "the table")->type_name("FILE.csv|.npz");
+  command->add_option("--report", arguments->page, "a page with pictures of the table, which works offline")
+      ->type_name("FILE.html");
+  command->add_option("--task", arguments->task, "only share I of N, for several machines; --out is a .csv then")
+      ->type_name("I/N");
+  command->add_option("--join", arguments->join, "the tables of all shares, which become one; no MODEL then")
+      ->type_name("FILE.csv …");
+  command->get_option("MODEL")->required(false);
   command->footer(
       "Example:\n  saltus sweep stick-slip --over belt=0.05:0.3:100 --over v=-0.1,0,0.1 --out belt.csv");
-  return {"sweep", [arguments] { return run_sweep(*arguments); }};
+  return {"sweep", [arguments] { return arguments->join.empty() ? run_sweep(*arguments) : run_join(*arguments); }};
 }
 
 }  // namespace saltus::cli

@@ -59,7 +59,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 /// What all tables begin with: the number of the run, its values, its status.
 class Beginning {
  public:
-  Beginning(const SweepPlan& plan, const Result& first) : plan_(plan), is_number_(plan.names().size(), true) {
+  Beginning(const SweepPlan& plan, const Result& first, std::size_t begin)
+      : plan_(plan), begin_(begin), is_number_(plan.names().size(), true) {
     for (std::size_t i = 0; i < plan.runs(); ++i) {
       values_.push_back(plan.values(i));
       for (std::size_t k = 0; k < is_number_.size(); ++k) is_number_[k] = is_number_[k] && number(values_[i][k]);
@@ -75,6 +76,7 @@ class Beginning {
   }
   [[nodiscard]] std::vector<TableColumn> columns() const { return columns_; }
   void write(Table& table, std::size_t i, const SweepRun& run) const {
+    i += begin_;
     table << static_cast<double>(i + 1);
     for (std::size_t k = 0; k < is_number_.size(); ++k) {
       if (is_number_[k]) {
@@ -94,6 +96,7 @@ class Beginning {
     return value;
   }
   const SweepPlan& plan_;
+  std::size_t begin_;
   std::vector<bool> is_number_;
   std::vector<std::vector<std::string>> values_;
   std::vector<TableColumn> columns_;
@@ -167,17 +170,14 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-std::size_t rows_of(const TableColumn& column) {
-  return std::visit([](const auto& values) { return values.size(); }, column.values);
-}
-
 }  // namespace
 
-std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<SweepRun>& runs, Keep keep) {
+std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<SweepRun>& runs, Keep keep,
+                                     std::size_t begin) {
   const auto begun = std::find_if(runs.begin(), runs.end(), [](const auto& run) { return !run.result.states.empty(); });
   const Result none;
   const Result& first = begun == runs.end() ? none : begun->result;
-  const Beginning beginning(plan, first);
+  const Beginning beginning(plan, first, begin);
   switch (keep) {
     case Keep::final:
       return final_table(beginning, first, runs).columns();

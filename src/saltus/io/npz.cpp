@@ -10,49 +10,20 @@
 #include <fmt/ranges.h>
 
 #include "saltus/io/json_result.hpp"
+#include "saltus/io/npy.hpp"
 #include "saltus/io/text_stream_internal.hpp"
-#include "saltus/io/zip_stream_internal.hpp"
+#include "saltus/io/zip_stream.hpp"
 
 namespace saltus::io {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as little-endian numbers");
 
-/// What numpy.load reads before the numbers of a column (NEP 1): the version 1.0, of a multiple of 64 bytes.
-std::string npy_head(const std::string& type, std::size_t count) {
-  constexpr std::size_t alignment = 64, before = 10;
-  std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({},), }}", type, count);
-  text.append(alignment - (before + text.size() + 1) % alignment, ' ') += '\n';
-  std::string head("\x93NUMPY\x01\x00", 8);
-  head += static_cast<char>(text.size() & 0xffU);
-  head += static_cast<char>(text.size() >> 8U);
-  return head + text;
-}
-
 template <class Number>
 void append_number(std::string& bytes, Number number) {
   std::array<char, sizeof(Number)> raw;
   std::memcpy(raw.data(), &number, sizeof(Number));
   bytes.append(raw.data(), raw.size());
-}
-
-/// Code points of UTF-8; what is none of it becomes the sign for that.
-std::u32string decoded(const std::string& text) {
-  std::u32string points;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t length = byte < 0x80 ? 1 : byte < 0xe0 ? 2 : byte < 0xf0 ? 3 : 4;
-    char32_t point = length == 1 ? byte : byte & (0x7fU >> length);
-    bool good = byte < 0x80 || byte >= 0xc0;
-    for (std::size_t k = 1; k < length; ++k) {
-      const auto next = i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0U;
-      good = good && (next & 0xc0U) == 0x80U;
-      point = (point << 6U) | (next & 0x3fU);
-    }
-    points += good ? point : U'\ufffd';
-    i += good ? length : 1;
-  }
-  return points;
 }
 
 /// Entries of the archive, each over the lines of a result and its branches.
@@ -77,11 +48,11 @@ class ColumnWriter {
   void words(const std::string& name, TextAt text_at) {
     std::size_t width = 1;
     for_each([&](const auto& part, std::size_t line) {
-      width = std::max(width, decoded(text_at(part, line)).size());
+      width = std::max(width, code_points(text_at(part, line)).size());
       return true;
     });
     add(name, fmt::format("<U{}", width), [&](std::string& bytes, const auto& part, std::size_t line) {
-      auto text = decoded(text_at(part, line));
+      auto text = code_points(text_at(part, line));
       text.resize(width);
       for (const char32_t point : text) append_number(bytes, static_cast<std::uint32_t>(point));
     });

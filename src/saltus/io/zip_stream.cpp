@@ -2,7 +2,7 @@
 #include <new>
 #include <zlib.h>
 
-#include "saltus/io/zip_stream_internal.hpp"
+#include "saltus/io/zip_stream.hpp"
 
 namespace saltus::io {
 namespace {

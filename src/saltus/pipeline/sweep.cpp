@@ -58,7 +58,7 @@ class Workshop {
 
   [[nodiscard]] Expected<std::vector<SweepRun>> outcome() && {
     if (!error_) return std::move(runs_);
-    return tl::unexpected(with_context(std::move(*error_), fmt::format("in run {} of {}", failed_run_ + 1, runs_.size())));
+    return tl::unexpected(with_context(std::move(*error_), fmt::format("in run {}", options_.before + failed_run_ + 1)));
   }
 
  private:

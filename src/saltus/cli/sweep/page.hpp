@@ -1,0 +1,27 @@
+// The table of a sweep as a page that works offline.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saltus/cli/sweep_plan.hpp"
+#include "saltus/cli/sweep_table.hpp"
+
+namespace saltus::cli {
+
+/// Rows that a page draws; of a longer table the first ones, which the page says.
+inline constexpr std::size_t rows_of_page = 100'000;
+
+/// What the page says beside the table.
+struct SweepPage {
+  std::string title;
+  std::string command;             ///< that runs one of them, without its values
+  std::vector<std::string> names;  ///< what was changed, as --set takes it
+  bool grid = true;                ///< of two names every pair is there once
+};
+
+/// Values over one parameter as lines, over two as a map, number of events, status, values at events (bifurcation diagram);
+/// a click on a run shows its command.
+[[nodiscard]] std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& page);
+
+}  // namespace saltus::cli

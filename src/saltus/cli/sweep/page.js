@@ -1,0 +1,152 @@
+// Draws the table of a sweep: values over one parameter, a map over two, events, status, values at events.
+"use strict";
+const data = JSON.parse(document.getElementById("sweep").textContent);
+const columns = data.columns;
+const swept = data.swept;
+const isNumber = (name) => columns[name].every((value) => value === null || typeof value === "number");
+const numeric = Object.keys(columns).filter(isNumber);
+const rows = columns.run.length;
+const make = (tag, attributes = {}, text = "") => {
+  const space = ["svg", "g", "line", "rect", "circle", "path", "text", "title"].includes(tag) ? "http://www.w3.org/2000/svg" : null;
+  const element = space ? document.createElementNS(space, tag) : document.createElement(tag);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  if (text !== "") element.textContent = text;
+  return element;
+};
+const shown = (value) => (value === null ? "nan" : typeof value === "number" ? String(Number(value.toPrecision(6))) : value);
+const palette = ["#1f5fa8", "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#66a61e", "#a6761d"];
+
+// A run is the first of its rows; events and trajectories have several.
+const firstRow = new Map();
+const rowsOf = new Map();
+columns.run.forEach((run, row) => {
+  if (!firstRow.has(run)) firstRow.set(run, row);
+  rowsOf.set(run, (rowsOf.get(run) || 0) + 1);
+});
+const runRows = [...firstRow.values()];
+const eventsOf = (row) => (columns.events ? columns.events[row] : rowsOf.get(columns.run[row]));
+
+function commandOf(row) {
+  const settings = swept.map((name, k) => `--set ${data.names[k]}=${columns[name][row] === null ? "nan" : columns[name][row]}`);
+  return [data.command, ...settings].join(" ");
+}
+function choose(row) {
+  const parts = swept.map((name) => `${name} = ${shown(columns[name][row])}`);
+  document.getElementById("chosen").textContent =
+    `run ${columns.run[row]}: ${parts.join(", ")}; ${columns.status[row]}, ${eventsOf(row)} events`;
+  document.getElementById("command").textContent = commandOf(row);
+}
+
+// Words on an axis stand at 0, 1, 2, …
+function axisOf(values) {
+  const words = values.some((value) => typeof value === "string");
+  const labels = words ? [...new Set(values)] : null;
+  const at = words ? (value) => labels.indexOf(value) : (value) => value;
+  const finite = values.map(at).filter((value) => value !== null && Number.isFinite(value));
+  let low = Math.min(...finite.slice(0, 1)), high = low;
+  for (const value of finite) { low = Math.min(low, value); high = Math.max(high, value); }
+  if (!finite.length) { low = 0; high = 1; }
+  if (low === high) { low -= 0.5; high += 0.5; }
+  const ticks = labels ? labels.map((label, k) => [k, label]) : ticksOf(low, high);
+  return { at, low, high, ticks };
+}
+function ticksOf(low, high) {
+  const raw = (high - low) / 5, power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((m) => m * power).find((candidate) => candidate >= raw);
+  const ticks = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push([k * step, shown(k * step)]);
+  return ticks;
+}
+
+const size = { width: 720, height: 320, left: 70, right: 20, top: 12, bottom: 46 };
+function frame(title, xName, yName, xAxis, yAxis) {
+  const picture = make("svg", { viewBox: `0 0 ${size.width} ${size.height}`, role: "img", "aria-label": title });
+  const x = (value) => size.left + ((xAxis.at(value) - xAxis.low) / (xAxis.high - xAxis.low)) * (size.width - size.left - size.right);
+  const y = (value) => size.height - size.bottom - ((yAxis.at(value) - yAxis.low) / (yAxis.high - yAxis.low)) * (size.height - size.top - size.bottom);
+  const bottom = size.height - size.bottom;
+  picture.append(make("rect", { x: size.left, y: size.top, width: size.width - size.left - size.right, height: bottom - size.top, class: "frame" }));
+  const place = (axis, value) => (axis.ticks === xAxis.ticks ? size.left + ((value - axis.low) / (axis.high - axis.low)) * (size.width - size.left - size.right)
+    : bottom - ((value - axis.low) / (axis.high - axis.low)) * (bottom - size.top));
+  for (const [value, label] of xAxis.ticks) picture.append(make("text", { x: place(xAxis, value), y: bottom + 16, "text-anchor": "middle" }, label));
+  for (const [value, label] of yAxis.ticks) picture.append(make("text", { x: size.left - 6, y: place(yAxis, value) + 4, "text-anchor": "end" }, label));
+  picture.append(make("text", { x: (size.left + size.width - size.right) / 2, y: size.height - 10, "text-anchor": "middle" }, xName));
+  picture.append(make("text", { x: 14, y: size.height / 2, transform: `rotate(-90 14 ${size.height / 2})`, "text-anchor": "middle" }, yName));
+  return { picture, x, y };
+}
+function mark(picture, row, x, y, colour, radius, label) {
+  const dot = make("circle", { cx: x, cy: y, r: radius, fill: colour, class: "run", "data-run": columns.run[row] });
+  dot.append(make("title", {}, label));
+  dot.addEventListener("click", () => choose(row));
+  picture.append(dot);
+}
+
+function points(title, xName, yName, chosen, yOf, joined, colourOf = () => palette[0]) {
+  const plain = chosen.filter((row) => yOf(row) !== null);
+  const drawn = frame(title, xName, yName, axisOf(chosen.map((row) => columns[xName][row])), axisOf(plain.map(yOf)));
+  if (joined) {
+    const path = plain.map((row, k) => `${k ? "L" : "M"}${drawn.x(columns[xName][row])} ${drawn.y(yOf(row))}`).join("");
+    drawn.picture.append(make("path", { d: path, fill: "none", stroke: palette[0] }));
+  }
+  for (const row of plain) mark(drawn.picture, row, drawn.x(columns[xName][row]), drawn.y(yOf(row)), colourOf(row), joined ? 3 : 2, `${shown(columns[xName][row])}: ${shown(yOf(row))}`);
+  return drawn.picture;
+}
+function map(title, xName, yName, valueOf) {
+  const xs = [...new Set(runRows.map((row) => columns[xName][row]))], ys = [...new Set(runRows.map((row) => columns[yName][row]))];
+  const drawn = frame(title, xName, yName, axisOf(xs), axisOf(ys));
+  const values = runRows.map(valueOf).filter((value) => value !== null);
+  const scale = axisOf(values);
+  const width = (size.width - size.left - size.right) / xs.length, height = (size.height - size.top - size.bottom) / ys.length;
+  let low = NaN, high = NaN;
+  for (const row of runRows) {
+    const value = valueOf(row), i = xs.indexOf(columns[xName][row]), j = ys.indexOf(columns[yName][row]);
+    const share = value === null ? null : (value - scale.low) / (scale.high - scale.low);
+    const colour = share === null ? "#999" : `hsl(${240 - 200 * share} 60% ${30 + 40 * share}%)`;
+    const cell = make("rect", { x: size.left + i * width, y: size.height - size.bottom - (j + 1) * height, width: width + 0.3, height: height + 0.3, fill: colour, class: "run", "data-run": columns.run[row] });
+    low = value !== null && !(value >= low) ? value : low;
+    high = value !== null && !(value <= high) ? value : high;
+    cell.append(make("title", {}, `${xName} ${shown(columns[xName][row])}, ${yName} ${shown(columns[yName][row])}: ${shown(value)}`));
+    cell.addEventListener("click", () => choose(row));
+    drawn.picture.append(cell);
+  }
+  drawn.picture.append(make("text", { x: size.width - size.right, y: size.height - 10, "text-anchor": "end" }, `dark ${shown(low)}, light ${shown(high)}`));
+  return drawn.picture;
+}
+
+function selector(label, options, value, onChange) {
+  const box = make("label", {}, `${label} `), select = make("select");
+  options.forEach((option) => select.append(make("option", { value: option }, option)));
+  select.value = value;
+  select.addEventListener("change", () => { onChange(select.value); draw(); });
+  box.append(select);
+  return box;
+}
+
+const values = numeric.filter((name) => name !== "run" && !swept.includes(name) && name !== "event");
+const kinds = columns.kind ? [...new Set(columns.kind.map((kind, row) => columns.name[row] || (columns.surfaces[row] ? `${kind} ${columns.surfaces[row]}` : kind)))] : [];
+const kindOf = (row) => columns.name[row] || (columns.surfaces[row] ? `${columns.kind[row]} ${columns.surfaces[row]}` : columns.kind[row]);
+const state = { value: values.find((name) => name !== "t") || values[0], x: swept[0], y: swept[1], kind: kinds[0] };
+
+function section(title, picture) {
+  const box = make("section");
+  box.append(make("h2", {}, title), picture);
+  document.getElementById("pictures").append(box);
+}
+function draw() {
+  document.getElementById("pictures").replaceChildren();
+  if (!rows || !swept.length) return;
+  const grid = swept.length === 2 && data.grid;
+  const over = (name, of, joined = true) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined && swept.length === 1 && isNumber(state.x)));
+  if (kinds.length) {
+    const chosen = columns.run.map((_, row) => row).filter((row) => kindOf(row) === state.kind);
+    if (chosen.length) section(`${state.value} at every event "${state.kind}"`, points("bifurcation", state.x, state.value, chosen, (row) => columns[state.value][row], false));
+  } else section(state.value, over(state.value, (row) => columns[state.value][row]));
+  section(columns.events || kinds.length ? "number of events" : "number of rows", over("number", eventsOf));
+  const statuses = [...new Set(columns.status)];
+  section("status", points("status", state.x, "status", runRows, (row) => columns.status[row], false, (row) => palette[statuses.indexOf(columns.status[row]) % palette.length]));
+}
+const controls = document.getElementById("controls");
+if (values.length) controls.append(selector("value", values, state.value, (value) => (state.value = value)));
+if (swept.length > 1) controls.append(selector("over", swept, state.x, (value) => { if (value === state.y) state.y = state.x; state.x = value; }));
+if (kinds.length) controls.append(selector("event", kinds, state.kind, (value) => (state.kind = value)));
+draw();
+if (rows) choose(0);

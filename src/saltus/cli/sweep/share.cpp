@@ -1,0 +1,185 @@
+#include "saltus/cli/sweep/share.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "saltus/io/atomic_file.hpp"
+#include "saltus/io/sha256.hpp"
+
+namespace saltus::cli {
+namespace {
+
+using Lines = std::vector<std::vector<std::string>>;
+
+Error no_share(const std::string& file, const std::string& why, const std::string& remedy) {
+  return {ErrorCode::parse_failure, fmt::format("{}: {}", file, why), remedy, {}, {}};
+}
+
+/// RFC 4180, as to_csv writes it.
+Lines fields_of(const std::string& text) {
+  Lines lines(1);
+  std::string field;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+        field += text[++i];
+      } else if (c == '"') {
+        quoted = false;
+      } else {
+        field += c;
+      }
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == ',' || c == '\n') {
+      lines.back().push_back(std::move(field));
+      field.clear();
+      if (c == '\n') lines.emplace_back();
+    } else if (c != '\r') {
+      field += c;
+    }
+  }
+  if (lines.back().empty() && field.empty()) lines.pop_back();
+  return lines;
+}
+
+struct ShareTable {
+  Share share;
+  std::string mark, file;
+  Lines lines;  ///< headings first
+};
+
+Expected<ShareTable> read_share(const std::string& file) {
+  const auto text = io::read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  ShareTable table{{}, "", file, fields_of(*text)};
+  std::array<char, 65> mark{};
+  const auto heading = table.lines.empty() || table.lines[0].empty() ? std::string() : table.lines[0][0];
+  if (std::sscanf(heading.c_str(), "run [task %zu of %zu, sweep %64[0-9a-f]]", &table.share.number, &table.share.of,
+                  mark.data()) != 3) {
+    return tl::unexpected(no_share(file, "no share of a sweep", "join what `saltus sweep … --task I/N` wrote"));
+  }
+  table.mark = mark.data();
+  for (std::size_t i = 0; i < table.lines.size(); ++i) {
+    if (table.lines[i].size() == table.lines[0].size()) continue;
+    return tl::unexpected(no_share(
+        file, fmt::format("line {} has {} values, expected {}", i + 1, table.lines[i].size(), table.lines[0].size()),
+        "run this share again"));
+  }
+  return table;
+}
+
+Expected<void> check_together(const std::vector<ShareTable>& shares) {
+  const auto& first = shares.front();
+  std::vector<std::string> seen(first.share.of);
+  for (const auto& share : shares) {
+    if (share.mark != first.mark || share.share.of != first.share.of) {
+      return tl::unexpected(no_share(
+          share.file, fmt::format("a share of another sweep (task of {}, {}) than {} (task of {}, {})", share.share.of,
+                                  share.mark, first.file, first.share.of, first.mark),
+          "shares of one sweep have the same model, settings, values and number of tasks"));
+    }
+    if (share.share.number < 1 || share.share.number > seen.size()) {
+      return tl::unexpected(no_share(share.file, "no share of a sweep", "run this share again"));
+    }
+    auto& before = seen[share.share.number - 1];
+    if (!before.empty()) {
+      return tl::unexpected(no_share(share.file, fmt::format("task {} is there already, in {}", share.share.number, before),
+                                     "name every share once"));
+    }
+    before = share.file;
+  }
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i].empty()) missing.push_back(i + 1);
+  }
+  if (missing.empty()) return {};
+  return tl::unexpected(Error{ErrorCode::invalid_option,
+                              fmt::format("of {} shares there is no {}", seen.size(), fmt::join(missing, ", ")),
+                              fmt::format("run --task {}/{}, and name its file, too", missing.front(), seen.size()),
+                              {},
+                              {}});
+}
+
+std::optional<double> number_of_field(const std::string& text) {
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// Numbers where all are; columns that hold words hold words in every row.
+TableColumn column_of(std::string name, const std::vector<ShareTable>& shares, std::size_t k) {
+  std::vector<std::string> words;
+  std::vector<double> numbers;
+  bool is_number = true;
+  for (const auto& share : shares) {
+    for (std::size_t i = 1; i < share.lines.size(); ++i) {
+      words.push_back(share.lines[i][k]);
+      const auto number = is_number ? number_of_field(words.back()) : std::nullopt;
+      is_number = is_number && number;
+      if (number) numbers.push_back(*number);
+    }
+  }
+  if (is_number) return {std::move(name), std::move(numbers)};
+  return {std::move(name), std::move(words)};
+}
+
+}  // namespace
+
+Expected<Share> parse_share(const std::string& text, std::size_t runs) {
+  Share share;
+  int used = 0;
+  const bool read = std::sscanf(text.c_str(), "%zu/%zu%n", &share.number, &share.of, &used) == 2 &&
+                    static_cast<std::size_t>(used) == text.size() && text.find('-') == std::string::npos;
+  if (!read || share.number < 1 || share.number > share.of) {
+    return tl::unexpected(Error{ErrorCode::invalid_option, fmt::format("--task {}: expected I/N with 1 <= I <= N", text),
+                                "e.g. --task 2/5, or --task $SLURM_ARRAY_TASK_ID/5", {}, {}});
+  }
+  if (share.of > runs) {
+    return tl::unexpected(Error{ErrorCode::invalid_option, fmt::format("--task {}: the sweep has {} runs only", text, runs),
+                                fmt::format("take at most {} tasks", runs), {}, {}});
+  }
+  return share;
+}
+
+std::string sweep_mark(const ModelInput& model, const SweepRequest& request, const std::string& keep) {
+  const auto all = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", model.file.sha256, fmt::join(model.settings, "\n"),
+                               fmt::join(request.over, "\n"), request.paired, fmt::join(request.samples, "\n"),
+                               request.runs.value_or(0), request.seed, keep);
+  return io::sha256(all).substr(0, 16);
+}
+
+std::string share_heading(const Share& share, const std::string& mark) {
+  return fmt::format("run [task {} of {}, sweep {}]", share.number, share.of, mark);
+}
+
+Expected<std::vector<TableColumn>> join_shares(const std::vector<std::string>& files) {
+  std::vector<ShareTable> shares;
+  for (const auto& file : files) {
+    auto share = read_share(file);
+    if (!share) return tl::unexpected(share.error());
+    shares.push_back(std::move(*share));
+  }
+  if (auto together = check_together(shares); !together) return tl::unexpected(together.error());
+  std::sort(shares.begin(), shares.end(),
+            [](const auto& a, const auto& b) { return a.share.number < b.share.number; });
+  const auto& headings = shares.front().lines[0];
+  for (const auto& share : shares) {
+    if (std::equal(headings.begin() + 1, headings.end(), share.lines[0].begin() + 1, share.lines[0].end())) continue;
+    return tl::unexpected(no_share(share.file, fmt::format("other columns than {}", shares.front().file),
+                                   "a share in which no run began has no states; run it again"));
+  }
+  std::vector<TableColumn> table;
+  for (std::size_t k = 0; k < headings.size(); ++k) table.push_back(column_of(k == 0 ? "run" : headings[k], shares, k));
+  return table;
+}
+
+}  // namespace saltus::cli
