@@ -154,6 +154,8 @@ class Outputs(RequestTest):
             with self.subTest(out):
                 self.refused("simulate", "m.toml", "--out", out, message=message)
         self.refused("simulate", "m.toml", "--report", "r.json", message=["must end in .html or .htm"])
+        self.run_tool("simulate", "m.toml", "--quiet", "--out", "r.json", code=0)
+        self.refused("report", "r.json", "--out", "h.pdf", message=["--out h.pdf", "must end in .html or .htm"])
 
     def test_the_input_is_no_output(self):
         self.write("m.json", base.GOOD)

@@ -141,7 +141,7 @@ Expected<Outputs> Outputs::make(const OutputNames& names, const std::string& inp
     const bool to_standard_output = file == standard_output && !names.suffixes.empty();
     if (!to_standard_output) wanted.push_back({"--out", file, names.suffixes});
   }
-  if (!names.report.empty()) wanted.push_back({"--report", names.report, {".html", ".htm"}});
+  if (!names.report.empty()) wanted.push_back({names.report_option, names.report, {".html", ".htm"}});
   for (const auto& output : wanted) {
     if (auto writable = check(output, taken); !writable) return tl::unexpected(writable.error());
   }

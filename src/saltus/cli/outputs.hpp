@@ -22,6 +22,7 @@ struct OutputNames {
   std::vector<std::string> files{};     ///< of --out; - is standard output
   std::string format{};                 ///< of --format, for standard output: a suffix without its point
   std::string report{};                 ///< of --report: .html; empty for none
+  std::string report_option = "--report";  ///< what the user calls it
   std::vector<std::string> suffixes{};  ///< that files of --out may have: .json, .csv, .npz
 };
 
