@@ -45,20 +45,25 @@ def rod(n, _):
         outflow = f" + {scale!r}*(u{i + 1} - u{i})" if i < n else ""
         dynamics.append(f"{inflow}{outflow} - 2*u{i}")
     return model_file(f"rod-{n}", f"heated rod of {n} cells with one thermostat", states, dynamics, 5.0,
-                      ['method = "radau5"'])
+                      ["", "[simulate.event]", 'integrator = "radau5"'])
 
 
 def network(n, rng):
     states = [(f"x{i}", round(rng.uniform(0.0, 1.0), 6)) for i in range(1, n + 1)]
     dynamics = []
-    for _ in range(n):
+    # Two genes that switch each other may chatter faster and faster without an end (relative degree 2).
+    inputs = {}
+    for gene in range(1, n + 1):
+        others = [k for k in rng.sample(range(1, n + 1), min(n, 12)) if gene not in inputs.get(k, ()) and k != gene]
+        inputs[gene] = others[:3]
+    for gene in range(1, n + 1):
         terms = []
-        for source in rng.sample(range(1, n + 1), min(3, n)):
+        for source in inputs[gene]:
             threshold = round(rng.uniform(0.2, 0.8), 6)
             sign = rng.choice(("", "1 - "))
             terms.append(f"{round(rng.uniform(0.2, 0.5), 6)}*({sign}step(x{source} - {threshold}))")
         dynamics.append(" + ".join(terms))
-    dynamics = [f"{rate} - x{i}" for i, rate in enumerate(dynamics, 1)]
+    dynamics = [f"{rate or 0.5} - x{i}" for i, rate in enumerate(dynamics, 1)]
     return model_file(f"network-{n}", f"random network of {n} genes with three inputs each", states, dynamics, 100.0)
 
 
