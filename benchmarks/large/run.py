@@ -75,9 +75,9 @@ def main():
                 line, ended = row(os.path.abspath(arguments.tool), kind, n, arguments.limit, pathlib.Path(folder))
                 print(line, flush=True)
                 lines.append(line)
+                pathlib.Path(arguments.output).write_text("\n".join(lines) + "\n", encoding="utf-8")
                 if not ended:
                     break
-    pathlib.Path(arguments.output).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
