@@ -12,8 +12,21 @@
 namespace saltus::cli {
 namespace {
 
+/// Switching functions up to which a check makes the complementarity systems: their cost grows faster than the model.
+constexpr std::size_t most_reformulated = 100;
+
+bool is_large(const model::System& system) { return system.switching.size() > most_reformulated; }
+
+std::string complementarity_text(const model::System& system) {
+  if (!is_large(system)) return reformulation_text(system);
+  return fmt::format("\ncomplementarity systems\n  not made: more than {} switching functions\n", most_reformulated);
+}
+
 /// Which methods can run the model.
 std::string methods_text(const model::System& system) {
+  if (is_large(system)) {
+    return fmt::format("\nmethods: event\n  others: not tried, more than {} switching functions\n", most_reformulated);
+  }
   const auto regularisation = smoothed::regularise(system, pipeline::SmoothedOptions{}.epsilon);
   const auto dcs = reformulation::reformulate(system);
   std::string text =
@@ -27,7 +40,7 @@ std::string methods_text(const model::System& system) {
 
 std::string check_text(const ModelInput& input, const model::System& system, const io::ModelOverview& overview,
                        const std::optional<pipeline::OcpOverview>& optimization) {
-  return overview_text(overview, input.path) + methods_text(system) + reformulation_text(system) +
+  return overview_text(overview, input.path) + methods_text(system) + complementarity_text(system) +
          warnings_text(overview) + (optimization ? optimize_text(*optimization) : "");
 }
 

@@ -16,6 +16,21 @@ using io::ModelOverview;
 
 std::string heading(std::string_view title, std::size_t count) { return fmt::format("\n{} ({})\n", title, count); }
 
+/// One line each; of a large model those of the first and the last entries.
+template <class Entries, class LineOf>
+std::string shown_lines(const Entries& entries, LineOf line_of) {
+  constexpr std::size_t most = 60, at_front = 20, at_back = 4;
+  std::string text;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries.size() > most && i == at_front) {
+      text += fmt::format("  … ({} more)\n", entries.size() - at_front - at_back);
+      i = entries.size() - at_back;
+    }
+    text += line_of(entries[i]);
+  }
+  return text;
+}
+
 std::string bounds(const io::OverviewQuantity& quantity) {
   if (std::isinf(quantity.lower) && std::isinf(quantity.upper)) return "";
   return fmt::format("  in [{}, {}]", quantity.lower, quantity.upper);
@@ -27,22 +42,18 @@ std::string labelled(const result::Caption& caption) {
 }
 
 std::string quantities_text(std::string_view title, const std::vector<io::OverviewQuantity>& quantities) {
-  std::string text = heading(title, quantities.size());
-  for (const auto& quantity : quantities) {
-    text +=
-        fmt::format("  {} = {}{}{}{}{}\n", quantity.name, quantity.value, in_unit(quantity.caption), bounds(quantity),
-                    labelled(quantity.caption), quantity.remark.empty() ? "" : "  " + quantity.remark);
-  }
-  return text;
+  return heading(title, quantities.size()) + shown_lines(quantities, [](const io::OverviewQuantity& quantity) {
+           return fmt::format("  {} = {}{}{}{}{}\n", quantity.name, quantity.value, in_unit(quantity.caption),
+                              bounds(quantity), labelled(quantity.caption),
+                              quantity.remark.empty() ? "" : "  " + quantity.remark);
+         });
 }
 
 std::string equations_text(const std::vector<io::OverviewEquation>& equations, std::string_view prime) {
-  std::string text;
-  for (const auto& equation : equations) {
+  return shown_lines(equations, [&](const io::OverviewEquation& equation) {
     const std::string unit = equation.caption.unit.empty() ? "" : fmt::format("  [{}]", equation.caption.unit);
-    text += fmt::format("  {}{} = {}{}{}\n", equation.name, prime, equation.text, unit, labelled(equation.caption));
-  }
-  return text;
+    return fmt::format("  {}{} = {}{}{}\n", equation.name, prime, equation.text, unit, labelled(equation.caption));
+  });
 }
 
 std::string named_text(std::string_view title, const std::vector<io::OverviewEquation>& equations) {
@@ -93,9 +104,7 @@ std::string surface_text(const io::OverviewSurface& surface) {
 }
 
 std::string surfaces_text(const ModelOverview& overview) {
-  std::string text = heading("switching functions", overview.surfaces.size());
-  for (const auto& surface : overview.surfaces) text += surface_text(surface);
-  return text;
+  return heading("switching functions", overview.surfaces.size()) + shown_lines(overview.surfaces, surface_text);
 }
 
 std::string cells_text(const ModelOverview& overview) {

@@ -115,20 +115,31 @@ void AffineRowFunctions::fill(const double* p, const double* alpha, AffineRows& 
           std::array<double*, 3>{rows.coefficient.data(), rows.rate.data(), rows.offset.data()});
 }
 
-AffineRowFunction::AffineRowFunction(const SX& function, const ModelSymbols& symbols, int fixed)
-    : origin_(at(symbols.x.numel()), 0.0) {
-  if (!affine_entries(function, symbols, fixed).front()) return;
+AffineRowFunction::AffineRowFunction(const SX& function, const SX& t, UsedSymbols used, int fixed)
+    : states_(std::move(used.x.place)),
+      parameters_(std::move(used.p.place)),
+      alphas_(std::move(used.alpha.place)),
+      origin_(states_.size(), 0.0),
+      p_(parameters_.size()),
+      alpha_(alphas_.size()) {
+  const auto found = std::find(states_.begin(), states_.end(), static_cast<std::size_t>(fixed));
+  if (fixed >= 0 && found != states_.end()) fixed_ = static_cast<int>(found - states_.begin());
+  const ModelSymbols symbols{t, used.x.symbols, used.p.symbols, used.alpha.symbols};
+  if (!affine_entries(function, symbols, fixed_).front()) return;
   values_ = ModelFunction("affine_row", inputs(symbols),
                           {SX::jacobian(function, symbols.x), SX::jacobian(function, symbols.t), function});
 }
 
 void AffineRowFunction::fill(FixedState fixed, const double* p, const double* alpha, AffineRow& row) {
-  row.coefficient.resize(origin_.size());
-  if (fixed.component >= 0) origin_[at(fixed.component)] = fixed.value;
+  row.column = states_;
+  row.coefficient.resize(states_.size());
+  if (fixed_ >= 0) origin_[at(fixed_)] = fixed.value;
+  for (std::size_t k = 0; k < p_.size(); ++k) p_[k] = p[parameters_[k]];
+  for (std::size_t k = 0; k < alpha_.size(); ++k) alpha_[k] = alpha[alphas_[k]];
   const double t = 0.0;
-  values_(std::array<const double*, 4>{&t, origin_.data(), p, alpha},
+  values_(std::array<const double*, 4>{&t, origin_.data(), p_.data(), alpha_.data()},
           std::array<double*, 3>{row.coefficient.data(), &row.rate, &row.offset});
-  if (fixed.component >= 0) row.coefficient[at(fixed.component)] = 0.0;
+  if (fixed_ >= 0) row.coefficient[at(fixed_)] = 0.0;
 }
 
 LinearFieldFunction::LinearFieldFunction(const SX& f, const ModelSymbols& symbols) : start_{0} {

@@ -7,17 +7,13 @@
 #include <casadi/core/sx.hpp>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/evaluation/sparse/used_symbols_internal.hpp"
 #include "saltus/model/model_function.hpp"
 #include "saltus/ode/linear_field.hpp"
 
 namespace saltus::evaluation {
 
 using model::ModelFunction;
-
-/// The symbols of a model and the values of its parameters.
-struct ModelSymbols {
-  casadi::SX t, x, p, alpha;
-};
 
 /// For every entry of `expression` whether it is affine in t and x (`fixed` >= 0: but for this component, a constant),
 /// by the operations it is made of. Sufficient, not necessary: x * x / x is not.
@@ -43,13 +39,15 @@ class AffineRowFunctions {
 class AffineRowFunction {
  public:
   AffineRowFunction() = default;
-  AffineRowFunction(const casadi::SX& function, const ModelSymbols& symbols, int fixed);
+  AffineRowFunction(const casadi::SX& function, const casadi::SX& t, UsedSymbols used, int fixed);
   [[nodiscard]] bool is_affine() const { return !values_.is_null(); }
   void fill(FixedState fixed, const double* p, const double* alpha, AffineRow& row);
 
  private:
-  ModelFunction values_;  ///< null where it is not affine
-  std::vector<double> origin_;
+  ModelFunction values_;  ///< null where it is not affine; of the used symbols
+  std::vector<std::size_t> states_, parameters_, alphas_;
+  int fixed_ = -1;  ///< position among the states
+  std::vector<double> origin_, p_, alpha_;
 };
 
 /// The linear part of a right-hand side, if it is affine.

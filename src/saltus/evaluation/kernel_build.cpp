@@ -9,6 +9,7 @@
 #include "saltus/evaluation/field_split_internal.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 #include "saltus/evaluation/root_limits_internal.hpp"
+#include "saltus/evaluation/sparse/field_pattern_internal.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
@@ -32,6 +33,22 @@ std::vector<std::vector<int>> dependencies_of_rows(const SX& expression, const S
 }
 
 }  // namespace
+
+std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends) {
+  std::vector<std::vector<int>> neighbours(depends.size());
+  for (std::size_t i = 0; i < depends.size(); ++i) {
+    for (std::size_t j = 0; j < depends.size(); ++j) {
+      if (i == j || !depends[i][j]) continue;
+      neighbours[i].push_back(static_cast<int>(j));
+      neighbours[j].push_back(static_cast<int>(i));
+    }
+  }
+  for (auto& list : neighbours) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return neighbours;
+}
 
 ModelKernel::Implementation::Implementation(const model::System& system)
     : t(system.t),
@@ -67,6 +84,7 @@ ModelKernel::Implementation::Implementation(const model::System& system)
   }
   regions = RegionConstants(system, p, parameters);
   cells = CellFunctions(system, p, parameters);
+  places = SymbolPlaces(symbols());
   for (auto& end : cells.rows(system)) rows.push_back(std::move(end));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
   gradients.resize(at(phi.numel()));
@@ -110,6 +128,7 @@ void ModelKernel::Implementation::find_structure() {
   }
   if (cells.size() > 0) on_cells = cells.dependencies(dependencies_of_rows(phi, p));
   free.depends = normal_dependencies(free.f);
+  free.neighbours = neighbours_in(free.depends);
 }
 
 std::vector<std::vector<bool>> ModelKernel::Implementation::normal_dependencies(const SX& f) const {
@@ -123,6 +142,19 @@ std::vector<std::vector<bool>> ModelKernel::Implementation::normal_dependencies(
     for (const int j : inner[at(i)]) depends[at(i)][at(j)] = true;
   }
   return depends;
+}
+
+const ode::JacobianPattern* ModelKernel::jacobian_pattern() const {
+  auto& self = *implementation_;
+  if (self.motion != &self.free || !self.regions.groups().empty()) return nullptr;
+  if (!self.pattern) {
+    const SymbolicLock lock;
+    FieldDependencies dependencies{dependencies_of_rows(self.free.f, self.x),
+                                   dependencies_of_rows(self.free.f, self.alpha),
+                                   dependencies_of_rows(self.phi, self.x), self.free.neighbours};
+    self.pattern = field_pattern(dependencies);
+  }
+  return *self.pattern ? &**self.pattern : nullptr;
 }
 
 void ModelKernel::Implementation::compile_field(Motion& target, const std::string& name) const {

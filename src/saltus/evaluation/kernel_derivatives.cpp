@@ -44,7 +44,11 @@ SX ModelKernel::Implementation::lie_expression(int j, int order) {
   auto& known = motion->lie_expressions;
   if (const auto found = known.find(key); found != known.end()) return found->second;
   const SX previous = lie_expression(j, order - 1);
-  const SX next = SX::mtimes(SX::jacobian(previous, x), motion->f) + SX::jacobian(previous, t);
+  const auto used = places.used_by(previous);
+  std::vector<SX> moved{SX(0, 1)};
+  for (const std::size_t state : used.x.place) moved.push_back(motion->f(static_cast<casadi_int>(state)));
+  SX next = SX::mtimes(SX::jacobian(previous, used.x.symbols), SX::vertcat(moved));
+  if (used.time) next += SX::jacobian(previous, t);
   known[key] = next;
   return next;
 }
@@ -53,29 +57,24 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
                            double* rate) const {
   SALTUS_ASSERT(0 <= function && function < event_functions());
   auto& self = *implementation_;
-  auto& gradient = self.gradients[at(function)];
-  if (gradient.constant.empty() && is_affine(function) && inner(function).empty()) {  // nothing to differentiate
-    AffineRows rows;
-    affine_rows(alpha, rows);
-    gradient.constant.assign(at(self.x.numel()) + 1, 0.0);
+  if (is_affine(function) && inner(function).empty()) {  // nothing to differentiate
+    if (!self.constant_gradients) affine_rows(alpha, self.constant_gradients.emplace());
+    const auto& rows = *self.constant_gradients;
+    std::fill_n(row, self.x.numel(), 0.0);
     for (std::size_t k = rows.start[at(function)]; k < rows.start[at(function) + 1]; ++k) {
-      gradient.constant[rows.column[k]] = rows.coefficient[k];
+      row[rows.column[k]] = rows.coefficient[k];
     }
-    gradient.constant.back() = rows.rate[at(function)];
-  }
-  if (!gradient.constant.empty()) {
-    std::copy(gradient.constant.begin(), gradient.constant.end() - 1, row);
-    *rate = gradient.constant.back();
+    *rate = rows.rate[at(function)];
     return;
   }
-  if (gradient.function.is_null()) {
+  auto& gradient = self.gradients[at(function)];
+  if (gradient.is_null()) {
     const SymbolicLock lock;
     const SX phi = self.phi_row(function);
-    gradient.function = ModelFunction("gradient", {self.t, self.x, self.p, self.alpha},
-                                      {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
+    gradient = ModelFunction("gradient", {self.t, self.x, self.p, self.alpha},
+                             {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
   }
-  gradient.function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
-                    std::array<double*, 2>{row, rate});
+  gradient(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
 }
 
 double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {
@@ -116,7 +115,8 @@ bool ModelKernel::lie_row(int function, FixedState fixed, const double* alpha, A
   const auto [entry, is_new] = self.motion->lie_rows.try_emplace({function, fixed.component});
   if (is_new) {
     const SymbolicLock lock;
-    entry->second = AffineRowFunction(self.lie_expression(function, 1), self.symbols(), fixed.component);
+    const SX motion_of_psi = self.lie_expression(function, 1);
+    entry->second = AffineRowFunction(motion_of_psi, self.t, self.places.used_by(motion_of_psi), fixed.component);
   }
   if (!entry->second.is_affine()) return false;
   entry->second.fill(fixed, self.parameters.data(), alpha, row);
@@ -146,6 +146,9 @@ bool ModelKernel::has_root(int surface) const { return implementation_->rooted[a
 bool ModelKernel::root_is_continued(int surface) const { return implementation_->continued_roots[at(surface)]; }
 bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[at(function)]; }
 const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[at(function)]; }
+const std::vector<int>& ModelKernel::neighbours(int surface) const {
+  return implementation_->motion->neighbours[at(surface)];
+}
 bool ModelKernel::depends(int surface, int alpha) const {
   return implementation_->motion->depends[at(surface)][at(alpha)];
 }

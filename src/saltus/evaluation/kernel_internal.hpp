@@ -16,17 +16,12 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/evaluation/native_functions.hpp"
 #include "saltus/evaluation/region_constants_internal.hpp"
+#include "saltus/evaluation/sparse/used_symbols_internal.hpp"
 #include "saltus/model/model_function.hpp"
 
 namespace saltus::evaluation {
 
 using model::ModelFunction;
-
-/// d phi_j / d (x, t). Of a function that is affine, and does not hold selections, it is a constant: evaluated once.
-struct Gradient {
-  ModelFunction function;
-  std::vector<double> constant;  ///< row and rate, once known
-};
 
 /// xdot = f, free or with guards held, and what follows from it.
 struct Motion {
@@ -37,6 +32,7 @@ struct Motion {
   std::optional<NativeSteps> steps;  ///< likewise, where the field is small
   ModelFunction pressure;            ///< of the holds; null without
   std::vector<std::vector<bool>> depends;
+  std::vector<std::vector<int>> neighbours;  ///< of every switching function, those that influence it or the reverse
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
   std::map<std::pair<int, int>, ModelFunction> lie_gradients;
   std::map<std::pair<int, int>, casadi::SX> lie_expressions;
@@ -44,6 +40,8 @@ struct Motion {
   std::optional<LinearFieldFunction> linear;                  ///< once it was asked for
   std::optional<ode::LinearField> linear_always;              ///< if it is the same in all modes
 };
+
+[[nodiscard]] std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends);
 
 struct ModelKernel::Implementation {
   casadi::SX t, x, p, alpha;  ///< p: parameters, then constants, upper and lower ends of cells
@@ -65,7 +63,12 @@ struct ModelKernel::Implementation {
   AffineRowFunctions affine_rows;
   FieldConstants constants;  ///< work space of field()
   std::vector<std::vector<int>> inner;
-  std::vector<Gradient> gradients;              ///< one per event function, compiled when first asked for
+  std::vector<ModelFunction> gradients;  ///< d phi_j / d (x, t), compiled when first asked for
+  /// Of functions that are affine and do not hold selections they are constants: these rows, once known.
+  std::optional<AffineRows> constant_gradients;
+  SymbolPlaces places;
+  /// Of the free motion, once it was asked for.
+  std::optional<std::optional<ode::JacobianPattern>> pattern;
   std::vector<casadi::SX> rootless;             ///< event functions with limited roots
   std::vector<std::vector<bool>> roots_inside;  ///< of these, by switching function
   std::map<int, int> rootless_numbers;          ///< of these, by event function

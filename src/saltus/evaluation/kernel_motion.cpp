@@ -52,6 +52,7 @@ Expected<Motion> ModelKernel::Implementation::compile_held(const std::vector<int
   compile_field(result, "held_field");
   result.pressure = ModelFunction("hold_pressure", {t, x, p, alpha}, {expressions->pressure});
   result.depends = normal_dependencies(result.f);
+  result.neighbours = neighbours_in(result.depends);
   return result;
 }
 
@@ -80,7 +81,7 @@ bool ModelKernel::set_parameters(const std::vector<double>& values) {
   if (self.by_values || !self.rootless.empty() || !self.regions.groups().empty()) return false;
   std::copy(values.begin(), values.end(), self.parameters.begin());
   for (int cell = 0; cell < self.cells.size(); ++cell) self.cells.move(cell, 0, self.parameters);
-  for (auto& gradient : self.gradients) gradient.constant.clear();
+  self.constant_gradients.reset();
   self.free.linear_always.reset();
   for (auto& [functions, motion] : self.held) motion.linear_always.reset();
   self.field_use.motion = self.motion = &self.free;

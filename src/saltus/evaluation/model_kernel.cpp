@@ -28,6 +28,7 @@ int ModelKernel::event_functions() const { return static_cast<int>(implementatio
 int ModelKernel::outputs() const { return static_cast<int>(implementation_->outputs.numel()); }
 int ModelKernel::controls() const { return static_cast<int>(implementation_->input.numel()); }
 long ModelKernel::field_evaluations() const { return implementation_->field_use.evaluations; }
+const void* ModelKernel::motion() const { return implementation_->motion; }
 
 void ModelKernel::functions(double t, const double* x, const double* alpha, double* values) const {
   auto& self = *implementation_;
@@ -95,10 +96,10 @@ void ModelKernel::contacts(double t, const double* x, const double* alpha, Conta
   values.acceleration.resize(2 * m);
   values.friction.resize(m);
   values.restitution.resize(m);
-  self.contact_function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
-                        std::array<double*, 7>{values.gap.data(), values.velocity.data(), values.rows.data(),
-                                               values.responses.data(), values.acceleration.data(),
-                                               values.friction.data(), values.restitution.data()});
+  self.contact_function(
+      std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+      std::array<double*, 7>{values.gap.data(), values.velocity.data(), values.rows.data(), values.responses.data(),
+                             values.acceleration.data(), values.friction.data(), values.restitution.data()});
 }
 
 const std::vector<RegionRange>& ModelKernel::region_groups() const { return implementation_->regions.groups(); }
@@ -107,8 +108,7 @@ int ModelKernel::reference(std::size_t group) const { return implementation_->re
 void ModelKernel::set_reference(std::size_t group, int function) const {
   auto& self = *implementation_;
   if (!self.regions.set_reference(group, function, self.parameters)) return;
-  const auto& range = self.regions.groups()[group];
-  for (int j = range.first; j < range.first + range.count; ++j) self.gradients[at(j)].constant.clear();
+  self.constant_gradients.reset();
 }
 
 int ModelKernel::cells() const { return implementation_->cells.size(); }
@@ -119,9 +119,7 @@ long ModelKernel::cell(int cell) const { return implementation_->cells.index(cel
 void ModelKernel::set_cell(int cell, long target) const {
   auto& self = *implementation_;
   self.cells.move(cell, target, self.parameters);
-  for (std::size_t j = 0; j < self.on_cells.size(); ++j) {
-    if (self.on_cells[j][at(cell)]) self.gradients[j].constant.clear();
-  }
+  self.constant_gradients.reset();
 }
 
 double ModelKernel::cell_argument(int cell, double t, const double* x, const double* alpha) const {

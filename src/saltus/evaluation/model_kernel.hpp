@@ -9,6 +9,7 @@
 #include "saltus/evaluation/native_steps.hpp"
 #include "saltus/model/cells.hpp"
 #include "saltus/ode/linear_field.hpp"
+#include "saltus/ode/sparse/jacobian_pattern.hpp"
 
 namespace saltus::model {
 struct System;
@@ -39,9 +40,10 @@ struct AffineRows {
   std::vector<double> rate, offset;
 };
 
-/// A row that has been computed for one function: n_x coefficients, those of a component held fixed in the offset.
+/// A row that has been computed for one function; a component held fixed is in the offset.
 struct AffineRow {
-  std::vector<double> coefficient;
+  std::vector<std::size_t> column;  ///< ascending
+  std::vector<double> coefficient;  ///< of these states, those of others are 0
   double rate = 0.0;
   double offset = 0.0;
 };
@@ -130,6 +132,9 @@ class ModelKernel {
   /// selections are). Where the selections or cells change it, it is put into `own`; otherwise it stays as it is as
   /// long as the kernel and the motion. Cost: the first call makes an expression.
   [[nodiscard]] const ode::LinearField* linear_field(const double* alpha, ode::LinearField& own) const;
+  /// The pattern of the Jacobian of f, selections of sliding surfaces being functions of x; null where a dense matrix
+  /// is as good, with guards held and with regions by `indicator`. Stays where it is. Cost: the first call finds it.
+  [[nodiscard]] const ode::JacobianPattern* jacobian_pattern() const;
   /// Values of all event functions.
   void functions(double t, const double* x, const double* alpha, double* values) const;
   /// Magnitudes from which rounding and tolerances of event functions follow, each over all event functions:
@@ -192,6 +197,8 @@ class ModelKernel {
   [[nodiscard]] const std::vector<int>& inner(int function) const;
   /// Whether the normal component grad psi_i . f + d psi_i/dt depends on alpha_j (structurally).
   [[nodiscard]] bool depends(int surface, int alpha) const;
+  /// Surfaces other than psi_i of which one depends(.) on the other, or psi_i on it; ascending.
+  [[nodiscard]] const std::vector<int>& neighbours(int surface) const;
 
   /// Whether f has a root of psi_j, or of what is 0 with it, so that its derivative is infinite beside the surface. On
   /// the surface, to the rounding of psi_j, the root is 0 and so are its derivatives: field() and lie_derivative() are
@@ -220,6 +227,8 @@ class ModelKernel {
   void set_reference(std::size_t group, int function) const;
 
   [[nodiscard]] long field_evaluations() const;
+  /// Which motion is in force, free or held: the same address, the same motion.
+  [[nodiscard]] const void* motion() const;
 
  private:
   void prepared_field_anyhow(double t, const double* x, const FieldConstants& constants, double* xdot) const;

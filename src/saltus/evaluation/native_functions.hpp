@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,8 +15,11 @@
 
 namespace saltus::evaluation {
 
+class NativeJob;
+
 /// Interprets functions and counts their operations; from the cache, or compiled, they go on as native code once they
-/// have done so much work that it pays. Results do not depend on the moment: they are bit-identical.
+/// have done so much work that it pays. The compiler works beside them. Results do not depend on the moment: they are
+/// bit-identical.
 class NativeFunctions {
  public:
   /// `functions` have names of their own and outlive this without moving; `appended` is C source that may call them.
@@ -50,6 +54,7 @@ class NativeFunctions {
   double compile_after_ = 0.0;
   std::string source_;  ///< once it was needed
   std::optional<NativeLibrary> library_;
+  std::shared_ptr<NativeJob> job_;  ///< while the compiler works; never shared
 };
 
 }  // namespace saltus::evaluation

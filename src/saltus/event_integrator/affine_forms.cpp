@@ -82,7 +82,7 @@ void AffineForms::set(std::size_t i, const evaluation::AffineRow& row) {
   Form form{terms_.size(), 0, row.rate, row.offset, 0, true};
   for (std::size_t k = 0; k < row.coefficient.size(); ++k) {
     if (!std::isfinite(row.coefficient[k])) return;
-    if (row.coefficient[k] != 0.0) terms_.push_back({k, row.coefficient[k]});
+    if (row.coefficient[k] != 0.0) terms_.push_back({row.column[k], row.coefficient[k]});
   }
   form.count = terms_.size() - form.first;
   forms_[i] = form;
@@ -101,7 +101,7 @@ bool AffineForms::replace(std::size_t i, const evaluation::AffineRow& row) {
   form = other;
   std::size_t place = form.first;
   for (std::size_t k = 0; k < row.coefficient.size(); ++k) {
-    if (row.coefficient[k] != 0.0) terms_[place++] = {k, row.coefficient[k]};
+    if (row.coefficient[k] != 0.0) terms_[place++] = {row.column[k], row.coefficient[k]};
   }
   return true;
 }

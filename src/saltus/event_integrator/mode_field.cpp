@@ -8,23 +8,9 @@
 #include "saltus/switching/surface_decision.hpp"
 
 namespace saltus::event_integrator {
-namespace {
-
-/// The only column of a row that is not 0, or -1.
-int only_column(const Eigen::MatrixXd& rows, Eigen::Index row) {
-  int column = -1;
-  for (Eigen::Index i = 0; i < rows.cols(); ++i) {
-    if (rows(row, i) == 0.0) continue;
-    if (column >= 0) return -1;
-    column = static_cast<int>(i);
-  }
-  return column;
-}
-
-}  // namespace
 
 ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha)
-    : kernel_(kernel), affine_in_alpha_(affine_in_alpha) {
+    : kernel_(kernel), affine_in_alpha_(affine_in_alpha), several_exits_(kernel) {
   const auto n = at(kernel.states());
   const auto n_psi = at(kernel.switching_functions());
   for (auto& f : f_) f.resize(n);
@@ -32,19 +18,18 @@ ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha
   trial_.resize(n_psi);
   alpha_.resize(n_psi);
   values_.resize(at(kernel.event_functions()));
+  known_rows_.resize(n_psi);
+  row_of_.assign(n_psi, -1);
 }
 
 void ModeField::gradients(double t, const double* x) {
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
     if (constant_row_[row]) continue;
-    const int j = sliding_[row];
-    // With the mode's selections, not the last ones: the field must not depend on what was evaluated before.
-    kernel_.gradient(j, t, x, start_alpha_.data(), f_[0].data(), &rates_[static_cast<Eigen::Index>(row)]);
-    for (std::size_t i = 0; i < f_[0].size(); ++i) {
-      rows_(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(i)) = f_[0][i];
+    if (!take_known_row(row)) {
+      // With the mode's selections, not the last ones: the field must not depend on what was evaluated before.
+      kernel_.gradient(sliding_[row], t, x, start_alpha_.data(), f_[0].data(), &rates_[static_cast<Eigen::Index>(row)]);
+      take_row(row);
     }
-    coordinate_[row] = only_column(rows_, static_cast<Eigen::Index>(row));
-    constant_row_[row] = kernel_.is_affine(j) && kernel_.inner(j).empty();
     if (sliding_.size() != 1) continue;
     row_square_ = rows_.squaredNorm();
     refer_to_constants();
@@ -59,6 +44,9 @@ ode::Attempt ModeField::attempt(ode::Stepper& stepper, double t, const double* x
   if (stepper.wants_linear_field()) {
     stages.linear = linear_field();
     if (stages.linear != nullptr) return stepper.attempt(f, t, x, slope, h, tolerances, stages);
+  }
+  if (stepper.wants_pattern() && solve_ != SlidingSolve::higher_order) {
+    return stepper.attempt(f, t, x, slope, h, tolerances, {.functions = {}, .pattern = kernel_.jacobian_pattern()});
   }
   if (stepper.stages_function(stages.functions) == nullptr) return stepper.attempt(f, t, x, slope, h, tolerances);
   const long before = stepper.evaluations();
@@ -84,26 +72,27 @@ const ode::LinearField* ModeField::linear_field() {
 
 double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f) const {
   const auto r = static_cast<Eigen::Index>(row);
-  if (const int only = coordinate_[row]; only >= 0) return rows_(r, only) * f[at(only)] + rates_[r];
-  double sum = rates_[r];
-  for (std::size_t i = 0; i < f.size(); ++i) sum += rows_(r, static_cast<Eigen::Index>(i)) * f[i];
-  return sum;
+  if (const int only = coordinate_[row]; only >= 0) return normal_[row].value.front() * f[at(only)] + rates_[r];
+  return normal_[row].dot(f, rates_[r]);
 }
 
 const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region, const double* x) {
   if (solve_ != SlidingSolve::decoupled || !constant_row_[row]) return nullptr;
-  if (sliding_.size() > 1) {
+  const double side = region == Region::below ? 0.0 : 1.0;
+  const bool several = sliding_.size() > 1;
+  if (several && !keeps_rows()) {
     trial_ = start_alpha_;
     for (const int j : sliding_) trial_[at(j)] = 0.0;
-    trial_[at(sliding_[row])] = region == Region::below ? 0.0 : 1.0;
+    trial_[at(sliding_[row])] = side;
   }
   const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : trial_;
   evaluation::FixedState fixed;
   if (const int only = coordinate_[row]; only >= 0 && rates_[static_cast<Eigen::Index>(row)] == 0.0) {
     fixed = {only, x[only]};
   }
+  if (several && keeps_rows()) return several_exits_.of(sliding_[row], side, fixed, start_alpha_);
   // What cells and references change is not in the key.
-  if (sliding_.size() > 1 || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
+  if (several || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
     return kernel_.lie_row(sliding_[row], fixed, alpha.data(), exit_form_) ? &exit_form_ : nullptr;
   }
   const void* motion = constants_[0].use->motion;
@@ -127,8 +116,10 @@ double ModeField::normal_terms(std::size_t row) const {
   if (solve_ == SlidingSolve::coupled || solve_ == SlidingSolve::higher_order) return condition_[row];
   const auto r = static_cast<Eigen::Index>(row);
   double sum = std::abs(rates_[r]);
-  for (std::size_t i = 0; i < f_[0].size(); ++i) {
-    sum += std::abs(rows_(r, static_cast<Eigen::Index>(i))) * std::max(std::abs(f_[0][i]), std::abs(f_[1][i]));
+  const auto& [column, value] = normal_[row];
+  for (std::size_t k = 0; k < column.size(); ++k) {
+    const std::size_t i = column[k];
+    sum += std::abs(value[k]) * std::max(std::abs(f_[0][i]), std::abs(f_[1][i]));
   }
   return sum;
 }

@@ -15,6 +15,8 @@
 #include "saltus/event_integrator/linear_motion.hpp"
 #include "saltus/event_integrator/mode_state.hpp"
 #include "saltus/event_integrator/region_ties.hpp"
+#include "saltus/event_integrator/sliding/exit_rows.hpp"
+#include "saltus/event_integrator/sliding/normal_rows.hpp"
 #include "saltus/ode/stepper.hpp"
 #include "saltus/switching/bilinear_root.hpp"
 #include "saltus/switching/region_weights.hpp"
@@ -130,6 +132,9 @@ class ModeField {
   [[nodiscard]] const ode::LinearField* linear_field();
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
   void resize_rows();
+  [[nodiscard]] bool keeps_rows() const;
+  [[nodiscard]] bool take_known_row(std::size_t row);
+  void take_row(std::size_t row);
   void find_rooted_rows();
   void refer_to_constants();
   void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]; not for one affine surface
@@ -139,6 +144,7 @@ class ModeField {
   void slide(double t, const double* x, double* xdot);
   void slide_on_one(double t, const double* x, double* xdot);
   void find_groups();
+  void evaluate_alone(double t, const double* x);
   void evaluate_groups(double t, const double* x);
   void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
@@ -198,6 +204,7 @@ class ModeField {
     evaluation::AffineRow form;
   };
   std::array<ExitRow, 8> exit_rows_;  ///< the last ones
+  ExitRows several_exits_;            ///< the same where several surfaces are slid on
   std::size_t next_exit_row_ = 0;
   evaluation::AffineRow exit_form_;                 ///< of a row that is not kept
   int single_ = -1;                                 ///< the surface that rows and groups are of, if it is one
@@ -207,7 +214,17 @@ class ModeField {
   std::vector<int> coordinate_;                     ///< the only nonzero column of a row, or -1
   evaluation::SlidingConstants sliding_constants_;  ///< of one surface with a constant gradient
   LinearMotion linear_motion_;
-  Eigen::MatrixXd rows_;              ///< J, m x n_x
+  NormalRows normal_;               ///< J
+  std::vector<double> correction_;  ///< n_x
+  /// Gradients that no mode changes, by surface, with d psi/dt.
+  struct KnownRow {
+    bool known = false;
+    SparseRow row = {};
+    double rate = 0.0;
+  };
+  std::vector<KnownRow> known_rows_;
+  std::vector<int> row_of_;           ///< by surface while groups are found, -1 = it is not slid on
+  Eigen::MatrixXd rows_;              ///< J, m x n_x; of one sliding surface, and where there are regions
   double row_square_ = 0.0;           ///< |J|^2 of one sliding surface
   Eigen::VectorXd rates_, residual_;  ///< d psi_I/dt, m
   Eigen::MatrixXd normal_matrix_;     ///< J J^T

@@ -57,10 +57,11 @@ void ModeField::enter(const ModeState& state) {
 
 void ModeField::resize_rows() {
   const auto m = static_cast<Eigen::Index>(sliding_.size());
-  rows_.resize(m, kernel_.states());
+  normal_.resize(sliding_.size(), at(kernel_.states()));
+  const bool dense = m == 1 || !kernel_.region_groups().empty();
+  rows_.resize(dense ? m : 0, kernel_.states());
   rates_.resize(m);
   residual_.resize(m);
-  normal_matrix_.resize(m, m);
   exits_.assign(sliding_.size(), {});
   coordinate_.assign(sliding_.size(), -1);
   constant_row_.assign(sliding_.size(), false);

@@ -40,23 +40,30 @@ void ModeField::find_groups() {
   speed_.assign(m, not_a_number);
   kind_.assign(m, std::nullopt);
   std::vector<bool> placed(m, false);
+  for (std::size_t row = 0; row < m; ++row) row_of_[at(sliding_[row])] = static_cast<int>(row);
   for (std::size_t first = 0; first < m; ++first) {
     if (placed[first]) continue;
     std::vector<std::size_t> group{first};
     placed[first] = true;
+    const auto place = [&](std::size_t other) {
+      if (placed[other]) return;
+      group.push_back(other);
+      placed[other] = true;
+    };
     for (std::size_t k = 0; k < group.size(); ++k) {
-      for (std::size_t other = 0; other < m; ++other) {
-        const int i = sliding_[group[k]];
-        const int j = sliding_[other];
-        if (placed[other] || !(kernel_.depends(i, j) || kernel_.depends(j, i) || same_group(kernel_, i, j))) continue;
-        group.push_back(other);
-        placed[other] = true;
+      const int i = sliding_[group[k]];
+      for (const int j : kernel_.neighbours(i)) {
+        if (row_of_[at(j)] >= 0) place(at(row_of_[at(j)]));
+      }
+      for (std::size_t other = 0; !kernel_.region_groups().empty() && other < m; ++other) {
+        if (same_group(kernel_, i, sliding_[other])) place(other);
       }
     }
     std::sort(group.begin(), group.end());
     group_size_[first] = group.size();
     groups_.push_back(std::move(group));
   }
+  for (const int j : sliding_) row_of_[at(j)] = -1;
   solve_ = !affine_in_alpha_     ? SlidingSolve::nonaffine
            : groups_.size() == m ? SlidingSolve::decoupled
                                  : SlidingSolve::coupled;
@@ -70,6 +77,7 @@ void ModeField::find_groups() {
 /// Whether a row is in a group with several regions of one group by `indicator`: their weights follow from linear
 /// equations, and their exits are the zeros of these.
 bool ModeField::several_regions(std::size_t row) const {
+  if (regions_.empty()) return false;
   const auto group = std::find_if(groups_.begin(), groups_.end(),
                                   [&](const auto& rows) { return std::binary_search(rows.begin(), rows.end(), row); });
   return std::any_of(regions_.begin(), regions_.end(), [&](const SlidingRegions& regions) {
@@ -178,11 +186,33 @@ bool ModeField::has_stability(std::size_t row) const {
   return solve_ == SlidingSolve::coupled && group_size_[row] > 1 && !several_regions(row);
 }
 
+/// Surfaces that no other sliding one influences: all at once.
+void ModeField::evaluate_alone(double t, const double* x) {
+  const auto alone = [&](const auto& group) { return group.size() == 1 && tie_of(group.front()) == nullptr; };
+  bool any = false;
+  for (const auto& group : groups_) {
+    if (!alone(group)) continue;
+    trial_[at(sliding_[group.front()])] = 1.0;
+    any = true;
+  }
+  if (!any) return;
+  kernel_.field(t, x, trial_.data(), f_[1].data());
+  for (const auto& group : groups_) {
+    if (!alone(group)) continue;
+    const std::size_t row = group.front();
+    const auto j = at(sliding_[row]);
+    trial_[j] = 0.0;
+    exits_[row].above = normal_velocity(row, f_[1]);
+    alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
+  }
+}
+
 void ModeField::evaluate_groups(double t, const double* x) {
   trial_ = start_alpha_;
   for (const int j : sliding_) trial_[at(j)] = 0.0;
   kernel_.field(t, x, trial_.data(), f_[0].data());
   for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {normal_velocity(row, f_[0]), 0.0, 0.0, 0.0};
+  evaluate_alone(t, x);
   for (const auto& rows : groups_) {
     const auto tie = std::find_if(regions_.begin(), regions_.end(), [&](const auto& regions) {
       return regions.tie && regions.rows.front() == rows.front();
@@ -195,17 +225,7 @@ void ModeField::evaluate_groups(double t, const double* x) {
       evaluate_pair(t, x, rows);
       continue;
     }
-    if (rows.size() > 1) {
-      evaluate_many(t, x, rows);
-      continue;
-    }
-    const std::size_t row = rows.front();
-    const auto j = at(sliding_[row]);
-    trial_[j] = 1.0;
-    kernel_.field(t, x, trial_.data(), f_[1].data());
-    trial_[j] = 0.0;
-    exits_[row].above = normal_velocity(row, f_[1]);
-    alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
+    if (rows.size() > 1) evaluate_many(t, x, rows);
   }
   weigh_references();
   kernel_.field(t, x, alpha_.data(), f_[0].data());

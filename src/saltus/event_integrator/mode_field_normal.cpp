@@ -13,11 +13,32 @@ bool ModeField::solve_normal_equations() {
     return row_square_ > 0.0;
   }
   if (!independent_.empty()) return solve_independent_equations();
-  normal_matrix_.noalias() = rows_ * rows_.transpose();
-  cholesky_.compute(normal_matrix_);
-  if (cholesky_.info() != Eigen::Success) return false;
-  cholesky_.solveInPlace(residual_);
+  return normal_.solve(residual_);
+}
+
+/// Whether the rows of the sliding surfaces are kept from mode to mode. Cells and references change them.
+bool ModeField::keeps_rows() const { return kernel_.cells() == 0 && kernel_.region_groups().empty(); }
+
+/// A gradient that was the same in all modes so far.
+bool ModeField::take_known_row(std::size_t row) {
+  const auto& known = known_rows_[at(sliding_[row])];
+  if (!known.known || sliding_.size() == 1) return false;
+  normal_.set(row, known.row);
+  rates_[static_cast<Eigen::Index>(row)] = known.rate;
+  coordinate_[row] = known.row.only();
+  constant_row_[row] = true;
   return true;
+}
+
+/// The gradient in f_[0].
+void ModeField::take_row(std::size_t row) {
+  const int j = sliding_[row];
+  const auto r = static_cast<Eigen::Index>(row);
+  normal_.set(row, f_[0]);
+  if (rows_.rows() > 0) rows_.row(r) = Eigen::Map<const Eigen::RowVectorXd>(f_[0].data(), rows_.cols());
+  coordinate_[row] = normal_[row].only();
+  constant_row_[row] = kernel_.is_affine(j) && kernel_.inner(j).empty();
+  if (constant_row_[row] && keeps_rows()) known_rows_[at(j)] = {true, normal_[row], rates_[r]};
 }
 
 /// Rows that depend on others follow them.
@@ -59,17 +80,12 @@ void ModeField::remove_normal_part(double* xdot) {
     residual_[static_cast<Eigen::Index>(row)] = normal_velocity(row, f_[0]);
   }
   const bool independent = solve_normal_equations();
-  for (std::size_t i = 0; i < f_[0].size(); ++i) {
-    double correction = 0.0;
-    for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
-      correction += rows_(row, static_cast<Eigen::Index>(i)) * residual_[row];
-    }
-    xdot[i] = independent ? f_[0][i] - correction : not_a_number;
-  }
+  normal_.transposed_times(residual_, correction_);
+  for (std::size_t i = 0; i < f_[0].size(); ++i) xdot[i] = independent ? f_[0][i] - correction_[i] : not_a_number;
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
     const auto r = static_cast<Eigen::Index>(row);
     if (const int only = coordinate_[row]; only >= 0 && independent && std::isfinite(xdot[only])) {
-      xdot[only] = rates_[r] == 0.0 ? 0.0 : -rates_[r] / rows_(r, only);
+      xdot[only] = rates_[r] == 0.0 ? 0.0 : -rates_[r] / normal_[row].value.front();
     }
   }
 }
@@ -91,12 +107,9 @@ bool ModeField::project(double t, double* x) {
     gradients(t, x);
     if (!solve_normal_equations()) return changed;
     bool moved = false;
+    normal_.transposed_times(residual_, correction_);
     for (std::size_t i = 0; i < f_[0].size(); ++i) {
-      double correction = 0.0;
-      for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
-        correction += rows_(row, static_cast<Eigen::Index>(i)) * residual_[row];
-      }
-      const double next = x[i] - correction;
+      const double next = x[i] - correction_[i];
       moved = moved || next != x[i];
       x[i] = next;
     }

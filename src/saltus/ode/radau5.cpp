@@ -35,11 +35,7 @@ Radau5::Radau5(int n)
     : n_(n),
       start_(n),
       previous_(static_cast<std::size_t>(3 * n)),
-      jacobian_(n, n),
-      real_matrix_(n, n),
-      complex_matrix_(n, n),
-      real_(n),
-      complex_(n),
+      systems_(n),
       z_(n, 3),
       w_(n, 3),
       slopes_(n, 3),
@@ -57,6 +53,7 @@ void Radau5::restart() {
 
 Attempt Radau5::attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) {
   evaluations_ = &evaluations;
+  if (systems_.use(trial.pattern)) jacobian_known_ = factors_known_ = false;
   begin(trial);
   h_ = trial.h;
   converged_ = solve(trial) == Outcome::converged;
@@ -90,13 +87,13 @@ void Radau5::begin(const RadauTrial& trial) {
 
 Radau5::Outcome Radau5::solve(const RadauTrial& trial) {
   if (!jacobian_known_ && !differentiate(trial)) return Outcome::undefined;
-  factorize(trial.h);
+  if (!factorize(trial.h)) return Outcome::undefined;
   start_values(trial.h);
   Outcome outcome = iterate(trial);
   if (outcome != Outcome::converged && (has_previous_ || !jacobian_here_)) {
     // What came from earlier steps did not help: once more without it.
     if (!jacobian_here_ && !differentiate(trial)) return Outcome::undefined;
-    factorize(trial.h);
+    if (!factorize(trial.h)) return Outcome::undefined;
     z_.setZero();
     w_.setZero();
     outcome = iterate(trial);
@@ -134,16 +131,11 @@ void Radau5::transform_start() {
   }
 }
 
-void Radau5::factorize(double h) {
-  if (factors_known_ && std::abs(h - factors_h_) <= same_length * std::abs(h)) return;
-  real_matrix_ = -jacobian_;
-  real_matrix_.diagonal().array() += Tableau::gamma / h;
-  complex_matrix_ = -jacobian_.cast<std::complex<double>>();
-  complex_matrix_.diagonal().array() += std::complex<double>(Tableau::alpha, Tableau::beta) / h;
-  real_.compute(real_matrix_);
-  complex_.compute(complex_matrix_);
-  factors_known_ = true;
+bool Radau5::factorize(double h) {
+  if (factors_known_ && std::abs(h - factors_h_) <= same_length * std::abs(h)) return true;
+  factors_known_ = systems_.factorize({Tableau::gamma / h, std::complex<double>(Tableau::alpha, Tableau::beta) / h});
   factors_h_ = h;
+  return factors_known_;
 }
 
 /// Until the next correction would be a rounding, or corrections are rounding and no longer fall.
@@ -192,8 +184,8 @@ double Radau5::correct(const RadauTrial& trial) {
     complex_right_[i] = std::complex<double>(mixed(1) - (pair.real() * w_(i, 1) - pair.imag() * w_(i, 2)) / h,
                                              mixed(2) - (pair.imag() * w_(i, 1) + pair.real() * w_(i, 2)) / h);
   }
-  solution_ = real_.solve(right_);
-  complex_solution_ = complex_.solve(complex_right_);
+  systems_.solve(right_, solution_);
+  systems_.solve(complex_right_, complex_solution_);
   const auto& t = Tableau::t;
   const double floor = natural_size(trial.tolerances);
   double largest = 0.0;
@@ -218,29 +210,47 @@ double Radau5::correct(const RadauTrial& trial) {
 /// Forward differences, each into the direction in which the solution goes: a domain that ends at the start is not
 /// left.
 bool Radau5::differentiate(const RadauTrial& trial) {
-  const auto& tolerances = trial.tolerances;
-  const double natural = half_digits * natural_size(tolerances);
-  const double floor = tolerances.rtol > 0.0 ? std::min(tolerances.atol, natural) : tolerances.atol;
-  const double largest = start_.cwiseAbs().maxCoeff();
-  for (Eigen::Index j = 0; j < n_; ++j) {
-    const double reach = trial.h * trial.slope[j];
-    double increment = std::max(half_digits * std::max(std::abs(start_[j]), std::abs(reach)), floor);
-    if (!(increment >= smallest_normal)) increment = half_digits * (largest > 0.0 ? largest : 1.0);
-    increment = std::copysign(increment, reach);
-    if (!difference(trial, j, increment) && !difference(trial, j, -increment)) return false;
+  largest_ = start_.cwiseAbs().maxCoeff();
+  const auto either_way = [&](const std::vector<std::size_t>& columns) {
+    return difference(trial, columns, +1.0) || difference(trial, columns, -1.0);
+  };
+  for (const auto& columns : systems_.groups()) {
+    if (!either_way(columns)) return false;
+  }
+  for (Eigen::Index j = 0; !systems_.is_sparse() && j < n_; ++j) {
+    one_column_.assign(1, static_cast<std::size_t>(j));
+    if (!either_way(one_column_)) return false;
   }
   jacobian_known_ = jacobian_here_ = true;
   factors_known_ = false;
   return true;
 }
 
-bool Radau5::difference(const RadauTrial& trial, Eigen::Index column, double increment) {
+double Radau5::increment(const RadauTrial& trial, Eigen::Index column, double largest) const {
+  const auto& tolerances = trial.tolerances;
+  const double natural = half_digits * natural_size(tolerances);
+  const double floor = tolerances.rtol > 0.0 ? std::min(tolerances.atol, natural) : tolerances.atol;
+  const double reach = trial.h * trial.slope[column];
+  double increment = std::max(half_digits * std::max(std::abs(start_[column]), std::abs(reach)), floor);
+  if (!(increment >= smallest_normal)) increment = half_digits * (largest > 0.0 ? largest : 1.0);
+  return std::copysign(increment, reach);
+}
+
+/// Columns that have no row in common, all at once.
+bool Radau5::difference(const RadauTrial& trial, const std::vector<std::size_t>& columns, double direction) {
   argument_ = start_;
-  argument_[column] += increment;
-  const double taken = argument_[column] - start_[column];
+  for (const std::size_t column : columns) {
+    const auto j = static_cast<Eigen::Index>(column);
+    argument_[j] += direction * increment(trial, j, largest_);
+  }
   if (!evaluate(trial, trial.t, argument_, difference_slope_.data())) return false;
-  jacobian_.col(column) = (difference_slope_ - Eigen::Map<const Vector>(trial.slope, n_)) / taken;
-  return all_finite(jacobian_.col(column).data(), static_cast<std::size_t>(n_));
+  difference_slope_ -= Eigen::Map<const Vector>(trial.slope, n_);
+  bool finite = true;
+  for (const std::size_t column : columns) {
+    const auto j = static_cast<Eigen::Index>(column);
+    finite = systems_.set_column(j, difference_slope_, argument_[j] - start_[j]) && finite;
+  }
+  return finite;
 }
 
 /// The estimate (IV.8.19), largest component in units of its scale. Not filtered once more (IV.8.20) where it asks for
@@ -250,7 +260,7 @@ double Radau5::estimate(const RadauTrial& trial, const double* x_new) {
   for (Eigen::Index i = 0; i < n_; ++i) {
     right_[i] = trial.slope[i] + (e[0] * z_(i, 0) + e[1] * z_(i, 1) + e[2] * z_(i, 2)) / trial.h;
   }
-  solution_ = real_.solve(right_);
+  systems_.solve(right_, solution_);
   double largest = 0.0;
   for (Eigen::Index i = 0; i < n_; ++i) {
     const double ratio = std::abs(solution_[i]) / error_scale(trial.tolerances, trial.x[i], x_new[i]);

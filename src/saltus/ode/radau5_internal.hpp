@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
+#include "saltus/ode/sparse/radau_systems_internal.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::ode {
@@ -19,6 +19,7 @@ struct RadauTrial {
   const double* x;
   const double* slope;
   Tolerances tolerances;
+  const JacobianPattern* pattern;  ///< null: dense
 };
 
 /// Simplified Newton iteration for the increments z_j = x(t + c_j h) - x(t) of the stages, in the variables that split
@@ -27,7 +28,7 @@ struct RadauTrial {
 /// The iteration ends at rounding level, not at a share of the tolerance: steps of different lengths from one start
 /// then end on one smooth curve, on which events are located. The Jacobian (forward differences) belongs to the start
 /// of this or an earlier step; it is kept over steps while the iteration converges fast, and for all lengths of a
-/// retaken step.
+/// retaken step. Where its pattern is known, columns without a common row are differenced together.
 class Radau5 {
  public:
   explicit Radau5(int n);
@@ -49,12 +50,13 @@ class Radau5 {
   Outcome solve(const RadauTrial& trial);
   void start_values(double h);
   void transform_start();
-  void factorize(double h);
+  [[nodiscard]] bool factorize(double h);
   Outcome iterate(const RadauTrial& trial);
   bool stage_slopes(const RadauTrial& trial);
   double correct(const RadauTrial& trial);
   bool differentiate(const RadauTrial& trial);
-  bool difference(const RadauTrial& trial, Eigen::Index column, double increment);
+  [[nodiscard]] double increment(const RadauTrial& trial, Eigen::Index column, double largest) const;
+  bool difference(const RadauTrial& trial, const std::vector<std::size_t>& columns, double direction);
   double estimate(const RadauTrial& trial, const double* x_new);
   bool evaluate(const RadauTrial& trial, double t, const Vector& x, double* slope);
 
@@ -80,10 +82,9 @@ class Radau5 {
   bool factors_known_ = false;
   double factors_h_ = 0.0;
   double rate_ = 0.0;  ///< of convergence of the last iteration
-  Matrix jacobian_, real_matrix_;
-  Eigen::MatrixXcd complex_matrix_;
-  Eigen::PartialPivLU<Matrix> real_;
-  Eigen::PartialPivLU<Eigen::MatrixXcd> complex_;
+  RadauSystems systems_;
+  double largest_ = 0.0;  ///< component of start_
+  std::vector<std::size_t> one_column_;
 
   Matrix z_, w_, slopes_;  ///< n x 3: increments, transformed increments, f at the stages
   Vector argument_, difference_slope_, right_, solution_;

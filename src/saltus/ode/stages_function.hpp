@@ -2,6 +2,7 @@
 #pragma once
 
 #include "saltus/ode/linear_field.hpp"
+#include "saltus/ode/sparse/jacobian_pattern.hpp"
 
 namespace saltus::ode {
 
@@ -17,11 +18,13 @@ struct StagesFunctions {
 };
 
 /// What is known of a right-hand side beside its values: its stages, with their data, and its linear part if it is
-/// affine.
+/// affine. The pattern of its Jacobian, where that has few entries: used by radau5 only, for as long as it has the same
+/// address.
 struct RightHandSideStages {
   StagesFunctions functions;
   const void* data = nullptr;
   const LinearField* linear = nullptr;
+  const JacobianPattern* pattern = nullptr;
 };
 
 }  // namespace saltus::ode

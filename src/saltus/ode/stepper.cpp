@@ -124,7 +124,7 @@ Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const doubl
     const ExplicitStep step{t, h, n, start_.data(), x_new_.data(), stages_.data()};
     if (!explicit_->take(step, work, tolerances, error_norm_)) return Attempt::undefined;
   } else if (radau_) {
-    const RadauTrial trial{f, t, h, start_.data(), stages_.data(), tolerances};
+    const RadauTrial trial{f, t, h, start_.data(), stages_.data(), tolerances, stages.pattern};
     const Attempt outcome = radau_->attempt(trial, x_new_.data(), stages_.data() + n, evaluations_);
     if (outcome == Attempt::undefined) return outcome;
     error_norm_ = radau_->error_norm();

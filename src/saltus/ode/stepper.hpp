@@ -100,6 +100,8 @@ class Stepper {
   /// Which of the functions attempt() uses, null if none.
   [[nodiscard]] StagesFunction stages_function(const StagesFunctions& functions) const;
 
+  /// Whether attempt() has a use for the pattern of the Jacobian.
+  [[nodiscard]] bool wants_pattern() const { return radau_ != nullptr; }
   /// Whether attempt() has a use for the linear part of an affine right-hand side.
   [[nodiscard]] bool wants_linear_field() const { return series_ != nullptr; }
   /// What the last attempt was made by: taylor, or dop853 in its place, or the method itself.

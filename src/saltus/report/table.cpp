@@ -183,12 +183,22 @@ std::string with_unit(const std::string& name, double value, const result::Capti
   return fmt::format("{} = {:.12g}{}{}", name, value, unit.empty() ? "" : " ", unit);
 }
 
+/// Of a large system the first and the last ones; result files have them all.
+std::vector<std::string> few_of(std::vector<std::string> pieces) {
+  constexpr std::size_t most = 60, at_front = 20, at_back = 4;
+  if (pieces.size() <= most) return pieces;
+  std::vector<std::string> few(pieces.begin(), pieces.begin() + at_front);
+  few.push_back(fmt::format("… ({} in all)", pieces.size()));
+  few.insert(few.end(), pieces.end() - at_back, pieces.end());
+  return few;
+}
+
 std::string end_state(const result::Result& result, const result::Captions& captions) {
   std::vector<std::string> pieces;
   for (std::size_t i = 0; i < result.states.size() && i < result.final.x.size(); ++i) {
     pieces.push_back(with_unit(result.states[i], result.final.x[i], captions));
   }
-  std::string text = wrapped("end state", pieces);
+  std::string text = wrapped("end state", few_of(pieces));
   pieces.clear();
   const bool smoothed = result.method == "smoothed";
   for (std::size_t j = 0; j < result.switching_functions.size() && j < result.final.mode.size(); ++j) {
@@ -197,7 +207,7 @@ std::string end_state(const result::Result& result, const result::Captions& capt
     pieces.push_back(fmt::format("{}{} ({})", shortened(result.switching_functions[j], 40), smoothed ? "" : " = 0",
                                  std::isfinite(alpha) ? fmt::format("alpha {:.6g}", alpha) : "alpha not determined"));
   }
-  if (!pieces.empty()) text += wrapped(smoothed ? "in layer of" : "sliding on", pieces);
+  if (!pieces.empty()) text += wrapped(smoothed ? "in layer of" : "sliding on", few_of(pieces));
   pieces.clear();
   const auto labels = result::region_labels(result.region_groups);
   std::size_t label = 0;
@@ -215,7 +225,7 @@ std::string end_state(const result::Result& result, const result::Captions& capt
   for (std::size_t i = 0; i < result.outputs.size() && i < result.final.outputs.size(); ++i) {
     pieces.push_back(with_unit(result.outputs[i], result.final.outputs[i], captions));
   }
-  if (!pieces.empty()) text += wrapped("outputs", pieces);
+  if (!pieces.empty()) text += wrapped("outputs", few_of(pieces));
   return text;
 }
 

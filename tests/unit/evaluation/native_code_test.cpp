@@ -1,5 +1,6 @@
 #include "saltus/evaluation/native_code.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -11,6 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/evaluation/native_job.hpp"
+#include "saltus/evaluation/sparse/flat_code_internal.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
@@ -135,10 +138,62 @@ TEST_F(NativeCodeTest, AutomaticGoesOverToNativeInTheMiddleOfARun) {
   double one[3];
   double other[3];
   interpreted->field(0.5, x, alpha, one);
-  // About 100 operations each: 1e8 of them are behind us well before the end.
-  for (int i = 0; i < 2000000; ++i) automatic->field(0.5, x, alpha, other);
+  const auto is_compiled = [&] {
+    std::error_code none_yet;
+    const auto files = fs::directory_iterator(folder_, none_yet);
+    return std::any_of(begin(files), end(files), [](const auto& file) { return file.path().extension() == ".so"; });
+  };
+  // About 100 operations each: 1e8 of them are behind us well before the end, which only a failing compiler gets to.
+  for (int i = 0; i < 400 && !is_compiled(); ++i) {
+    for (int k = 0; k < 100000; ++k) automatic->field(0.5, x, alpha, other);
+  }
+  EXPECT_TRUE(is_compiled());
+  automatic->field(0.5, x, alpha, other);
   EXPECT_TRUE(same_bits(one, other, 3));
-  EXPECT_FALSE(fs::is_empty(folder_)) << "compiled and stored";
+}
+
+TEST_F(NativeCodeTest, AJobThatIsGivenUpLeavesNothingBehind) {
+  {
+    const auto job = NativeJob::start("double answer(void) { return 42.0; }\n");
+    ASSERT_TRUE(job.has_value());
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(NativeCodeTest, LargeFunctionsInPartsHaveTheBitsOfTheInterpreter) {
+  const casadi::SX x = casadi::SX::sym("x", 300);
+  const casadi::SX y = casadi::SX::sym("y");
+  std::vector<casadi::SX> rows;
+  for (casadi_int i = 0; i < 300; ++i) {
+    const casadi::SX a = x(i);
+    const casadi::SX b = x((i + 7) % 300);
+    const casadi::SX guarded = casadi::SX::if_else_zero(y != 0, sqrt(fabs(a)) * y);
+    rows.push_back(sin(a * b) - a / (2 + b * b) + guarded + exp(-a) * pow(fabs(b), 1.5) - 0.1);
+  }
+  const casadi::Function large("large", {x, y}, {casadi::SX::vertcat(rows), sum1(x)});
+  const std::string source = flat_code(large);
+  ASSERT_FALSE(source.empty());
+  const auto library = compile_native("#define casadi_int long long\n" + source);
+  ASSERT_TRUE(library.has_value()) << library.error().message;
+  using Native = int (*)(const double**, double**, long long*, double*, int);
+  const auto native = reinterpret_cast<Native>(library->symbol("large"));
+  ASSERT_NE(native, nullptr);
+  std::vector<double> point(300);
+  for (std::size_t i = 0; i < point.size(); ++i) point[i] = std::sin(static_cast<double>(i * i));
+  for (const double side : {0.0, 0.7}) {
+    const auto expected = large(std::vector<casadi::DM>{point, side});
+    std::vector<double> values(300), work(large.sz_w());
+    double sum = 0.0;
+    const double* in[] = {point.data(), side == 0.0 ? nullptr : &side};  // what is not given is 0
+    double* out[] = {values.data(), &sum};
+    native(in, out, nullptr, work.data(), 0);
+    EXPECT_EQ(values, expected[0].nonzeros());
+    EXPECT_EQ(sum, expected[1].scalar());
+    double* one_out[] = {values.data(), nullptr};
+    native(in, one_out, nullptr, work.data(), 0);
+    EXPECT_EQ(values, expected[0].nonzeros());
+  }
+  EXPECT_TRUE(flat_code(casadi::Function("other", {y}, {sinh(y)})).empty());
 }
 
 }  // namespace

@@ -1,0 +1,35 @@
+// Rows of the exit functions of independent sliding surfaces, kept from mode to mode.
+#pragma once
+
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+
+namespace saltus::event_integrator {
+
+/// L psi_j along f with alpha_j = 0 or 1, as a row: it depends on few other selections, and is made anew where one of
+/// these has changed.
+class ExitRows {
+ public:
+  explicit ExitRows(const evaluation::ModelKernel& kernel) : kernel_(kernel) {}
+
+  /// `alpha`: selections of the mode, of which that of the surface is replaced by `side`. Null where it is no row.
+  /// Valid until the next call for the same surface and side.
+  [[nodiscard]] const evaluation::AffineRow* of(int surface, double side, evaluation::FixedState fixed,
+                                                const std::vector<double>& alpha);
+
+ private:
+  struct Entry {
+    const void* motion = nullptr;  ///< of the kernel; null: not known yet
+    bool is_row = false;
+    evaluation::FixedState fixed;
+    std::vector<double> beside;  ///< selections of the surface's neighbours
+    evaluation::AffineRow row;
+  };
+
+  const evaluation::ModelKernel& kernel_;
+  std::vector<Entry> entries_;  ///< two of each surface
+  std::vector<double> alpha_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,55 @@
+// Gradients of the sliding surfaces as sparse rows, and the normal equations J J^T z = r by their components.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace saltus::event_integrator {
+
+/// The entries of a gradient that are not 0, by ascending column.
+struct SparseRow {
+  std::vector<std::size_t> column;
+  std::vector<double> value;
+
+  /// The only column, or -1.
+  [[nodiscard]] int only() const { return column.size() == 1 ? static_cast<int>(column.front()) : -1; }
+  [[nodiscard]] double dot(const std::vector<double>& f, double sum) const {
+    for (std::size_t k = 0; k < column.size(); ++k) sum += value[k] * f[column[k]];
+    return sum;
+  }
+};
+
+/// Rows that share a column, directly or through others, are solved together; all others by themselves. Cost of a
+/// solution: the entries of all rows, and for each component of c > 1 rows c^3.
+class NormalRows {
+ public:
+  void resize(std::size_t rows, std::size_t columns);
+  void set(std::size_t row, const SparseRow& entries);
+  void set(std::size_t row, const std::vector<double>& dense);
+  [[nodiscard]] const SparseRow& operator[](std::size_t row) const { return rows_[row]; }
+
+  /// z from J J^T z = r, in place; false where the rows of a component depend on each other.
+  [[nodiscard]] bool solve(Eigen::VectorXd& residual);
+  /// J^T z into `sum` (columns), row after row.
+  void transposed_times(const Eigen::VectorXd& z, std::vector<double>& sum) const;
+
+ private:
+  void find_components();
+  [[nodiscard]] bool solve_component(const std::vector<std::size_t>& rows, Eigen::VectorXd& residual);
+  [[nodiscard]] double product(std::size_t a, std::size_t b) const;
+
+  std::size_t columns_ = 0;
+  std::vector<SparseRow> rows_;
+  bool components_known_ = false;
+  std::vector<std::size_t> alone_;                  ///< rows that share no column
+  std::vector<std::vector<std::size_t>> together_;  ///< the other components
+  std::vector<std::size_t> parent_, first_of_column_;
+  Eigen::MatrixXd matrix_;
+  Eigen::VectorXd part_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,64 @@
+// The linear systems of radau5's iteration: dense, or sparse where the Jacobian has few entries.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
+
+#include "saltus/ode/sparse/jacobian_pattern.hpp"
+
+namespace saltus::ode {
+
+/// (real / h - J) x = b and ((re + i im) / h - J) x = b. The sparse ones are analysed once per pattern; all storage is
+/// kept.
+class RadauSystems {
+ public:
+  using Vector = Eigen::VectorXd;
+  using ComplexVector = Eigen::VectorXcd;
+  struct Shifts {
+    double real;
+    std::complex<double> complex;
+  };
+
+  explicit RadauSystems(Eigen::Index n) : n_(n) {}
+
+  /// Null: dense. The same address is the same pattern. Returns whether it is another one than before, whose Jacobian
+  /// and factors are not known.
+  bool use(const JacobianPattern* pattern);
+  [[nodiscard]] bool is_sparse() const { return pattern_ != nullptr; }
+  /// Columns that one difference serves together; empty where the matrix is dense.
+  [[nodiscard]] const std::vector<std::vector<std::size_t>>& groups() const { return groups_; }
+
+  /// Column j of J from the difference of slopes that its group gives; false where an entry is not finite.
+  [[nodiscard]] bool set_column(Eigen::Index column, const Vector& difference, double increment);
+  /// False where a matrix is singular.
+  [[nodiscard]] bool factorize(const Shifts& shifts);
+  void solve(const Vector& right, Vector& solution);
+  void solve(const ComplexVector& right, ComplexVector& solution);
+
+ private:
+  template <class Scalar>
+  void shift(const Scalar& diagonal, Eigen::SparseMatrix<Scalar>& matrix) const;
+
+  Eigen::Index n_;
+  const JacobianPattern* pattern_ = nullptr;
+  bool started_ = false;
+  std::vector<std::vector<std::size_t>> groups_;
+  // Dense.
+  Eigen::MatrixXd jacobian_, real_matrix_;
+  Eigen::MatrixXcd complex_matrix_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> real_;
+  Eigen::PartialPivLU<Eigen::MatrixXcd> complex_;
+  // Sparse: entries of J in the order of the pattern.
+  std::vector<double> entries_;
+  Eigen::SparseMatrix<double> sparse_real_matrix_;
+  Eigen::SparseMatrix<std::complex<double>> sparse_complex_matrix_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_real_;
+  Eigen::SparseLU<Eigen::SparseMatrix<std::complex<double>>> sparse_complex_;
+};
+
+}  // namespace saltus::ode

@@ -1,0 +1,62 @@
+"""Large systems: cost by counts, which do not depend on the machine; what is shown of them."""
+
+import importlib.util
+import json
+
+import tool
+
+GENERATOR = tool.SOURCE / "benchmarks" / "large" / "large_models.py"
+SPECIFICATION = importlib.util.spec_from_file_location("large_models", GENERATOR)
+large_models = importlib.util.module_from_spec(SPECIFICATION)
+SPECIFICATION.loader.exec_module(large_models)
+
+# Of the chain of five blocks, by dense matrices and one surface after the other (version 445bf42).
+CHAIN_OF_FIVE = (
+    0.016588560032445757, 0.15027915983057896, 1.1033939423135588, 1.6068188324285455, 1.8261479022443725,
+    2.4283928248715365, 5.82806615651795, 6.9537881341652135, 7.918104800519034, 8.030641902647353, 8.872319622744786,
+    13.830418084357017, 14.215681452193769)
+
+
+class Large(tool.ToolTest):
+    def model(self, kind, n):
+        file = self.folder / f"{kind}-{n}.toml"
+        file.write_text(large_models.text(kind, n), encoding="utf-8")
+        return file
+
+    def simulate(self, kind, n, *words):
+        self.run_tool("simulate", self.model(kind, n), "--quiet", "--out", "r.json", *words, code=0)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
+    @staticmethod
+    def evaluations_per_step(result):
+        return result["statistics"]["rhs_evaluations"] / result["statistics"]["steps"]
+
+    def test_events_of_a_chain(self):
+        events = self.simulate("chain", 5)["events"]
+        self.assertEqual(len(events), len(CHAIN_OF_FIVE))
+        for event, time in zip(events, CHAIN_OF_FIVE):
+            self.assertAlmostEqual(event["t"], time, delta=1e-9)
+
+    def test_sliding_surfaces_are_evaluated_together(self):
+        # Measured 40 and 66 evaluations per step; one surface after the other 70 and 335 (version 445bf42).
+        small, large = (self.evaluations_per_step(self.simulate("chain", n, "--until", "3")) for n in (10, 40))
+        self.assertLess(large, 2.0 * small)
+
+    def test_differences_for_radau5_serve_many_columns(self):
+        # Column by column each Jacobian costs n evaluations; three groups do.
+        small, large = (self.evaluations_per_step(self.simulate("rod", n, "--until", "0.2", "--rtol", "1e-6"))
+                        for n in (40, 160))
+        self.assertLess(large, 1.3 * small)
+
+    def test_what_is_shown_of_a_hundred_states(self):
+        table, _ = self.run_tool("simulate", self.model("ladder", 50), "--until", "0.01", code=0)
+        self.assertIn("… (100 in all)", table)
+        self.assertLess(len(table.splitlines()), 40)
+        checked, _ = self.run_tool("check", self.model("ladder", 120), code=0)
+        self.assertIn("… (216 more)", checked)
+        self.assertIn("more than 100 switching functions", checked)
+        self.assertLess(len(checked.splitlines()), 120)
+
+
+if __name__ == "__main__":
+    tool.main()
