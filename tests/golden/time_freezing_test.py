@@ -2,6 +2,7 @@
 
 import json
 import math
+import tomllib
 
 import tool
 
@@ -72,6 +73,16 @@ until = 9
 """
 
 
+QUARTER = math.pi / 4
+# Of an independent code, but for the ninth digit of M33 (by hand).
+MONOPED = (
+    ({}, [-0.192912, -0.0548, 0, 0, 0.053976192, 0.01964, 0.00868, 0, -61.85205, 0, 0]),
+    ({"q_z": 0.3, "phi_h": -QUARTER, "phi_k": 2 * QUARTER, "v_x": 1, "v_z": -1, "w_h": 2, "w_k": -3},
+     [-0.1364093834, -0.0387494516, -0.0589104802, 0.0387494516, 0.032056192, 0.00868, 0.00868,
+      0.3518902754, -62.2814391787, 0.5450318103, -0.4239721203]),
+)
+
+
 class TimeFreezing(tool.ToolTest):
     def simulated(self, model, method, *more):
         file = self.write("m.toml", model)
@@ -135,6 +146,29 @@ class TimeFreezing(tool.ToolTest):
         _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
         self.assertIn("has friction and restitution", err)
         self.run_tool("simulate", file, "--quiet", code=0)
+
+    def test_monoped_has_its_masses_and_forces(self):
+        text = (tool.SOURCE / "examples/contacts/monoped.toml").read_text(encoding="utf-8")
+        forces = tomllib.loads(text)["mechanics"]["force"]
+        outputs = ["M13", "M14", "M23", "M24", "M33", "M34", "M44"]
+        table = "".join(f'm_{i} = "{name}"\n' for i, name in enumerate(outputs))
+        table += "".join(f'h_{i} = "{force}"\n' for i, force in enumerate(forces.values()))
+        text = text[:text.index("[optimize]")].replace("[outputs]\n", "[outputs]\n" + table)
+        for state, expected in MONOPED:
+            sets = [word for name, value in state.items() for word in ("--set", f"{name}={value}")]
+            found = self.simulated(text, "event", "--until", "1e-6", *sets)["trajectory"]["outputs"][0]
+            for a, b in zip(found, expected):
+                self.assertAlmostEqual(a, b, delta=1e-9)
+
+    def test_hysteresis_of_a_car_is_optimised(self):
+        text = (tool.SOURCE / "examples/contacts/turbo-hysteresis.toml").read_text(encoding="utf-8")
+        self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertAlmostEqual(result["objective"], 10.2292578, delta=1e-5)
+        self.assertEqual(result["states"], ["q", "v", "turbo"])
+        self.assertEqual([e["name"] for e in result["events"]], ["turbo", "turbo"])
+        self.assertAlmostEqual(result["events"][0]["t"], 3.0, delta=1e-7)
+        self.assertLess(result["verification"]["interval_defect"], 1e-9)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,6 @@
 #include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
-#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -87,13 +86,16 @@ Expected<OptimizedPath> physical_path(const model::Ocp& ocp, const OptimizedPath
   for (std::size_t k = 0; k <= intervals; ++k) {
     const double share = k == intervals ? 1.0 : static_cast<double>(k) / static_cast<double>(intervals);
     const double t = ocp.from + path.horizon * share;
-    auto node = shown_states(ocp.system, path.nodes[k]);
+    // Time may stand still at a node: there are two rows then.
+    const double rounding = 1e-9 * path.horizon;
+    const auto first = std::lower_bound(rows.t.begin(), rows.t.end(), t - rounding) - rows.t.begin();
+    const auto behind = std::upper_bound(rows.t.begin(), rows.t.end(), t + rounding) - rows.t.begin();
+    const auto row = at(std::max<std::ptrdiff_t>(behind, 1) - 1);
+    auto node = rows.x[row], end = rows.x[std::min(at(first), row)];
     node.resize(n, 0.0);
-    if (nodes && k < intervals && !rows.contact_modes.empty()) {
-      const double rounding = 1e-9 * path.horizon;
-      const auto behind = std::upper_bound(rows.t.begin(), rows.t.end(), t + rounding) - rows.t.begin();
-      nodes->project(t, rows.contact_modes[at(std::max<std::ptrdiff_t>(behind, 1) - 1)], node);
-    }
+    end.resize(n, 0.0);
+    if (nodes && k < intervals && !rows.contact_modes.empty()) nodes->project(t, rows.contact_modes[row], node);
+    if (k > 0) physical.ends.push_back(std::move(end));
     physical.times[k] = t;
     physical.nodes[k] = std::move(node);
   }
