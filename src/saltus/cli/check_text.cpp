@@ -19,7 +19,8 @@ std::string methods_text(const model::System& system) {
   if (system.frozen) {
     const auto& frozen = system.frozen->system;
     const auto dcs = frozen.and_then([](const auto& made) { return reformulation::reformulate(made); });
-    std::string text = fmt::format("\nmethods: event{}\n", dcs ? ", fesd (time stands still at contacts and in hysteresis)" : "");
+    std::string text =
+        fmt::format("\nmethods: event{}\n", dcs ? ", fesd (time stands still at contacts and in hysteresis)" : "");
     if (!dcs) text += fmt::format("  fesd: {}\n", dcs.error().message);
     return text;
   }

@@ -1,14 +1,12 @@
-#include "saltus/model/build_errors_internal.hpp"
-
 #include <fmt/format.h>
 
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/build_errors_internal.hpp"
 
 namespace saltus::model {
 
 Error not_settable(const Override& entry, const Meaning* meaning, const NameTable& names) {
-  const auto known =
-      names.of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::hysteresis});
+  const auto known = names.of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::hysteresis});
   const std::string found =
       meaning == nullptr ? "which is not in the model" : fmt::format("which is {}", with_article(meaning->kind));
   return {meaning == nullptr ? ErrorCode::unknown_name : ErrorCode::invalid_option,

@@ -248,7 +248,8 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   if (options.method == Method::fesd || options.method == Method::timestepping) {
     const SymbolicLock lock;  // its problems are made while it runs
     if (system.frozen) {
-      return simulate_frozen(system, options, std::move(integration_or->output.times), frame(system, options), observers);
+      return simulate_frozen(system, options, std::move(integration_or->output.times), frame(system, options),
+                             observers);
     }
     return simulate_elements(system, options, std::move(integration_or->output.times),
                              std::move(integration_or->initial_mode), frame(system, options), observers);
@@ -267,8 +268,8 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
     const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;
-    auto run =
-        integrand_or->restated(event_integrator::integrate(kept->kernel, integrand_or->system(), integration, observer));
+    auto run = integrand_or->restated(
+        event_integrator::integrate(kept->kernel, integrand_or->system(), integration, observer));
     Followed followed{frame(system, options), std::move(run.branch_points), std::move(run.family_numbers), run.chosen};
     auto& result = followed.result;
     result.families = std::move(run.families);

@@ -22,8 +22,8 @@ struct HysteresisThresholds {
 /// known yet.
 void declare_hysteresis(const Description& description, Recognition& recognition, Statement& statement);
 
-/// Gives the state number `state` of the statement, a hysteresis, its value at the start. The states of the input have their initial values. Where the input is beyond a threshold at the start the side
-/// it is on holds, with a warning.
+/// Gives the state number `state` of the statement, a hysteresis, its value at the start. The states of the input have
+/// their initial values. Where the input is beyond a threshold at the start the side it is on holds, with a warning.
 /// @return the mistake: on == off, a value that is not finite, an initial value other than 0 and 1
 [[nodiscard]] std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& statement, int state,
                                                     const SXElem& input, const HysteresisThresholds& thresholds);

@@ -1,10 +1,9 @@
-#include "saltus/model/mechanics/contact_motion_internal.hpp"
-
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/model/mechanics/contact_motion_internal.hpp"
 #include "saltus/model/mechanics/smooth_check_internal.hpp"
 #include "saltus/model/start_values_internal.hpp"
 

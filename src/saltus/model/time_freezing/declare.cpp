@@ -20,10 +20,10 @@ std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& sc
     double& number;
     bool may_vanish;
   };
-  for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n, false},
-                          Key{"stiffness", stated.stiffness, numbers.stiffness, false},
-                          Key{"stabilisation", stated.stabilisation, numbers.stabilisation, true},
-                          Key{"transfer", stated.transfer, numbers.transfer, false}}) {
+  for (const auto& key :
+       {Key{"a_n", stated.a_n, numbers.a_n, false}, Key{"stiffness", stated.stiffness, numbers.stiffness, false},
+        Key{"stabilisation", stated.stabilisation, numbers.stabilisation, true},
+        Key{"transfer", stated.transfer, numbers.transfer, false}}) {
     if (!key.node) continue;
     const auto value = scope.value(*key.node, Reach::everything, key.name);
     if (!value) return with_context(value.error(), "in [time_freezing]");

@@ -1,5 +1,3 @@
-#include "saltus/model/time_freezing/freeze_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/model/mechanics/contact_motion_internal.hpp"
+#include "saltus/model/time_freezing/freeze_internal.hpp"
 
 namespace saltus::model {
 
@@ -25,9 +24,9 @@ std::optional<Error> freeze_hysteresis(Recognition& recognition, Statement& stat
   // NOTE: no region pulls back to 0 or 1 where the state waits. Between two such regions the point where they meet the
   // threshold would be at rest, too, and time would stand still there for ever.
   std::vector<SX> alphas;
-  for (const auto& [psi, name] : {std::pair{side * (SX(input) - thresholds.on), "on"},
-                                  std::pair{side * (thresholds.off - SX(input)), "off"}, std::pair{w - 1.0, "one"},
-                                  std::pair{w, "zero"}}) {
+  for (const auto& [psi, name] :
+       {std::pair{side * (SX(input) - thresholds.on), "on"}, std::pair{side * (thresholds.off - SX(input)), "off"},
+        std::pair{w - 1.0, "one"}, std::pair{w, "zero"}}) {
     const auto alpha = recognition.step(SX::densify(psi).scalar(), fmt::format("{}.{}", thresholds.name, name));
     if (!alpha) return with_location(alpha.error(), thresholds.location);
     alphas.emplace_back(*alpha);
@@ -100,7 +99,8 @@ class ContactFreezing {
     }
     add_to(system_.velocities, response(i) * normal + response(m_ + i) * tangential);
     if (plan_.numbers.stabilisation > 0.0) {
-      add_to(system_.positions, -plan_.numbers.stabilisation * response(i) * system_.gap(i) * (1.0 - *gap) * (1.0 - *rate));
+      add_to(system_.positions,
+             -plan_.numbers.stabilisation * response(i) * system_.gap(i) * (1.0 - *gap) * (1.0 - *rate));
     }
     add_outputs(k, normal, tangential);
     return std::nullopt;

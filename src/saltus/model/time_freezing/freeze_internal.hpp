@@ -45,8 +45,8 @@ struct FreezingPlan {
   /// Instead of `waits`: the one hysteresis of an optimisation by regions in the plane of its input and state.
   std::optional<HysteresisPlane> plane{};
   bool takes_plane = false;
-  casadi::SX waits = 1.0;           ///< 1 unless a hysteresis switches
-  casadi::SX moves = 1.0;           ///< 1 unless a contact is closed
+  casadi::SX waits = 1.0;  ///< 1 unless a hysteresis switches
+  casadi::SX moves = 1.0;  ///< 1 unless a contact is closed
   std::vector<AddedRate> added{};
   std::vector<std::pair<SXElem, FrozenSelection*>> selections{};  ///< to be found in the system
 };

@@ -23,8 +23,8 @@ struct FrozenContact {
   FrozenSelection gap{};      ///< of the gap, elastic: of gap + depth
   FrozenSelection normal{};   ///< of the gap's rate; none if elastic
   FrozenSelection tangent{};  ///< of the tangential velocity; none without friction
-  int impulse = -1;         ///< state: sum of normal impulses, and behind it of tangential ones; -1 in an optimisation
-  int gap_output = -1;      ///< output gap(name); behind it force, friction (if any) and impulse
+  int impulse = -1;     ///< state: sum of normal impulses, and behind it of tangential ones; -1 in an optimisation
+  int gap_output = -1;  ///< output gap(name); behind it force, friction (if any) and impulse
 };
 
 struct FrozenHysteresis {
@@ -34,9 +34,9 @@ struct FrozenHysteresis {
 
 /// dt/dtau = clock's rate, 1 or less; states move in physical time where it is positive [nurkanovic2022].
 struct TimeFreezing {
-  int clock = 0;         ///< state: physical time; the last one
-  int first_hidden = 0;  ///< states from here on are in no column of a result
-  int clock_rate = -1;   ///< output: d clock / d tau; the last one
+  int clock = 0;                ///< state: physical time; the last one
+  int first_hidden = 0;         ///< states from here on are in no column of a result
+  int clock_rate = -1;          ///< output: d clock / d tau; the last one
   std::vector<int> velocities;  ///< states
   std::vector<FrozenContact> contacts;
   std::vector<FrozenHysteresis> hysteresis;

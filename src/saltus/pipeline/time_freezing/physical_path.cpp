@@ -1,5 +1,3 @@
-#include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
-
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

@@ -1,5 +1,3 @@
-#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/rounding_unit.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -128,10 +127,10 @@ class PhysicalTime {
     for (const auto& contact : freezing_.contacts) {
       const bool closed = !contact.is_elastic && mode_of(contact.normal, mode) == 0 && mode_of(contact.gap, mode) <= 0;
       const bool sticks = contact.tangent.function >= 0 && mode_of(contact.tangent, mode) == 0;
-      modes.push_back(!closed                         ? ContactMode::open
+      modes.push_back(!closed                        ? ContactMode::open
                       : contact.tangent.function < 0 ? ContactMode::closed
-                      : sticks                        ? ContactMode::stick
-                                                      : ContactMode::slip);
+                      : sticks                       ? ContactMode::stick
+                                                     : ContactMode::slip);
     }
     return modes;
   }
@@ -235,10 +234,10 @@ class PhysicalTime {
     for (std::size_t i = 0; i < before.size(); ++i) {
       if (before[i] == after[i]) continue;
       if (event.surfaces.empty()) {
-        event.kind = after[i] == ContactMode::open     ? EventKind::lift_off
-                     : before[i] == ContactMode::open  ? EventKind::contact
-                     : after[i] == ContactMode::stick  ? EventKind::stick
-                                                       : EventKind::slip;
+        event.kind = after[i] == ContactMode::open    ? EventKind::lift_off
+                     : before[i] == ContactMode::open ? EventKind::contact
+                     : after[i] == ContactMode::stick ? EventKind::stick
+                                                      : EventKind::slip;
       }
       event.surfaces.push_back(freezing_.contacts[i].name);
     }
@@ -269,7 +268,7 @@ class PhysicalTime {
   result::Result& run_;
   std::size_t clock_ = 0;
   double standing_ = 0.0;
-  bool shows_regions_ = true;  ///< they are the user's
+  bool shows_regions_ = true;      ///< they are the user's
   std::vector<std::size_t> kept_;  ///< columns
 };
 
@@ -278,7 +277,8 @@ class PhysicalTime {
 std::vector<double> shown_states(const model::System& system, const std::vector<double>& x) {
   const auto& freezing = *system.freezing;
   std::vector<double> shown(x.begin(), x.begin() + freezing.first_hidden);
-  for (const auto& entry : freezing.hysteresis) shown[at(entry.state)] = std::round(shown[at(entry.state)]) + 0.0;  // no -0
+  for (const auto& entry : freezing.hysteresis)
+    shown[at(entry.state)] = std::round(shown[at(entry.state)]) + 0.0;  // no -0
   return shown;
 }
 

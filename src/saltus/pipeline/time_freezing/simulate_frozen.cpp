@@ -1,5 +1,3 @@
-#include "saltus/pipeline/time_freezing/simulate_frozen_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
+#include "saltus/pipeline/time_freezing/simulate_frozen_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -61,8 +60,8 @@ Expected<result::Result> simulate_frozen(const model::System& system, const Simu
                                      "method = \"fesd\" or \"event\""));
   }
   if (options.fesd.sensitivities) {
-    return tl::unexpected(not_frozen("there are no sensitivities with contacts or hysteresis",
-                                     "leave simulate.fesd.sensitivities out"));
+    return tl::unexpected(
+        not_frozen("there are no sensitivities with contacts or hysteresis", "leave simulate.fesd.sensitivities out"));
   }
   const double from = options.from, until = *options.until;
   const model::System made = clocked(*frozen, from, until);
