@@ -126,9 +126,9 @@ class Contacts(tool.ToolTest):
         out, _ = self.run_tool("check", self.write("m.toml", BALL), code=0)
         self.assertNotIn("ground.", out)  # modes are no states of the user
 
-    def test_finite_elements_say_no(self):
-        _, err = self.run_tool("simulate", self.write("m.toml", BALL), "--method", "fesd", code=2)
-        self.assertIn("[[contacts]]", err)
+    def test_time_stepping_says_no(self):
+        _, err = self.run_tool("simulate", self.write("m.toml", BALL), "--method", "timestepping", code=2)
+        self.assertIn("does not cover contacts", err)
 
     def test_malformed(self):
         for number, (name, (old, new, line, *expected)) in enumerate(MALFORMED.items()):

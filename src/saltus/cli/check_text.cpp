@@ -6,6 +6,7 @@
 #include "saltus/cli/overview_text.hpp"
 #include "saltus/cli/reformulation_text.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/reformulation/dcs.hpp"
 #include "saltus/smoothed/regularise.hpp"
 
@@ -28,6 +29,14 @@ std::string methods_text(const model::System& system) {
     return fmt::format("\nmethods: event\n  others: not tried, more than {} switching functions\n", most_reformulated);
   }
   const auto regularisation = smoothed::regularise(system, pipeline::SmoothedOptions{}.epsilon);
+  if (system.frozen) {
+    const auto& frozen = system.frozen->system;
+    const auto dcs = frozen.and_then([](const auto& made) { return reformulation::reformulate(made); });
+    std::string text =
+        fmt::format("\nmethods: event{}\n", dcs ? ", fesd (time stands still at contacts and in hysteresis)" : "");
+    if (!dcs) text += fmt::format("  fesd: {}\n", dcs.error().message);
+    return text;
+  }
   const auto dcs = reformulation::reformulate(system);
   std::string text =
       fmt::format("\nmethods: event{}{}\n", regularisation ? ", smoothed" : "", dcs ? ", fesd, timestepping" : "");

@@ -47,6 +47,8 @@ struct IntegrationOptions {
   enum class Rows { at_elements, at_times };
   Rows rows = Rows::at_elements;
   std::vector<double> times;
+  /// The state that is physical time: `times` are values of it.
+  std::optional<std::size_t> clock;
   /// For at_elements: inside elements as many rows as keep straight lines within this part of the range of every state,
   /// input, output and selection, so far; 0: none.
   double straight = 0.0;

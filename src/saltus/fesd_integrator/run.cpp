@@ -251,7 +251,9 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Active
 }
 
 void Run::emit_times(const Element* element, const std::vector<double>& selections, double until) {
-  const auto& times = options_.rows == IntegrationOptions::Rows::at_times ? options_.times : chosen_times_;
+  const bool given = options_.rows == IntegrationOptions::Rows::at_times;
+  if (given && options_.clock) return emit_clock_times(*element, selections, until);
+  const auto& times = given ? options_.times : chosen_times_;
   for (; next_time_ < times.size() && times[next_time_] < until; ++next_time_) {
     const double time = times[next_time_];
     event_state(*element, selections, (time - element->t) / element->h);
@@ -293,7 +295,8 @@ void Run::choose_times(const Element& element, const std::vector<double>& select
 /// The row at the end of an element, unless an event has put it there.
 void Run::row_here() {
   const bool at_times = options_.rows == IntegrationOptions::Rows::at_times;
-  const bool asked = at_times && next_time_ < options_.times.size() && options_.times[next_time_] == t_;
+  const double now = options_.clock ? x_[*options_.clock] : t_;
+  const bool asked = at_times && next_time_ < options_.times.size() && options_.times[next_time_] == now;
   if (asked) ++next_time_;
   if (recorder_.ends_at(t_)) return;
   if (asked || !at_times) {

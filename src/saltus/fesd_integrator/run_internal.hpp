@@ -143,6 +143,8 @@ class Run {
   /// Of the set where the run is: what slides on which nothing determines all selections.
   [[nodiscard]] std::string undetermined_message() const;
   void emit_times(const Element* element, const std::vector<double>& selections, double until);
+  /// The same where times are those of the clock.
+  void emit_clock_times(const Element& element, const std::vector<double>& selections, double until);
   /// Output times of an element: those that keep straight lines close to it.
   void choose_times(const Element& element, const std::vector<double>& selections);
   struct EventZero {

@@ -90,9 +90,36 @@ void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) 
                {}});
 }
 
+Error freezing_mistake(std::string message, std::string remedy, const SourceLocation& location) {
+  return with_context({ErrorCode::invalid_model, std::move(message), std::move(remedy), location, {}},
+                      "in [time_freezing]");
+}
+
+/// Contacts and hysteresis have a clock of their own.
+Expected<void> check_own_clock(const model::Description& description) {
+  const char* beside = description.contacts.empty() ? "[[hysteresis]]" : "[[contacts]]";
+  if (description.clock && !description.clock->clock.empty()) {
+    return tl::unexpected(freezing_mistake(fmt::format("`clock` beside {}", beside),
+                                           "leave it out: they have a clock of their own",
+                                           description.clock->location));
+  }
+  for (const auto& state : description.states) {
+    if (state.name != "clock") continue;
+    return tl::unexpected(freezing_mistake(fmt::format("a state with the name 'clock' beside {}", beside),
+                                           "rename it: that is the name of their physical time", state.location));
+  }
+  return {};
+}
+
 /// The clock of [time_freezing] is a state.
 Expected<void> check_clock(const model::Description& description) {
+  if (!description.contacts.empty() || !description.hysteresis.empty()) return check_own_clock(description);
   if (!description.clock) return {};
+  if (description.clock->clock.empty()) {
+    return tl::unexpected(freezing_mistake("[time_freezing] names no clock",
+                                           "write clock = \"tau\", the state that is physical time",
+                                           description.clock->location));
+  }
   std::vector<std::string> states;
   for (const auto& state : description.states) states.push_back(state.name);
   if (std::find(states.begin(), states.end(), description.clock->clock) != states.end()) return {};

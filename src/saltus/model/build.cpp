@@ -9,6 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/build_errors_internal.hpp"
 #include "saltus/model/build_internal.hpp"
 #include "saltus/model/discrete_states_internal.hpp"
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
@@ -17,6 +18,7 @@
 #include "saltus/model/mistakes.hpp"
 #include "saltus/model/model_scope_internal.hpp"
 #include "saltus/model/modes_internal.hpp"
+#include "saltus/model/time_freezing/freeze_internal.hpp"
 
 namespace saltus::model {
 namespace {
@@ -27,16 +29,22 @@ using MaybeError = std::optional<Error>;
 /// A description and its overrides on the way to a statement; one step per table.
 class Build {
  public:
-  Build(const Description& description, const std::vector<Override>& overrides, const Quantities* quantities)
+  Build(const Description& description, const std::vector<Override>& overrides, const Quantities* quantities,
+        std::optional<FreezingPlan> freezing = std::nullopt)
       : description_(description),
         overrides_(overrides),
         quantities_(quantities),
+        freezing_(std::move(freezing)),
         scope_(description, recognition_, statement_) {}
 
   [[nodiscard]] Expected<System> run() {
     if (auto error = state()) return tl::unexpected(*error);
     warn_of_unused();
-    return assemble(recognition_, statement_);
+    auto system = assemble(recognition_, statement_);
+    if (!system || !freezing_) return system;
+    find_selections(*system, *freezing_);
+    system->freezing = std::make_shared<const TimeFreezing>(freezing_->made);
+    return system;
   }
 
   /// Everything that can be told of it, one mistake or none beside another.
@@ -64,7 +72,8 @@ class Build {
     constexpr Step steps[] = {
         &Build::names,     &Build::overrides,  &Build::parameters, &Build::controls, &Build::states,     &Build::bounds,
         &Build::switching, &Build::dynamics,   &Build::modes,      &Build::outputs,  &Build::quantities, &Build::events,
-        &Build::jumps,     &Build::hysteresis, &Build::mechanics,  &Build::inputs,   &Build::definitions};
+        &Build::jumps,     &Build::hysteresis, &Build::mechanics,  &Build::inputs,   &Build::definitions,
+        &Build::freeze};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return error;
     }
@@ -111,7 +120,7 @@ class Build {
       const bool settable =
           meaning != nullptr && (meaning->kind == NameKind::parameter || meaning->kind == NameKind::state ||
                                  meaning->kind == NameKind::control || meaning->kind == NameKind::hysteresis);
-      if (!settable) return not_settable(entry, meaning);
+      if (!settable) return not_settable(entry, meaning, scope_.names());
       const auto value = scope_.value(*entry.value, Reach::constants, fmt::format("the value of '{}'", entry.name));
       if (!value) return with_context(value.error(), fmt::format("in --set {}", entry.name));
       if (!std::isfinite(*value)) {
@@ -124,18 +133,6 @@ class Build {
       set_values_[entry.name] = *value;
     }
     return std::nullopt;
-  }
-
-  Error not_settable(const Override& entry, const Meaning* meaning) const {
-    const auto known =
-        scope_.names().of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::hysteresis});
-    const std::string found =
-        meaning == nullptr ? "which is not in the model" : fmt::format("which is {}", with_article(meaning->kind));
-    return {meaning == nullptr ? ErrorCode::unknown_name : ErrorCode::invalid_option,
-            fmt::format("expected the name of a parameter, a state or a control, found '{}', {}", entry.name, found),
-            suggest(entry.name, known),
-            entry.value ? entry.value->location : SourceLocation{},
-            {fmt::format("in --set {}", entry.name)}};
   }
 
   /// The overriding value of a name, else that of its expression; `absent` without one.
@@ -191,8 +188,9 @@ class Build {
       const SXElem symbol = recognition_.graph.symbol(entry.name, {.kind = kind, .index = index++});
       statement_.states.push_back({.name = entry.name, .symbol = symbol, .location = entry.location});
     }
-    declare_hysteresis(description_, recognition_, statement_);
     statement_.switching.resize(description_.switching.size());
+    if (freezing_) return declare_frozen(description_, scope_, recognition_, statement_, *freezing_);
+    declare_hysteresis(description_, recognition_, statement_);
     return std::nullopt;
   }
 
@@ -245,13 +243,19 @@ class Build {
   }
 
   /// Behind the jumps, as are those of contacts: their numbers are those of the file.
-  MaybeError hysteresis() { return state_all_hysteresis(description_, scope_, recognition_, statement_, set_values_); }
+  MaybeError hysteresis() {
+    const auto take = [&](int state, const SXElem& input, const HysteresisThresholds& thresholds) {
+      return freezing_ ? freeze_hysteresis(recognition_, statement_, state, input, thresholds, *freezing_)
+                       : state_hysteresis(recognition_, statement_, state, input, thresholds);
+    };
+    return state_all_hysteresis(description_, scope_, set_values_, take);
+  }
 
   MaybeError dynamics() {
     return take_each(description_.dynamics, [&](const NamedExpression& entry) -> MaybeError {
       const Meaning* meaning = scope_.names().find(entry.name);
       if (meaning == nullptr || meaning->kind != NameKind::state) {
-        return scope_.is_given_up(entry.name) ? Error{} : no_such_state(entry, meaning);
+        return scope_.is_given_up(entry.name) ? Error{} : no_such_state(entry, meaning, scope_.names());
       }
       auto& state = statement_.states[at(meaning->index)];
       if (state.dynamics) {
@@ -272,7 +276,17 @@ class Build {
   MaybeError mechanics() {
     auto stated = mechanics_of(description_, scope_, statement_);
     if (!stated) return stated.error();
-    return *stated ? state_mechanics(recognition_, statement_, **stated) : std::nullopt;
+    if (!*stated) return std::nullopt;
+    if (!freezing_) return state_mechanics(recognition_, statement_, **stated);
+    const auto take = [&](const auto& contacts, const auto& motion) {
+      return freeze_contacts(recognition_, statement_, contacts, motion, *freezing_);
+    };
+    return state_mechanics(recognition_, statement_, **stated, take);
+  }
+
+  MaybeError freeze() {
+    if (freezing_) freeze_rates(statement_, *freezing_);
+    return std::nullopt;
   }
 
   MaybeError modes() {
@@ -281,22 +295,13 @@ class Build {
     return scope_.has_mistakes() ? std::nullopt : add_modes(recognition_, statement_);
   }
 
-  Error no_such_state(const NamedExpression& entry, const Meaning* meaning) const {
-    const std::string found = meaning == nullptr ? "" : fmt::format(", which is {}", with_article(meaning->kind));
-    return {ErrorCode::unknown_name,
-            fmt::format("expected the name of a state, found '{}'{}", entry.name, found),
-            suggest(entry.name, scope_.names().of({NameKind::state})),
-            entry.location,
-            {"in [dynamics]"}};
-  }
-
   MaybeError outputs() {
     recognition_.take_whole_parts_of_all(true);
     auto error = take_each(description_.outputs, [&](const NamedExpression& entry) -> MaybeError {
       const auto* name = std::get_if<expression::Name>(&entry.expression->value);
       if (name != nullptr && name->name == entry.name) {
         const Meaning* meaning = scope_.names().find(entry.name);
-        if (meaning == nullptr || meaning->kind == NameKind::output) return nothing_to_record(entry);
+        if (meaning == nullptr || meaning->kind == NameKind::output) return nothing_to_record(entry, scope_.names());
       }
       auto output = scope_.expression(*entry.expression);
       if (!output) return with_context(output.error(), fmt::format("in [outputs] {}", entry.name));
@@ -305,14 +310,6 @@ class Build {
     });
     recognition_.take_whole_parts_of_all(false);
     return error;
-  }
-
-  Error nothing_to_record(const NamedExpression& entry) const {
-    return {ErrorCode::unknown_name,
-            fmt::format("there is no definition '{}' to record", entry.name),
-            suggest(entry.name, scope_.names().of({NameKind::definition, NameKind::switching})),
-            entry.expression->location,
-            {"in [outputs]"}};
   }
 
   MaybeError quantities() {
@@ -324,14 +321,6 @@ class Build {
       statement_.outputs.push_back({entry.name, *quantity});
     }
     return std::nullopt;
-  }
-
-  static Error a_condition(const NamedExpression& entry) {
-    return {ErrorCode::invalid_model,
-            fmt::format("expected a number, found the condition '{}'", expression::to_text(*entry.expression)),
-            "if(condition, 1, 0) makes a number of it",
-            entry.expression->location,
-            {fmt::format("in [optimize] {}", entry.name)}};
   }
 
   MaybeError events() {
@@ -362,8 +351,9 @@ class Build {
 
   MaybeError take_samples(const SampledInput& entry) {
     const auto* meaning = control_named(entry.name);
-    if (meaning == nullptr) return no_such_control(entry.name, entry.location);
+    if (meaning == nullptr) return no_such_control(entry.name, entry.location, scope_.names());
     if (set_values_.contains(entry.name)) return std::nullopt;  // a constant from --set replaces it
+    if (freezing_) return quantities_ == nullptr ? MaybeError(moving_input(entry.name, entry.location)) : std::nullopt;
     if (const auto mistake = find_mistake(entry.times, entry.values)) {
       return Error{ErrorCode::invalid_model,
                    fmt::format("input '{}': {}", entry.name, mistake->message),
@@ -382,7 +372,7 @@ class Build {
 
   MaybeError take_input(const NamedExpression& entry) {
     const auto* meaning = control_named(entry.name);
-    if (meaning == nullptr) return no_such_control(entry.name, entry.location);
+    if (meaning == nullptr) return no_such_control(entry.name, entry.location, scope_.names());
     auto input = scope_.expression(*entry.expression);
     if (!input) return with_context(input.error(), fmt::format("in the input of {}", entry.name));
     if (set_values_.contains(entry.name)) return std::nullopt;  // a constant from --set replaces it
@@ -393,6 +383,11 @@ class Build {
                    entry.expression->location,
                    {}};
     }
+    if (freezing_) {
+      const bool constant = recognition_.parameter_value(*input).has_value();
+      if (!constant && quantities_ == nullptr) return moving_input(entry.name, entry.expression->location);
+      if (!constant) return std::nullopt;  // optimised, it has no input
+    }
     auto& control = statement_.controls[at(meaning->index)];
     control.input = *input;
     control.input_location = entry.expression->location;
@@ -402,15 +397,6 @@ class Build {
   const Meaning* control_named(const std::string& name) const {
     const Meaning* meaning = scope_.names().find(name);
     return meaning != nullptr && meaning->kind == NameKind::control ? meaning : nullptr;
-  }
-
-  Error no_such_control(const std::string& name, const SourceLocation& location) const {
-    const auto known = scope_.names().of({NameKind::control});
-    return {ErrorCode::unknown_name,
-            fmt::format("expected the name of a control, found '{}'", name),
-            known.empty() ? "the model has no controls: declare it in [controls]" : suggest(name, known),
-            location,
-            {}};
   }
 
   MaybeError definitions() {
@@ -443,6 +429,7 @@ class Build {
   const Description& description_;
   const std::vector<Override> overrides_;
   const Quantities* quantities_;  ///< null: none
+  std::optional<FreezingPlan> freezing_;
   Recognition recognition_;
   Statement statement_;
   ModelScope scope_;
@@ -458,10 +445,28 @@ Error refused_by_casadi(const Description& description, const std::exception& ex
           {}};
 }
 
+template <class Make>
+Expected<System> build_guarded(const Description& description, Make make) {
+  try {
+    return make();
+  } catch (const std::exception& exception) {
+    return tl::unexpected(refused_by_casadi(description, exception));
+  }
+}
+
 }  // namespace
 
+bool stands_still(const Description& description) {
+  return !description.contacts.empty() || !description.hysteresis.empty();
+}
+
 Expected<System> build(const Description& description, const std::vector<Override>& overrides) {
-  return build_with(description, overrides, nullptr);
+  auto system = build_with(description, overrides, nullptr);
+  if (!system || !stands_still(description)) return system;
+  FreezingPlan plan{.purpose = FrozenFor::simulation};
+  auto frozen = build_guarded(description, [&] { return Build(description, overrides, nullptr, plan).run(); });
+  system->frozen = std::make_shared<const FrozenSystem>(FrozenSystem{std::move(frozen)});
+  return system;
 }
 
 std::vector<Error> find_mistakes(const Description& description) {
@@ -474,11 +479,9 @@ std::vector<Error> find_mistakes(const Description& description) {
 
 Expected<System> build_with(const Description& description, const std::vector<Override>& overrides,
                             const Quantities* quantities) {
-  try {
-    return Build(description, overrides, quantities).run();
-  } catch (const std::exception& exception) {
-    return tl::unexpected(refused_by_casadi(description, exception));
-  }
+  std::optional<FreezingPlan> plan;
+  if (quantities != nullptr && quantities->time == TimeForm::frozen) plan = {.purpose = FrozenFor::optimisation};
+  return build_guarded(description, [&] { return Build(description, overrides, quantities, plan).run(); });
 }
 
 }  // namespace saltus::model

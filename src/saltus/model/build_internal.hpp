@@ -10,12 +10,19 @@
 
 namespace saltus::model {
 
+/// Whether contacts and hysteresis are events, or time stands still there (time_freezing/time_freezing.hpp).
+enum class TimeForm { physical, frozen };
+
 /// What a problem about a system asks for beside it.
 struct Quantities {
   /// Become outputs behind those of the description; they may speak of outputs, too. The name is for messages.
   std::vector<NamedExpression> expressions;
   std::set<std::string> varying_parameters;
+  TimeForm time = TimeForm::physical;
 };
+
+/// Whether a description has contacts or hysteresis.
+[[nodiscard]] bool stands_still(const Description& description);
 
 /// build(), with the quantities; null: none.
 [[nodiscard]] Expected<System> build_with(const Description& description, const std::vector<Override>& overrides,

@@ -1,6 +1,7 @@
 // An optimal control problem as a value: a system, and over its symbols what is minimised and constrained.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,7 +49,7 @@ struct OcpHorizon {
   double lower = 0.0, upper = 0.0;
 };
 
-/// Time frozen by hand: x_state is physical time, dx_state / dtau its speed.
+/// Time frozen by hand, or for contacts and hysteresis: x_state is physical time, dx_state / dtau its speed.
 struct OcpClock {
   int state = 0;
   double speed_lower = 1.0, speed_upper = 1.0;
@@ -76,6 +77,9 @@ struct Ocp {
   std::vector<double> parameter_lower, parameter_upper;  ///< of free ones; else the value
   std::vector<OcpGuess> guess;
   std::optional<OcpClock> clock;
+  /// With contacts or hysteresis `system` is frozen, and this is what it stands for, with the same outputs: the states
+  /// that a result shows come first.
+  std::shared_ptr<const System> physical;
   std::vector<std::string> warnings;
 };
 

@@ -10,12 +10,15 @@
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/ocp_checks_internal.hpp"
 #include "saltus/model/ocp_quantities_internal.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/model/with_slacks_internal.hpp"
 
 namespace saltus::model {
 namespace {
 
 using expression::NodePtr;
+/// Speed of time beside contacts and hysteresis, unless bounds are stated (interface.md).
+constexpr double default_fastest = 100.0;
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 NodePtr subtracted(const NodePtr& left, const NodePtr& right) {
@@ -57,6 +60,11 @@ class OcpBuild {
                               &OcpBuild::take_free};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
+    }
+    if (ocp_.system.freezing) {
+      auto physical = quantities_.build_physical(overrides_);
+      if (!physical) return tl::unexpected(physical.error());
+      ocp_.physical = std::make_shared<const System>(std::move(*physical));
     }
     ocp_.warnings = ocp_.system.warnings;
     if (auto error = check(ocp_, slacks_.description())) return tl::unexpected(*error);
@@ -326,6 +334,7 @@ class OcpBuild {
   std::optional<Error> take_free() {
     for (const auto& state : description().states) ocp_.free_states.push_back(state.free);
     const auto& system = ocp_.system;
+    ocp_.free_states.resize(system.state_names.size(), false);
     ocp_.free_parameters.assign(system.parameter_names.size(), false);
     ocp_.parameter_lower = ocp_.parameter_upper = system.parameter_values;
     for (std::size_t i = 0; i < parameter_bounds_.size(); ++i) {
@@ -347,19 +356,25 @@ class OcpBuild {
   }
 
   std::optional<Error> take_clock() {
-    if (!description().clock) return std::nullopt;
-    const auto& stated = *description().clock;
+    if (!description().clock && !ocp_.system.freezing) return std::nullopt;
     OcpClock clock;
-    const auto& names = ocp_.system.state_names;
-    const auto found = std::find(names.begin(), names.end(), stated.clock);
-    if (found == names.end()) {
-      return Error{ErrorCode::unknown_name,
-                   fmt::format("expected the name of a state as clock, found '{}'", stated.clock),
-                   suggest(stated.clock, names),
-                   stated.location,
-                   {"in [time_freezing]"}};
+    if (ocp_.system.freezing) {
+      clock.state = ocp_.system.freezing->clock;
+      clock.speed_upper = default_fastest;
+      ocp_.system.initial_state[at(clock.state)] = ocp_.from;
+    } else {
+      const auto& stated = *description().clock;
+      const auto& names = ocp_.system.state_names;
+      const auto found = std::find(names.begin(), names.end(), stated.clock);
+      if (found == names.end()) {
+        return Error{ErrorCode::unknown_name,
+                     fmt::format("expected the name of a state as clock, found '{}'", stated.clock),
+                     suggest(stated.clock, names),
+                     stated.location,
+                     {"in [time_freezing]"}};
+      }
+      clock.state = static_cast<int>(found - names.begin());
     }
-    clock.state = static_cast<int>(found - names.begin());
     if (speed_.first >= 0) {
       const auto lower = quantities_.value(speed_.first);
       const auto upper = quantities_.value(speed_.second);

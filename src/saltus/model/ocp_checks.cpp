@@ -142,7 +142,7 @@ std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& 
 
 std::optional<Error> check_initial_states(const Ocp& ocp, const Description& description) {
   const auto& system = ocp.system;
-  for (std::size_t i = 0; i < system.state_names.size(); ++i) {
+  for (std::size_t i = 0; i < description.states.size(); ++i) {
     const auto& location = description.states[i].location;
     const double initial = system.initial_state[i];
     if (ocp.free_states[i]) {
@@ -161,23 +161,13 @@ std::optional<Error> check_initial_states(const Ocp& ocp, const Description& des
 std::optional<Error> check(Ocp& ocp, const Description& description) {
   const auto& system = ocp.system;
   const SourceLocation& location = description.optimize->location;
-  if (!description.hysteresis.empty()) {
-    return mistake("[optimize] does not cover [[hysteresis]] yet",
-                   "write it by hand with frozen time ([time_freezing] clock), as in `saltus models hysteresis-car`",
-                   description.hysteresis.front().location, ErrorCode::not_available);
-  }
-  if (!system.contacts.empty()) {
-    return mistake("[optimize] does not cover [[contacts]] yet",
-                   "simulate the model with the method \"event\", or freeze time by hand ([time_freezing] clock)",
-                   description.contacts.front().location, ErrorCode::not_available);
-  }
   if (!system.jumps.empty()) {
     return mistake("[optimize] does not cover [[jumps]]",
                    "states that jump at contacts or by hysteresis have forms of their own: time frozen by hand "
                    "([time_freezing] clock), or a model without the jumps",
                    description.jumps.front().location, ErrorCode::not_available);
   }
-  for (std::size_t i = 0; i < system.discrete_states.size(); ++i) {
+  for (std::size_t i = 0; i < description.states.size(); ++i) {
     if (!system.discrete_states[i]) continue;
     return mistake(fmt::format("the state '{}' is discrete: nothing moves it", system.state_names[i]),
                    "make it a parameter, with free = true if it is to be chosen", description.states[i].location,

@@ -82,10 +82,11 @@ struct FreeParameterDescription {
   SourceLocation location;
 };
 
-/// [time_freezing] of a model whose regions freeze time by hand.
+/// [time_freezing]: of a model whose regions freeze time by hand, or how it is frozen at contacts and in hysteresis.
 struct ClockDescription {
-  std::string clock;                       ///< the state that is physical time
+  std::string clock;                             ///< the state that is physical time; empty: there is none by hand
   expression::NodePtr speed_lower, speed_upper;  ///< null: 1
+  expression::NodePtr a_n, stiffness, stabilisation, transfer;  ///< null: the default
   SourceLocation location;
 };
 

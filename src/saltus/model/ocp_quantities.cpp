@@ -38,6 +38,7 @@ bool OcpQuantities::is_constant(const expression::NodePtr& expression) const {
 Expected<System> OcpQuantities::build(const std::vector<Override>& overrides) {
   Quantities quantities{expressions_, {}};
   for (const auto& parameter : description_.free_parameters) quantities.varying_parameters.insert(parameter.name);
+  if (stands_still(description_)) quantities.time = TimeForm::frozen;
   auto system = build_with(description_, overrides, &quantities);
   if (!system) return system;
   user_outputs_ = static_cast<int>(description_.outputs.size());
@@ -56,6 +57,12 @@ Expected<System> OcpQuantities::build(const std::vector<Override>& overrides) {
     values_.push_back(all[row]);
   }
   return system;
+}
+
+Expected<System> OcpQuantities::build_physical(const std::vector<Override>& overrides) const {
+  Quantities quantities{expressions_, {}};
+  for (const auto& parameter : description_.free_parameters) quantities.varying_parameters.insert(parameter.name);
+  return build_with(description_, overrides, &quantities);
 }
 
 Expected<double> OcpQuantities::value(int quantity) const {

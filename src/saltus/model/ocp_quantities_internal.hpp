@@ -24,8 +24,10 @@ class OcpQuantities {
   /// Whether an expression is made of numbers and parameters that are not free.
   [[nodiscard]] bool is_constant(const expression::NodePtr& expression) const;
 
-  /// Builds the system with these quantities; `keep` says which stay outputs.
+  /// Builds the system with these quantities; frozen with contacts or hysteresis.
   [[nodiscard]] Expected<System> build(const std::vector<Override>& overrides);
+  /// The same for the event engine, which freezes nothing.
+  [[nodiscard]] Expected<System> build_physical(const std::vector<Override>& overrides) const;
   /// The value of a quantity that is constant, once built; an error that names it otherwise.
   [[nodiscard]] Expected<double> value(int quantity) const;
   /// The output that a quantity is in the system.

@@ -106,6 +106,9 @@ struct ModeGroup {
   casadi::SX reference{};                 ///< by `indicator`: a symbol per region, 1 for the reference and 0 for others
 };
 
+struct TimeFreezing;  // time_freezing/time_freezing.hpp
+struct FrozenSystem;
+
 /// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j), with the constants of cells as further symbols. With
 /// Inclusion::filippov f is multi-affine in the alphas of listed functions (those of kinks and time events are 0 or 1
 /// wherever their value matters). All expressions are over the symbols t, x, u, p, alpha of this value. Units are the
@@ -139,6 +142,8 @@ struct System {
   std::vector<bool> discrete_states;  ///< n_x: dynamics 0, changed by jumps only
   std::vector<ModeGroup> mode_groups;
   ContactSystem contacts;  ///< empty unless bodies touch
+  std::shared_ptr<const TimeFreezing> freezing;  ///< of a system without jumps whose time stands still instead
+  std::shared_ptr<const FrozenSystem> frozen;    ///< of one with contacts or hysteresis: the same, frozen
 
   bool multi_affine = true;                        ///< f_as_written is, in the alphas of listed functions, by its form
   std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ on a surface

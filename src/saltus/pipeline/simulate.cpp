@@ -18,6 +18,7 @@
 #include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/pipeline/step_observer_internal.hpp"
+#include "saltus/pipeline/time_freezing/simulate_frozen_internal.hpp"
 #include "saltus/smoothed/regularise.hpp"
 #include "saltus/smoothed/restate.hpp"
 
@@ -246,6 +247,10 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   if (!integration_or) return tl::unexpected(integration_or.error());
   if (options.method == Method::fesd || options.method == Method::timestepping) {
     const SymbolicLock lock;  // its problems are made while it runs
+    if (system.frozen) {
+      return simulate_frozen(system, options, std::move(integration_or->output.times), frame(system, options),
+                             observers);
+    }
     return simulate_elements(system, options, std::move(integration_or->output.times),
                              std::move(integration_or->initial_mode), frame(system, options), observers);
   }
@@ -263,8 +268,8 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
     const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;
-    auto run =
-        integrand_or->restated(event_integrator::integrate(kept->kernel, integrand_or->system(), integration, observer));
+    auto run = integrand_or->restated(
+        event_integrator::integrate(kept->kernel, integrand_or->system(), integration, observer));
     Followed followed{frame(system, options), std::move(run.branch_points), std::move(run.family_numbers), run.chosen};
     auto& result = followed.result;
     result.families = std::move(run.families);

@@ -5,6 +5,7 @@
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/step_problem.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/option_fields.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
@@ -61,6 +62,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   integration.sensitivities = wanted.sensitivities;
   const double values = static_cast<double>(wanted.steps) * static_cast<double>(wanted.elements * wanted.stages) *
                         static_cast<double>(dcs->selection.numel());
+  if (system.freezing) integration.clock = static_cast<std::size_t>(system.freezing->clock);
   integration.record_elements = values > 0.0 && values <= most_recorded_values;
   if (std::holds_alternative<Automatic>(options.output)) integration.straight = straight_share;
   if (is_at_times(options.output)) {

@@ -9,7 +9,7 @@ namespace saltus::reformulation {
 namespace {
 
 Error no_jumps() {
-  return {ErrorCode::not_available, "finite elements do not cover models with [[jumps]], [[hysteresis]] or [[contacts]]", "use --method event", {}, {}};
+  return {ErrorCode::not_available, "finite elements do not cover models with [[jumps]]", "use --method event", {}, {}};
 }
 
 /// What does not depend on the form.

@@ -245,10 +245,32 @@ void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
   }
 }
 
+/// A key of [time_freezing] that is a number or an expression of parameters; nothing if it is no such key.
+expression::NodePtr* freezing_number(model::ClockDescription& clock, const std::string& key) {
+  for (const auto& [name, node] : {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness},
+                                   std::pair{"stabilisation", &clock.stabilisation},
+                                   std::pair{"transfer", &clock.transfer}}) {
+    if (key == name) return node;
+  }
+  return nullptr;
+}
+
+void read_freezing_number(TomlReader& reader, const TomlEntry& field, expression::NodePtr& node) {
+  node = reader.expression(field.value);
+  const auto value = node ? constant_value(*node) : std::nullopt;
+  const bool may_vanish = field.key == "stabilisation";
+  if (!value || *value > 0.0 || (may_vanish && *value == 0.0)) return;
+  reader.fail(with_context({ErrorCode::invalid_model,
+                            fmt::format("{} is {}", field.key, *value),
+                            may_vanish ? "it is a number that is 0 or positive" : "it is a positive number",
+                            field.value.location,
+                            {}},
+                           "in [time_freezing]"));
+}
+
 void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "the table [time_freezing]");
   if (table == nullptr) return;
-  const std::vector<std::string> later{"a_n", "stiffness", "stabilisation", "eps_t", "transfer"};
   model::ClockDescription clock;
   clock.location = entry.location;
   for (const auto& field : *table) {
@@ -257,15 +279,13 @@ void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& m
       clock.location = field.value.location;
     } else if (field.key == "speed") {
       read_speed(reader, field, clock);
-    } else if (std::find(later.begin(), later.end(), field.key) != later.end()) {
+    } else if (auto* number = freezing_number(clock, field.key)) {
+      read_freezing_number(reader, field, *number);
+    } else if (field.key == "eps_t") {
       reader.not_available(field.location, fmt::format("{} of [time_freezing]", field.key));
     } else {
       reader.unknown_key(field, {"clock", "speed", "a_n", "stiffness", "stabilisation", "eps_t", "transfer"});
     }
-  }
-  if (clock.clock.empty()) {
-    reader.fail(problem_mistake("[time_freezing] names no clock",
-                                "write clock = \"tau\", the state that is physical time", entry.location));
   }
   model.description.clock = std::move(clock);
 }

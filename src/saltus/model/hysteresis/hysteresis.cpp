@@ -53,7 +53,7 @@ void declare_hysteresis(const Description& description, Recognition& recognition
   }
 }
 
-std::optional<Error> state_hysteresis(Recognition& recognition, Statement& statement, int state, const SXElem& input,
+std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& statement, int state, const SXElem& input,
                                       const HysteresisThresholds& thresholds) {
   if (auto mistake = threshold_mistake(thresholds)) return mistake;
   const auto node = recognition.graph.add(input);
@@ -82,6 +82,13 @@ std::optional<Error> state_hysteresis(Recognition& recognition, Statement& state
                                          thresholds.name, start, *side, thresholds.initial)));
   }
   recognition.graph.set_value(recognition.graph.tape()[recognition.graph.node(stated.symbol)].variable, stated.initial);
+  return std::nullopt;
+}
+
+std::optional<Error> state_hysteresis(Recognition& recognition, Statement& statement, int state, const SXElem& input,
+                                      const HysteresisThresholds& thresholds) {
+  if (auto error = begin_hysteresis(recognition, statement, state, input, thresholds)) return error;
+  const auto& stated = statement.states[at(state)];
   const casadi::SX w(stated.symbol), e(input);
   const casadi::SX high = std::max(thresholds.on, thresholds.off), low = std::min(thresholds.on, thresholds.off);
   const bool rises = thresholds.on > thresholds.off;  // 1 above
@@ -97,8 +104,8 @@ std::optional<Error> state_hysteresis(Recognition& recognition, Statement& state
   return std::nullopt;
 }
 
-std::optional<Error> state_all_hysteresis(const Description& description, ModelScope& scope, Recognition& recognition,
-                                          Statement& statement, const std::map<std::string, double>& initial) {
+std::optional<Error> state_all_hysteresis(const Description& description, ModelScope& scope,
+                                          const std::map<std::string, double>& initial, const StateHysteresis& take) {
   auto state = static_cast<int>(description.states.size());
   for (const auto& entry : description.hysteresis) {
     HysteresisThresholds thresholds{.name = entry.name, .location = entry.location};
@@ -113,7 +120,7 @@ std::optional<Error> state_all_hysteresis(const Description& description, ModelS
     if (const auto set = initial.find(entry.name); set != initial.end()) thresholds.initial = set->second;
     auto input = scope.expression(*entry.input);
     if (!input) return with_context(input.error(), "in [[hysteresis]]");
-    if (auto error = state_hysteresis(recognition, statement, state++, *input, thresholds)) {
+    if (auto error = take(state++, *input, thresholds)) {
       return with_context(*error, "in [[hysteresis]]");
     }
   }

@@ -1,7 +1,9 @@
 // [[hysteresis]] becomes a discrete state and a jump.
 #pragma once
 
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "saltus/model/model_scope_internal.hpp"
@@ -20,17 +22,23 @@ struct HysteresisThresholds {
 /// known yet.
 void declare_hysteresis(const Description& description, Recognition& recognition, Statement& statement);
 
-/// Gives the discrete state number `state` of the statement its value at the start, and appends the jump that changes
-/// it. The states of the input have their initial values. Where the input is beyond a threshold at the start the side
-/// it is on holds, with a warning.
+/// Gives the state number `state` of the statement, a hysteresis, its value at the start. The states of the input have
+/// their initial values. Where the input is beyond a threshold at the start the side it is on holds, with a warning.
 /// @return the mistake: on == off, a value that is not finite, an initial value other than 0 and 1
+[[nodiscard]] std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& statement, int state,
+                                                    const SXElem& input, const HysteresisThresholds& thresholds);
+
+/// The same, and appends the jump that changes it.
 [[nodiscard]] std::optional<Error> state_hysteresis(Recognition& recognition, Statement& statement, int state,
                                                     const SXElem& input, const HysteresisThresholds& thresholds);
+
+/// What is done with one: its state, its input, its thresholds.
+using StateHysteresis = std::function<std::optional<Error>(int, const SXElem&, const HysteresisThresholds&)>;
 
 /// The same for every entry of a description.
 /// @param initial  the value of one at the start that replaces the one of the file, by name
 [[nodiscard]] std::optional<Error> state_all_hysteresis(const Description& description, ModelScope& scope,
-                                                        Recognition& recognition, Statement& statement,
-                                                        const std::map<std::string, double>& initial);
+                                                        const std::map<std::string, double>& initial,
+                                                        const StateHysteresis& take);
 
 }  // namespace saltus::model

@@ -22,10 +22,12 @@ Error mechanics_error(const SourceLocation& location, std::string message, std::
 
 class MechanicsBuild {
  public:
-  MechanicsBuild(Recognition& recognition, Statement& statement, const MechanicsStatement& mechanics)
+  MechanicsBuild(Recognition& recognition, Statement& statement, const MechanicsStatement& mechanics,
+                 const StateContacts& contacts)
       : recognition_(recognition),
         statement_(statement),
         mechanics_(mechanics),
+        contacts_(contacts),
         q_(symbols_of(statement, mechanics.positions)),
         v_(symbols_of(statement, mechanics.velocities)) {}
 
@@ -44,7 +46,8 @@ class MechanicsBuild {
     SX force = total_force();
     if (!mechanics_.contacts.empty()) {
       const MotionWithoutContacts motion{mechanics_.positions, mechanics_.velocities, factors, force};
-      auto with_contacts = add_contacts(recognition_, statement_, mechanics_.contacts, motion);
+      auto with_contacts = contacts_ ? contacts_(mechanics_.contacts, motion)
+                                     : add_contacts(recognition_, statement_, mechanics_.contacts, motion);
       if (!with_contacts) return with_contacts.error();
       force = *with_contacts;
     }
@@ -154,6 +157,7 @@ class MechanicsBuild {
   Recognition& recognition_;
   Statement& statement_;
   const MechanicsStatement& mechanics_;
+  const StateContacts& contacts_;
   SX q_, v_;
 };
 
@@ -166,8 +170,8 @@ SX symbols_of(const Statement& statement, const std::vector<int>& states) {
 }
 
 std::optional<Error> state_mechanics(Recognition& recognition, Statement& statement,
-                                     const MechanicsStatement& mechanics) {
-  return MechanicsBuild(recognition, statement, mechanics).run();
+                                     const MechanicsStatement& mechanics, const StateContacts& contacts) {
+  return MechanicsBuild(recognition, statement, mechanics, contacts).run();
 }
 
 }  // namespace saltus::model

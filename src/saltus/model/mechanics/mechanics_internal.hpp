@@ -1,6 +1,7 @@
 // [mechanics] becomes right-hand sides, [[contacts]] with it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -35,12 +36,20 @@ struct MechanicsStatement {
 [[nodiscard]] Expected<std::optional<MechanicsStatement>> mechanics_of(const Description& description,
                                                                        ModelScope& scope, const Statement& statement);
 
+struct MotionWithoutContacts;
+
+/// What becomes of contacts: the total force with theirs.
+using StateContacts =
+    std::function<Expected<casadi::SX>(const std::vector<ContactStatement>&, const MotionWithoutContacts&)>;
+
 /// Gives positions and velocities their right-hand sides, dq/dt = v and dv/dt = M^-1 (force - grad potential -
 /// coriolis + forces of contacts), and appends the outputs of the contacts and `energy`, v'M v/2 + potential. The
 /// initial values of the states are known.
+/// @param contacts  as they are for the event engine if empty
 /// @return the mistake: a right-hand side that is there already; a mass matrix or potential that depends on more than
 ///         positions and parameters; a mass matrix that is not symmetric or not positive definite at the start
 [[nodiscard]] std::optional<Error> state_mechanics(Recognition& recognition, Statement& statement,
-                                                   const MechanicsStatement& mechanics);
+                                                   const MechanicsStatement& mechanics,
+                                                   const StateContacts& contacts = {});
 
 }  // namespace saltus::model

@@ -6,6 +6,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/ocp.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/optimal_control/guessed_simulation_internal.hpp"
 
 namespace saltus::pipeline {
@@ -20,6 +21,8 @@ constexpr long most_guess_steps = 20'000;
 constexpr long most_guess_events = 2'000;
 /// Times the largest of what is given about a state: a problem solver has no use for more.
 constexpr double largest_growth = 1e6;
+
+constexpr double not_known_yet = std::numeric_limits<double>::quiet_NaN();
 
 IntegrationOptions guess_options(double from, double until, const std::vector<double>& times) {
   IntegrationOptions options;
@@ -48,7 +51,7 @@ bool is_of_use(const model::System& system, const std::vector<double>& x) {
 
 /// What a row says of the selections; NaN where it says nothing.
 std::vector<double> known_selections(const model::System& system, const result::Trajectory& rows, std::size_t row) {
-  std::vector<double> known(system.switching.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> known(system.switching.size(), not_known_yet);
   for (std::size_t c = 0; c < system.columns.size(); ++c) {
     const auto& column = system.columns[c];
     const double alpha = rows.alpha[row][c];
@@ -68,7 +71,14 @@ std::vector<double> known_selections(const model::System& system, const result::
 Expected<GuessedSimulation> simulate_guess(const model::System& system, PointValues& values,
                                            const std::vector<double>& starts,
                                            const std::vector<std::vector<double>>& controls, double until,
-                                           const std::vector<double>& times) {
+                                           const std::vector<double>& times, const model::System* frozen) {
+  const auto restated = [&](const std::vector<double>& x, double t) {
+    if (frozen == nullptr) return x;
+    std::vector<double> all(x.begin(), x.begin() + frozen->freezing->first_hidden);
+    all.resize(frozen->state_names.size(), 0.0);
+    all[at(frozen->freezing->clock)] = t;
+    return all;
+  };
   model::System controlled = system;
   controlled.events.clear();  // they would stop it
   controlled = model::with_controls(std::move(controlled), starts, controls);
@@ -78,21 +88,22 @@ Expected<GuessedSimulation> simulate_guess(const model::System& system, PointVal
 
   GuessedSimulation simulation;
   simulation.time_reached = starts.front();
-  simulation.last = system.initial_state;
+  simulation.last = restated(system.initial_state, starts.front());
   const auto& rows = run.trajectory;
   std::size_t next = 0;
   for (std::size_t row = 0; row < rows.t.size() && is_of_use(system, rows.x[row]); ++row) {
     simulation.time_reached = rows.t[row];
-    simulation.last = rows.x[row];
+    simulation.last = restated(rows.x[row], rows.t[row]);
     // Of two rows at an event the second one, except at the end, where it is behind the horizon.
     const bool is_first = row + 1 < rows.t.size() && rows.t[row + 1] == rows.t[row] && rows.t[row] < until;
     if (is_first) continue;
     for (; next < times.size() && times[next] <= rows.t[row]; ++next) {
       const auto interval = std::upper_bound(starts.begin(), starts.end(), rows.t[row]) - starts.begin();
       const auto& u = controls[at(std::max<std::ptrdiff_t>(interval - 1, 0))];
-      simulation.x.push_back(rows.x[row]);
-      simulation.alpha.push_back(values.selections({rows.t[row], rows.x[row], u, system.parameter_values},
-                                                   known_selections(controlled, rows, row)));
+      simulation.x.push_back(simulation.last);
+      const auto known = frozen == nullptr ? known_selections(controlled, rows, row)
+                                           : std::vector<double>(frozen->switching.size(), not_known_yet);
+      simulation.alpha.push_back(values.selections({rows.t[row], simulation.last, u, system.parameter_values}, known));
     }
   }
   return simulation;

@@ -22,10 +22,13 @@ struct GuessedSimulation {
 /// @param controls  row per interval
 /// @param until  end of the last interval
 /// @param times  ascending, within the intervals; equal ones are possible
+/// @param frozen  the system of which the states and selections are wanted, where `system` is what it stands for; else
+///                nullptr. Its hidden states are 0 but for the clock.
 /// @return what was computed up to where the simulation ends, or states leave all measure.
 [[nodiscard]] Expected<GuessedSimulation> simulate_guess(const model::System& system, PointValues& values,
                                                          const std::vector<double>& starts,
                                                          const std::vector<std::vector<double>>& controls, double until,
-                                                         const std::vector<double>& times);
+                                                         const std::vector<double>& times,
+                                                         const model::System* frozen = nullptr);
 
 }  // namespace saltus::pipeline

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/optimal_control/guessed_simulation_internal.hpp"
 #include "saltus/pipeline/optimal_control/linear_targets_internal.hpp"
 #include "saltus/pipeline/optimal_control/point_values_internal.hpp"
@@ -199,14 +200,18 @@ class Guess {
     bool needs_simulation = false;
     for (std::size_t i = 0; i < n; ++i) {
       guesses[i] = stated_.find(OcpGuess::Kind::state, i);
-      needs_simulation = needs_simulation || (guesses[i] == nullptr && !is_line(targets[i]));
+      needs_simulation = needs_simulation || (guesses[i] == nullptr && !is_line(targets[i]) && !is_hidden(i));
     }
     GuessedSimulation simulation;
     if (needs_simulation) {
-      auto system = ocp_.system;
+      auto system = ocp_.physical ? *ocp_.physical : ocp_.system;
       system.parameter_values = start_.parameters;
-      system.initial_state = start_.initial_state;
-      auto run = simulate_guess(system, values_, starts_, start_.controls, until(), times_);
+      auto& initial = system.initial_state;
+      initial = start_.initial_state;
+      if (ocp_.physical) initial.resize(at(ocp_.system.freezing->first_hidden));
+      initial.resize(system.state_names.size(), 0.0);
+      auto run = simulate_guess(system, values_, starts_, start_.controls, until(), times_,
+                                ocp_.physical ? &ocp_.system : nullptr);
       if (!run) return tl::unexpected(run.error());
       simulation = std::move(*run);
     }
@@ -221,6 +226,10 @@ class Guess {
     return {};
   }
 
+  /// The clock and depths of contacts: nobody guesses them.
+  [[nodiscard]] bool is_hidden(std::size_t i) const {
+    return ocp_.physical && i >= at(ocp_.system.freezing->first_hidden);
+  }
   [[nodiscard]] bool is_line(const std::optional<double>& target) const { return ocp_.horizon.free && target; }
 
   double stated_value(const OcpGuess& guess, std::size_t row) {
@@ -233,7 +242,9 @@ class Guess {
   [[nodiscard]] double unstated_value(std::size_t i, std::size_t row, const std::optional<double>& target,
                                       const GuessedSimulation& simulation) const {
     double value = 0.0;
-    if (is_line(target)) {
+    if (is_hidden(i)) {
+      return at(ocp_.clock->state) == i ? times_[row] : 0.0;
+    } else if (is_line(target)) {
       value = on_line({ocp_.from, start_.initial_state[i]}, {until(), *target}, times_[row]);
     } else if (row < simulation.x.size()) {
       value = simulation.x[row][i];

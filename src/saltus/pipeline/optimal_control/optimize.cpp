@@ -11,12 +11,15 @@
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/base/at.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/number_list_internal.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 #include "saltus/pipeline/optimize_fields.hpp"
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
 #include "saltus/pipeline/optimal_control/verify.hpp"
+#include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
+#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -46,11 +49,16 @@ result::Result result_frame(const model::Ocp& ocp, const OptimizeOptions& option
   result.model.name = system.name;
   result.model.description = system.description;
   result.states = system.state_names;
+  if (system.freezing) result.states.resize(at(system.freezing->first_hidden));
+  if (system.freezing) {
+    for (const auto& contact : system.freezing->contacts) result.contacts.push_back(contact.name);
+  }
   result.controls.assign(system.control_names.begin(), system.control_names.begin() + ocp.user_controls);
   result.outputs.assign(system.output_names.begin(), system.output_names.begin() + ocp.user_outputs);
   for (const auto& column : system.columns) result.switching_functions.push_back(column.name);
   for (const auto& group : system.mode_groups) {
-    if (group.first >= 0) result.region_groups.push_back({group.name, group.mode_names});
+    const bool is_shown = group.name.find('.') == std::string::npos;  // else freezing has made it
+    if (group.first >= 0 && is_shown) result.region_groups.push_back({group.name, group.mode_names});
   }
   result.options = option_record(options);
   return result;
@@ -60,6 +68,10 @@ void take_bounds(const model::Ocp& ocp, result::Optimization& found) {
   const auto& system = ocp.system;
   found.state_lower = system.state_lower;
   found.state_upper = system.state_upper;
+  if (system.freezing) {
+    found.state_lower.resize(at(system.freezing->first_hidden));
+    found.state_upper.resize(at(system.freezing->first_hidden));
+  }
   const auto n = ocp.user_controls;
   found.control_lower.assign(system.control_lower.begin(), system.control_lower.begin() + n);
   found.control_upper.assign(system.control_upper.begin(), system.control_upper.begin() + n);
@@ -81,6 +93,9 @@ void take_solution(const model::Ocp& ocp, const discretization::OcpSolution& sol
     auto& lengths = found.h.emplace_back();
     for (const auto& element : solution.elements[k]) lengths.push_back(element.h);
     found.nodes.push_back(list_of(solution.elements[k].back().end));
+  }
+  if (ocp.system.freezing) {
+    for (auto& node : found.nodes) node = shown_states(ocp.system, node);
   }
   if (ocp.clock) found.speed_of_time = solution.speed_of_time;
 }
@@ -148,6 +163,17 @@ std::optional<solver::Start> same_structure(const discretization::OcpProblem& pr
   return start;
 }
 
+/// Frozen systems stand for others, which the event engine simulates.
+Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const OptimizedPath& path,
+                                                const result::Result& run, const OptimizeOptions& options,
+                                                const OptimizeObservers& observers) {
+  if (!ocp.physical) return verify(ocp, path, options.verification_tolerance, observers.is_interrupted);
+  const auto physical = physical_path(ocp, path, run);
+  if (!physical) return tl::unexpected(physical.error());
+  return verify(physical_ocp(ocp), *physical, options.verification_tolerance,
+                observers.is_interrupted);
+}
+
 }  // namespace
 
 Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& options,
@@ -190,8 +216,9 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   result.events = std::move(run->events);
   result.final = std::move(run->final);
   result.elements = std::move(run->elements);
+  if (ocp.system.freezing) result.switching_functions = run->switching_functions;
   if (result.status.termination != Termination::stopped_by_user && solution->w.allFinite()) {
-    auto verification = verify(ocp, run->path, options.verification_tolerance, observers.is_interrupted);
+    auto verification = judged_by_events(ocp, run->path, result, options, observers);
     if (!verification) return tl::unexpected(verification.error());
     judge(*verification, options.verification_tolerance, result.status);
     found.verification = std::move(*verification);

@@ -10,6 +10,7 @@
 #include "saltus/fesd_integrator/element_recorder.hpp"
 #include "saltus/fesd_integrator/recorder.hpp"
 #include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
+#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -232,6 +233,17 @@ void keep_those_of_the_user(const model::Ocp& ocp, OptimizedRun& run) {
   run.final.outputs.resize(at(ocp.user_outputs));
 }
 
+/// Rows and events of numerical time, in physical time.
+void take_physical(const model::Ocp& ocp, const OcpSolution& solution, Recorder& whole, OptimizedRun& run) {
+  result::Result rows;
+  rows.trajectory = std::move(whole.trajectory());
+  rows.events = std::move(whole.event_list());
+  run.switching_functions = to_physical_time(ocp.system, standing_clock * solution.horizon, rows);
+  run.trajectory = std::move(rows.trajectory);
+  run.events = std::move(rows.events);
+  run.final = std::move(rows.final);
+}
+
 }  // namespace
 
 Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& solution,
@@ -260,6 +272,12 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   Recording whole(*kernel, *functions, known, tableau);
   whole.record(pieces, Recording::Pieces::all);
   run.path.events = whole.recorder().event_list();
+  run.elements = recorded_elements(pieces, {*kernel, known, tableau}, clock);
+  if (ocp.system.freezing) {
+    take_physical(ocp, solution, whole.recorder(), run);
+    keep_those_of_the_user(ocp, run);
+    return run;
+  }
   Recording moving(*kernel, *functions, known, tableau);
   if (clock) {
     moving.record(pieces, Recording::Pieces::moving);
@@ -269,7 +287,6 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   run.final = shown.last();
   run.events = std::move(shown.event_list());
   run.trajectory = std::move(shown.trajectory());
-  run.elements = recorded_elements(pieces, {*kernel, known, tableau}, clock);
   keep_those_of_the_user(ocp, run);
   return run;
 }

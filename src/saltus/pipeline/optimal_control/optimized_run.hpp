@@ -1,6 +1,7 @@
 // The trajectory of an optimised point in the columns of a result.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "saltus/base/error.hpp"
@@ -23,6 +24,7 @@ struct OptimizedRun {
   result::Elements elements;
   /// The same for the truth check: nodes, controls, ranges, events in the time of the right-hand side.
   OptimizedPath path;
+  std::vector<std::string> switching_functions;  ///< of a frozen system: those that the result shows
 };
 
 /// The sides of the pairs of an element are read off its sums over the stages: the smaller one is zero.

@@ -138,14 +138,14 @@ Resimulation::Segment Resimulation::open_loop(const std::function<bool()>& is_in
 
 Eigen::VectorXd Resimulation::end_of(std::size_t k, std::vector<double> start,
                                      const std::function<bool()>& is_interrupted) {
-  const auto n = index(start.size());
   system_.initial_state = std::move(start);
   const double until = path_->times[k + 1];
   const auto ended = run(resimulation_options(path_->times[k], until, 1), is_interrupted);
   if (ended.status.termination == Termination::stopped_by_user || !(ended.status.time_reached >= until)) {
-    return Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
+    return Eigen::VectorXd::Constant(index(ended.final.x.size()), std::numeric_limits<double>::quiet_NaN());
   }
-  return Eigen::Map<const Eigen::VectorXd>(ended.final.x.data(), n);
+  // Behind the states of the result are modes of contacts.
+  return Eigen::Map<const Eigen::VectorXd>(ended.final.x.data(), index(ended.final.x.size()));
 }
 
 double Resimulation::amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted) {

@@ -31,6 +31,12 @@ constexpr std::size_t most_kept_rows = 2000;
 /// The larger one; what is not a number stays.
 double worse(double a, double b) { return std::isnan(a) || std::isnan(b) ? not_known : std::max(a, b); }
 
+/// Behind them are modes of contacts.
+std::size_t shown_states(const Ocp& ocp) {
+  const auto& system = ocp.system;
+  return system.contacts.empty() ? system.state_names.size() : at(system.contacts.first_hidden);
+}
+
 double violation(double value, double lower, double upper) { return worse(worse(lower - value, value - upper), 0.0); }
 
 double violation_of(const std::vector<OcpConstraint>& constraints, const std::vector<double>& outputs) {
@@ -48,7 +54,7 @@ double path_violation(const Ocp& ocp, const Integration& run, double until) {
   double worst = 0.0;
   for (std::size_t r = 0; r < rows.t.size(); ++r) {
     worst = worse(worst, violation_of(ocp.path, rows.outputs[r]));
-    for (std::size_t i = 0; i < rows.x[r].size(); ++i) {
+    for (std::size_t i = 0; i < shown_states(ocp); ++i) {
       worst = worse(worst, violation(rows.x[r][i], ocp.system.state_lower[i], ocp.system.state_upper[i]));
     }
     if (rows.t[r] >= until) break;  // a second row at the end is behind the jump of the controls
@@ -154,14 +160,25 @@ class IntervalChecks {
       return;
     }
     for (std::size_t k = 0; k < ends_.size(); ++k) {
-      for (std::size_t i = 0; i < ends_[k].size(); ++i) {
-        const double defect = std::abs(ends_[k][i] - path_.nodes[k + 1][i]) / scales_.of(i);
-        if (verification_.interval >= 0 && !(defect > verification_.interval_defect)) continue;
-        verification_.interval_defect = defect;
-        verification_.interval = static_cast<int>(k);
-        verification_.state = ocp_.system.state_names[i];
-      }
+      auto worst = largest_difference(ends_[k], path_.nodes[k + 1]);
+      // A jump at the node itself is before it or behind it by a rounding.
+      if (!path_.ends.empty()) worst = std::min(worst, largest_difference(ends_[k], path_.ends[k]));
+      if (verification_.interval >= 0 && !(worst.first > verification_.interval_defect)) continue;
+      verification_.interval_defect = worst.first;
+      verification_.interval = static_cast<int>(k);
+      verification_.state = ocp_.system.state_names[worst.second];
     }
+  }
+
+  /// Relative to the ranges of the states; of which one.
+  [[nodiscard]] std::pair<double, std::size_t> largest_difference(const std::vector<double>& a,
+                                                                  const std::vector<double>& b) const {
+    std::pair<double, std::size_t> worst{-1.0, 0};
+    for (std::size_t i = 0; i < shown_states(ocp_); ++i) {
+      const double difference = std::abs(a[i] - b[i]) / scales_.of(i);
+      if (difference > worst.first || std::isnan(difference)) worst = {difference, i};
+    }
+    return worst;
   }
 
   const Ocp& ocp_;
@@ -194,7 +211,7 @@ result::OpenLoop open_loop_of(const Ocp& ocp, const OptimizedPath& path, const S
   open_loop.end_state_error = open_loop.terminal_violation = not_known;
   if (segment.is_complete) {
     open_loop.end_state_error = 0.0;
-    for (std::size_t i = 0; i < run.final.x.size(); ++i) {
+    for (std::size_t i = 0; i < shown_states(ocp); ++i) {
       const double error = std::abs(run.final.x[i] - path.nodes.back()[i]) / scales.of(i);
       open_loop.end_state_error = worse(open_loop.end_state_error, error);
     }
@@ -223,7 +240,9 @@ Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, double 
   }
   checks.compare();
   verification.open_loop = open_loop_of(ocp, path, checks.scales(), resimulation->open_loop(is_interrupted));
-  verification.open_loop.amplification = resimulation->amplification(checks.scales().all(), is_interrupted);
+  auto scales = checks.scales().all();
+  scales.resize(shown_states(ocp));
+  verification.open_loop.amplification = resimulation->amplification(scales, is_interrupted);
   return verification;
 }
 

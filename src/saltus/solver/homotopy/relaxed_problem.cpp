@@ -129,7 +129,8 @@ void RelaxedProblem::find_elastic_hessian_pattern() {
 
 PairFunction RelaxedProblem::pair_at(int pair, int which, ConstVectorView w, ConstVectorView c) const {
   const int G = problem_.constraints() + pair;
-  const double sigma = elastic_ > 0 ? std::max(w[elastic_column(pair)], smallest_elastic) : sigma_;
+  // In this order what is not a number is the smallest one: the values of the pair say that the point is none.
+  const double sigma = elastic_ > 0 ? std::max(smallest_elastic, w[elastic_column(pair)]) : sigma_;
   return pair_function(relaxation_, which, c[G], c[G + problem_.pairs()], sigma);
 }
 

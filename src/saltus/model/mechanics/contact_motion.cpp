@@ -1,0 +1,136 @@
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/model/mechanics/contact_motion_internal.hpp"
+#include "saltus/model/mechanics/smooth_check_internal.hpp"
+#include "saltus/model/start_values_internal.hpp"
+
+namespace saltus::model {
+
+using casadi::SX;
+
+namespace {
+
+Error contact_error(const SourceLocation& location, std::string message, std::string remedy) {
+  return {ErrorCode::invalid_model, std::move(message), std::move(remedy), location, {"in [[contacts]]"}};
+}
+
+class ContactMotion {
+ public:
+  ContactMotion(Recognition& recognition, Statement& statement, const std::vector<ContactStatement>& contacts,
+                const MotionWithoutContacts& motion)
+      : recognition_(recognition),
+        statement_(statement),
+        contacts_(contacts),
+        motion_(motion),
+        q_(symbols_of(statement, motion.positions)),
+        v_(symbols_of(statement, motion.velocities)) {}
+
+  [[nodiscard]] Expected<ContactSystem> run() {
+    system_.positions = motion_.positions;
+    system_.velocities = motion_.velocities;
+    for (const auto& stated : contacts_) {
+      if (auto error = check_values(stated)) return tl::unexpected(*error);
+      if (auto error = check_gap(stated)) return tl::unexpected(*error);
+      Contact contact{.name = stated.name};
+      contact.has_friction =
+          !stated.tangent.is_empty() && recognition_.parameter_value(stated.friction.scalar()).value_or(0.0) > 0.0;
+      system_.contacts.push_back(std::move(contact));
+    }
+    set_motion();
+    return std::move(system_);
+  }
+
+ private:
+  Expected<double> at_start(const SX& expression) {
+    return recognition_.graph.add(SX::densify(expression).scalar()).map([&](int node) {
+      return value_at_start(recognition_, statement_, node);
+    });
+  }
+
+  std::optional<Error> check_values(const ContactStatement& contact) {
+    const auto friction = recognition_.parameter_value(contact.friction.scalar());
+    if (!friction || !(*friction >= 0.0) || !std::isfinite(*friction)) {
+      return contact_error(contact.friction_location,
+                           friction ? fmt::format("the friction of '{}' is {}", contact.name, *friction)
+                                    : fmt::format("the friction of '{}' is no constant", contact.name),
+                           "it is a number that is 0 or positive, or an expression of parameters");
+    }
+    if (*friction > 0.0 && contact.tangent.is_empty()) {
+      return contact_error(contact.friction_location,
+                           fmt::format("the contact '{}' has friction and no `tangent`", contact.name),
+                           "write tangent = { x = 1 }: the direction in which it slips, over the positions");
+    }
+    const auto restitution = recognition_.parameter_value(contact.restitution.scalar());
+    if (!restitution || !(*restitution >= 0.0 && *restitution <= 1.0)) {
+      return contact_error(contact.restitution_location,
+                           restitution ? fmt::format("the restitution of '{}' is {}", contact.name, *restitution)
+                                       : fmt::format("the restitution of '{}' is no constant", contact.name),
+                           "it is a number in [0, 1], or an expression of parameters");
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> check_gap(const ContactStatement& contact) {
+    const auto node = recognition_.graph.add(contact.gap.scalar());
+    if (!node) return with_location(node.error(), contact.gap_location);
+    if (auto error = check_smooth(
+            recognition_, statement_, *node,
+            {motion_.positions, true, fmt::format("the gap of '{}'", contact.name), contact.gap_location})) {
+      return with_context(*error, "in [[contacts]]");
+    }
+    if (!SX::depends_on(contact.gap, q_)) {
+      return contact_error(contact.gap_location, fmt::format("the gap of '{}' has no position in it", contact.name),
+                           "a gap is an expression of the positions of [mechanics], of parameters and t");
+    }
+    const auto gap = at_start(contact.gap);
+    if (!gap) return with_location(gap.error(), contact.gap_location);
+    if (*gap >= -1e-12) return std::nullopt;
+    return contact_error(contact.gap_location, fmt::format("the gap of '{}' is {} at the start", contact.name, *gap),
+                         "bodies begin apart or in touch: the gap must not be negative; change the initial positions");
+  }
+
+  void set_motion() {
+    const auto m = static_cast<casadi_int>(contacts_.size());
+    std::vector<SX> gaps, friction, restitution;
+    SX tangents = SX::zeros(m, q_.numel());
+    for (casadi_int i = 0; i < m; ++i) {
+      const auto& stated = contacts_[static_cast<std::size_t>(i)];
+      gaps.push_back(stated.gap);
+      friction.push_back(stated.friction);
+      restitution.push_back(stated.restitution);
+      if (!system_.contacts[static_cast<std::size_t>(i)].has_friction) continue;
+      tangents(i, casadi::Slice()) = stated.tangent;
+    }
+    const SX time(statement_.time);
+    system_.gap = SX::densify(SX::vertcat(gaps));
+    system_.friction = SX::densify(SX::vertcat(friction));
+    system_.restitution = SX::densify(SX::vertcat(restitution));
+    const SX normals = SX::densify(SX::jacobian(system_.gap, q_));
+    system_.rows = SX::vertcat({normals, tangents});
+    system_.velocity =
+        SX::densify(SX::vertcat({SX::mtimes(normals, v_) + SX::jacobian(system_.gap, time), SX::mtimes(tangents, v_)}));
+    system_.responses = motion_.mass.solve(system_.rows.T());
+    const SX bias = SX::mtimes(SX::jacobian(system_.velocity, q_), v_) + SX::jacobian(system_.velocity, time);
+    system_.acceleration = SX::densify(SX::mtimes(system_.responses.T(), motion_.force) + bias);
+  }
+
+  Recognition& recognition_;
+  Statement& statement_;
+  const std::vector<ContactStatement>& contacts_;
+  const MotionWithoutContacts& motion_;
+  SX q_, v_;
+  ContactSystem system_;
+};
+
+}  // namespace
+
+Expected<ContactSystem> contact_motion(Recognition& recognition, Statement& statement,
+                                       const std::vector<ContactStatement>& contacts,
+                                       const MotionWithoutContacts& motion) {
+  return ContactMotion(recognition, statement, contacts, motion).run();
+}
+
+}  // namespace saltus::model

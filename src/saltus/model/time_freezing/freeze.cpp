@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "saltus/model/mechanics/contact_motion_internal.hpp"
+#include "saltus/model/time_freezing/freeze_internal.hpp"
+
+namespace saltus::model {
+
+using casadi::SX;
+
+std::optional<Error> freeze_hysteresis(Recognition& recognition, Statement& statement, int state, const SXElem& input,
+                                       const HysteresisThresholds& thresholds, FreezingPlan& plan) {
+  if (auto error = begin_hysteresis(recognition, statement, state, input, thresholds)) return error;
+  const SX w(statement.states[at(state)].symbol);
+  const double side = thresholds.on > thresholds.off ? 1.0 : -1.0;
+  if (plan.takes_plane) {
+    const double low = std::min(thresholds.on, thresholds.off), high = std::max(thresholds.on, thresholds.off);
+    plan.plane = {thresholds.name, (SX(input) - low) / (high - low), side > 0.0 ? w : 1.0 - w, state, side > 0.0};
+    return std::nullopt;
+  }
+  // NOTE: no region pulls back to 0 or 1 where the state waits. Between two such regions the point where they meet the
+  // threshold would be at rest, too, and time would stand still there for ever.
+  std::vector<SX> alphas;
+  for (const auto& [psi, name] :
+       {std::pair{side * (SX(input) - thresholds.on), "on"}, std::pair{side * (thresholds.off - SX(input)), "off"},
+        std::pair{w - 1.0, "one"}, std::pair{w, "zero"}}) {
+    const auto alpha = recognition.step(SX::densify(psi).scalar(), fmt::format("{}.{}", thresholds.name, name));
+    if (!alpha) return with_location(alpha.error(), thresholds.location);
+    alphas.emplace_back(*alpha);
+  }
+  const SX up = alphas[0] * (1.0 - alphas[2]), down = alphas[1] * alphas[3];
+  plan.added.push_back({state, plan.numbers.transfer * (up - down)});
+  plan.waits *= (1.0 - up) * (1.0 - down);
+  return std::nullopt;
+}
+
+namespace {
+
+Error friction_and_restitution(const std::string& name) {
+  // Member by member: g++ 12 takes the aggregate for uninitialised.
+  Error error;
+  error.code = ErrorCode::not_available;
+  error.message = fmt::format("the contact '{}' has friction and restitution: time-freezing covers one of both", name);
+  error.remedy = "simulate with method = \"event\", or leave one of them out";
+  error.context.emplace_back("in [[contacts]]");
+  return error;
+}
+
+class ContactFreezing {
+ public:
+  ContactFreezing(Recognition& recognition, Statement& statement, const ContactSystem& system, FreezingPlan& plan)
+      : recognition_(recognition),
+        statement_(statement),
+        system_(system),
+        plan_(plan),
+        m_(static_cast<casadi_int>(system.contacts.size())) {}
+
+  [[nodiscard]] std::optional<Error> run() {
+    for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+      if (auto error = plan_.made.contacts[i].is_elastic ? take_elastic(i) : take_inelastic(i)) return error;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  Expected<SX> selection(const SX& psi, const std::string& name, FrozenSelection& found) {
+    const auto alpha = recognition_.step(SX::densify(psi).scalar(), name);
+    if (!alpha) return tl::unexpected(alpha.error());
+    plan_.selections.emplace_back(*alpha, &found);
+    return SX(*alpha);
+  }
+
+  [[nodiscard]] SX response(casadi_int row) const { return system_.responses(casadi::Slice(), row); }
+
+  void add_to(const std::vector<int>& states, const SX& rates) {
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      plan_.added.push_back({states[k], plan_.waits * rates(static_cast<casadi_int>(k))});
+    }
+  }
+
+  /// Stops the rate of the gap, as fast as a_n says; held at 0 it balances the other forces.
+  std::optional<Error> take_inelastic(std::size_t k) {
+    const auto i = static_cast<casadi_int>(k);
+    auto& made = plan_.made.contacts[k];
+    const auto gap = selection(system_.gap(i), made.name + ".gap", made.gap);
+    if (!gap) return gap.error();
+    const auto rate = selection(system_.velocity(i), made.name + ".rate", made.normal);
+    if (!rate) return rate.error();
+    plan_.moves *= *gap + *rate - *gap * *rate;
+    const SX normal = plan_.numbers.a_n * (1.0 - *gap) * (1.0 - *rate);
+    SX tangential = 0.0;
+    if (system_.contacts[k].has_friction) {
+      const auto side = selection(system_.velocity(m_ + i), made.name + ".slip", made.tangent);
+      if (!side) return side.error();
+      tangential = -system_.friction(i) * (2.0 * *side - 1.0) * normal;
+    }
+    add_to(system_.velocities, response(i) * normal + response(m_ + i) * tangential);
+    if (plan_.numbers.stabilisation > 0.0) {
+      add_to(system_.positions,
+             -plan_.numbers.stabilisation * response(i) * system_.gap(i) * (1.0 - *gap) * (1.0 - *rate));
+    }
+    add_outputs(k, normal, tangential);
+    return std::nullopt;
+  }
+
+  /// The depth y and its rate v_n are those of the oscillator y'' = -k y - d y' whatever mass and gap are: positions
+  /// stand, so that normal and mass are constants. It comes back to y = 0 with -e v_n.
+  std::optional<Error> take_elastic(std::size_t k) {
+    const auto i = static_cast<casadi_int>(k);
+    auto& made = plan_.made.contacts[k];
+    if (system_.contacts[k].has_friction) {
+      return friction_and_restitution(made.name);
+    }
+    const SX depth(statement_.states[at(plan_.depth[k])].symbol), rate = system_.velocity(i);
+    const auto open = selection(system_.gap(i) + depth, made.name + ".gap", made.gap);
+    if (!open) return open.error();
+    const double stiffness = plan_.numbers.stiffness, log_e = std::log(plan_.restitution[k]);
+    const double damping = -2.0 * log_e * std::sqrt(stiffness / (std::numbers::pi * std::numbers::pi + log_e * log_e));
+    const SX inverse_mass = SX::mtimes(system_.rows(i, casadi::Slice()), response(i));
+    const SX normal = (1.0 - *open) * (-stiffness * depth - damping * rate) / inverse_mass;
+    plan_.moves *= *open;
+    plan_.added.push_back({plan_.depth[k], plan_.waits * (1.0 - *open) * rate});
+    add_to(system_.velocities, response(i) * normal);
+    add_outputs(k, normal, 0.0);
+    return std::nullopt;
+  }
+
+  /// Forces are those of numerical time: divided by the clock's rate they are forces.
+  void add_outputs(std::size_t k, const SX& normal, const SX& tangential) {
+    auto& made = plan_.made.contacts[k];
+    made.gap_output = static_cast<int>(statement_.outputs.size() + statement_.automatic_outputs.size());
+    const auto add = [&](const char* kind, const SX& value) {
+      statement_.automatic_outputs.push_back({fmt::format("{}({})", kind, made.name), SX::densify(value).scalar()});
+    };
+    add("gap", system_.gap(static_cast<casadi_int>(k)));
+    add("force", made.is_elastic ? SX(0.0) : plan_.waits * normal);
+    if (system_.contacts[k].has_friction) add("friction", plan_.waits * tangential);
+    add("impulse", 0.0);
+    if (made.impulse < 0) return;
+    plan_.added.push_back({made.impulse, plan_.waits * normal});
+    plan_.added.push_back({made.impulse + 1, plan_.waits * tangential});
+  }
+
+  Recognition& recognition_;
+  Statement& statement_;
+  const ContactSystem& system_;
+  FreezingPlan& plan_;
+  casadi_int m_;
+};
+
+}  // namespace
+
+Expected<SX> freeze_contacts(Recognition& recognition, Statement& statement,
+                             const std::vector<ContactStatement>& contacts, const MotionWithoutContacts& motion,
+                             FreezingPlan& plan) {
+  const auto system = contact_motion(recognition, statement, contacts, motion);
+  if (!system) return tl::unexpected(system.error());
+  plan.made.velocities = motion.velocities;
+  if (auto error = ContactFreezing(recognition, statement, *system, plan).run()) return tl::unexpected(*error);
+  return motion.force;
+}
+
+void freeze_rates(Statement& statement, const FreezingPlan& plan) {
+  if (plan.plane) return freeze_in_plane(statement, plan);
+  const SX rate = plan.waits * plan.moves;
+  for (int i = 0; i < plan.made.first_hidden; ++i) {
+    auto& dynamics = statement.states[at(i)].dynamics;
+    if (dynamics) dynamics = SX(SX(*dynamics) * rate).scalar();
+  }
+  statement.states[at(plan.made.clock)].dynamics = rate.scalar();
+  for (const auto& [state, added] : plan.added) {
+    auto& dynamics = statement.states[at(state)].dynamics;
+    dynamics = SX::densify(SX(*dynamics) + added).scalar();
+  }
+  statement.time = plan.numerical_time;
+  statement.automatic_outputs.push_back({"clock_rate", rate.scalar()});
+}
+
+void find_selections(const System& system, FreezingPlan& plan) {
+  const SX alpha = SX::densify(system.alpha);
+  for (const auto& [selection, found] : plan.selections) {
+    for (casadi_int j = 0; j < alpha.numel(); ++j) {
+      const SX one = alpha(j);
+      if (!SX::depends_on(SX(selection), one)) continue;
+      found->function = static_cast<int>(j);
+      found->orientation = SX::is_equal(SX(selection), one, 1) ? 1 : -1;
+    }
+  }
+  plan.made.clock_rate = static_cast<int>(system.output_names.size()) - 1;
+}
+
+}  // namespace saltus::model

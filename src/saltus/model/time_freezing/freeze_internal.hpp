@@ -1,0 +1,79 @@
+// [[contacts]] and [[hysteresis]] become auxiliary dynamics in which the clock stands still.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saltus/model/hysteresis/hysteresis_internal.hpp"
+#include "saltus/model/mechanics/contacts_internal.hpp"
+#include "saltus/model/model_scope_internal.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
+
+namespace saltus::model {
+
+enum class FrozenFor { simulation, optimisation };
+
+/// Numbers of [time_freezing] (interface.md).
+struct FreezingNumbers {
+  double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
+};
+
+/// A rate that is added to that of a state.
+struct AddedRate {
+  int state = 0;
+  casadi::SX rate;
+};
+
+/// The input, scaled to 0 and 1 at the lower and the upper threshold, and the state, 1 on the upper side.
+struct HysteresisPlane {
+  std::string name;
+  casadi::SX scaled, above;
+  int state = 0;
+  bool rises = true;  ///< the state is 1 on the upper side
+};
+
+/// What is gathered on the way from a description to a frozen system.
+struct FreezingPlan {
+  FrozenFor purpose = FrozenFor::simulation;
+  FreezingNumbers numbers{};
+  TimeFreezing made{};
+  SXElem numerical_time{};
+  std::vector<double> restitution{};  ///< by contact
+  std::vector<int> depth{};           ///< state of an elastic contact, else -1
+  /// Instead of `waits`: the one hysteresis of an optimisation by regions in the plane of its input and state.
+  std::optional<HysteresisPlane> plane{};
+  bool takes_plane = false;
+  casadi::SX waits = 1.0;  ///< 1 unless a hysteresis switches
+  casadi::SX moves = 1.0;  ///< 1 unless a contact is closed
+  std::vector<AddedRate> added{};
+  std::vector<std::pair<SXElem, FrozenSelection*>> selections{};  ///< to be found in the system
+};
+
+/// Appends the states of the plan: one for every hysteresis, then what is hidden, the clock last; `t` is the clock from
+/// now on. The values of parameters are known.
+[[nodiscard]] std::optional<Error> declare_frozen(const Description& description, ModelScope& scope,
+                                                  Recognition& recognition, Statement& statement, FreezingPlan& plan);
+
+/// Takes one hysteresis into the plan: its state goes to 1 where the input is beyond `on`, and to 0 beyond `off`.
+[[nodiscard]] std::optional<Error> freeze_hysteresis(Recognition& recognition, Statement& statement, int state,
+                                                     const SXElem& input, const HysteresisThresholds& thresholds,
+                                                     FreezingPlan& plan);
+
+/// Takes the contacts into the plan and appends their outputs.
+/// @return the force without contacts, which is all there is in the free mode
+[[nodiscard]] Expected<casadi::SX> freeze_contacts(Recognition& recognition, Statement& statement,
+                                                   const std::vector<ContactStatement>& contacts,
+                                                   const MotionWithoutContacts& motion, FreezingPlan& plan);
+
+/// Right-hand sides of a plan with a plane: regions between which the state waits at 0 or 1 by sliding.
+void freeze_in_plane(Statement& statement, const FreezingPlan& plan);
+
+/// All right-hand sides are there: makes them those of numerical time.
+void freeze_rates(Statement& statement, const FreezingPlan& plan);
+
+/// The numbers of selections in the system that was made of the plan.
+void find_selections(const System& system, FreezingPlan& plan);
+
+}  // namespace saltus::model

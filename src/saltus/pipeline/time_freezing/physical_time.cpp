@@ -1,0 +1,289 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using model::FrozenContact;
+using model::FrozenSelection;
+using result::ContactMode;
+using result::Event;
+using result::EventKind;
+using result::Mode;
+
+/// Relative to the fastest one: velocities that differ less are the same at an impact without known impulses.
+constexpr double same_velocity = 1e-7;
+
+class PhysicalTime {
+ public:
+  PhysicalTime(const model::System& system, double standing, result::Result& run)
+      : system_(system), freezing_(*system.freezing), run_(run), clock_(at(freezing_.clock)), standing_(standing) {
+    std::set<int> added;
+    for (const auto& contact : freezing_.contacts) {
+      for (const auto& one : {contact.gap, contact.normal, contact.tangent}) added.insert(one.function);
+    }
+    for (const auto& group : system.mode_groups) {
+      shows_regions_ = shows_regions_ && group.name.find('.') == std::string::npos;
+    }
+    for (std::size_t c = 0; c < system.columns.size(); ++c) {
+      const auto& column = system.columns[c];
+      const auto& function = system.switching[at(column.function)];
+      const bool is_hidden = function.name.find('.') != std::string::npos && !function.named;
+      if (!(is_hidden || (added.contains(column.function) && !function.named))) kept_.push_back(c);
+    }
+  }
+
+  std::vector<std::string> run() {
+    auto raw = std::exchange(run_.trajectory, {});
+    auto events = std::exchange(run_.events, {});
+    std::size_t next = 0;
+    for (std::size_t r = 0; r < raw.t.size();) {
+      std::size_t last = r;
+      while (last + 1 < raw.t.size() && same_time(raw.x[r][clock_], raw.x[last + 1][clock_])) ++last;
+      const double t = raw.x[r][clock_];
+      std::vector<Event> here;
+      for (; next < events.size() && (events[next].x[clock_] <= t || same_time(events[next].x[clock_], t)); ++next) {
+        here.push_back(events[next]);
+      }
+      const std::size_t before = run_.events.size();
+      if (!here.empty()) take_events(here, t);
+      const bool is_event = run_.events.size() > before;
+      if (is_event && last > r) add_row(raw, r, t);
+      add_row(raw, last, t);
+      r = last + 1;
+    }
+    auto& rows = run_.trajectory;
+    auto& final = run_.final;
+    final = {rows.t.back(), rows.x.back(), rows.mode.back(), rows.alpha.back(), rows.outputs.back()};
+    if (!rows.contact_modes.empty()) final.contact_modes = rows.contact_modes.back();
+    if (!rows.regions.empty()) {
+      final.regions = rows.regions.back();
+      final.theta = rows.theta.back();
+    }
+    std::vector<std::string> names;
+    for (const std::size_t c : kept_) names.push_back(system_.columns[c].name);
+    return names;
+  }
+
+ private:
+  [[nodiscard]] bool same_time(double a, double b) const {
+    return std::abs(a - b) <= std::max(standing_, 8.0 * rounding_unit * std::max(1.0, std::abs(a)));
+  }
+
+  template <class Values>
+  [[nodiscard]] Values kept(const Values& all) const {
+    Values result;
+    for (const std::size_t c : kept_) result.push_back(all[c]);
+    return result;
+  }
+
+  void add_row(const result::Trajectory& raw, std::size_t r, double t) {
+    auto& rows = run_.trajectory;
+    rows.t.push_back(t);
+    rows.x.push_back(shown_states(system_, raw.x[r]));
+    rows.u.push_back(raw.u[r]);
+    rows.alpha.push_back(kept(raw.alpha[r]));
+    rows.mode.push_back(kept(raw.mode[r]));
+    rows.outputs.push_back(outputs(raw.outputs[r]));
+    if (!freezing_.contacts.empty()) rows.contact_modes.push_back(contact_modes(raw.mode[r]));
+    if (!shows_regions_) return;
+    if (!raw.regions.empty()) rows.regions.push_back(raw.regions[r]);
+    if (!raw.theta.empty()) rows.theta.push_back(raw.theta[r]);
+  }
+
+  /// Forces of numerical time become forces; where time stands still there are impulses instead.
+  [[nodiscard]] std::vector<double> outputs(std::vector<double> values) const {
+    const double rate = values[at(freezing_.clock_rate)];
+    for (const auto& contact : freezing_.contacts) {
+      const std::size_t force = at(contact.gap_output) + 1;
+      for (std::size_t k = force; k < force + (contact.tangent.function >= 0 ? 2U : 1U); ++k) {
+        values[k] = rate > 0.0 ? values[k] / rate : 0.0;
+      }
+    }
+    values.pop_back();
+    return values;
+  }
+
+  [[nodiscard]] int mode_of(const FrozenSelection& selection, const Mode& mode) const {
+    for (std::size_t c = 0; c < system_.columns.size(); ++c) {
+      const auto& column = system_.columns[c];
+      if (column.function == selection.function) {
+        return selection.orientation * column.orientation * mode[c];
+      }
+    }
+    return 1;
+  }
+
+  [[nodiscard]] std::vector<ContactMode> contact_modes(const Mode& mode) const {
+    std::vector<ContactMode> modes;
+    for (const auto& contact : freezing_.contacts) {
+      const bool closed = !contact.is_elastic && mode_of(contact.normal, mode) == 0 && mode_of(contact.gap, mode) <= 0;
+      const bool sticks = contact.tangent.function >= 0 && mode_of(contact.tangent, mode) == 0;
+      modes.push_back(!closed                        ? ContactMode::open
+                      : contact.tangent.function < 0 ? ContactMode::closed
+                      : sticks                       ? ContactMode::stick
+                                                     : ContactMode::slip);
+    }
+    return modes;
+  }
+
+  /// All events of numerical time at one physical time.
+  void take_events(const std::vector<Event>& here, double t) {
+    Event event = here.front();
+    event.t = t;
+    event.mode_after = here.back().mode_after;
+    event.alpha_after = here.back().alpha_after;
+    event.regions_after = here.back().regions_after;
+    event.x_after = here.back().x_after;
+    event.surfaces.clear();
+    event.name.reset();
+    if (!shows_regions_) {
+      event.regions_before.reset();
+      event.regions_after.reset();
+    }
+    const bool has_modes = event.mode_before && event.mode_after && !freezing_.contacts.empty();
+    if (has_modes) {
+      event.contact_modes_before = contact_modes(*event.mode_before);
+      event.contact_modes_after = contact_modes(*event.mode_after);
+    }
+    const bool decided = take_hysteresis(event) || take_impact(event) || (has_modes && take_contacts(event));
+    if (!decided) take_surfaces(here, event);
+    for (auto* mode : {&event.mode_before, &event.mode_after}) {
+      if (*mode) *mode = kept(**mode);
+    }
+    for (auto* alpha : {&event.alpha_before, &event.alpha_after}) {
+      if (*alpha) *alpha = kept(**alpha);
+    }
+    event.x = shown_states(system_, event.x);
+    event.x_after = shown_states(system_, event.x_after);
+    if (decided) {
+      event.unique = true;
+      event.alternatives.clear();
+      event.reason = "time stood still";
+    }
+    if (decided || !event.surfaces.empty()) run_.events.push_back(event);
+    for (const auto& one : here) {
+      if (one.kind != EventKind::user) continue;
+      Event user = one;
+      user.t = t;
+      user.x = shown_states(system_, one.x);
+      user.x_after = shown_states(system_, one.x_after);
+      for (auto* mode : {&user.mode_before, &user.mode_after}) {
+        if (*mode) *mode = kept(**mode);
+      }
+      for (auto* alpha : {&user.alpha_before, &user.alpha_after}) {
+        if (*alpha) *alpha = kept(**alpha);
+      }
+      run_.events.push_back(std::move(user));
+    }
+  }
+
+  [[nodiscard]] bool take_hysteresis(Event& event) const {
+    for (const auto& entry : freezing_.hysteresis) {
+      if (std::round(event.x[at(entry.state)]) != std::round(event.x_after[at(entry.state)])) {
+        event.surfaces.push_back(entry.name);
+      }
+    }
+    if (event.surfaces.empty()) return false;
+    event.kind = EventKind::jump;
+    event.name = event.surfaces.front();
+    return true;
+  }
+
+  [[nodiscard]] bool take_impact(Event& event) const {
+    std::vector<std::array<double, 2>> impulse;
+    for (const auto& contact : freezing_.contacts) {
+      if (contact.impulse < 0) return take_jump_of_velocities(event);
+      const std::size_t state = at(contact.impulse);
+      impulse.push_back({event.x_after[state] - event.x[state], event.x_after[state + 1] - event.x[state + 1]});
+      if (impulse.back()[0] > 0.0) event.surfaces.push_back(contact.name);
+    }
+    if (event.surfaces.empty()) return false;
+    event.kind = EventKind::impact;
+    event.impulse = std::move(impulse);
+    return true;
+  }
+
+  [[nodiscard]] bool take_jump_of_velocities(Event& event) const {
+    double fastest = 0.0, change = 0.0;
+    for (const int v : freezing_.velocities) {
+      fastest = std::max({fastest, std::abs(event.x[at(v)]), std::abs(event.x_after[at(v)])});
+      change = std::max(change, std::abs(event.x_after[at(v)] - event.x[at(v)]));
+    }
+    if (change <= same_velocity * fastest) return false;
+    for (std::size_t i = 0; i < freezing_.contacts.size(); ++i) {
+      const bool closed = freezing_.contacts.size() == 1 || event.contact_modes_after.empty() ||
+                          event.contact_modes_after[i] != ContactMode::open || freezing_.contacts[i].is_elastic;
+      if (closed) event.surfaces.push_back(freezing_.contacts[i].name);
+    }
+    event.kind = EventKind::impact;
+    return true;
+  }
+
+  /// Without an impulse: what opens, touches, sticks or slips.
+  [[nodiscard]] bool take_contacts(Event& event) const {
+    const auto &before = event.contact_modes_before, &after = event.contact_modes_after;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      if (before[i] == after[i]) continue;
+      if (event.surfaces.empty()) {
+        event.kind = after[i] == ContactMode::open    ? EventKind::lift_off
+                     : before[i] == ContactMode::open ? EventKind::contact
+                     : after[i] == ContactMode::stick ? EventKind::stick
+                                                      : EventKind::slip;
+      }
+      event.surfaces.push_back(freezing_.contacts[i].name);
+    }
+    return !event.surfaces.empty();
+  }
+
+  /// Switching functions of the user alone.
+  void take_surfaces(const std::vector<Event>& here, Event& event) const {
+    const auto& last = here.back();
+    std::vector<std::string> names;
+    for (const std::size_t c : kept_) names.push_back(system_.columns[c].name);
+    for (const auto& one : here) {
+      if (one.kind == EventKind::user) continue;
+      for (const auto& surface : one.surfaces) {
+        const bool is_kept = std::find(names.begin(), names.end(), surface) != names.end();
+        const bool is_new = std::find(event.surfaces.begin(), event.surfaces.end(), surface) == event.surfaces.end();
+        if (!is_kept || !is_new) continue;
+        event.surfaces.push_back(surface);
+        event.kind = one.kind;
+      }
+    }
+    event.alternatives.clear();
+    event.reason = last.reason;
+  }
+
+  const model::System& system_;
+  const model::TimeFreezing& freezing_;
+  result::Result& run_;
+  std::size_t clock_ = 0;
+  double standing_ = 0.0;
+  bool shows_regions_ = true;      ///< they are the user's
+  std::vector<std::size_t> kept_;  ///< columns
+};
+
+}  // namespace
+
+std::vector<double> shown_states(const model::System& system, const std::vector<double>& x) {
+  const auto& freezing = *system.freezing;
+  std::vector<double> shown(x.begin(), x.begin() + freezing.first_hidden);
+  for (const auto& entry : freezing.hysteresis)
+    shown[at(entry.state)] = std::round(shown[at(entry.state)]) + 0.0;  // no -0
+  return shown;
+}
+
+std::vector<std::string> to_physical_time(const model::System& system, double standing, result::Result& run) {
+  return PhysicalTime(system, standing, run).run();
+}
+
+}  // namespace saltus::pipeline

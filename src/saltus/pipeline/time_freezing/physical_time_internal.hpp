@@ -1,0 +1,24 @@
+// Rows and events of a run in numerical time become those of physical time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saltus/model/system.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::pipeline {
+
+/// What lies between two rows of one physical time is left out; what the state did there is one event: a jump, an
+/// impact, or a change of what touches. Columns that freezing has added are left out, too.
+/// @param system  a frozen one
+/// @param standing  a clock that gains less stands; at least its rounding
+/// @param run  trajectory, events and end of the run; they are replaced
+/// @return names of the switching functions that are left
+[[nodiscard]] std::vector<std::string> to_physical_time(const model::System& system, double standing,
+                                                        result::Result& run);
+
+/// The states of a frozen system that are columns of a result, from all.
+[[nodiscard]] std::vector<double> shown_states(const model::System& system, const std::vector<double>& x);
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/pipeline/output_rows_internal.hpp"
+#include "saltus/pipeline/simulate_elements_internal.hpp"
+#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
+#include "saltus/pipeline/time_freezing/simulate_frozen_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+/// Numerical time in lengths of physical time: tried one after the other. Contacts that rest take a part of it, impacts
+/// a little each.
+constexpr double lengths[] = {2.0, 16.0, 256.0, 4096.0};
+
+/// Of the length of a simulation step: where a gap is held at 0 by its selection the clock moves by its roundings.
+constexpr double standing_part = 1e-9;
+
+Error not_frozen(std::string message, std::string remedy) {
+  return {ErrorCode::not_available, std::move(message), std::move(remedy), {}, {}};
+}
+
+/// The system that stops where its clock shows `until`.
+model::System clocked(const model::System& frozen, double from, double until) {
+  model::System system = frozen;
+  const int clock = system.freezing->clock;
+  system.initial_state[at(clock)] = from;
+  model::UserEvent end;
+  end.name = "end";
+  end.value = system.x(clock) - until;
+  end.guards = end.guard_alpha = casadi::SX(0, 1);
+  end.direction = model::Direction::up;
+  end.action = model::AtEvent::stop;
+  system.events.push_back(std::move(end));
+  return system;
+}
+
+/// Rows at times that were asked for are at those times, not at their roundings.
+void put_on_times(const std::vector<double>& times, double until, result::Trajectory& rows) {
+  for (double& t : rows.t) {
+    const double rounding = 1e-13 * std::max(1.0, std::abs(until));
+    const auto next = std::lower_bound(times.begin(), times.end(), t - rounding);
+    if (next != times.end() && *next <= t + rounding) t = *next;
+    if (std::abs(t - until) <= rounding) t = until;
+  }
+}
+
+}  // namespace
+
+Expected<result::Result> simulate_frozen(const model::System& system, const SimulateOptions& options,
+                                         std::vector<double> times, result::Result frame, const Observers& observers) {
+  const auto& frozen = system.frozen->system;
+  if (!frozen) return tl::unexpected(frozen.error());
+  if (options.method != Method::fesd) {
+    return tl::unexpected(not_frozen("the method \"timestepping\" does not cover contacts and hysteresis",
+                                     "method = \"fesd\" or \"event\""));
+  }
+  if (options.fesd.sensitivities) {
+    return tl::unexpected(
+        not_frozen("there are no sensitivities with contacts or hysteresis", "leave simulate.fesd.sensitivities out"));
+  }
+  const double from = options.from, until = *options.until;
+  const model::System made = clocked(*frozen, from, until);
+  SimulateOptions numerical = options;
+  numerical.event_rows = true;
+  Expected<result::Result> run = frame;
+  for (const double length : lengths) {
+    numerical.until = from + length * (until - from);
+    numerical.fesd.steps = static_cast<long>(std::ceil(length * static_cast<double>(options.fesd.steps)));
+    run = simulate_elements(made, numerical, times, {}, frame, observers);
+    if (!run || run->status.termination != result::Termination::completed) break;
+  }
+  if (!run) return run;
+  const double reached = run->final.x[at(made.freezing->clock)];
+  auto& status = run->status;
+  const bool ended = status.termination == result::Termination::stopped_by_event && !run->events.empty() &&
+                     run->events.back().name == "end";
+  if (ended) {
+    run->events.pop_back();
+    status.termination = result::Termination::completed;
+    status.message.clear();
+  } else if (status.termination == result::Termination::completed) {
+    status.termination = result::Termination::not_converged;
+    status.message = "the clock stands still";
+  }
+  status.time_reached = ended ? until : reached;
+  const double standing = standing_part * (until - from) / static_cast<double>(options.fesd.steps);
+  run->switching_functions = to_physical_time(made, standing, *run);
+  put_on_times(times, until, run->trajectory);
+  if (!options.event_rows) leave_out_event_rows(times, run->trajectory);
+  run->final.t = run->trajectory.t.back();
+  return run;
+}
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,175 @@
+"""Contacts and hysteresis where time stands still: the method fesd, and saltus optimize. Event-driven runs are the truth."""
+
+import json
+import math
+import tomllib
+
+import tool
+
+HEAD = "[model]\nname = 'm'\n"
+
+BALL = HEAD + """[states]
+x = 0
+z = 1
+vx = 4
+vz = 0
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+potential = "10*z"
+[[contacts]]
+name = "ground"
+gap = "z"
+tangent = { x = 1 }
+friction = 0.3
+[simulate]
+until = 2
+output = { times = [0.25, 1.0] }
+"""
+
+# A sloped, curved gap, and a mass matrix that is neither diagonal nor constant.
+BOWL = HEAD + """[states]
+x = 1
+z = 2
+vx = 0.3
+vz = 0
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+mass = [["3 + x^2/10", "0.5"], ["0.5", 2]]
+potential = "20*z"
+coriolis = "auto"
+[[contacts]]
+name = "bowl"
+gap = "z - x^2/4"
+restitution = 0.7
+[simulate]
+until = 1.2
+"""
+
+RELAYS = HEAD + """[states]
+v = 0
+y = 0
+[dynamics]
+v = "1 - 2*third"
+y = "first + 10*second - 3*third"
+[[hysteresis]]
+name = "first"
+input = "v"
+on = 1
+off = 0.5
+[[hysteresis]]
+name = "second"
+input = "v"
+on = 2
+off = 0.25
+[[hysteresis]]
+name = "third"
+input = "v"
+on = 3
+off = 0.1
+[simulate]
+until = 9
+"""
+
+
+QUARTER = math.pi / 4
+# Of an independent code, but for the ninth digit of M33 (by hand).
+MONOPED = (
+    ({}, [-0.192912, -0.0548, 0, 0, 0.053976192, 0.01964, 0.00868, 0, -61.85205, 0, 0]),
+    ({"q_z": 0.3, "phi_h": -QUARTER, "phi_k": 2 * QUARTER, "v_x": 1, "v_z": -1, "w_h": 2, "w_k": -3},
+     [-0.1364093834, -0.0387494516, -0.0589104802, 0.0387494516, 0.032056192, 0.00868, 0.00868,
+      0.3518902754, -62.2814391787, 0.5450318103, -0.4239721203]),
+)
+
+
+class TimeFreezing(tool.ToolTest):
+    def simulated(self, model, method, *more):
+        file = self.write("m.toml", model)
+        self.run_tool("simulate", file, "--method", method, "--quiet", "--out", "r.json", *more, code=0)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
+    def assert_agree(self, model, delta, *more):
+        event, frozen = self.simulated(model, "event"), self.simulated(model, "fesd", *more)
+        self.assertEqual(event["states"], frozen["states"])
+        self.assertEqual(frozen["final"]["t"], event["final"]["t"])
+        for expected, found in zip(event["final"]["x"], frozen["final"]["x"]):
+            self.assertAlmostEqual(expected, found, delta=delta)
+        self.assertEqual([e["kind"] for e in event["events"]], [e["kind"] for e in frozen["events"]])
+        self.assertEqual([e["surfaces"] for e in event["events"]], [e["surfaces"] for e in frozen["events"]])
+        for expected, found in zip(event["events"], frozen["events"]):
+            self.assertAlmostEqual(expected["t"], found["t"], delta=delta)
+            for a, b in zip(expected["x_after"], found["x_after"]):
+                self.assertAlmostEqual(a, b, delta=delta)
+        return event, frozen
+
+    def test_ball_lands_slides_and_stops(self):
+        event, frozen = self.assert_agree(BALL, 1e-8)
+        self.assertAlmostEqual(frozen["events"][0]["impulse"][0][0], math.sqrt(20), delta=1e-9)
+        self.assertAlmostEqual(frozen["events"][1]["t"], math.sqrt(0.2) + (4 - 0.3 * math.sqrt(20)) / 3, delta=1e-9)
+        self.assertEqual(frozen["events"][1]["contact_modes_after"], ["stick"])
+        self.assertAlmostEqual(frozen["final"]["outputs"][1], 10.0, delta=1e-9)  # force(ground)
+        rows = frozen["trajectory"]
+        for t, x in ((0.25, 1.0), (1.0, None)):
+            self.assertIn(t, rows["t"])
+            row = rows["t"].index(t)
+            expected = event["trajectory"]["x"][event["trajectory"]["t"].index(t)]
+            for a, b in zip(expected, rows["x"][row]):
+                self.assertAlmostEqual(a, b, delta=1e-8)
+        # Time goes on, and has two rows where it stood still.
+        self.assertEqual(rows["t"], sorted(rows["t"]))
+        self.assertEqual(rows["t"].count(frozen["events"][0]["t"]), 2)
+
+    def test_restitution_holds_with_any_mass_and_gap(self):
+        _, frozen = self.assert_agree(BOWL, 1e-8, "--set", "simulate.fesd.stages=4")
+        hit = frozen["events"][0]
+        normal = lambda x: x[3] - x[0] / 2 * x[2]
+        self.assertAlmostEqual(normal(hit["x_after"]), -0.7 * normal(hit["x"]), delta=1e-9)
+
+    def test_automaton_of_nested_thresholds(self):
+        _, frozen = self.assert_agree(RELAYS, 1e-8)
+        self.assertEqual([e["name"] for e in frozen["events"]], 3 * ["first", "second", "third"])
+
+    def test_bad_input(self):
+        for change, line in (
+            (("[simulate]", "[time_freezing]\na_n = 0\n[simulate]"), "a_n is 0"),
+            (("[simulate]", "[time_freezing]\nstiffness = -1\n[simulate]"), "stiffness is -1"),
+            (("[simulate]", "[time_freezing]\ntransfer = 0\n[simulate]"), "transfer is 0"),
+            (("[simulate]", "[time_freezing]\nstabilisation = -1\n[simulate]"), "stabilisation is -1"),
+            (("[simulate]", "[time_freezing]\nclock = 'x'\n[simulate]"), "`clock` beside [[contacts]]"),
+            (("vz = 0\n", "vz = 0\nclock = 0\n"), "a state with the name 'clock' beside [[contacts]]"),
+        ):
+            file = self.write("bad.toml", BALL.replace(*change))
+            _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
+            self.assertIn(line, " ".join(err.split()))
+        file = self.write("bad.toml", BALL.replace("friction = 0.3", "friction = 0.3\nrestitution = 0.5"))
+        _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
+        self.assertIn("has friction and restitution", err)
+        self.run_tool("simulate", file, "--quiet", code=0)
+
+    def test_monoped_has_its_masses_and_forces(self):
+        text = (tool.SOURCE / "examples/contacts/monoped.toml").read_text(encoding="utf-8")
+        forces = tomllib.loads(text)["mechanics"]["force"]
+        outputs = ["M13", "M14", "M23", "M24", "M33", "M34", "M44"]
+        table = "".join(f'm_{i} = "{name}"\n' for i, name in enumerate(outputs))
+        table += "".join(f'h_{i} = "{force}"\n' for i, force in enumerate(forces.values()))
+        text = text[:text.index("[optimize]")].replace("[outputs]\n", "[outputs]\n" + table)
+        for state, expected in MONOPED:
+            sets = [word for name, value in state.items() for word in ("--set", f"{name}={value}")]
+            found = self.simulated(text, "event", "--until", "1e-6", *sets)["trajectory"]["outputs"][0]
+            for a, b in zip(found, expected):
+                self.assertAlmostEqual(a, b, delta=1e-9)
+
+    def test_hysteresis_of_a_car_is_optimised(self):
+        text = (tool.SOURCE / "examples/contacts/turbo-hysteresis.toml").read_text(encoding="utf-8")
+        self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertAlmostEqual(result["objective"], 10.2292578, delta=1e-5)
+        self.assertEqual(result["states"], ["q", "v", "turbo"])
+        self.assertEqual([e["name"] for e in result["events"]], ["turbo", "turbo"])
+        self.assertAlmostEqual(result["events"][0]["t"], 3.0, delta=1e-7)
+        self.assertLess(result["verification"]["interval_defect"], 1e-9)
+
+
+if __name__ == "__main__":
+    tool.main()
