@@ -1,3 +1,5 @@
+#include "model.hpp"
+
 #include <memory>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/pair.h>
@@ -10,7 +12,6 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "model.hpp"
 #include "parts.hpp"
 #include "result.hpp"
 #include "saltus/cli/check_text.hpp"
@@ -74,8 +75,8 @@ nb::object simulate(Model& model, std::vector<std::string> settings, std::vector
 
 nb::object compare(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
                    nb::list warnings) {
-  return run_simulation(model, {std::move(settings), std::move(options), cli::RunMethods::several}, std::move(progress), std::move(warnings),
-                        pipeline::compare);
+  return run_simulation(model, {std::move(settings), std::move(options), cli::RunMethods::several}, std::move(progress),
+                        std::move(warnings), pipeline::compare);
 }
 
 nb::object order(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
@@ -83,8 +84,8 @@ nb::object order(Model& model, std::vector<std::string> settings, std::vector<Op
   pipeline::OrderOptions what;
   if (!schemes.empty()) what.schemes = value_or_raise(pipeline::parse_schemes(schemes));
   if (!steps.empty()) what.steps = value_or_raise(pipeline::parse_steps(steps));
-  return run_simulation(model, {std::move(settings), std::move(options), cli::RunMethods::several}, std::move(progress), std::move(warnings),
-                        [&](const auto& system, const auto& simulate, const auto& observers) {
+  return run_simulation(model, {std::move(settings), std::move(options), cli::RunMethods::several}, std::move(progress),
+                        std::move(warnings), [&](const auto& system, const auto& simulate, const auto& observers) {
                           return pipeline::order(system, simulate, what, observers);
                         });
 }

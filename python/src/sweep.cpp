@@ -1,13 +1,12 @@
 #include <atomic>
-#include <optional>
-#include <thread>
-
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+#include <optional>
+#include <thread>
 
 #include "errors.hpp"
 #include "model.hpp"
@@ -27,8 +26,11 @@ pipeline::Keep keep_named(const std::string& word) {
   if (word == "final") return pipeline::Keep::final;
   if (word == "events") return pipeline::Keep::events;
   if (word == "trajectory") return pipeline::Keep::trajectory;
-  raise({ErrorCode::invalid_option, "keep='" + word + "': expected final, events or trajectory",
-         suggest(word, {"final", "events", "trajectory"}), {}, {}});
+  raise({ErrorCode::invalid_option,
+         "keep='" + word + "': expected final, events or trajectory",
+         suggest(word, {"final", "events", "trajectory"}),
+         {},
+         {}});
 }
 
 /// A column as an array that owns its numbers, or as a list of words.
@@ -69,8 +71,9 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
   }
   const auto runs = [&] {
     const nb::gil_scoped_release released;
-    return pipeline::sweep({count, keep, what.jobs, begin},
-                           [&](std::size_t run) { return cli::state_run(input, plan, begin + run); }, observers);
+    return pipeline::sweep(
+        {count, keep, what.jobs, begin}, [&](std::size_t run) { return cli::state_run(input, plan, begin + run); },
+        observers);
   }();
   if (!runs) raise(io::located(runs.error(), input.file));
   nb::dict columns;
@@ -96,13 +99,15 @@ void add_sweep(nb::class_<Model>& type) {
          std::size_t jobs, std::pair<std::size_t, std::size_t> share, nb::object progress, nb::list warnings) {
         const Request asked{std::move(settings), std::move(options), cli::RunMethods::chosen};
         const std::size_t threads = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
-        const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, true}, std::move(keep), threads, {share.first, share.second}};
+        const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, true},
+                         std::move(keep),
+                         threads,
+                         {share.first, share.second}};
         return sweep(model, asked, what, std::move(progress), std::move(warnings));
       },
       nb::arg("settings"), nb::arg("options"), nb::arg("over"), nb::arg("paired"), nb::arg("samples"),
       nb::arg("runs").none(), nb::arg("seed"), nb::arg("keep"), nb::arg("jobs"), nb::arg("share"),
-      nb::arg("progress").none(),
-      nb::arg("warnings"));
+      nb::arg("progress").none(), nb::arg("warnings"));
 }
 
 }  // namespace saltus::python

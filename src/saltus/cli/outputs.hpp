@@ -19,11 +19,11 @@ enum class Written {
 
 /// What was typed of files.
 struct OutputNames {
-  std::vector<std::string> files{};     ///< of --out; - is standard output
-  std::string format{};                 ///< of --format, for standard output: a suffix without its point
-  std::string report{};                 ///< of --report: .html; empty for none
+  std::vector<std::string> files{};        ///< of --out; - is standard output
+  std::string format{};                    ///< of --format, for standard output: a suffix without its point
+  std::string report{};                    ///< of --report: .html; empty for none
   std::string report_option = "--report";  ///< what the user calls it
-  std::vector<std::string> suffixes{};  ///< that files of --out may have: .json, .csv, .npz
+  std::vector<std::string> suffixes{};     ///< that files of --out may have: .json, .csv, .npz
 };
 
 /// The outputs of one run; exists only if all of them can be written.

@@ -62,7 +62,8 @@ Expected<void> write_page(const std::string& page, const ReportArguments& argume
   if (!overlays) return tl::unexpected(overlays.error());
   for (const auto& input : arguments.results) {
     // None of the results that are read may be written over.
-    if (auto output = Outputs::make({.report = page, .report_option = "--out"}, input); !output) return tl::unexpected(output.error());
+    if (auto output = Outputs::make({.report = page, .report_option = "--out"}, input); !output)
+      return tl::unexpected(output.error());
   }
   const auto output = Outputs::make({.report = page, .report_option = "--out"}, arguments.results.front());
   if (!output) return tl::unexpected(output.error());

@@ -201,7 +201,8 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
 
   const auto written = outputs->write(*result, progress_of(arguments));
   // Also if nothing could be written: it is all that is left.
-  if (!arguments.quiet && !outputs->fill_standard_output()) print(report::to_table(*result, *shown, input->file.captions));
+  if (!arguments.quiet && !outputs->fill_standard_output())
+    print(report::to_table(*result, *shown, input->file.captions));
   if (!written) return refuse(written.error());
   if (*written == Written::interrupted) return ExitCode::stopped_early;
   return report_stops(*result, arguments);

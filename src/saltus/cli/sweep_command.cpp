@@ -67,7 +67,8 @@ Expected<void> check_output(const SweepArguments& arguments, const std::string& 
   }
   if (!arguments.page.empty()) {
     if (!arguments.task.empty()) {
-      return tl::unexpected(misuse("--report of a share", "the page shows all shares: sweep --join … --report page.html"));
+      return tl::unexpected(
+          misuse("--report of a share", "the page shows all shares: sweep --join … --report page.html"));
     }
     if (!arguments.page.ends_with(".html")) {
       return tl::unexpected(misuse(fmt::format("--report {}: the name must end in .html", arguments.page), ""));
@@ -100,7 +101,8 @@ Expected<void> write_table(const std::string& file, const std::vector<TableColum
   return io::stream_file(file, [&](io::Sink sink) { return write_npz(table, sink); });
 }
 
-Expected<void> write_files(const SweepArguments& arguments, const std::vector<TableColumn>& table, const SweepPage& page) {
+Expected<void> write_files(const SweepArguments& arguments, const std::vector<TableColumn>& table,
+                           const SweepPage& page) {
   if (!arguments.out.empty()) {
     if (auto written = write_table(arguments.out, table); !written) return written;
   }
@@ -122,9 +124,9 @@ ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs) {
   const auto first = std::find_if(runs.begin(), runs.end(), stopped);
   if (first == runs.end()) return ExitCode::done;
   const auto& status = first->result.status;
-  print_error(fmt::format("{} of {} runs stopped early; run {}: {}{}{}", std::count_if(runs.begin(), runs.end(), stopped),
-                          runs.size(), first - runs.begin() + 1, name(status.termination),
-                          status.message.empty() ? "" : ": ", status.message));
+  print_error(fmt::format("{} of {} runs stopped early; run {}: {}{}{}",
+                          std::count_if(runs.begin(), runs.end(), stopped), runs.size(), first - runs.begin() + 1,
+                          name(status.termination), status.message.empty() ? "" : ": ", status.message));
   return ExitCode::stopped_early;
 }
 
@@ -178,13 +180,15 @@ ExitCode run_sweep(const SweepArguments& arguments) {
 ExitCode run_join(const SweepArguments& arguments) {
   if (!arguments.run.model.empty() || !arguments.request.over.empty() || !arguments.request.samples.empty() ||
       !arguments.task.empty()) {
-    return refuse(misuse("--join takes the tables of shares, and no model", "saltus sweep --join 1.csv 2.csv --out all.csv"));
+    return refuse(
+        misuse("--join takes the tables of shares, and no model", "saltus sweep --join 1.csv 2.csv --out all.csv"));
   }
   if (auto writable = check_output(arguments, ""); !writable) return refuse(writable.error());
   const auto table = join_shares(arguments.join);
   if (!table) return refuse(table.error());
   // Which columns were changed stands in no share; they are those between the run and its status.
-  const auto status = std::find_if(table->begin(), table->end(), [](const auto& column) { return column.name == "status"; });
+  const auto status =
+      std::find_if(table->begin(), table->end(), [](const auto& column) { return column.name == "status"; });
   SweepPage page{"Sweep", "saltus simulate MODEL", {}, true};
   for (auto column = table->begin() + 1; column < status; ++column) {
     const auto& name = column->name;
@@ -228,8 +232,7 @@ Command add_sweep(CLI::App& app) {
   command->add_option("--join", arguments->join, "the tables of all shares, which become one; no MODEL then")
       ->type_name("FILE.csv …");
   command->get_option("MODEL")->required(false);
-  command->footer(
-      "Example:\n  saltus sweep stick-slip --over belt=0.05:0.3:100 --over v=-0.1,0,0.1 --out belt.csv");
+  command->footer("Example:\n  saltus sweep stick-slip --over belt=0.05:0.3:100 --over v=-0.1,0,0.1 --out belt.csv");
   return {"sweep", [arguments] { return arguments->join.empty() ? run_sweep(*arguments) : run_join(*arguments); }};
 }
 

@@ -1,8 +1,8 @@
+#include "saltus/io/zip_stream.hpp"
+
 #include <algorithm>
 #include <new>
 #include <zlib.h>
-
-#include "saltus/io/zip_stream.hpp"
 
 namespace saltus::io {
 namespace {

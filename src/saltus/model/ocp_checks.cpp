@@ -1,11 +1,10 @@
-#include "saltus/model/ocp_checks_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/ocp_checks_internal.hpp"
 
 namespace saltus::model {
 namespace {
@@ -34,13 +33,15 @@ std::optional<Error> check_functions(const Ocp& ocp, const SourceLocation& locat
     const SX alpha = system.alpha(static_cast<casadi_int>(j));
     if (SX::depends_on(system.f, alpha)) {
       return mistake(fmt::format("the switching function '{}' depends on the control '{}'", function.name, control),
-                     fmt::format("make '{0}' a state with a rate that is the control: {0} = \"rate\"", control), location,
-                     ErrorCode::not_available);
+                     fmt::format("make '{0}' a state with a rate that is the control: {0} = \"rate\"", control),
+                     location, ErrorCode::not_available);
     }
     if (SX::depends_on(system.outputs, alpha)) {
-      return mistake(fmt::format("a cost or a constraint switches where '{}' changes its sign, a function of the control "
-                                 "'{}'", function.name, control),
-                     "abs and max of controls may enter convexly; step, sign and if of controls may not", location);
+      return mistake(
+          fmt::format("a cost or a constraint switches where '{}' changes its sign, a function of the control "
+                      "'{}'",
+                      function.name, control),
+          "abs and max of controls may enter convexly; step, sign and if of controls may not", location);
     }
   }
   return std::nullopt;
@@ -96,8 +97,8 @@ std::optional<Error> check_least_squares(const OcpLeastSquares& term, const Leas
                    "give one reference per expression, or none for 0", stated.location);
   }
   const auto& weight = stated.weight;
-  const bool is_square = weight.size() == n && std::all_of(weight.begin(), weight.end(),
-                                                           [n](const auto& row) { return row.size() == n; });
+  const bool is_square =
+      weight.size() == n && std::all_of(weight.begin(), weight.end(), [n](const auto& row) { return row.size() == n; });
   const bool is_diagonal = weight.size() == 1 && weight.front().size() == n;
   if (!weight.empty() && !is_square && !is_diagonal) {
     return mistake(fmt::format("the weight of least_squares does not fit {} expressions", n),
@@ -150,8 +151,8 @@ std::optional<Error> check_initial_states(const Ocp& ocp, const Description& des
                                    system.state_upper[i], location))
         return error;
     } else if (initial < system.state_lower[i] || initial > system.state_upper[i]) {
-      return mistake(fmt::format("state '{}' starts at {}, outside of its bounds [{}, {}]", system.state_names[i], initial,
-                                 system.state_lower[i], system.state_upper[i]),
+      return mistake(fmt::format("state '{}' starts at {}, outside of its bounds [{}, {}]", system.state_names[i],
+                                 initial, system.state_lower[i], system.state_upper[i]),
                      "move the initial value between the bounds, or make it free", location);
     }
   }
@@ -176,9 +177,10 @@ std::optional<Error> check(Ocp& ocp, const Description& description) {
   if (ocp.clock) {
     const SX all = SX::vertcat({system.f, system.outputs});
     if (SX::depends_on(all, system.t)) {
-      return mistake(fmt::format("t beside the clock '{}'", system.state_names[at(ocp.clock->state)]),
-                     fmt::format("write the clock's name, {}: time is frozen by hand",
-                                 system.state_names[at(ocp.clock->state)]), location);
+      return mistake(
+          fmt::format("t beside the clock '{}'", system.state_names[at(ocp.clock->state)]),
+          fmt::format("write the clock's name, {}: time is frozen by hand", system.state_names[at(ocp.clock->state)]),
+          location);
     }
   }
   for (const auto& event : description.events) {

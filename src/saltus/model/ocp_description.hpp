@@ -41,9 +41,9 @@ struct HorizonDescription {
 /// One of [[optimize.least_squares]].
 struct LeastSquaresDescription {
   std::vector<expression::NodePtr> of;
-  std::vector<expression::NodePtr> reference;  ///< one per expression; empty: 0, or samples
-  std::vector<std::vector<double>> samples;    ///< of a file: one row per interval; empty without
-  std::string file;                            ///< its name, for messages
+  std::vector<expression::NodePtr> reference;            ///< one per expression; empty: 0, or samples
+  std::vector<std::vector<double>> samples;              ///< of a file: one row per interval; empty without
+  std::string file;                                      ///< its name, for messages
   std::vector<std::vector<expression::NodePtr>> weight;  ///< one row: the diagonal; else a matrix; empty: ones
   CostPoints at = CostPoints::intervals;
   SourceLocation location;

@@ -1,5 +1,3 @@
-#include "saltus/model/ocp_quantities_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/ocp_quantities_internal.hpp"
 
 namespace saltus::model {
 
@@ -50,7 +49,8 @@ Expected<System> OcpQuantities::build(const std::vector<Override>& overrides) {
   const SX moving = SX::vertcat({system->t, system->x, system->u, system->alpha});
   const casadi::Function outputs("saltus_constants", {system->p, moving}, {system->outputs});
   const auto nan = casadi::DM::nan(moving.size1(), moving.size2());
-  const std::vector<double> all = casadi::DM::densify(outputs(std::vector<casadi::DM>{casadi::DM(p), nan}).front()).nonzeros();
+  const std::vector<double> all =
+      casadi::DM::densify(outputs(std::vector<casadi::DM>{casadi::DM(p), nan}).front()).nonzeros();
   for (std::size_t i = 0; i < expressions_.size(); ++i) {
     const std::size_t row = static_cast<std::size_t>(user_outputs_) + i;
     constant_.push_back(is_constant(expressions_[i].expression));
@@ -71,13 +71,13 @@ Expected<double> OcpQuantities::value(int quantity) const {
   if (constant_[at(quantity)] && std::isfinite(value)) return value;
   const std::string text = expression::to_text(*stated.expression);
   const bool finite = !constant_[at(quantity)];
-  return tl::unexpected(Error{
-      ErrorCode::invalid_model,
-      finite ? fmt::format("{} has to be a constant, found '{}'", stated.name, text)
-             : fmt::format("{} is {}, not a finite number", stated.name, value),
-      finite ? "use numbers and parameters that are not free" : "check the expression and the parameters in it",
-      stated.location,
-      {"in [optimize]"}});
+  return tl::unexpected(
+      Error{ErrorCode::invalid_model,
+            finite ? fmt::format("{} has to be a constant, found '{}'", stated.name, text)
+                   : fmt::format("{} is {}, not a finite number", stated.name, value),
+            finite ? "use numbers and parameters that are not free" : "check the expression and the parameters in it",
+            stated.location,
+            {"in [optimize]"}});
 }
 
 }  // namespace saltus::model

@@ -141,7 +141,7 @@ struct System {
   std::vector<Cell> cells;            ///< arguments hold symbols of earlier ones only
   std::vector<bool> discrete_states;  ///< n_x: dynamics 0, changed by jumps only
   std::vector<ModeGroup> mode_groups;
-  ContactSystem contacts;  ///< empty unless bodies touch
+  ContactSystem contacts;                        ///< empty unless bodies touch
   std::shared_ptr<const TimeFreezing> freezing;  ///< of a system without jumps whose time stands still instead
   std::shared_ptr<const FrozenSystem> frozen;    ///< of one with contacts or hysteresis: the same, frozen
 

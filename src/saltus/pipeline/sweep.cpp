@@ -46,7 +46,8 @@ class Workshop {
   void work() {
     for (std::size_t i = next_++; i < runs_.size() && !failed_; i = next_++) {
       if (interrupted()) {
-        runs_[i].result.status = {result::Termination::stopped_by_user, "not begun", std::numeric_limits<double>::quiet_NaN()};
+        runs_[i].result.status = {result::Termination::stopped_by_user, "not begun",
+                                  std::numeric_limits<double>::quiet_NaN()};
       } else if (auto done = one(i); !done) {
         fail(i, done.error());
       }
@@ -58,7 +59,8 @@ class Workshop {
 
   [[nodiscard]] Expected<std::vector<SweepRun>> outcome() && {
     if (!error_) return std::move(runs_);
-    return tl::unexpected(with_context(std::move(*error_), fmt::format("in run {}", options_.before + failed_run_ + 1)));
+    return tl::unexpected(
+        with_context(std::move(*error_), fmt::format("in run {}", options_.before + failed_run_ + 1)));
   }
 
  private:
@@ -82,11 +84,12 @@ class Workshop {
     leave_what_is_kept(runs_[i], options_.keep);
     const double kept = bytes_of(runs_[i].result.trajectory);
     if (kept > 0.0 && (kept_bytes_ += kept) > most_kept_bytes) {
-      return tl::unexpected(Error{ErrorCode::invalid_option,
-                                  fmt::format("the trajectories of all runs need more than {:.0f} GB", most_kept_bytes / 1e9),
-                                  "keep events or final, or ask for fewer rows: simulate.output.points",
-                                  {},
-                                  {}});
+      return tl::unexpected(
+          Error{ErrorCode::invalid_option,
+                fmt::format("the trajectories of all runs need more than {:.0f} GB", most_kept_bytes / 1e9),
+                "keep events or final, or ask for fewer rows: simulate.output.points",
+                {},
+                {}});
     }
     return {};
   }

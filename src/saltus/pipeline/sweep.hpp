@@ -19,7 +19,7 @@ enum class Keep { final, events, trajectory };
 struct SweepOptions {
   std::size_t runs = 0;
   Keep keep = Keep::final;
-  std::size_t jobs = 1;  ///< threads, >= 1
+  std::size_t jobs = 1;    ///< threads, >= 1
   std::size_t before = 0;  ///< of a share of a sweep: runs that others do before these; for messages
 };
 

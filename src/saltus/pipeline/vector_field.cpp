@@ -14,7 +14,7 @@
 namespace saltus::pipeline {
 namespace {
 
-using Point = std::array<double, 2>;
+using PlanePoint = std::array<double, 2>;
 
 /// Arrows along the surfaces: as many on a length of the box.
 constexpr int arrows_along = 14;
@@ -27,7 +27,7 @@ class FieldOfTwoStates {
       : kernel_(std::move(kernel)), t_(t), box_(box), psi_(at(kernel_.event_functions())) {}
 
   /// Selections of the signs of psi; a function that depends on selections is read again.
-  [[nodiscard]] std::vector<double> selections(const Point& x) {
+  [[nodiscard]] std::vector<double> selections(const PlanePoint& x) {
     std::vector<double> alpha(at(kernel_.switching_functions()), 0.5);
     for (std::size_t round = 0; round <= alpha.size(); ++round) {
       kernel_.functions(t_, x.data(), alpha.data(), psi_.data());
@@ -38,13 +38,13 @@ class FieldOfTwoStates {
     return alpha;
   }
 
-  [[nodiscard]] Point field(const Point& x, const std::vector<double>& alpha) const {
-    Point slope{};
+  [[nodiscard]] PlanePoint field(const PlanePoint& x, const std::vector<double>& alpha) const {
+    PlanePoint slope{};
     kernel_.field(t_, x.data(), alpha.data(), slope.data());
     return slope;
   }
 
-  void add(const Point& x, const Point& slope, result::Arrows& arrows) const {
+  void add(const PlanePoint& x, const PlanePoint& slope, result::Arrows& arrows) const {
     if (!std::isfinite(slope[0]) || !std::isfinite(slope[1]) || (slope[0] == 0.0 && slope[1] == 0.0)) return;
     arrows.x.push_back(x[0]);
     arrows.y.push_back(x[1]);
@@ -55,27 +55,27 @@ class FieldOfTwoStates {
   void add_grid(result::Arrows& arrows) {
     for (int i = 0; i < field_cells; ++i) {
       for (int j = 0; j < field_cells; ++j) {
-        const Point x{along(0, (i + 0.5) / field_cells), along(1, (j + 0.5) / field_cells)};
+        const PlanePoint x{along(0, (i + 0.5) / field_cells), along(1, (j + 0.5) / field_cells)};
         add(x, field(x, selections(x)), arrows);
       }
     }
   }
 
   /// The fields of both sides of surface j at a point of it, and the sliding one.
-  void add_surface(int j, const Point& x, result::VectorField& arrows) {
+  void add_surface(int j, const PlanePoint& x, result::VectorField& arrows) {
     auto alpha = selections(x);
-    Point normal{};
+    PlanePoint normal{};
     double rate = 0.0;
     kernel_.gradient(j, t_, x.data(), alpha.data(), normal.data(), &rate);
     const auto at_selection = [&](double value) {
       alpha[at(j)] = value;
       return field(x, alpha);
     };
-    const auto velocity = [&](const Point& slope) { return rate + normal[0] * slope[0] + normal[1] * slope[1]; };
-    const Point below = at_selection(0.0), above = at_selection(1.0);
+    const auto velocity = [&](const PlanePoint& slope) { return rate + normal[0] * slope[0] + normal[1] * slope[1]; };
+    const PlanePoint below = at_selection(0.0), above = at_selection(1.0);
     const double change = std::abs(above[0] - below[0]) + std::abs(above[1] - below[1]);
     const double size = std::abs(above[0]) + std::abs(above[1]) + std::abs(below[0]) + std::abs(below[1]);
-    const Point offset = off_surface(normal);
+    const PlanePoint offset = off_surface(normal);
     if (!(change > 1e-9 * size) || !std::isfinite(offset[0] + offset[1])) return;
     add({x[0] + offset[0], x[1] + offset[1]}, above, arrows.sides);
     add({x[0] - offset[0], x[1] - offset[1]}, below, arrows.sides);
@@ -85,7 +85,7 @@ class FieldOfTwoStates {
   }
 
   /// Places along a line through the box, evenly spaced by the box's measure.
-  void add_along(int j, const std::vector<Point>& line, result::VectorField& arrows) {
+  void add_along(int j, const std::vector<PlanePoint>& line, result::VectorField& arrows) {
     double next = 0.5 / arrows_along, passed = 0.0;
     for (std::size_t k = 1; k < line.size(); ++k) {
       const auto& from = line[k - 1];
@@ -105,8 +105,8 @@ class FieldOfTwoStates {
 
  private:
   /// A small step to the side where psi > 0, across the surface as it is drawn.
-  [[nodiscard]] Point off_surface(const Point& normal) const {
-    const Point scaled{normal[0] * width(0), normal[1] * width(1)};
+  [[nodiscard]] PlanePoint off_surface(const PlanePoint& normal) const {
+    const PlanePoint scaled{normal[0] * width(0), normal[1] * width(1)};
     const double length = std::hypot(scaled[0], scaled[1]);
     return {beside * width(0) * scaled[0] / length, beside * width(1) * scaled[1] / length};
   }
@@ -118,16 +118,17 @@ class FieldOfTwoStates {
 };
 
 /// The line a x + b y + c = 0 within the box; nothing without one.
-std::vector<Point> line_in_box(const Point& gradient, double constant, const std::array<Interval, 2>& box) {
+std::vector<PlanePoint> line_in_box(const PlanePoint& gradient, double constant, const std::array<Interval, 2>& box) {
   // Along the axis on which the gradient is smaller, measured by the box, the other coordinate is a function.
-  const bool by_first = std::abs(gradient[0]) * (box[0].to - box[0].from) <= std::abs(gradient[1]) * (box[1].to - box[1].from);
+  const bool by_first =
+      std::abs(gradient[0]) * (box[0].to - box[0].from) <= std::abs(gradient[1]) * (box[1].to - box[1].from);
   const std::size_t free = by_first ? 0 : 1, bound = by_first ? 1 : 0;
   if (gradient[bound] == 0.0) return {};
   const auto other = [&](double value) { return -(constant + gradient[free] * value) / gradient[bound]; };
-  std::vector<Point> line;
+  std::vector<PlanePoint> line;
   constexpr int pieces = 256;
   for (int i = 0; i <= pieces; ++i) {
-    Point x{};
+    PlanePoint x{};
     x[free] = box[free].from + (box[free].to - box[free].from) * i / pieces;
     x[bound] = other(x[free]);
     if (x[bound] >= box[bound].from && x[bound] <= box[bound].to) line.push_back(x);
@@ -135,13 +136,13 @@ std::vector<Point> line_in_box(const Point& gradient, double constant, const std
   return line;
 }
 
-double form_at(const result::AffineSurface& form, const Point& gradient, double t, const Point& x) {
+double form_at(const result::AffineSurface& form, const PlanePoint& gradient, double t, const PlanePoint& x) {
   return gradient[0] * x[0] + gradient[1] * x[1] + form.rate * t + form.constant;
 }
 
 /// The gradient over both states.
-Point in_plane(const result::AffineSurface& form, const result::Surface& surface, const result::Result& result) {
-  Point gradient{};
+PlanePoint in_plane(const result::AffineSurface& form, const result::Surface& surface, const result::Result& result) {
+  PlanePoint gradient{};
   for (std::size_t k = 0; k < surface.states.size(); ++k) {
     gradient[surface.states[k] == result.states[0] ? 0 : 1] = form.gradient[k];
   }
@@ -151,17 +152,17 @@ Point in_plane(const result::AffineSurface& form, const result::Surface& surface
 void add_lines(int j, const result::Surface& surface, const result::Result& result, FieldOfTwoStates& field,
                result::VectorField& arrows) {
   if (surface.affine) {
-    const Point gradient = in_plane(*surface.affine, surface, result);
+    const PlanePoint gradient = in_plane(*surface.affine, surface, result);
     auto line = line_in_box(gradient, surface.affine->rate * arrows.t + surface.affine->constant, field.box());
     for (const auto& form : surface.within) {
-      const Point margin = in_plane(form, surface, result);
-      std::erase_if(line, [&](const Point& x) { return form_at(form, margin, arrows.t, x) < 0.0; });
+      const PlanePoint margin = in_plane(form, surface, result);
+      std::erase_if(line, [&](const PlanePoint& x) { return form_at(form, margin, arrows.t, x) < 0.0; });
     }
     return field.add_along(j, line, arrows);
   }
   for (const auto& curve : surface.curves) {
     if (curve.t && *curve.t != arrows.t) continue;
-    std::vector<Point> line;
+    std::vector<PlanePoint> line;
     if (curve.coordinates.size() == 2) {
       for (std::size_t k = 0; k < curve.coordinates[0].size(); ++k) {
         line.push_back({curve.coordinates[0][k], curve.coordinates[1][k]});
@@ -171,7 +172,7 @@ void add_lines(int j, const result::Surface& surface, const result::Result& resu
     }
     const std::size_t own = surface.states.front() == result.states[0] ? 0 : 1;
     for (const double value : curve.coordinates.front()) {
-      Point from{field.box()[0].from, field.box()[1].from}, to{field.box()[0].to, field.box()[1].to};
+      PlanePoint from{field.box()[0].from, field.box()[1].from}, to{field.box()[0].to, field.box()[1].to};
       from[own] = to[own] = value;
       field.add_along(j, {from, to}, arrows);
     }

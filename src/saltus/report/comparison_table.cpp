@@ -70,7 +70,9 @@ std::string not_unique(const result::Result& reference) {
 /// When the states were compared, in words.
 std::string compared_states(const result::Result& result, const result::Comparison& comparison) {
   if (!comparison.time) return "no states, as runs stopped at their start";
-  const auto early = [](const result::ComparedRun& run) { return run.reason.empty() && !is_done(run.status.termination); };
+  const auto early = [](const result::ComparedRun& run) {
+    return run.reason.empty() && !is_done(run.status.termination);
+  };
   const bool stopped = std::any_of(comparison.runs.begin(), comparison.runs.end(), early);
   return stopped && *comparison.time < result.final.t
              ? fmt::format("states at t = {:.12g}, the last time that the runs have in common", *comparison.time)

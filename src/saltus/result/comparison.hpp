@@ -29,7 +29,7 @@ struct ComparedRun {
 struct Comparison {
   std::vector<ComparedRun> runs;
   std::optional<double> time;  ///< of the states: the end, or the last time that all runs (but hopeless ones) reach
-  std::size_t reference = 0;  ///< number in `runs`
+  std::size_t reference = 0;   ///< number in `runs`
 };
 
 /// A scheme at one number of steps.

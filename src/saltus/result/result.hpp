@@ -244,7 +244,7 @@ struct Result {
   Trajectory trajectory;
   Statistics statistics;  ///< of an optimisation those of Optimization are written instead
   OptionRecord options;
-  std::vector<Surface> surfaces;  ///< empty unless asked for (pipeline::surfaces)
+  std::vector<Surface> surfaces;            ///< empty unless asked for (pipeline::surfaces)
   std::optional<VectorField> vector_field;  ///< of a model with two states, if asked for (pipeline::vector_field)
 
   std::optional<Sensitivities> sensitivities;  ///< of the end state, if asked for

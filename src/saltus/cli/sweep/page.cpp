@@ -55,8 +55,9 @@ std::string data_of(const std::vector<TableColumn>& table, const SweepPage& page
   std::vector<std::string> swept;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (k > 0 && k <= page.names.size()) swept.push_back(table[k].name);
-    columns += fmt::format("{}{}:{}", k > 0 ? "," : "", quoted_json(table[k].name),
-                           std::visit([](const auto& values) { return list_of(values, rows_of_page); }, table[k].values));
+    columns +=
+        fmt::format("{}{}:{}", k > 0 ? "," : "", quoted_json(table[k].name),
+                    std::visit([](const auto& values) { return list_of(values, rows_of_page); }, table[k].values));
   }
   return fmt::format(R"({{"columns":{{{}}},"swept":{},"names":{},"command":{},"grid":{}}})", columns,
                      list_of(swept, swept.size()), list_of(page.names, page.names.size()), quoted_json(page.command),
@@ -70,15 +71,20 @@ std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& p
   const auto title = escaped(page.title);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   // Nothing may be fetched from anywhere.
-  html += "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
-          "style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
-          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  html += fmt::format("<title>{} - Saltus</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n<h1>{}</h1>\n", title, style, title);
-  if (rows > rows_of_page) html += fmt::format("<p>The first {} of {} rows of the table are drawn.</p>\n", rows_of_page, rows);
-  html += "<div id=\"controls\"></div>\n<div id=\"pictures\"></div>\n"
-          "<div id=\"run\"><span id=\"chosen\"></span><br><code id=\"command\"></code></div>\n</main>\n";
-  html += fmt::format("<script type=\"application/json\" id=\"sweep\">{}</script>\n<script>\n{}</script>\n</body>\n</html>\n",
-                      data_of(table, page), embedded::sweep_page_script);
+  html +=
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
+      "style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  html += fmt::format("<title>{} - Saltus</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n<h1>{}</h1>\n", title,
+                      style, title);
+  if (rows > rows_of_page)
+    html += fmt::format("<p>The first {} of {} rows of the table are drawn.</p>\n", rows_of_page, rows);
+  html +=
+      "<div id=\"controls\"></div>\n<div id=\"pictures\"></div>\n"
+      "<div id=\"run\"><span id=\"chosen\"></span><br><code id=\"command\"></code></div>\n</main>\n";
+  html += fmt::format(
+      "<script type=\"application/json\" id=\"sweep\">{}</script>\n<script>\n{}</script>\n</body>\n</html>\n",
+      data_of(table, page), embedded::sweep_page_script);
   return html;
 }
 

@@ -20,8 +20,8 @@ struct SweepPage {
   bool grid = true;                ///< of two names every pair is there once
 };
 
-/// Values over one parameter as lines, over two as a map, number of events, status, values at events (bifurcation diagram);
-/// a click on a run shows its command.
+/// Values over one parameter as lines, over two as a map, number of events, status, values at events (bifurcation
+/// diagram); a click on a run shows its command.
 [[nodiscard]] std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& page);
 
 }  // namespace saltus::cli

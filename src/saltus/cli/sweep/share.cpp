@@ -81,17 +81,18 @@ Expected<void> check_together(const std::vector<ShareTable>& shares) {
   std::vector<std::string> seen(first.share.of);
   for (const auto& share : shares) {
     if (share.mark != first.mark || share.share.of != first.share.of) {
-      return tl::unexpected(no_share(
-          share.file, fmt::format("a share of another sweep (task of {}, {}) than {} (task of {}, {})", share.share.of,
-                                  share.mark, first.file, first.share.of, first.mark),
-          "shares of one sweep have the same model, settings, values and number of tasks"));
+      return tl::unexpected(no_share(share.file,
+                                     fmt::format("a share of another sweep (task of {}, {}) than {} (task of {}, {})",
+                                                 share.share.of, share.mark, first.file, first.share.of, first.mark),
+                                     "shares of one sweep have the same model, settings, values and number of tasks"));
     }
     if (share.share.number < 1 || share.share.number > seen.size()) {
       return tl::unexpected(no_share(share.file, "no share of a sweep", "run this share again"));
     }
     auto& before = seen[share.share.number - 1];
     if (!before.empty()) {
-      return tl::unexpected(no_share(share.file, fmt::format("task {} is there already, in {}", share.share.number, before),
+      return tl::unexpected(no_share(share.file,
+                                     fmt::format("task {} is there already, in {}", share.share.number, before),
                                      "name every share once"));
     }
     before = share.file;
@@ -140,12 +141,18 @@ Expected<Share> parse_share(const std::string& text, std::size_t runs) {
   const bool read = std::sscanf(text.c_str(), "%zu/%zu%n", &share.number, &share.of, &used) == 2 &&
                     static_cast<std::size_t>(used) == text.size() && text.find('-') == std::string::npos;
   if (!read || share.number < 1 || share.number > share.of) {
-    return tl::unexpected(Error{ErrorCode::invalid_option, fmt::format("--task {}: expected I/N with 1 <= I <= N", text),
-                                "e.g. --task 2/5, or --task $SLURM_ARRAY_TASK_ID/5", {}, {}});
+    return tl::unexpected(Error{ErrorCode::invalid_option,
+                                fmt::format("--task {}: expected I/N with 1 <= I <= N", text),
+                                "e.g. --task 2/5, or --task $SLURM_ARRAY_TASK_ID/5",
+                                {},
+                                {}});
   }
   if (share.of > runs) {
-    return tl::unexpected(Error{ErrorCode::invalid_option, fmt::format("--task {}: the sweep has {} runs only", text, runs),
-                                fmt::format("take at most {} tasks", runs), {}, {}});
+    return tl::unexpected(Error{ErrorCode::invalid_option,
+                                fmt::format("--task {}: the sweep has {} runs only", text, runs),
+                                fmt::format("take at most {} tasks", runs),
+                                {},
+                                {}});
   }
   return share;
 }
@@ -169,8 +176,7 @@ Expected<std::vector<TableColumn>> join_shares(const std::vector<std::string>& f
     shares.push_back(std::move(*share));
   }
   if (auto together = check_together(shares); !together) return tl::unexpected(together.error());
-  std::sort(shares.begin(), shares.end(),
-            [](const auto& a, const auto& b) { return a.share.number < b.share.number; });
+  std::sort(shares.begin(), shares.end(), [](const auto& a, const auto& b) { return a.share.number < b.share.number; });
   const auto& headings = shares.front().lines[0];
   for (const auto& share : shares) {
     if (std::equal(headings.begin() + 1, headings.end(), share.lines[0].begin() + 1, share.lines[0].end())) continue;

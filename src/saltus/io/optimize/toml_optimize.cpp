@@ -247,9 +247,9 @@ void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
 
 /// A key of [time_freezing] that is a number or an expression of parameters; nothing if it is no such key.
 expression::NodePtr* freezing_number(model::ClockDescription& clock, const std::string& key) {
-  for (const auto& [name, node] : {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness},
-                                   std::pair{"stabilisation", &clock.stabilisation},
-                                   std::pair{"transfer", &clock.transfer}}) {
+  for (const auto& [name, node] :
+       {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness},
+        std::pair{"stabilisation", &clock.stabilisation}, std::pair{"transfer", &clock.transfer}}) {
     if (key == name) return node;
   }
   return nullptr;

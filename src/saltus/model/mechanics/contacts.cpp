@@ -16,10 +16,7 @@ class ContactBuild {
  public:
   ContactBuild(Recognition& recognition, Statement& statement, const std::vector<ContactStatement>& contacts,
                const MotionWithoutContacts& motion)
-      : recognition_(recognition),
-        statement_(statement),
-        contacts_(contacts),
-        motion_(motion) {}
+      : recognition_(recognition), statement_(statement), contacts_(contacts), motion_(motion) {}
 
   [[nodiscard]] Expected<SX> run() {
     auto motion = contact_motion(recognition_, statement_, contacts_, motion_);

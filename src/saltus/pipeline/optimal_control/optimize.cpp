@@ -15,9 +15,9 @@
 #include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/number_list_internal.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
 #include "saltus/pipeline/optimal_control/verify.hpp"
+#include "saltus/pipeline/optimize_fields.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
@@ -141,7 +141,8 @@ void judge(const result::Verification& verification, double tolerance, result::S
   }
   const bool missed = verification.switches_missed > 0;
   status.message = fmt::format(
-      "the event-driven simulation of interval {} differs by {:.3g} of the range of '{}' (verification_tolerance = {:.3g}); "
+      "the event-driven simulation of interval {} differs by {:.3g} of the range of '{}' (verification_tolerance = "
+      "{:.3g}); "
       "{}",
       verification.interval, verification.interval_defect, verification.state, tolerance,
       missed ? "a switch was missed there: take more elements or more intervals (or fewer stages)"
@@ -170,8 +171,7 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
   if (!ocp.physical) return verify(ocp, path, options.verification_tolerance, observers.is_interrupted);
   const auto physical = physical_path(ocp, path, run);
   if (!physical) return tl::unexpected(physical.error());
-  return verify(physical_ocp(ocp), *physical, options.verification_tolerance,
-                observers.is_interrupted);
+  return verify(physical_ocp(ocp), *physical, options.verification_tolerance, observers.is_interrupted);
 }
 
 }  // namespace

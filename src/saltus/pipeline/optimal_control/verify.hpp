@@ -17,7 +17,7 @@ struct OptimizedPath {
   std::vector<double> parameters;  ///< all of System::p
   /// N + 1 times of the nodes in the time of the right-hand side: physical time, or numerical time where it is frozen.
   std::vector<double> times;
-  std::vector<std::vector<double>> nodes;     ///< N + 1 states
+  std::vector<std::vector<double>> nodes;  ///< N + 1 states
   /// Where states jump at nodes: N states at the ends of intervals before that; else empty.
   std::vector<std::vector<double>> ends{};
   std::vector<std::vector<double>> controls;  ///< N rows, all controls of Ocp::system

@@ -209,8 +209,8 @@ Eigen::VectorXd RelaxedProblem::multipliers_of_problem(ConstVectorView w, ConstV
   return y_;
 }
 
-void RelaxedProblem::add_elastic_hessian(int pair, const PairFunction& phi, ConstVectorView jacobian,
-                                         VectorView values, Eigen::Index& next) const {
+void RelaxedProblem::add_elastic_hessian(int pair, const PairFunction& phi, ConstVectorView jacobian, VectorView values,
+                                         Eigen::Index& next) const {
   for (const auto& side : gradients_[at(pair)]) values[next++] = (side.is_H ? phi.bs : phi.as) * jacobian[side.entry];
   values[next++] = phi.ss;
 }
