@@ -11,7 +11,7 @@ import zipfile
 import tool
 
 KEYS = ["format", "saltus", "model", "command", "command_line", "method", "status", "states", "controls", "switching_functions",
-        "outputs", "final", "events", "trajectory", "surfaces", "statistics", "options"]
+        "outputs", "final", "events", "trajectory", "surfaces", "vector_field", "statistics", "options"]
 EVENT_KEYS = ["t", "kind", "name", "surfaces", "mode_before", "mode_after", "alpha_before", "alpha_after", "x",
               "x_after", "unique", "alternatives", "reason"]
 

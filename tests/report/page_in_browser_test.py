@@ -65,9 +65,9 @@ class TwoStates(Page):
     def test_drawings_events_and_their_links(self):
         self.show("stick-slip")
         self.assertEqual(self.value(DRAWN), 2)
-        self.assertEqual(self.value(NAMES), ["slip = 0", "not sliding", "sliding", "event", "begin", "end"])
+        self.assertEqual(self.value(NAMES), ["field", "field on both sides", "sliding field", "slip = 0", "not sliding", "sliding", "event", "begin", "end"])
         # The surface runs through the whole plane at the speed of the belt.
-        self.assertTrue(all(abs(v - 0.2) < 1e-15 for v in self.value(PLANE + ".data[0].y.slice(0, 2)")))
+        self.assertTrue(all(abs(v - 0.2) < 1e-15 for v in self.value(PLANE + ".data[3].y.slice(0, 2)")))
 
         self.value(key("ArrowDown"))
         self.becomes(SELECTED, "▼ Event 1: enter sliding")

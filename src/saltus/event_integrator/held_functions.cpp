@@ -113,8 +113,14 @@ double HeldFunctions::value_along(std::size_t i, double t, const double* x, doub
 
 /// Gradient i, less what the ones before span, normed.
 void HeldFunctions::extend_basis(std::size_t i) {
-  basis_.row(index(i)) = rows_.row(index(i));
+  const auto row = rows_.row(index(i));
+  basis_.row(index(i)) = row;
+  Eigen::Index from = 0, to = row.size();
+  while (from < to && row(from) == 0.0) ++from;
+  while (to > from && row(to - 1) == 0.0) --to;
   for (std::size_t k = 0; k < i; ++k) {
+    // Of many surfaces most have no states in common: their product is 0 without forming it.
+    if ((basis_.row(index(k)).segment(from, to - from).array() == 0.0).all()) continue;
     basis_.row(index(i)) -= rows_.row(index(i)).dot(basis_.row(index(k))) * basis_.row(index(k));
   }
   const double size = basis_.row(index(i)).norm();

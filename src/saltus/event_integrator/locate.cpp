@@ -188,12 +188,11 @@ double Locator::look_back() {
   return back;
 }
 
-/// Values of the candidates shortly behind the start of the step, into `beside_`; returns how long behind.
-double Locator::look_ahead() {
+/// Values of the candidates shortly behind the start of the step, into `beside_`.
+void Locator::look_ahead() {
   constexpr double share = 1e-3;
   dense_->evaluate(share, x_.data());
   evaluate(start_.t + share * dense_->h, x_.data(), beside_);
-  return share * dense_->h;
 }
 
 /// A function whose sign has changed beyond rounding at the located time: its zero lies earlier.
@@ -206,23 +205,33 @@ std::optional<std::size_t> Locator::earlier_function(std::size_t located) const 
   return std::nullopt;
 }
 
+/// Where the event is at the start of the step: functions that are the located one by their values, as those of jumps
+/// with one condition are. What else is near zero there may have left it, or not reached it yet.
+void Locator::find_same_at_start(std::size_t located) {
+  const auto& candidates = search_.candidates();
+  look_ahead();
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const std::size_t i = candidates[k];
+    const bool same = trial_.values[k] == trial_.values[place_] && beside_[k] == beside_[place_];
+    if (i != located && same && left_ == 0.0 && sign(i) == hit_.sign) located_.functions.push_back(i);
+  }
+}
+
 /// Functions that reach zero together with the located one: at zero to rounding of their values or of time, and away
-/// from it shortly before, or shortly behind where the event is at the start of the step (a surface just left is still
-/// near zero, but moving away).
+/// from it shortly before (a surface just left is still near zero, but moving away).
 void Locator::find_vanishing_with(std::size_t located) {
   const auto& candidates = search_.candidates();
   located_.functions.assign(1, located);
   if (candidates.size() == 1) return;
-  const bool at_start = trial_.h == 0.0;
-  const double step = at_start ? look_ahead() : look_back();
+  if (trial_.h == 0.0) return find_same_at_start(located);
+  const double back = look_back();
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const std::size_t i = candidates[k];
     if (i == located || sign(i) == 0) continue;
-    const double distance = at_start ? -beside_[k] * sign(i) : beside_[k] * sign(i);
-    const double here = at_start ? -trial_.values[k] * sign(i) : trial_.values[k] * sign(i);
-    const double rate = (distance - here) / step;
+    const double ahead = beside_[k] * sign(i);
+    const double rate = (ahead - trial_.values[k] * sign(i)) / back;
     const double resolution = std::max(search_.noise(i), 2.0 * rate * time_resolution());
-    if (distance > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[k]) <= resolution) {
+    if (ahead > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[k]) <= resolution) {
       located_.functions.push_back(i);
     }
   }

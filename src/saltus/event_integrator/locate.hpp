@@ -61,8 +61,9 @@ class Locator {
   void set_hit(const Hit& hit);
   [[nodiscard]] bool is_finite_at(const Trial& trial) const { return std::isfinite(trial.values[place_]); }
   double look_back();
-  double look_ahead();
+  void look_ahead();
   void find_vanishing_with(std::size_t located);
+  void find_same_at_start(std::size_t located);
   [[nodiscard]] bool vanishes(double value) const;
   /// Its place among the candidates.
   [[nodiscard]] std::optional<std::size_t> earlier_function(std::size_t located) const;

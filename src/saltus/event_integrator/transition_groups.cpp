@@ -20,24 +20,30 @@ constexpr std::size_t largest_group = 12;
 
 }  // namespace
 
-bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j) {
-  if (kernel.depends(i, j) || same_group(kernel, i, j)) return true;
-  for (int nested = 0; nested < kernel.switching_functions(); ++nested) {
-    if (!contains(occasion.at_zero, nested) && contains(kernel.inner(nested), j) && kernel.depends(i, nested))
-      return true;
+std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, const Occasion& occasion) {
+  std::vector<int> nested;
+  for (int j = 0; j < kernel.switching_functions(); ++j) {
+    if (!kernel.inner(j).empty() && !contains(occasion.at_zero, j)) nested.push_back(j);
   }
-  return false;
+  return nested;
+}
+
+bool feels(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j) {
+  return kernel.depends(i, j) || same_group(kernel, i, j) || std::any_of(nested.begin(), nested.end(), [&](int around) {
+           return contains(kernel.inner(around), j) && kernel.depends(i, around);
+         });
 }
 
 std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion,
                                         std::vector<int> open) {
+  const std::vector<int> nested = nested_away_from_zero(kernel, occasion);
   std::vector<std::vector<int>> groups;
   while (!open.empty()) {
     std::vector<int> group{open.front()};
     open.erase(open.begin());
     for (std::size_t k = 0; k < group.size(); ++k) {
       for (std::size_t other = 0; other < open.size();) {
-        if (feels(kernel, occasion, group[k], open[other]) || feels(kernel, occasion, open[other], group[k])) {
+        if (feels(kernel, nested, group[k], open[other]) || feels(kernel, nested, open[other], group[k])) {
           group.push_back(open[other]);
           open.erase(open.begin() + static_cast<std::ptrdiff_t>(other));
         } else {

@@ -120,9 +120,12 @@ struct MeetingRegions {
   std::optional<RegionBasis> basis;
 };
 
-/// Whether the decision about surface i can depend on the selection of surface j, directly or through functions nested
-/// around j.
-bool feels(const evaluation::ModelKernel& kernel, const Occasion& occasion, int i, int j);
+/// Functions away from zero that are nested around others: through them surfaces influence each other, too.
+std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, const Occasion& occasion);
+
+/// Whether the decision about surface i can depend on the selection of surface j, directly or through one of the
+/// functions nested around j. Cost: O(nested), usually none.
+bool feels(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j);
 
 /// Connected groups of those `open` surfaces that influence each other, each ascending.
 std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion,

@@ -118,8 +118,8 @@ bool Decider::decide_regions(const std::vector<int>& group) {
   others.erase(passed, others.end());
   constexpr std::size_t most = 12;
   if (!others.empty() || regions.size() >= most || !s_.affine_in_alpha) {
-    const auto is_felt = [&](int j) {
-      return std::any_of(regions.begin(), regions.end(), [&](int i) { return feels(s_.kernel, occasion_, i, j); });
+    const auto is_felt = [&, nested = nested_away_from_zero(s_.kernel, occasion_)](int j) {
+      return std::any_of(regions.begin(), regions.end(), [&](int i) { return feels(s_.kernel, nested, i, j); });
     };
     if (!others.empty() && std::none_of(others.begin(), others.end(), is_felt)) {
       auto parts = groups_of(s_.kernel, occasion_, others);
