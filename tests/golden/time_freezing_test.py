@@ -169,6 +169,9 @@ class TimeFreezing(tool.ToolTest):
         self.assertEqual([e["name"] for e in result["events"]], ["turbo", "turbo"])
         self.assertAlmostEqual(result["events"][0]["t"], 3.0, delta=1e-7)
         self.assertLess(result["verification"]["interval_defect"], 1e-9)
+        # Results are in physical time, without the clock, and can be started from all the same.
+        _, err = self.run_tool("optimize", "m.toml", "--quiet", "--start", "r.json", "--time-limit", "0.01", code=3)
+        self.assertIn("time", err)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/optimal_control/ocp_guess.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
@@ -32,8 +33,9 @@ Expected<std::vector<int>> elements_of(const OptimizeOptions& options) {
   if (intervals < 1) return tl::unexpected(refusal("control_intervals is missing", "give a whole number >= 1"));
   const auto& stated = options.elements;
   if (stated.size() != 1 && static_cast<long>(stated.size()) != intervals) {
-    return tl::unexpected(refusal(fmt::format("elements lists {} numbers for {} control intervals", stated.size(), intervals),
-                                  "give one number, or one per interval"));
+    return tl::unexpected(
+        refusal(fmt::format("elements lists {} numbers for {} control intervals", stated.size(), intervals),
+                "give one number, or one per interval"));
   }
   std::vector<int> elements;
   for (long k = 0; k < intervals; ++k) {
@@ -44,11 +46,13 @@ Expected<std::vector<int>> elements_of(const OptimizeOptions& options) {
 }
 
 /// More equations than there are choices have no solution, or depend on each other: no method can tell which.
-std::optional<Error> check_freedom(const model::Ocp& ocp, const std::vector<int>& elements, const OptimizeOptions& options) {
+std::optional<Error> check_freedom(const model::Ocp& ocp, const std::vector<int>& elements,
+                                   const OptimizeOptions& options) {
   const auto count = [](const std::vector<bool>& is_free) { return std::count(is_free.begin(), is_free.end(), true); };
   const auto intervals = std::ssize(elements);
   const auto freedom = intervals * ocp.user_controls + count(ocp.free_states) + count(ocp.free_parameters) +
-                       (ocp.horizon.free ? 1 : 0) + (ocp.clock && ocp.clock->speed_lower < ocp.clock->speed_upper ? intervals : 0);
+                       (ocp.horizon.free ? 1 : 0) +
+                       (ocp.clock && ocp.clock->speed_lower < ocp.clock->speed_upper ? intervals : 0);
   std::vector<std::string> named;
   const auto add = [&](const std::vector<model::OcpConstraint>& constraints, std::ptrdiff_t points) {
     std::ptrdiff_t rows = 0;
@@ -65,10 +69,11 @@ std::optional<Error> check_freedom(const model::Ocp& ocp, const std::vector<int>
   if (ocp.path_at == model::ConstraintPoints::stages) points *= options.element.stages;
   const auto equations = add(ocp.terminal, 1) + add(ocp.path, points);
   if (equations <= freedom) return std::nullopt;
-  return refusal(fmt::format("there are {} equality constraints and only {} values to choose (controls, what is free): {}",
-                             equations, freedom, fmt::join(named, ", ")),
-                 "leave some out, state them as inequalities, soften them ({ constraint = ..., norm = \"l1\" }), or use more "
-                 "control_intervals");
+  return refusal(
+      fmt::format("there are {} equality constraints and only {} values to choose (controls, what is free): {}",
+                  equations, freedom, fmt::join(named, ", ")),
+      "leave some out, state them as inequalities, soften them ({ constraint = ..., norm = \"l1\" }), or use more "
+      "control_intervals");
 }
 
 discretization::FesdOptions discretization_options(const OptimizeOptions& options) {
@@ -93,26 +98,42 @@ std::vector<double> row_at(const std::vector<double>& t, const std::vector<std::
   return row;
 }
 
+/// Of the states, those that results have: all, or without the hidden ones of frozen time.
+std::vector<std::string> result_states(const model::System& system) {
+  auto names = system.state_names;
+  if (system.freezing) names.resize(at(system.freezing->first_hidden));
+  return names;
+}
+
+/// A row of a result at a time, with the clock and the other hidden states of frozen time, which are 0.
+std::vector<double> with_hidden_states(const model::System& system, std::vector<double> x, double t) {
+  x.resize(system.state_names.size(), 0.0);
+  if (system.freezing) x[at(system.freezing->clock)] = t;
+  return x;
+}
+
 /// A start from a stored result of the same model, possibly with another number of intervals.
 Expected<void> take_result(const model::Ocp& ocp, const result::Result& from, int intervals,
                            const std::vector<double>& fractions, discretization::OcpGuessValues& guess) {
   const auto names = [](const std::vector<std::string>& list) { return fmt::format("{}", fmt::join(list, ", ")); };
   const std::vector<std::string> controls(ocp.system.control_names.begin(),
                                           ocp.system.control_names.begin() + ocp.user_controls);
-  if (from.states != ocp.system.state_names || from.controls != controls) {
-    return tl::unexpected(refusal(fmt::format("the result to start from belongs to another model: it has the states {} "
-                                              "and the controls {}",
-                                              names(from.states), names(from.controls)),
-                                  fmt::format("this model has the states {} and the controls {}",
-                                              names(ocp.system.state_names), names(controls))));
+  const auto states = result_states(ocp.system);
+  if (from.states != states || from.controls != controls) {
+    return tl::unexpected(
+        refusal(fmt::format("the result to start from belongs to another model: it has the states {} "
+                            "and the controls {}",
+                            names(from.states), names(from.controls)),
+                fmt::format("this model has the states {} and the controls {}", names(states), names(controls))));
   }
   if (from.trajectory.t.empty()) return {};
   const double begin = from.trajectory.t.front();
   const double length = from.trajectory.t.back() - begin;
   if (ocp.horizon.free) guess.horizon = std::clamp(length, ocp.horizon.lower, ocp.horizon.upper);
-  guess.initial_state = from.trajectory.x.front();
+  guess.initial_state = with_hidden_states(ocp.system, from.trajectory.x.front(), begin);
   for (std::size_t i = 0; i < fractions.size(); ++i) {
-    guess.states[i] = row_at(from.trajectory.t, from.trajectory.x, begin + fractions[i] * length);
+    const double t = begin + fractions[i] * length;
+    guess.states[i] = with_hidden_states(ocp.system, row_at(from.trajectory.t, from.trajectory.x, t), t);
   }
   for (int k = 0; k < intervals && !from.trajectory.u.empty(); ++k) {
     const double middle = begin + length * (k + 0.5) / intervals;
