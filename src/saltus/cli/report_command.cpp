@@ -60,12 +60,12 @@ Expected<std::vector<report::Overlay>> read_overlays(const std::vector<std::stri
 Expected<void> write_page(const std::string& page, const ReportArguments& arguments, const result::Result& result) {
   const auto overlays = read_overlays(arguments.results, result);
   if (!overlays) return tl::unexpected(overlays.error());
+  const OutputNames names{.report = page, .report_option = "--out"};
   for (const auto& input : arguments.results) {
     // None of the results that are read may be written over.
-    if (auto output = Outputs::make({.report = page, .report_option = "--out"}, input); !output)
-      return tl::unexpected(output.error());
+    if (auto output = Outputs::make(names, input); !output) return tl::unexpected(output.error());
   }
-  const auto output = Outputs::make({.report = page, .report_option = "--out"}, arguments.results.front());
+  const auto output = Outputs::make(names, arguments.results.front());
   if (!output) return tl::unexpected(output.error());
   if (auto written = output->write(result, ShowProgress::when_terminal, *overlays); !written) {
     return tl::unexpected(written.error());
