@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/event_integrator/integrate.hpp"
-#include "saltus/event_integrator/mode_field.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/run/compact_integration.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/ode/bernstein.hpp"
 #include "saltus/ode/stepper.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "protocol.hpp"
-#include "saltus/ode/dop853_tableau.hpp"
-#include "saltus/ode/dopri5_tableau.hpp"
+#include "saltus/ode/explicit/dop853_tableau.hpp"
+#include "saltus/ode/explicit/dopri5_tableau.hpp"
 
 namespace compare {
 

@@ -9,7 +9,7 @@
 
 #include "protocol.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/reformulation/dcs.hpp"
 #include "value_or_exit.hpp"

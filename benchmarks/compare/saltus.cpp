@@ -9,7 +9,8 @@
 #include "protocol.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/event_integrator/run/compact_integration.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "value_or_exit.hpp"
 

@@ -1,8 +1,10 @@
-// What do building and evaluating an optimal control problem cost per interval? The cart-pole, from 20 to 2000 intervals.
-#include <benchmark/benchmark.h>
+// What do building and evaluating an optimal control problem cost per interval? The cart-pole, from 20 to 2000
+// intervals.
 #include <malloc.h>
 
-#include "saltus/io/toml_model.hpp"
+#include <benchmark/benchmark.h>
+
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 
@@ -59,8 +61,22 @@ void evaluate(benchmark::State& state) {
   state.SetComplexityN(state.range(0));
 }
 
-BENCHMARK(build)->Arg(20)->Arg(63)->Arg(200)->Arg(632)->Arg(2000)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
-BENCHMARK(evaluate)->Arg(20)->Arg(63)->Arg(200)->Arg(632)->Arg(2000)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
+BENCHMARK(build)
+    ->Arg(20)
+    ->Arg(63)
+    ->Arg(200)
+    ->Arg(632)
+    ->Arg(2000)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity(benchmark::oN);
+BENCHMARK(evaluate)
+    ->Arg(20)
+    ->Arg(63)
+    ->Arg(200)
+    ->Arg(632)
+    ->Arg(2000)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity(benchmark::oN);
 
 }  // namespace
 }  // namespace saltus

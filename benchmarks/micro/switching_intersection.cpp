@@ -6,8 +6,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "saltus/switching/intersection.hpp"
-#include "saltus/switching/spiral.hpp"
+#include "saltus/switching/plane/intersection.hpp"
+#include "saltus/switching/plane/spiral.hpp"
 
 namespace saltus::switching {
 namespace {

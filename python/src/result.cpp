@@ -13,7 +13,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/io/atomic_file.hpp"
-#include "saltus/io/json_result.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/pipeline/vector_field.hpp"
 #include "saltus/report/html.hpp"
 #include "saltus/report/table.hpp"

@@ -13,8 +13,8 @@
 #include "parts.hpp"
 #include "result.hpp"
 #include "saltus/cli/sweep/share.hpp"
-#include "saltus/cli/sweep_input.hpp"
-#include "saltus/cli/sweep_table.hpp"
+#include "saltus/cli/sweep/sweep_input.hpp"
+#include "saltus/cli/sweep/sweep_table.hpp"
 #include "watch.hpp"
 
 namespace nb = nanobind;

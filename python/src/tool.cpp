@@ -9,8 +9,8 @@
 #include "saltus/base/version.hpp"
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/io/atomic_file.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 
 namespace nb = nanobind;
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "problems/dcs_values.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/reformulation/dcs.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 
 namespace saltus::pipeline {

@@ -5,9 +5,9 @@
 
 #include "../unit/switching/hidden_cases.hpp"
 #include "../unit/switching/hidden_simulation.hpp"
-#include "saltus/switching/hidden_dynamics.hpp"
-#include "saltus/switching/intersection_roots.hpp"
-#include "saltus/switching/spiral.hpp"
+#include "saltus/switching/hidden/hidden_dynamics.hpp"
+#include "saltus/switching/plane/intersection_roots.hpp"
+#include "saltus/switching/plane/spiral.hpp"
 
 namespace saltus::switching {
 namespace {

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "../unit/switching/random_fields.hpp"
 #include "../unit/switching/plane_frames.hpp"
-#include "saltus/switching/intersection.hpp"
-#include "saltus/switching/intersection_roots.hpp"
-#include "saltus/switching/spiral.hpp"
+#include "../unit/switching/random_fields.hpp"
+#include "saltus/switching/plane/intersection.hpp"
+#include "saltus/switching/plane/intersection_roots.hpp"
+#include "saltus/switching/plane/spiral.hpp"
 
 namespace saltus::switching {
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "../unit/switching/hidden_cases.hpp"
-#include "saltus/switching/hidden_dynamics.hpp"
+#include "saltus/switching/hidden/hidden_dynamics.hpp"
 
 namespace saltus::switching {
 namespace {

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 
 namespace {

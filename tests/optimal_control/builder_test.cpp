@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
-#include "saltus/model/ocp_builder.hpp"
+#include "saltus/model/optimal_control/ocp_builder.hpp"
 
 namespace saltus::ocp_tests {
 namespace {
@@ -47,7 +47,8 @@ TEST(OcpBuilder, StatesTheTurboCar) {
 
 TEST(OcpBuilder, CostsGuessesAndWhatIsFree) {
   model::Builder builder("slope");
-  const SX a = builder.parameter("a", 0.5), x = builder.state("x", {0.2, -1, 1}), u = builder.control("u", {0.0, -3, 3});
+  const SX a = builder.parameter("a", 0.5), x = builder.state("x", {0.2, -1, 1}),
+           u = builder.control("u", {0.0, -3, 3});
   builder.dynamics("x", a * u);
   OcpBuilder problem(std::move(builder));
   problem.horizon(1);

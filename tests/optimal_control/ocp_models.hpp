@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 #include "saltus/pipeline/optimal_control/optimize.hpp"

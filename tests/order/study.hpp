@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/pipeline/options/simulate_options.hpp"
 
 namespace saltus::problems {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/description.hpp"
 #include "saltus/result/result.hpp"
 

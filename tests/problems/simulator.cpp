@@ -7,7 +7,7 @@
 
 #include "problems/value_or_throw.hpp"
 #include "saltus/expression/parser.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/simulate.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "problems/references.hpp"
 #include "problems/relabelled.hpp"
-#include "saltus/io/toml_model.hpp"
-#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/io/toml/toml_model.hpp"
+#include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::problems {

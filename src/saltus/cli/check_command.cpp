@@ -6,15 +6,15 @@
 #include <fmt/format.h>
 
 #include "saltus/base/same_place.hpp"
-#include "saltus/cli/check_text.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/model_input.hpp"
-#include "saltus/cli/optimize_text.hpp"
 #include "saltus/cli/progress.hpp"
-#include "saltus/cli/reformulation_text.hpp"
-#include "saltus/cli/source_excerpt.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/check_text.hpp"
+#include "saltus/cli/text/optimize_text.hpp"
+#include "saltus/cli/text/reformulation_text.hpp"
+#include "saltus/cli/text/source_excerpt.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/check/json_check.hpp"
 #include "saltus/model/build.hpp"
 

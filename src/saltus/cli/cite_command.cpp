@@ -3,7 +3,7 @@
 
 #include "saltus/base/version.hpp"
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 
 namespace saltus::cli {
 namespace {

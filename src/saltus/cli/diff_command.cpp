@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/terminal.hpp"
-#include "saltus/io/json_result.hpp"
+#include "saltus/cli/text/terminal.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/result/difference.hpp"
 
 namespace saltus::cli {

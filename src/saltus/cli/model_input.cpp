@@ -8,7 +8,7 @@
 
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/expression/parser.hpp"
-#include "saltus/pipeline/option_effects.hpp"
+#include "saltus/pipeline/options/option_effects.hpp"
 
 namespace saltus::cli {
 namespace {

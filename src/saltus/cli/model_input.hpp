@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/description.hpp"
 #include "saltus/result/result.hpp"
 

@@ -6,9 +6,9 @@
 
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/atomic_file.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 
 namespace saltus::cli {
 namespace {

@@ -13,14 +13,14 @@
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/outputs.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/foreign/parse.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/mpcc/json_mpcc.hpp"
 #include "saltus/io/option_text.hpp"
 #include "saltus/io/sha256.hpp"
 #include "saltus/pipeline/mpcc/solve_mpcc.hpp"
-#include "saltus/pipeline/mpcc_options.hpp"
+#include "saltus/pipeline/options/mpcc_options.hpp"
 #include "saltus/report/mpcc_table.hpp"
 
 namespace saltus::cli {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/atomic_file.hpp"
 
 namespace saltus::cli {

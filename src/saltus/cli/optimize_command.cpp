@@ -13,10 +13,10 @@
 #include "saltus/cli/optimum_record.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/run_command.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/optimize.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/report/mpcc_table.hpp"
 #include "saltus/report/table.hpp"
 

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/terminal.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/cli/text/terminal.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 
 namespace saltus::cli {
 

@@ -8,7 +8,7 @@
 
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/run_command.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/pipeline/order.hpp"
 
 namespace saltus::cli {

@@ -11,9 +11,9 @@
 
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/interrupt.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/atomic_file.hpp"
-#include "saltus/io/json_result.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/report/html.hpp"
 
 namespace saltus::cli {

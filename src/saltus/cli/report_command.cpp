@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/figure_file.hpp"
 #include "saltus/cli/outputs.hpp"
-#include "saltus/cli/terminal.hpp"
-#include "saltus/io/json_result.hpp"
+#include "saltus/cli/text/figure_file.hpp"
+#include "saltus/cli/text/terminal.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/report/figure.hpp"
 
 namespace saltus::cli {

@@ -13,7 +13,7 @@
 #include "saltus/cli/exit_code.hpp"
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/outputs.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/result.hpp"

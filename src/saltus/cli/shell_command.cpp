@@ -9,9 +9,9 @@
 #include "saltus/base/version.hpp"
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/check/model_schema.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 
 namespace saltus::cli {
 namespace {

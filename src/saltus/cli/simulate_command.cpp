@@ -6,7 +6,7 @@
 
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/run_command.hpp"
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -33,7 +33,9 @@ Command add_simulate(CLI::App& app) {
       ->type_name("N|all");
   command->footer(simulate_footer);
   const auto compute = [](const model::System& system, const pipeline::SimulateOptions& options,
-                          const pipeline::Observers& observers) { return pipeline::simulate(system, options, observers); };
+                          const pipeline::Observers& observers) {
+    return pipeline::simulate(system, options, observers);
+  };
   return {"simulate", [arguments, compute] { return run_model("simulate", *arguments, compute); }, all_keys()};
 }
 

@@ -14,9 +14,9 @@
 #include "saltus/cli/run_command.hpp"
 #include "saltus/cli/sweep/page.hpp"
 #include "saltus/cli/sweep/share.hpp"
-#include "saltus/cli/sweep_input.hpp"
-#include "saltus/cli/sweep_table.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/sweep/sweep_input.hpp"
+#include "saltus/cli/sweep/sweep_table.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/atomic_file.hpp"
 
 namespace saltus::cli {

@@ -13,7 +13,7 @@
 #include "saltus/base/version.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/exit_code.hpp"
-#include "saltus/cli/terminal.hpp"
+#include "saltus/cli/text/terminal.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -81,10 +81,10 @@ ExitCode run(int argc, char** argv) {
   app.footer("Example:\n  saltus simulate stick-slip");
   app.get_formatter()->column_width(26);
   const std::vector<Command> commands{
-      add_simulate(app),    add_sweep(app),    add_optimize(app), add_compare(app),    add_order(app),          add_check(app),
-      add_mpcc(app),        add_models(app),   add_report(app),     add_diff(app),           add_new(app),
-      add_cite(app),        add_schema(app),   add_completion(app), add_complete_names(app), add_man_page(app),
-      add_options_page(app)};
+      add_simulate(app), add_sweep(app),       add_optimize(app), add_compare(app),    add_order(app),
+      add_check(app),    add_mpcc(app),        add_models(app),   add_report(app),     add_diff(app),
+      add_new(app),      add_cite(app),        add_schema(app),   add_completion(app), add_complete_names(app),
+      add_man_page(app), add_options_page(app)};
   add_help_all(app, commands);
   auto typed = arguments_of(argc, argv);
   if (!typed.empty() && typed.front() == "help") typed = help_for(typed);

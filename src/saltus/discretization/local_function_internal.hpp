@@ -7,7 +7,7 @@
 #include <casadi/core/sx.hpp>
 
 #include "saltus/evaluation/native_functions.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 #include "saltus/mpcc/problem.hpp"
 
 namespace saltus::discretization {

@@ -7,7 +7,7 @@
 
 #include "saltus/discretization/dcs_expressions_internal.hpp"
 #include "saltus/evaluation/native_functions.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 
 namespace saltus::discretization {
 

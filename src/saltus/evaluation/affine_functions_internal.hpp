@@ -8,7 +8,7 @@
 
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/evaluation/sparse/used_symbols_internal.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 #include "saltus/ode/linear_field.hpp"
 
 namespace saltus::evaluation {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "saltus/base/at.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {

@@ -17,7 +17,7 @@
 #include "saltus/evaluation/native_functions.hpp"
 #include "saltus/evaluation/region_constants_internal.hpp"
 #include "saltus/evaluation/sparse/used_symbols_internal.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 
 namespace saltus::evaluation {
 

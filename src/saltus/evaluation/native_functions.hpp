@@ -11,7 +11,7 @@
 #include "saltus/base/error.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/evaluation/native_code.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 
 namespace saltus::evaluation {
 

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "saltus/evaluation/native_steps_internal.hpp"
-#include "saltus/ode/dop853_tableau.hpp"
-#include "saltus/ode/dopri5_tableau.hpp"
+#include "saltus/ode/explicit/dop853_tableau.hpp"
+#include "saltus/ode/explicit/dopri5_tableau.hpp"
 
 namespace saltus::evaluation {
 namespace {

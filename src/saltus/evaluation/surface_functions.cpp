@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 
 namespace saltus::evaluation {
 

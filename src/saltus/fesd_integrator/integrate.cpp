@@ -1,6 +1,6 @@
 #include "saltus/fesd_integrator/integrate.hpp"
 
-#include "saltus/fesd_integrator/run_internal.hpp"
+#include "saltus/fesd_integrator/run/run_internal.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/reformulation/dcs.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "saltus/foreign/problem.hpp"
 #include "saltus/foreign/statement_internal.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 #include "saltus/mpcc/problem.hpp"
 
 namespace saltus::foreign {

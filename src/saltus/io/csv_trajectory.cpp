@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "saltus/io/json_result.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/io/text_stream_internal.hpp"
 
 namespace saltus::io {

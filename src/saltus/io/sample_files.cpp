@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "saltus/io/json_result.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/io/separated_line_internal.hpp"
 
 namespace saltus::io {

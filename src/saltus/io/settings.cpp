@@ -9,9 +9,9 @@
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/option_text.hpp"
 #include "saltus/io/setting_values_internal.hpp"
-#include "saltus/io/toml_model.hpp"
-#include "saltus/io/toml_sections_internal.hpp"
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/io/toml/toml_model.hpp"
+#include "saltus/io/toml/toml_sections_internal.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 
 namespace saltus::io {
 namespace {

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/model/guards_internal.hpp"
-#include "saltus/model/jumps_internal.hpp"
-#include "saltus/model/reduction_internal.hpp"
-#include "saltus/model/regions_internal.hpp"
-#include "saltus/model/statement_internal.hpp"
-#include "saltus/model/surface_points_internal.hpp"
-#include "saltus/model/surfaces_internal.hpp"
+#include "saltus/model/recognition/guards_internal.hpp"
+#include "saltus/model/recognition/reduction_internal.hpp"
+#include "saltus/model/recognition/surface_points_internal.hpp"
+#include "saltus/model/recognition/surfaces_internal.hpp"
+#include "saltus/model/statement/jumps_internal.hpp"
+#include "saltus/model/statement/regions_internal.hpp"
+#include "saltus/model/statement/statement_internal.hpp"
 
 namespace saltus::model {
 namespace {

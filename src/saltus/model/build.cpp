@@ -9,15 +9,15 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
-#include "saltus/model/build_errors_internal.hpp"
-#include "saltus/model/build_internal.hpp"
-#include "saltus/model/discrete_states_internal.hpp"
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
-#include "saltus/model/jumps_internal.hpp"
 #include "saltus/model/mechanics/mechanics_internal.hpp"
 #include "saltus/model/mistakes.hpp"
-#include "saltus/model/model_scope_internal.hpp"
-#include "saltus/model/modes_internal.hpp"
+#include "saltus/model/statement/build_errors_internal.hpp"
+#include "saltus/model/statement/build_internal.hpp"
+#include "saltus/model/statement/discrete_states_internal.hpp"
+#include "saltus/model/statement/jumps_internal.hpp"
+#include "saltus/model/statement/model_scope_internal.hpp"
+#include "saltus/model/statement/modes_internal.hpp"
 #include "saltus/model/time_freezing/freeze_internal.hpp"
 
 namespace saltus::model {

@@ -12,9 +12,9 @@
 #include "saltus/base/function_ref.hpp"
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
 #include "saltus/model/mechanics/mechanics_internal.hpp"
-#include "saltus/model/modes_internal.hpp"
-#include "saltus/model/names_internal.hpp"
-#include "saltus/model/statement_internal.hpp"
+#include "saltus/model/statement/modes_internal.hpp"
+#include "saltus/model/statement/names_internal.hpp"
+#include "saltus/model/statement/statement_internal.hpp"
 
 namespace saltus::model {
 
@@ -136,9 +136,9 @@ struct Builder::Parts {
       contact.restitution = entry(options.restitution, "restitution of " + name);
       if (!options.tangent.empty()) contact.tangent = SX::zeros(1, static_cast<casadi_int>(stated.positions.size()));
       for (const auto& [position, value] : options.tangent) {
-        const auto place = std::find_if(stated.positions.begin(), stated.positions.end(), [&, &wanted = position](int state) {
-          return whole.states[at(state)].name == wanted;
-        });
+        const auto place =
+            std::find_if(stated.positions.begin(), stated.positions.end(),
+                         [&, &wanted = position](int state) { return whole.states[at(state)].name == wanted; });
         if (place == stated.positions.end()) {
           return Error{ErrorCode::unknown_name,
                        fmt::format("the tangent of '{}' has the entry '{}', which is no position", name, position),
@@ -334,8 +334,8 @@ void Builder::mechanics(const Mechanics& mechanics) {
   MechanicsStatement stated{.mass = mechanics.mass,
                             .potential = parts_->entry(mechanics.potential, "potential"),
                             .coriolis = mechanics.coriolis};
-  for (const auto& [names, numbers] : {std::pair{&mechanics.positions, &stated.positions},
-                                       std::pair{&mechanics.velocities, &stated.velocities}}) {
+  for (const auto& [names, numbers] :
+       {std::pair{&mechanics.positions, &stated.positions}, std::pair{&mechanics.velocities, &stated.velocities}}) {
     for (const auto& name : *names) {
       const auto* state = parts_->find(parts_->statement.states, name, NameKind::state);
       if (state == nullptr) return;
@@ -357,8 +357,11 @@ void Builder::mechanics(const Mechanics& mechanics) {
   for (const auto& [name, force] : mechanics.force) {
     const auto place = std::find(mechanics.velocities.begin(), mechanics.velocities.end(), name);
     if (place == mechanics.velocities.end()) {
-      parts_->fail({ErrorCode::unknown_name, fmt::format("a force on '{}', which is no velocity", name),
-                    suggest(name, mechanics.velocities), {}, {}});
+      parts_->fail({ErrorCode::unknown_name,
+                    fmt::format("a force on '{}', which is no velocity", name),
+                    suggest(name, mechanics.velocities),
+                    {},
+                    {}});
       return;
     }
     stated.force(place - mechanics.velocities.begin()) = parts_->entry(force, "force on " + name);

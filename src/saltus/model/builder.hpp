@@ -12,8 +12,8 @@
 #include <casadi/core/sx.hpp>
 #include <casadi/core/sx_elem.hpp>
 
-#include "saltus/model/condition.hpp"
 #include "saltus/model/description.hpp"
+#include "saltus/model/recognition/condition.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::model {
@@ -51,8 +51,8 @@ struct JumpOptions {
 /// M(q) dv/dt = force - grad potential - coriolis + forces of contacts, dq/dt = v (interface.md, [mechanics]).
 struct Mechanics {
   std::vector<std::string> positions{}, velocities{};  ///< states, in the same order
-  casadi::SX mass{};                               ///< n x n over positions and parameters; 0 x 0: identity
-  casadi::SX potential = 0.0;                      ///< over positions and parameters: its gradient is subtracted
+  casadi::SX mass{};                                   ///< n x n over positions and parameters; 0 x 0: identity
+  casadi::SX potential = 0.0;                          ///< over positions and parameters: its gradient is subtracted
   Coriolis coriolis = Coriolis::in_force;
   std::map<std::string, casadi::SX> force{};  ///< by velocity; absent: 0
 };

@@ -1,7 +1,7 @@
 #include "saltus/ode/bernstein.hpp"
 
 #include "saltus/ode/bernstein_data_internal.hpp"
-#include "saltus/ode/ratio_form_internal.hpp"
+#include "saltus/ode/explicit/ratio_form_internal.hpp"
 
 namespace saltus::ode {
 

@@ -7,8 +7,8 @@
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/bernstein_internal.hpp"
-#include "saltus/ode/lanes_internal.hpp"
-#include "saltus/ode/nested_form_internal.hpp"
+#include "saltus/ode/explicit/lanes_internal.hpp"
+#include "saltus/ode/explicit/nested_form_internal.hpp"
 #include "saltus/ode/series_internal.hpp"
 #include "saltus/ode/stepper.hpp"
 

@@ -9,7 +9,7 @@
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/bernstein.hpp"
 #include "saltus/ode/bernstein_internal.hpp"
-#include "saltus/ode/nested_form_internal.hpp"
+#include "saltus/ode/explicit/nested_form_internal.hpp"
 
 namespace saltus::ode {
 namespace {

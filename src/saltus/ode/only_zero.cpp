@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "saltus/ode/lanes_internal.hpp"
+#include "saltus/ode/explicit/lanes_internal.hpp"
+#include "saltus/ode/explicit/ratio_form_internal.hpp"
 #include "saltus/ode/only_zero_internal.hpp"
-#include "saltus/ode/ratio_form_internal.hpp"
 
 namespace saltus::ode {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "saltus/ode/bernstein_internal.hpp"
-#include "saltus/ode/lanes_internal.hpp"
+#include "saltus/ode/explicit/lanes_internal.hpp"
 #include "saltus/ode/series_internal.hpp"
 #include "saltus/ode/step_checks_internal.hpp"
 

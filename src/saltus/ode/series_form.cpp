@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "saltus/ode/bernstein_internal.hpp"
-#include "saltus/ode/lanes_internal.hpp"
+#include "saltus/ode/explicit/lanes_internal.hpp"
 #include "saltus/ode/only_zero_internal.hpp"
 #include "saltus/ode/sign_change_internal.hpp"
 

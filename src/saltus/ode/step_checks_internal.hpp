@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "saltus/ode/lanes_internal.hpp"
+#include "saltus/ode/explicit/lanes_internal.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::ode {

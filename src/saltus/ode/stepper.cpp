@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "saltus/base/contracts.hpp"
-#include "saltus/ode/explicit_method_internal.hpp"
+#include "saltus/ode/explicit/explicit_method_internal.hpp"
 #include "saltus/ode/radau5_internal.hpp"
 #include "saltus/ode/series_internal.hpp"
 #include "saltus/ode/step_checks_internal.hpp"

@@ -13,7 +13,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/pipeline/observers_internal.hpp"
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/pipeline/recorded_internal.hpp"
 #include "saltus/pipeline/values_at.hpp"
 #include "saltus/result/comparison.hpp"

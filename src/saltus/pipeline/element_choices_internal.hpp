@@ -3,7 +3,7 @@
 
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/fesd_options.hpp"
-#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::pipeline {

@@ -3,7 +3,7 @@
 #include <string>
 #include <type_traits>
 
-#include "saltus/pipeline/option_values_internal.hpp"
+#include "saltus/pipeline/options/option_values_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

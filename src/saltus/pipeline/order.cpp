@@ -11,7 +11,7 @@
 
 #include "saltus/pipeline/compare.hpp"
 #include "saltus/pipeline/observers_internal.hpp"
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/pipeline/recorded_internal.hpp"
 
 namespace saltus::pipeline {

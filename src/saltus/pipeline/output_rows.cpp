@@ -3,7 +3,7 @@
 #include <utility>
 #include <variant>
 
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
 
 namespace saltus::pipeline {

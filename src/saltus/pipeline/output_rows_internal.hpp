@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "saltus/event_integrator/integrate.hpp"
-#include "saltus/pipeline/simulate_options.hpp"
+#include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::pipeline {

@@ -7,7 +7,7 @@
 #include "saltus/fesd_integrator/step_problem.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/pipeline/step_observer_internal.hpp"

@@ -5,8 +5,8 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/model/system.hpp"
+#include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/pipeline/simulate.hpp"
-#include "saltus/pipeline/simulate_options.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::pipeline {

@@ -8,7 +8,7 @@
 #include <casadi/core/calculus.hpp>
 
 #include "saltus/base/contracts.hpp"
-#include "saltus/model/finite_operations.hpp"
+#include "saltus/model/graph/finite_operations.hpp"
 
 namespace saltus::reformulation {
 namespace {

@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/affine_forms.hpp"
+#include "saltus/event_integrator/search/affine_forms.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "run_model.hpp"
+#include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/integrate.hpp"
-#include "saltus/event_integrator/mode_field.hpp"
 #include "saltus/model/builder.hpp"
 
 namespace saltus::event_integrator {

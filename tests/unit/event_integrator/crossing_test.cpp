@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/event_integrator/run_internal.hpp"
+#include "saltus/event_integrator/run/run_internal.hpp"
 #include "systems.hpp"
 
 namespace saltus::event_integrator {

@@ -1,6 +1,6 @@
 // The linear part of the motion in a mode: its columns are differences of the field, and modes that are not affine have
 // none.
-#include "saltus/event_integrator/linear_motion.hpp"
+#include "saltus/event_integrator/field/linear_motion.hpp"
 
 #include <cmath>
 #include <vector>

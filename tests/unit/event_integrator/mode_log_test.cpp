@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/mode_log.hpp"
+#include "saltus/event_integrator/mode/mode_log.hpp"
 
 #include <cmath>
 #include <limits>

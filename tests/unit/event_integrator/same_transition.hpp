@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/event_integrator/transition.hpp"
+#include "saltus/event_integrator/decide/transition.hpp"
 
 namespace saltus::event_integrator {
 

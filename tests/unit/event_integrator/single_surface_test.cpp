@@ -1,5 +1,5 @@
 // The short way of the usual event against the general decision, and what an event costs.
-#include "saltus/event_integrator/single_surface.hpp"
+#include "saltus/event_integrator/decide/fast/single_surface.hpp"
 
 #include <cmath>
 #include <random>

@@ -1,5 +1,5 @@
 // The short way of the usual meeting of two surfaces against the general decision.
-#include "saltus/event_integrator/surface_pair.hpp"
+#include "saltus/event_integrator/decide/fast/surface_pair.hpp"
 
 #include <algorithm>
 #include <array>

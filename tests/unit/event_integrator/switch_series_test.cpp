@@ -1,5 +1,5 @@
 // When switches that follow each other are said to have come to a limit.
-#include "saltus/event_integrator/switch_series.hpp"
+#include "saltus/event_integrator/accumulate/switch_series.hpp"
 
 #include <cmath>
 

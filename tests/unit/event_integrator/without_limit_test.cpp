@@ -1,5 +1,5 @@
 // Right-hand sides that have no limit at the state a solution arrives at.
-#include "saltus/event_integrator/without_limit.hpp"
+#include "saltus/event_integrator/decide/sets/without_limit.hpp"
 
 #include <functional>
 #include <optional>

@@ -1,5 +1,5 @@
 // What needs no model: active sets, small linear systems, polynomials of elements.
-#include "saltus/fesd_integrator/active_set.hpp"
+#include "saltus/fesd_integrator/element/active_set.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/fesd_integrator/dense_system_internal.hpp"
-#include "saltus/fesd_integrator/element.hpp"
-#include "saltus/fesd_integrator/element_polynomial_internal.hpp"
+#include "saltus/fesd_integrator/element/dense_system_internal.hpp"
+#include "saltus/fesd_integrator/element/element.hpp"
+#include "saltus/fesd_integrator/element/element_polynomial_internal.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {

@@ -6,7 +6,7 @@
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/point_functions.hpp"
 #include "saltus/discretization/stage_kernel.hpp"
-#include "saltus/fesd_integrator/facts.hpp"
+#include "saltus/fesd_integrator/element/facts.hpp"
 #include "saltus/model/builder.hpp"
 #include "saltus/reformulation/dcs.hpp"
 

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "compiled.hpp"
-#include "saltus/fesd_integrator/held_values.hpp"
-#include "saltus/fesd_integrator/recorder.hpp"
-#include "saltus/fesd_integrator/transition.hpp"
+#include "saltus/fesd_integrator/decide/transition.hpp"
+#include "saltus/fesd_integrator/record/recorder.hpp"
+#include "saltus/fesd_integrator/watch/held_values.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {

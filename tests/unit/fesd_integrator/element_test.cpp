@@ -1,14 +1,14 @@
 // One element: Newton's method, selections of the projected field, and where signs end.
-#include "saltus/fesd_integrator/element.hpp"
+#include "saltus/fesd_integrator/element/element.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "compiled.hpp"
-#include "saltus/fesd_integrator/element_recorder.hpp"
-#include "saltus/fesd_integrator/projected_field.hpp"
-#include "saltus/fesd_integrator/watch.hpp"
+#include "saltus/fesd_integrator/element/projected_field.hpp"
+#include "saltus/fesd_integrator/record/element_recorder.hpp"
+#include "saltus/fesd_integrator/watch/watch.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {

@@ -1,5 +1,5 @@
 // Limits of sequences of switches: geometric ones, and what has none.
-#include "saltus/fesd_integrator/lap_series.hpp"
+#include "saltus/fesd_integrator/accumulate/lap_series.hpp"
 
 #include <cmath>
 

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "saltus/fesd_integrator/element/time_warp.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
-#include "saltus/fesd_integrator/time_warp.hpp"
 #include "saltus/model/builder.hpp"
 #include "saltus/reformulation/dcs.hpp"
 

@@ -1,5 +1,5 @@
 // Sensitivities of the discretisation: closed forms, central differences, and what time-stepping makes of them.
-#include "saltus/fesd_integrator/sensitivities.hpp"
+#include "saltus/fesd_integrator/tangent/sensitivities.hpp"
 
 #include <algorithm>
 #include <array>

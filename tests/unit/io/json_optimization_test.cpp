@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "../report/sample_optimization.hpp"
-#include "saltus/io/json_result.hpp"
+#include "saltus/io/json/json_result.hpp"
 
 namespace saltus::io {
 namespace {

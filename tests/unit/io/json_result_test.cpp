@@ -1,4 +1,4 @@
-#include "saltus/io/json_result.hpp"
+#include "saltus/io/json/json_result.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 
 namespace saltus::io {
 

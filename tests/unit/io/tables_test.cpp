@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/io/json_result.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/io/sample_files.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 
 namespace saltus::io {

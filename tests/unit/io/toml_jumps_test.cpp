@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "saltus/expression/parser.hpp"
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 
 namespace saltus::io {
 namespace {

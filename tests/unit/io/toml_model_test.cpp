@@ -1,4 +1,4 @@
-#include "saltus/io/toml_model.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 
 #include <algorithm>
 #include <random>

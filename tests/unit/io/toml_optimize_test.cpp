@@ -3,8 +3,8 @@
 
 #include "optimize_model.hpp"
 #include "saltus/expression/parser.hpp"
-#include "saltus/io/toml_model.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/io/toml/toml_model.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
 
 namespace saltus::io {
 namespace {

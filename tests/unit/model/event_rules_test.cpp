@@ -1,4 +1,4 @@
-#include "saltus/model/event_rules.hpp"
+#include "saltus/model/statement/event_rules.hpp"
 
 #include <gtest/gtest.h>
 

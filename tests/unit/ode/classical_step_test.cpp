@@ -1,4 +1,4 @@
-#include "saltus/ode/classical_step.hpp"
+#include "saltus/ode/explicit/classical_step.hpp"
 
 #include <cmath>
 #include <vector>

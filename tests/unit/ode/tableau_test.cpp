@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "rooted_trees.hpp"
-#include "saltus/ode/dop853_tableau.hpp"
-#include "saltus/ode/dopri5_tableau.hpp"
+#include "saltus/ode/explicit/dop853_tableau.hpp"
+#include "saltus/ode/explicit/dopri5_tableau.hpp"
 
 namespace saltus::ode {
 namespace {

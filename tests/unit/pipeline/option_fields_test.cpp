@@ -1,4 +1,4 @@
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 
 #include <gtest/gtest.h>
 

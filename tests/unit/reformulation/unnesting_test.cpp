@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "dcs_tools.hpp"
-#include "saltus/model/condition.hpp"
+#include "saltus/model/recognition/condition.hpp"
 
 namespace saltus::reformulation {
 namespace {

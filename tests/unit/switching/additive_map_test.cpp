@@ -1,11 +1,11 @@
-#include "saltus/switching/additive_map.hpp"
+#include "saltus/switching/table/additive_map.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "saltus/switching/selection_balances.hpp"
+#include "saltus/switching/selections/selection_balances.hpp"
 
 namespace saltus::switching {
 namespace {

@@ -1,4 +1,4 @@
-#include "saltus/switching/admissible_modes.hpp"
+#include "saltus/switching/plane/admissible_modes.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "random_fields.hpp"
-#include "saltus/switching/intersection.hpp"
+#include "saltus/switching/plane/intersection.hpp"
 
 namespace saltus::switching {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/switching/hidden_dynamics.hpp"
+#include "saltus/switching/hidden/hidden_dynamics.hpp"
 
 namespace saltus::switching {
 namespace {

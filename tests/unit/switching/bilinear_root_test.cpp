@@ -1,4 +1,4 @@
-#include "saltus/switching/bilinear_root.hpp"
+#include "saltus/switching/plane/bilinear_root.hpp"
 
 #include <cmath>
 #include <random>

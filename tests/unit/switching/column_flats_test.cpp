@@ -1,4 +1,4 @@
-#include "saltus/switching/column_flats.hpp"
+#include "saltus/switching/selections/column_flats.hpp"
 
 #include <algorithm>
 #include <random>

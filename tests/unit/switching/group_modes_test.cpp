@@ -1,4 +1,4 @@
-#include "saltus/switching/group_modes.hpp"
+#include "saltus/switching/hidden/group_modes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "hidden_instances.hpp"
-#include "saltus/switching/admissible_modes.hpp"
+#include "saltus/switching/plane/admissible_modes.hpp"
 
 namespace saltus::switching {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstddef>
 
 #include "plane_frames.hpp"
-#include "saltus/switching/hidden_dynamics.hpp"
-#include "saltus/switching/multi_affine.hpp"
+#include "saltus/switching/hidden/hidden_dynamics.hpp"
+#include "saltus/switching/table/multi_affine.hpp"
 
 namespace saltus::switching {
 

@@ -1,4 +1,4 @@
-#include "saltus/switching/hidden_dynamics.hpp"
+#include "saltus/switching/hidden/hidden_dynamics.hpp"
 
 #include <array>
 #include <cmath>

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "saltus/switching/hidden_dynamics.hpp"
-#include "saltus/switching/multi_affine.hpp"
-#include "saltus/switching/selection_newton.hpp"
+#include "saltus/switching/hidden/hidden_dynamics.hpp"
+#include "saltus/switching/selections/selection_newton.hpp"
+#include "saltus/switching/table/multi_affine.hpp"
 
 namespace saltus::switching {
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/switching/hidden_series_internal.hpp"
+#include "saltus/switching/hidden/hidden_series_internal.hpp"
 
 namespace saltus::switching {
 namespace {

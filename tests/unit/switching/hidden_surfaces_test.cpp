@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "hidden_instances.hpp"
-#include "saltus/switching/selection_newton.hpp"
-#include "saltus/switching/surface_decision.hpp"
+#include "saltus/switching/selections/selection_newton.hpp"
+#include "saltus/switching/table/surface_decision.hpp"
 
 namespace saltus::switching {
 namespace {

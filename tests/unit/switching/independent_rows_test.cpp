@@ -1,4 +1,4 @@
-#include "saltus/switching/independent_rows.hpp"
+#include "saltus/switching/table/independent_rows.hpp"
 
 #include <cmath>
 #include <vector>

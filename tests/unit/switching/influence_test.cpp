@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/switching/group_decision.hpp"
+#include "saltus/switching/table/group_decision.hpp"
 
 namespace saltus::switching {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "random_fields.hpp"
-#include "saltus/switching/intersection.hpp"
+#include "saltus/switching/plane/intersection.hpp"
 #include "switching_cases.hpp"
 
 namespace saltus::switching {

@@ -1,4 +1,4 @@
-#include "saltus/switching/intersection_roots.hpp"
+#include "saltus/switching/plane/intersection_roots.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include "hidden_simulation.hpp"
 #include "random_fields.hpp"
-#include "saltus/switching/intersection.hpp"
+#include "saltus/switching/plane/intersection.hpp"
 
 namespace saltus::switching {
 namespace {

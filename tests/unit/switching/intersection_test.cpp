@@ -1,4 +1,4 @@
-#include "saltus/switching/intersection.hpp"
+#include "saltus/switching/plane/intersection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/switching/spiral.hpp"
+#include "saltus/switching/plane/spiral.hpp"
 #include "switching_cases.hpp"
 
 namespace saltus::switching {

@@ -1,5 +1,5 @@
 // Stewart's complementarity system: every set that is found solves it, and monotone ones have one solution.
-#include "saltus/switching/region_decision.hpp"
+#include "saltus/switching/regions/region_decision.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Weights of regions whose indicators depend on each other: the equations and the products, on polytopes of all sorts.
-#include "saltus/switching/region_weights.hpp"
+#include "saltus/switching/regions/region_weights.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "saltus/switching/tied_regions.hpp"
+#include "saltus/switching/regions/tied_regions.hpp"
 
 namespace saltus::switching {
 namespace {

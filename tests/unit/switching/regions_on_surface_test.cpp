@@ -1,5 +1,5 @@
 // Regions that slide on a surface together: every set that is found solves the system, and none is missed.
-#include "saltus/switching/regions_on_surface.hpp"
+#include "saltus/switching/regions/regions_on_surface.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "saltus/switching/selection_complementarity.hpp"
+#include "saltus/switching/selections/selection_complementarity.hpp"
 
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-#include "saltus/switching/selection_newton.hpp"
+#include "saltus/switching/selections/selection_newton.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "hidden_instances.hpp"
-#include "saltus/switching/intersection_roots.hpp"
-#include "saltus/switching/matrix_stability.hpp"
+#include "saltus/switching/plane/intersection_roots.hpp"
+#include "saltus/switching/table/matrix_stability.hpp"
 
 namespace saltus::switching {
 namespace {

@@ -1,4 +1,4 @@
-#include "saltus/switching/selection_range.hpp"
+#include "saltus/switching/selections/selection_range.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -1,11 +1,11 @@
-#include "saltus/switching/spiral.hpp"
+#include "saltus/switching/plane/spiral.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "random_fields.hpp"
-#include "saltus/switching/intersection.hpp"
+#include "saltus/switching/plane/intersection.hpp"
 #include "switching_cases.hpp"
 
 namespace saltus::switching {

@@ -1,4 +1,4 @@
-#include "saltus/switching/surface_decision.hpp"
+#include "saltus/switching/table/surface_decision.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/switching/group_decision.hpp"
-#include "saltus/switching/selection_root.hpp"
+#include "saltus/switching/selections/selection_root.hpp"
+#include "saltus/switching/table/group_decision.hpp"
 #include "switching_cases.hpp"
 
 namespace saltus::switching {

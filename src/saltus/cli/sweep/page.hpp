@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "saltus/cli/sweep_plan.hpp"
-#include "saltus/cli/sweep_table.hpp"
+#include "saltus/cli/sweep/sweep_plan.hpp"
+#include "saltus/cli/sweep/sweep_table.hpp"
 
 namespace saltus::cli {
 

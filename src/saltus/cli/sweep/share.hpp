@@ -7,8 +7,8 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/cli/model_input.hpp"
-#include "saltus/cli/sweep_plan.hpp"
-#include "saltus/cli/sweep_table.hpp"
+#include "saltus/cli/sweep/sweep_plan.hpp"
+#include "saltus/cli/sweep/sweep_table.hpp"
 
 namespace saltus::cli {
 

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "saltus/cli/sweep_table.hpp"
-#include "saltus/io/npy.hpp"
-#include "saltus/io/zip_stream.hpp"
+#include "saltus/cli/sweep/sweep_table.hpp"
+#include "saltus/io/zip/npy.hpp"
+#include "saltus/io/zip/zip_stream.hpp"
 
 namespace saltus::cli {
 namespace {

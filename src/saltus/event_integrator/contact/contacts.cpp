@@ -9,7 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/contact/impact.hpp"
-#include "saltus/event_integrator/small_internal.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {

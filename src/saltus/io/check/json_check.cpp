@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "saltus/io/json_reader_internal.hpp"
+#include "saltus/io/json/json_reader_internal.hpp"
 
 namespace saltus::io {
 namespace {

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <utility>
 
-#include "saltus/io/json_reader_internal.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
-#include "saltus/pipeline/option_fields.hpp"
+#include "saltus/io/json/json_reader_internal.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 
 namespace saltus::io {
 namespace {

@@ -1,7 +1,7 @@
 // Reader of [[contacts]].
 #include <fmt/format.h>
 
-#include "saltus/io/toml_sections_internal.hpp"
+#include "saltus/io/toml/toml_sections_internal.hpp"
 
 namespace saltus::io {
 namespace {

@@ -1,8 +1,8 @@
 // Reader of [mechanics].
 #include <fmt/format.h>
 
-#include "saltus/io/toml_sections_internal.hpp"
-#include "saltus/io/toml_words_internal.hpp"
+#include "saltus/io/toml/toml_sections_internal.hpp"
+#include "saltus/io/toml/toml_words_internal.hpp"
 
 namespace saltus::io {
 namespace {

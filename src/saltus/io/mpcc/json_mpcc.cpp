@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "saltus/io/atomic_file.hpp"
-#include "saltus/io/json_layout_internal.hpp"
-#include "saltus/io/json_optimization_internal.hpp"
+#include "saltus/io/json/json_layout_internal.hpp"
+#include "saltus/io/json/json_optimization_internal.hpp"
 
 namespace saltus::io {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "saltus/io/json_result.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/io/named_files_internal.hpp"
-#include "saltus/io/toml_model.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/io/toml/toml_model.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
 
 namespace saltus::io {
 namespace {
@@ -54,9 +54,8 @@ Expected<void> check_optimize_options(const ModelFile& model) {
 Expected<void> read_start_result(ModelFile& model) {
   if (!model.optimize || !model.optimize->start_result) return {};
   const auto& file = *model.optimize->start_result;
-  auto stored = read_named(model.files, file).and_then([&](const std::string& text) {
-    return parse_result(text, file);
-  });
+  auto stored =
+      read_named(model.files, file).and_then([&](const std::string& text) { return parse_result(text, file); });
   if (!stored) return tl::unexpected(with_context(stored.error(), "in the result to start from"));
   if (stored->trajectory.t.empty()) {
     return tl::unexpected(in_optimize(fmt::format("{} has no trajectory", *model.optimize->start_result),

@@ -10,7 +10,7 @@
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/option_text.hpp"
 #include "saltus/io/setting_values_internal.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
 
 namespace saltus::io {
 namespace {

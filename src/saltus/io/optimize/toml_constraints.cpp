@@ -11,7 +11,7 @@
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/constant_value_internal.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
-#include "saltus/io/toml_words_internal.hpp"
+#include "saltus/io/toml/toml_words_internal.hpp"
 
 namespace saltus::io {
 namespace {

@@ -8,8 +8,8 @@
 #include "saltus/io/named_files_internal.hpp"
 #include "saltus/io/optimize/number_rows_internal.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
-#include "saltus/io/toml_sections_internal.hpp"
-#include "saltus/io/toml_words_internal.hpp"
+#include "saltus/io/toml/toml_sections_internal.hpp"
+#include "saltus/io/toml/toml_words_internal.hpp"
 
 namespace saltus::io {
 namespace {

@@ -7,9 +7,9 @@
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/constant_value_internal.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
-#include "saltus/io/toml_sections_internal.hpp"
-#include "saltus/io/toml_words_internal.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/io/toml/toml_sections_internal.hpp"
+#include "saltus/io/toml/toml_words_internal.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
 
 namespace saltus::io {
 namespace {

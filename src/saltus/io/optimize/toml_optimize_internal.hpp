@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "saltus/io/toml_model.hpp"
-#include "saltus/io/toml_reader_internal.hpp"
+#include "saltus/io/toml/toml_model.hpp"
+#include "saltus/io/toml/toml_reader_internal.hpp"
 #include "saltus/model/ocp_description.hpp"
 
 namespace saltus::io {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
-#include "saltus/model/start_values_internal.hpp"
+#include "saltus/model/statement/start_values_internal.hpp"
 
 namespace saltus::model {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "saltus/model/model_scope_internal.hpp"
+#include "saltus/model/statement/model_scope_internal.hpp"
 
 namespace saltus::model {
 

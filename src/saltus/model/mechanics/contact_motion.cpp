@@ -5,7 +5,7 @@
 
 #include "saltus/model/mechanics/contact_motion_internal.hpp"
 #include "saltus/model/mechanics/smooth_check_internal.hpp"
-#include "saltus/model/start_values_internal.hpp"
+#include "saltus/model/statement/start_values_internal.hpp"
 
 namespace saltus::model {
 

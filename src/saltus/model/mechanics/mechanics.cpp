@@ -8,7 +8,7 @@
 #include "saltus/model/mechanics/contacts_internal.hpp"
 #include "saltus/model/mechanics/smooth_check_internal.hpp"
 #include "saltus/model/mechanics/symbolic_ldl_internal.hpp"
-#include "saltus/model/start_values_internal.hpp"
+#include "saltus/model/statement/start_values_internal.hpp"
 
 namespace saltus::model {
 

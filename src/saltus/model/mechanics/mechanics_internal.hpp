@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "saltus/model/model_scope_internal.hpp"
+#include "saltus/model/statement/model_scope_internal.hpp"
 
 namespace saltus::model {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "saltus/model/statement_internal.hpp"
+#include "saltus/model/statement/statement_internal.hpp"
 
 namespace saltus::model {
 

@@ -8,7 +8,7 @@
 
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
 #include "saltus/model/mechanics/contacts_internal.hpp"
-#include "saltus/model/model_scope_internal.hpp"
+#include "saltus/model/statement/model_scope_internal.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 
 namespace saltus::model {

@@ -6,7 +6,7 @@
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
-#include "saltus/pipeline/number_list_internal.hpp"
+#include "saltus/pipeline/options/number_list_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

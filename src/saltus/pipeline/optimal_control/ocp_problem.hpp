@@ -9,7 +9,7 @@
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/ocp/ocp_problem.hpp"
 #include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/optimize_options.hpp"
+#include "saltus/pipeline/options/optimize_options.hpp"
 
 namespace saltus::pipeline {
 

@@ -13,11 +13,11 @@
 #include "saltus/base/at.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
-#include "saltus/pipeline/number_list_internal.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
 #include "saltus/pipeline/optimal_control/verify.hpp"
-#include "saltus/pipeline/optimize_fields.hpp"
+#include "saltus/pipeline/options/number_list_internal.hpp"
+#include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/optimize_options.hpp"
+#include "saltus/pipeline/options/optimize_options.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::pipeline {

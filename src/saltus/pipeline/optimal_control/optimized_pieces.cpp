@@ -4,8 +4,8 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
-#include "saltus/fesd_integrator/held_values.hpp"
-#include "saltus/fesd_integrator/projected_field.hpp"
+#include "saltus/fesd_integrator/element/projected_field.hpp"
+#include "saltus/fesd_integrator/watch/held_values.hpp"
 #include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
 
 namespace saltus::pipeline {

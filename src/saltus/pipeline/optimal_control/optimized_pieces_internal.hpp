@@ -7,9 +7,9 @@
 #include "saltus/discretization/ocp/ocp_problem.hpp"
 #include "saltus/discretization/point_functions.hpp"
 #include "saltus/discretization/stage_kernel.hpp"
-#include "saltus/fesd_integrator/active_set.hpp"
-#include "saltus/fesd_integrator/element.hpp"
-#include "saltus/fesd_integrator/facts.hpp"
+#include "saltus/fesd_integrator/element/active_set.hpp"
+#include "saltus/fesd_integrator/element/element.hpp"
+#include "saltus/fesd_integrator/element/facts.hpp"
 
 namespace saltus::pipeline {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
-#include "saltus/fesd_integrator/element_recorder.hpp"
-#include "saltus/fesd_integrator/recorder.hpp"
+#include "saltus/fesd_integrator/record/element_recorder.hpp"
+#include "saltus/fesd_integrator/record/recorder.hpp"
 #include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 

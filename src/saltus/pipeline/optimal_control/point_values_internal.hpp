@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/model_function.hpp"
+#include "saltus/model/graph/model_function.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::pipeline {

@@ -1,0 +1,19 @@
+// The runs of a sweep, stated from the model file.
+#pragma once
+
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/cli/model_input.hpp"
+#include "saltus/cli/sweep/sweep_plan.hpp"
+#include "saltus/pipeline/sweep.hpp"
+
+namespace saltus::cli {
+
+/// The model with the values of one run; fails as `saltus simulate` does with the same settings.
+[[nodiscard]] Expected<ModelInput> input_of_run(const ModelInput& model, const SweepPlan& plan, std::size_t run);
+
+/// The same as a system. To be called under the symbolic lock.
+[[nodiscard]] Expected<pipeline::StatedRun> state_run(const ModelInput& model, const SweepPlan& plan, std::size_t run);
+
+}  // namespace saltus::cli

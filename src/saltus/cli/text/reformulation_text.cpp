@@ -1,0 +1,101 @@
+#include "saltus/cli/text/reformulation_text.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "saltus/pipeline/well_posedness.hpp"
+#include "saltus/reformulation/sizes.hpp"
+
+namespace saltus::cli {
+namespace {
+
+using reformulation::Counts;
+using reformulation::Form;
+using reformulation::ReformulationOptions;
+using reformulation::Sizes;
+
+struct Row {
+  std::string_view title;
+  ReformulationOptions options;
+};
+
+const Row rows[] = {
+    {"step", {.reformulation = Form::step, .lifting = std::nullopt}},
+    {"step, lifted", {}},
+    {"stewart", {.reformulation = Form::stewart}},
+};
+
+std::string line(std::string_view title, const Counts& counts) {
+  return fmt::format("  {:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", title, counts.alpha, counts.theta, counts.beta,
+                     counts.algebraic, counts.complementarities, counts.equations);
+}
+
+/// At most 24 characters.
+std::string shortened(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 24;
+  const std::string text = fmt::format("{}", fmt::join(names, ", "));
+  if (text.size() <= most) return text;
+  const std::string count = names.size() > 1 ? fmt::format("… ({})", names.size()) : "…";
+  const std::size_t room = most - std::min(most, count.size() - 2);  // the ellipsis is one character of three bytes
+  return text.substr(0, room) + count;
+}
+
+std::string groups_text(const Sizes& sizes) {
+  if (sizes.groups.size() < 2) return "";
+  std::string text;
+  for (const auto& group : sizes.groups) text += line("  " + shortened(group.surfaces), group.counts);
+  return text;
+}
+
+}  // namespace
+
+std::string reformulation_text(const model::System& system) {
+  std::string text = "\ncomplementarity systems (numbers of one stage, Table 4 of Nurkanović et al. 2024)\n";
+  std::string table, reasons;
+  for (const Row& row : rows) {
+    const auto sizes = reformulation::sizes_of(system, row.options);
+    if (!sizes) {
+      const std::string reason = fmt::format("{}; {}", sizes.error().message, sizes.error().remedy);
+      // Without any form there is one reason for all.
+      if (table.empty()) return text + fmt::format("  none: {}\n", reason);
+      reasons += fmt::format("  {}: none: {}\n", row.title, reason);
+      continue;
+    }
+    if (sizes->groups.empty()) return text + "  none: nothing switches with the state\n";
+    if (&row == &rows[1] && sizes->total.beta == 0) continue;
+    table += line(row.title, sizes->total) + groups_text(*sizes);
+  }
+  text += fmt::format("  {:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "form", "n_alpha", "n_theta", "n_beta", "n_alg",
+                      "n_comp", "n_eq");
+  return text + table + reasons;
+}
+
+std::string ranks_text(const model::System& system, const pipeline::SimulateOptions& options,
+                       const pipeline::Observers& observers) {
+  // Without one there is nothing to look at.
+  if (!options.until || !reformulation::reformulate(system)) return "";
+  const auto ranks = pipeline::ranks_along_solution(system, options, observers);
+  std::string text = "\nwell-posedness along the solution of [simulate] (rank of W B, Assumption 7 ibid.)\n";
+  if (!ranks) return text + fmt::format("  not computed: {}\n", ranks.error().message);
+  if (ranks->active_sets.empty()) text += "  nothing slides\n";
+  for (const auto& set : ranks->active_sets) {
+    text += fmt::format("  {} = 0, first at t = {:.6g}, {} row{}\n", fmt::join(set.names, ", "), set.first, set.rows,
+                        set.rows == 1 ? "" : "s");
+    for (const auto& form : set.forms) {
+      text += fmt::format("    {:<8} rank {} of {}, smallest singular value {:.3g}{}\n",
+                          form.form == Form::step ? "step" : "stewart", form.rank, form.unknowns,
+                          form.smallest_singular_value,
+                          form.rank < form.unknowns ? ": singular, the multipliers are not determined by it" : "");
+    }
+  }
+  const auto& status = ranks->status;
+  if (!result::is_done(status.termination)) {
+    text += fmt::format("  the simulation stopped at t = {:.6g}: {}\n", status.time_reached, status.message);
+  }
+  return text;
+}
+
+}  // namespace saltus::cli

@@ -1,0 +1,253 @@
+#include "saltus/event_integrator/accumulate/accumulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/ode/geometric_limit.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+constexpr double hundredth = 0.01;
+
+}  // namespace
+
+void EventSeries::Executed::set(const std::vector<int>& executed) {
+  if (executed.size() == 1) {
+    only = executed.front();
+  } else {
+    only = several;
+    jumps = executed;
+  }
+}
+
+void EventSeries::Executed::append_to(std::vector<int>& list) const {
+  if (only != several) {
+    list.push_back(only);
+  } else {
+    list.insert(list.end(), jumps.begin(), jumps.end());
+  }
+}
+
+double EventSeries::Executed::largest(const std::vector<double>& values) const {
+  if (only != several) return std::max(0.0, values[at(only)]);
+  double result = 0.0;
+  for (const int jump : jumps) result = std::max(result, values[at(jump)]);
+  return result;
+}
+
+void EventSeries::clear() {
+  clear_laps();
+  recent_.clear();
+}
+
+void EventSeries::clear_laps() {
+  entries_.clear();
+  std::fill(std::begin(laps_), std::end(laps_), std::size_t{0});
+  shortest_repeated_ = 0;
+  shrinks_ = is_sequence_ = false;
+}
+
+void EventSeries::add(double t, const std::vector<int>& jumps, const std::vector<double>& x) {
+  Recent& recent = recent_.append();
+  recent.t = t;
+  recent.executed.set(jumps);
+  Entry& entry = entries_.append();
+  entry.t = t;
+  entry.executed.set(jumps);
+  if (!entry.place) {
+    n_x_ = x.size();
+    if (states_.empty()) states_.reserve(entries_.first_items * n_x_);
+    entry.place = states_.size();
+    states_.resize(states_.size() + n_x_);
+  }
+  std::copy(x.begin(), x.end(), states_.begin() + static_cast<std::ptrdiff_t>(*entry.place));
+  std::copy_backward(lately_.begin(), lately_.end() - 1, lately_.end());
+  lately_[0] = entry.executed.only;
+  shortest_repeated_ = 0;
+  shrinks_ = is_sequence_ = false;
+  for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
+    if (lately_[period] != lately_[0] || !repeats(0, period)) {
+      laps_[period] = 0;
+      continue;
+    }
+    if (shortest_repeated_ == 0) shortest_repeated_ = period;
+    const double before = back(period).t;
+    const bool shrinks = entries_.size() > 2 * period && t - before < before - back(2 * period).t;
+    if (laps_[period] == 0 || !shrinks) {
+      start_[period] = before;
+      laps_[period] = 1;
+    } else {
+      ++laps_[period];
+    }
+    shrinks_ = shrinks_ || laps_[period] >= 2;
+    is_sequence_ = is_sequence_ || laps_[period] >= 2 * period;
+  }
+}
+
+EventSeries::Durations EventSeries::durations(std::size_t period, std::size_t skipped, std::size_t most) const {
+  Durations result;
+  for (std::size_t lap = skipped; lap < skipped + most && (lap + 1) * period < entries_.size(); ++lap) {
+    if (!repeats(lap * period, (lap + 1) * period)) break;
+    const double duration = back(lap * period).t - back((lap + 1) * period).t;
+    // Before the sequence began to shrink its durations say nothing.
+    if (result.count > 0 && !(duration > result.of[result.count - 1])) break;
+    result.of[result.count++] = duration;
+  }
+  return result;
+}
+
+double EventSeries::ratio(std::size_t period, std::size_t skipped) const {
+  const auto last = durations(period, skipped, 2);
+  const double first = last.of[0] / last.of[1];
+  if (!(first < 1.0)) return first;
+  const double wanted = std::min(std::ceil(1.0 / (1.0 - first)), static_cast<double>(most_laps));
+  const auto all = durations(period, skipped, std::min(static_cast<std::size_t>(wanted) + 1, most_laps));
+  const double laps = std::min(wanted, static_cast<double>(all.count - 1));
+  return std::pow(all.of[0] / all.of[static_cast<std::size_t>(laps)], 1.0 / laps);
+}
+
+std::vector<double> EventSeries::extrapolated(std::size_t period, double ratio) const {
+  std::vector<double> x = last_state();
+  const double* earlier = state(period);
+  const double* first = state(2 * period);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = ode::geometric_limit({first[i], earlier[i], x[i]}, ratio);
+  }
+  return x;
+}
+
+std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
+  std::vector<int> result;
+  for (std::size_t k = 0; k < entries; ++k) {
+    back(k).executed.append_to(result);
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+/// Whether so much time remains that limit_of would say nothing, whatever the ratio that it would find. That one is a
+/// mean of successive ratios over some laps, which shrink: at least the last of them over all of them together.
+bool EventSeries::is_far_from_limit(std::size_t period, double drowning) const {
+  const double t = back(0).t;
+  const double resolution = rounding_unit * std::abs(t);
+  const double last = t - back(period).t;
+  if (!(last > std::max(16.0 * resolution, drowning))) return false;
+  const double before = back(period).t - back(2 * period).t;
+  if (!(last < before)) return true;
+  if (last * (last / before) <= drowning) return false;
+  const auto laps = static_cast<std::size_t>(std::min(std::ceil(before / (before - last)), double{most_laps})) + 2;
+  const double others = back(period).t - back(std::min(laps * period, entries_.size() - 1)).t;
+  // With twice what they are compared with the roundings of the ratio do not matter.
+  return last * last > 2.0 * others * std::max(1e-8 * (t - start_[period]), 100.0 * resolution);
+}
+
+/// @param drowning  how long the laps are that drown in roundings
+std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double drowning) const {
+  const auto now = durations(period, 0, fewest_laps);
+  const double t = back(0).t;
+  const double resolution = rounding_unit * std::abs(t);
+  if (now.count >= 2 && now.of[0] <= std::max(16.0 * resolution, hundredth * drowning)) {
+    // Laps that shrink fast leave little, but not nothing. Long ones are here because psi leaves its surface
+    // tangentially, with no rate: their limit is where they are.
+    const double fast = now.of[0] / now.of[1];
+    if (!(fast <= 0.5 && now.of[0] <= 1e-6 * (t - start_[period]))) {
+      return SeriesLimit{t, last_state(), last_jumps(period), now.of[0], false};
+    }
+    const double left = now.of[0] * fast / (1.0 - fast);
+    return SeriesLimit{t + left, extrapolated(period, fast), last_jumps(period), now.of[0], false};
+  }
+  // Of laps that shrink to a tenth each the next one may drown before there were four.
+  const bool is_fast = now.count >= 3 && now.of[0] <= 0.1 * now.of[1] && now.of[1] <= 0.1 * now.of[2] &&
+                       now.of[0] * (now.of[0] / now.of[1]) <= drowning;
+  const bool drowns = is_fast || now.of[0] <= drowning;
+  const std::size_t fewest = is_fast ? fewest_laps - 1 : fewest_laps;
+  // The first of several laps does not count among those that have shrunk.
+  if (laps_[period] < (is_fast ? fewest - 1 : fewest) * period || now.count < fewest) return std::nullopt;
+  const double ratio_now = ratio(period, 0);
+  if (!(ratio_now < 1.0)) return std::nullopt;
+  const double remaining = now.of[0] * ratio_now / (1.0 - ratio_now);
+  const double taken = t - start_[period];
+  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && !drowns) return std::nullopt;
+  const double ratio_before = ratio(period, 1);
+  if (!(ratio_before < 1.0)) return std::nullopt;
+  const double remaining_before = now.of[1] * ratio_before / (1.0 - ratio_before);
+  // A fiftieth of what remains is 2e-10 of the time taken. The last of fast laps is to be what those before foretold,
+  // but for the quarter that rounding may make of it: the next one, a tenth as long, would be nothing else.
+  const double expected = is_fast ? 0.25 * now.of[0] : 0.02 * remaining;
+  const double difference = (t + remaining) - (back(period).t + remaining_before);
+  if (std::abs(difference) > expected + 4.0 * resolution) return std::nullopt;
+  return SeriesLimit{t + remaining, extrapolated(period, ratio_now), last_jumps(period), now.of[0], false};
+}
+
+std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double>& shortest) const {
+  if (recent_.size() < many || entries_.empty()) return std::nullopt;
+  const double t = recent_.back(0).t;
+  const double taken = t - recent_.front().t;
+  constexpr std::size_t few = 8;
+  if (shortest.size() <= few) {  // the usual answer, without a look at each of them
+    const double most = shortest.empty() ? 0.0 : *std::max_element(shortest.begin(), shortest.end());
+    if (taken > static_cast<double>(many) * std::max(16.0 * rounding_unit * std::abs(t), hundredth * most)) {
+      return std::nullopt;
+    }
+  }
+  double drowning = 0.0;
+  for (std::size_t k = 0; k < recent_.size(); ++k) {
+    drowning = std::max(drowning, recent_.back(k).executed.largest(shortest));
+  }
+  const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * drowning);
+  if (taken > static_cast<double>(many) * resolved) return std::nullopt;
+  std::vector<int> jumps;
+  for (std::size_t k = 0; k < recent_.size(); ++k) {
+    recent_.back(k).executed.append_to(jumps);
+  }
+  std::sort(jumps.begin(), jumps.end());
+  jumps.erase(std::unique(jumps.begin(), jumps.end()), jumps.end());
+  return SeriesLimit{t, last_state(), std::move(jumps), resolved, true};
+}
+
+std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortest) const {
+  double drowning = 0.0;
+  for (std::size_t period = 1; is_sequence_ && period <= longest_period && entries_.size() > 2 * period; ++period) {
+    drowning = std::max(drowning, back(period - 1).executed.largest(shortest));
+    // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
+    if (laps_[period] < 2 * period || is_far_from_limit(period, drowning)) continue;
+    if (auto found = limit_of(period, drowning)) return found;
+  }
+  return end_of_rattling(shortest);
+}
+
+std::optional<SeriesLimit> EventSeries::nearly() const {
+  if (shortest_repeated_ == 0) return std::nullopt;
+  for (std::size_t period = shortest_repeated_; period <= longest_period && entries_.size() > 2 * period; ++period) {
+    if (!repeats(0, period) || !repeats(period, 2 * period)) continue;
+    const double lap = back(0).t - back(period).t;
+    const double before = back(period).t - back(2 * period).t;
+    if (!(before > lap)) continue;
+    // Of a shorter period that repeats, too, the longer ones are multiples.
+    if (!(lap <= hundredth * before)) return std::nullopt;
+    // What would remain.
+    if (lap * (lap / before) <= 1e-7 * (back(0).t - entries_.front().t)) {
+      return SeriesLimit{back(0).t, last_state(), last_jumps(period), lap, false};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<double> EventSeries::closed_lap() const {
+  if (shortest_repeated_ == 0) return std::nullopt;
+  return back(0).t - back(shortest_repeated_).t;
+}
+
+std::optional<double> EventSeries::last_lap() const {
+  for (std::size_t period = 1; period <= longest_period; ++period) {
+    if (laps_[period] >= 2 * period && entries_.size() > period) return back(0).t - back(period).t;
+  }
+  return std::nullopt;
+}
+
+}  // namespace saltus::event_integrator

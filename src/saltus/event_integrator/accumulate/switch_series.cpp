@@ -1,0 +1,89 @@
+#include "saltus/event_integrator/accumulate/switch_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
+namespace saltus::event_integrator {
+
+bool SwitchSeries::repeats(double t, const std::vector<int>& before, const std::vector<int>& after) {
+  if (before == after) return false;
+  remember(t);
+  if (t != last_) {
+    noted_ = 0;
+    surface_change_.reset();
+  }
+  last_ = t;
+  if (surface_change_) {
+    auto& change = append();
+    change.first = change.second = before;
+    change.first[surface_change_->surface] = surface_change_->before;
+    surface_change_.reset();
+  }
+  const auto end = changes_.begin() + static_cast<std::ptrdiff_t>(noted_);
+  const auto same = [&](const Change& change) { return change.first == before && change.second == after; };
+  if (std::any_of(changes_.begin(), end, same)) return true;
+  auto& change = append();
+  change.first = before;
+  change.second = after;
+  return false;
+}
+
+/// The storage of changes at earlier times is used again.
+SwitchSeries::Change& SwitchSeries::append() {
+  if (noted_ == changes_.size()) changes_.emplace_back();
+  return changes_[noted_++];
+}
+
+void SwitchSeries::remember(double t) {
+  std::copy_backward(times_.begin(), times_.end() - 1, times_.end());
+  times_[0] = t;
+  ++switches_;
+  const double before = times_[4] - times_[8];
+  if (switches_ <= 8 || !(t - times_[4] < before)) {
+    first_lap_ = 0.0;
+  } else if (first_lap_ == 0.0) {
+    first_lap_ = before;
+  }
+}
+
+void SwitchSeries::note(double t, std::size_t surface, int before) {
+  remember(t);
+  noted_ = 0;
+  last_ = t;
+  surface_change_ = {surface, before};
+}
+
+bool SwitchSeries::shrinks(double t) const {
+  // Two laps within a few digits of t are what a sequence leaves that has drowned in its rounding.
+  constexpr double unresolved = 128.0 * rounding_unit;
+  if (switches_ > 4 && t - times_[4] <= unresolved * std::abs(t)) return true;
+  // The last terms of a geometric series drown in the rounding of t: a fast one is over after a few, and with more in a
+  // lap a slow one shrinks by half from lap to lap.
+  for (const std::size_t lap : {std::size_t{2}, std::size_t{4}}) {
+    if (switches_ <= 2 * lap || t - times_[lap] > 1e-9 * span_) continue;
+    if (times_[0] - times_[lap] <= 0.5 * (times_[lap] - times_[2 * lap])) return true;
+  }
+  return false;
+}
+
+bool SwitchSeries::tightens() const {
+  for (std::size_t lap = 1; lap <= 4 && switches_ > 2 * lap; ++lap) {
+    // A cycle that is approached has laps of nearly one length.
+    if (times_[0] - times_[lap] < 0.995 * (times_[lap] - times_[2 * lap])) return true;
+  }
+  // Those of a slow spiral shrink without end.
+  return times_[0] - times_[4] < 0.5 * first_lap_;
+}
+
+bool SwitchSeries::too_dense(double t) {
+  // 500 switches within 1e-9 of the span: no model lives on that scale, a spiral or Zeno sequence does.
+  if (in_a_row_ == 0 || t - start_ > 1e-9 * span_) {
+    in_a_row_ = 0;
+    start_ = t;
+  }
+  return ++in_a_row_ >= 500;
+}
+
+}  // namespace saltus::event_integrator

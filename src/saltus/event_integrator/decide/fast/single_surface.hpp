@@ -1,0 +1,82 @@
+// The usual event, decided without detours: one surface is met or left, and nothing else happens there.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/event_integrator/decide/transition.hpp"
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/mode/mode_state.hpp"
+
+namespace saltus::event_integrator {
+
+/// Decides what decide_mode() decides, with the same bits, where
+///   - one surface is met from beside it and crossed or slid on, or left where one of its fields is tangent,
+///   - no other surface is at zero but such on which the solution slides, and those and this one do not influence each
+///     other; no function is nested around any of them,
+///   - f is affine in the selection, and both normal components are clear of zero (at an exit the other one, and a
+///   later
+///     derivative of the tangent one).
+/// Cost: one evaluation of f, or two where the mode before slides, one of the sliding field if there are other
+/// surfaces; at an exit a second derivative, too. Owns its work space.
+class SingleSurface {
+ public:
+  explicit SingleSurface(const Surroundings& surroundings);
+
+  /// Fills `transition`, whose storage is used again.
+  /// @param slope  the field of the mode before at the occasion's point, if it is known
+  /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
+  [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition,
+                            const std::vector<double>* slope = nullptr);
+
+  /// The same answer where the solution slides on nothing, from the fields of both sides, f(alpha_surface = 0) and
+  /// f(alpha_surface = 1), n_x each, in a model without nesting, regions and discrete states; nullopt where it is not
+  /// as clear. Cost: the gradient of the surface.
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide(const ModeState& before, int surface, double t,
+                                                                 const double* x, const std::vector<double>& below,
+                                                                 const std::vector<double>& above);
+  /// Whether the selection of what was slid on lies within its bounds at an exit, to rounding: away from them it may
+  /// have been lost in a two-fold point, where the full decision looks closer.
+  [[nodiscard]] static bool is_within_bounds(double alpha) {
+    constexpr double rounding = 1e-9;
+    return alpha >= -rounding && alpha <= 1.0 + rounding;
+  }
+  /// A point, and a step of the integrator.
+  struct Place {
+    double t = 0.0;
+    const double* x = nullptr;
+    double time_scale = 0.0;
+  };
+  /// At an exit: normal components of both fields, and the second derivative of psi along the tangent one, if it is
+  /// known.
+  struct Motions {
+    ExitValues velocities;
+    std::optional<double> bend;
+  };
+  /// The same at an exit from sliding on this surface alone, where the field of `side` has become tangent to it;
+  /// `before` has the selection of that side. Cost: the gradient, and a second derivative that is not known.
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_exit(const ModeState& before, int surface,
+                                                                      const Place& place, const Motions& motions,
+                                                                      Region side);
+
+ private:
+  [[nodiscard]] bool moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
+                                                 const Occasion& occasion) const;
+  [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
+  [[nodiscard]] double along_row(const std::vector<double>& f, double rate) const;
+  double velocity(const Occasion& occasion, int surface, double selection);
+  double velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
+                  const std::vector<double>& f);
+  void fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
+            Transition& transition) const;
+  bool select_others(const Occasion& occasion, ModeState& state);
+
+  const Surroundings& surroundings_;
+  std::vector<bool> is_inner_;  ///< n_psi: a switching function is nested around it
+  std::vector<int> between_;    ///< functions whose selection outside the mode may lie between 0 and 1
+  std::vector<double> alpha_;   ///< n_psi
+  std::vector<double> f_, row_;
+  ModeField field_;
+};
+
+}  // namespace saltus::event_integrator

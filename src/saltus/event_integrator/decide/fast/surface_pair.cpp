@@ -1,0 +1,212 @@
+#include "saltus/event_integrator/decide/fast/surface_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/event_integrator/decide/projected_fields.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/switching/plane/plane_table.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using switching::PlaneDecision;
+using switching::PlaneMode;
+
+double product(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+SurfacePair::SurfacePair(const Surroundings& surroundings)
+    : surroundings_(surroundings),
+      f_(at(surroundings.kernel.states())),
+      rows_{f_, f_},
+      corners_(surroundings.kernel),
+      field_(surroundings.kernel, surroundings.affine_in_alpha) {
+  const auto& kernel = surroundings.kernel;
+  any_ = surroundings.affine_in_alpha && kernel.switching_functions() > 1 && kernel.region_groups().empty();
+  for (int j = 0; j < kernel.switching_functions(); ++j) any_ = any_ && kernel.inner(j).empty();
+}
+
+bool SurfacePair::applies(const ModeState& before, const Occasion& occasion) const {
+  if (!any_ || occasion.start || before.higher || occasion.at_zero.size() != 2 || before.sliding.size() > 1) {
+    return false;
+  }
+  for (const auto* surfaces :
+       {&occasion.exit_below, &occasion.exit_above, &occasion.coalesced, &occasion.destabilised}) {
+    if (!surfaces->empty()) return false;
+  }
+  // A kink of the surface that is slid on touches that one, too.
+  if (occasion.touched.size() != 2 - before.sliding.size()) return false;
+  const int i = occasion.at_zero[0];
+  const int j = occasion.at_zero[1];
+  for (const int surface : {i, j}) {
+    if (surroundings_.system.switching[at(surface)].role != model::SwitchingRole::listed) return false;
+  }
+  return surroundings_.kernel.depends(i, j) || surroundings_.kernel.depends(j, i);
+}
+
+bool SurfacePair::find_normals(const Occasion& occasion) {
+  const auto& kernel = surroundings_.kernel;
+  const std::array<int, 2> pair{occasion.at_zero[0], occasion.at_zero[1]};
+  if (pair == constant_rows_) return true;
+  constant_rows_ = {-1, -1};
+  for (std::size_t k = 0; k < 2; ++k) {
+    kernel.gradient(occasion.at_zero[k], occasion.t, occasion.x, alpha_.data(), rows_[k].data(), &rates_[k]);
+    if (!is_finite(rows_[k]) || !(product(rows_[k], rows_[k]) > 0.0)) return false;
+    columns_[k].clear();
+    for (std::size_t i = 0; i < rows_[k].size(); ++i) {
+      if (rows_[k][i] != 0.0) columns_[k].push_back(i);
+    }
+  }
+  if (kernel.is_affine(pair[0]) && kernel.is_affine(pair[1])) constant_rows_ = pair;  // nothing is nested around them
+  return true;
+}
+
+/// Normal components of a field; false if it is not finite.
+bool SurfacePair::project(const std::vector<double>& f, std::array<double, 2>& velocities) const {
+  if (!is_finite(f)) return false;
+  for (std::size_t k = 0; k < 2; ++k) {
+    velocities[k] = rates_[k];
+    for (const std::size_t i : columns_[k]) velocities[k] += rows_[k][i] * f[i];
+  }
+  return true;
+}
+
+/// Whether all of the four fields are clear of both surfaces.
+bool SurfacePair::find_table(const Occasion& occasion, const KnownFields& known) {
+  scales_ = {0.0, 0.0};
+  const auto& kernel = surroundings_.kernel;
+  // Constants of fields hold those of cells.
+  const bool same_constants = kernel.cells() == 0;
+  const std::size_t pair = at(occasion.at_zero[0]) * alpha_.size() + at(occasion.at_zero[1]);
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (std::size_t k = 0; k < 2; ++k) alpha_[at(occasion.at_zero[k])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+    if (known[corner] == nullptr) {
+      if (same_constants) {
+        kernel.prepared_field(occasion.t, occasion.x, corners_.of(alpha_, 4 * pair + corner), f_.data());
+      } else {
+        kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
+      }
+    }
+    std::array<double, 2> velocities{};
+    if (!project(known[corner] != nullptr ? *known[corner] : f_, velocities)) return false;
+    for (std::size_t k = 0; k < 2; ++k) {
+      velocities_[k][corner] = velocities[k];
+      scales_[k] = std::max(scales_[k], std::abs(velocities[k]));
+    }
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto is_clear = [&](double velocity) { return std::abs(velocity) > sign_tolerance * scales_[k]; };
+    if (!std::all_of(velocities_[k].begin(), velocities_[k].end(), is_clear)) return false;
+  }
+  return true;
+}
+
+/// Whether the field of the new mode leaves the surfaces to where the mode says, clearly.
+bool SurfacePair::moves_there(const Occasion& occasion, ModeState& state) {
+  const int i = occasion.at_zero[0];
+  const int j = occasion.at_zero[1];
+  if (state.mode[at(i)] == 0 && state.mode[at(j)] == 0) return slides_on_both(occasion, state);
+  alpha_[at(i)] = state.alpha[at(i)];
+  alpha_[at(j)] = state.alpha[at(j)];
+  for (const int surface : state.sliding) {
+    if (!(alpha_[at(surface)] >= 0.0 && alpha_[at(surface)] <= 1.0)) return false;
+  }
+  surroundings_.kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
+  std::array<double, 2> velocities{};
+  if (!project(f_, velocities)) return false;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const int mode = state.mode[at(occasion.at_zero[k])];
+    if (mode != 0 && !(mode * velocities[k] > sign_tolerance * scales_[k])) return false;
+  }
+  return true;
+}
+
+/// Takes the selections from the field of the mode.
+bool SurfacePair::slides_on_both(const Occasion& occasion, ModeState& state) {
+  const double mixed = product(rows_[0], rows_[1]);
+  const double squares = product(rows_[0], rows_[0]) * product(rows_[1], rows_[1]);
+  // Gradients that nearly depend on each other: another reason to stop may be the right one.
+  if (!(squares - mixed * mixed > 1e-6 * squares)) return false;
+  field_.enter(state);
+  field_(occasion.t, occasion.x, f_.data());
+  if (!is_finite(f_)) return false;
+  for (const int surface : state.sliding) {
+    const double selection = field_.alpha()[at(surface)];
+    if (!(selection >= 0.0 && selection <= 1.0)) return false;
+    state.alpha[at(surface)] = selection;
+  }
+  return true;
+}
+
+bool SurfacePair::look(const ModeState& before, const Occasion& occasion, const ModeField* field) {
+  if (!applies(before, occasion)) return false;
+  alpha_ = before.alpha;
+  KnownFields known{};
+  if (field != nullptr && before.sliding.size() == 1) {
+    const auto& pair = occasion.at_zero;
+    const std::size_t slid = before.mode[at(pair[0])] == 0 ? 0 : 1;
+    const std::size_t here = before.mode[at(pair[1 - slid])] > 0 ? std::size_t{1} << (1 - slid) : 0;
+    known[here] = &field->field_of(Region::below);
+    known[here | std::size_t{1} << slid] = &field->field_of(Region::above);
+  }
+  return find_normals(occasion) && find_table(occasion, known);
+}
+
+std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before, const Occasion& occasion) const {
+  if (before.sliding.size() != 1) return std::nullopt;
+  const auto& pair = occasion.at_zero;
+  const auto behind =
+      switching::pass_across(switching::plane_table(velocities_), {before.mode[at(pair[0])], before.mode[at(pair[1])]});
+  // All four fields are clear of both surfaces, so is what lies between them.
+  if (!behind) return std::nullopt;
+  return behind->alpha;
+}
+
+bool SurfacePair::decide(const ModeState& before, const Occasion& occasion, Transition& transition) {
+  return look(before, occasion, nullptr) && conclude(before, occasion, transition);
+}
+
+bool SurfacePair::conclude(const ModeState& before, const Occasion& occasion, Transition& transition) {
+  const auto& pair = occasion.at_zero;
+  const auto table = switching::plane_table(velocities_);
+  const PlaneMode incoming{before.mode[at(pair[0])], before.mode[at(pair[1])]};
+  const PlaneDecision decision = before.sliding.empty()
+                                     ? switching::decide_corner_arrival(table, incoming)
+                                     : switching::decide_entering(table, incoming, surroundings_.policy);
+  if (!decision.undecided.empty() || decision.ambiguous || !decision.unique()) return false;
+  begin_transition(before, occasion, at(surroundings_.kernel.states()), transition);
+  auto& state = transition.state;
+  for (std::size_t k = 0; k < 2; ++k) {
+    set_surface(state, pair[k], decision.chosen.mode[k], decision.chosen.alpha[k]);
+    if (decision.chosen.mode[k] != 0) transition.zero_order[at(pair[k])] = 1;
+  }
+  set_corner_alpha(state);
+  if (!moves_there(occasion, state)) return false;
+  describe(before, occasion, decision, transition);
+  return true;
+}
+
+Meeting SurfacePair::meeting(const ModeState& before, const Occasion& occasion) const {
+  Meeting meeting;
+  auto& alpha = meeting.alpha.emplace();
+  for (std::size_t k = 0; k < 2; ++k) {
+    meeting.surfaces[k] = occasion.at_zero[k];
+    alpha[k] = std::clamp(before.alpha[at(occasion.at_zero[k])], 0.0, 1.0);
+  }
+  meeting.velocities = velocities_;
+  return meeting;
+}
+
+void SurfacePair::describe(const ModeState& before, const Occasion& occasion, const PlaneDecision& decision,
+                           Transition& transition) const {
+  transition.meeting = meeting(before, occasion);
+  append_meeting(surroundings_.system, transition.meeting->surfaces, decision.leaf, decision.reason, transition.reason);
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,71 @@
+// The usual meeting of two surfaces that influence each other, decided without detours.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "saltus/event_integrator/decide/transition.hpp"
+#include "saltus/event_integrator/field/field_memory.hpp"
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/mode/mode_state.hpp"
+#include "saltus/switching/plane/intersection.hpp"
+
+namespace saltus::event_integrator {
+
+/// Decides what decide_mode() decides, with the same bits, where
+///   - two surfaces that influence each other are at zero, and nothing else: one is met while the solution slides on
+///     the other, or both are met at once,
+///   - no function is nested around another one, there are no regions by indicator, and f is affine in the selections,
+///   - all normal components of the four fields are clear of zero, and a tree knows the only continuation.
+/// Cost: four evaluations of f, a tree, and one evaluation of the new mode's field where it slides. Owns its work
+/// space.
+class SurfacePair {
+ public:
+  explicit SurfacePair(const Surroundings& surroundings);
+
+  /// Fills `transition`, whose storage is used again.
+  /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
+  [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition);
+  /// The same in two parts, so that what lies between can be asked. First: whether the occasion is of this kind, as far
+  /// as the fields tell.
+  /// @param field  of the mode before, behind an evaluation at the point of the occasion, where it slides on one
+  ///               surface; nullptr if it is not at hand
+  /// Cost: four evaluations of f, two with a field.
+  [[nodiscard]] bool look(const ModeState& before, const Occasion& occasion, const ModeField* field);
+  /// Behind it: where the solution goes on sliding on one surface across the other (switching::pass_across()), their
+  /// selections there, in the order of the occasion; nullopt where it does not, or not as clearly.
+  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before, const Occasion& occasion) const;
+  /// Second: the transition, by a tree.
+  [[nodiscard]] bool conclude(const ModeState& before, const Occasion& occasion, Transition& transition);
+  /// What the last decision was made from.
+  [[nodiscard]] Meeting meeting(const ModeState& before, const Occasion& occasion) const;
+
+ private:
+  [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
+  bool find_normals(const Occasion& occasion);
+  [[nodiscard]] bool project(const std::vector<double>& f, std::array<double, 2>& velocities) const;
+  /// Of the four corners, n_x each; nullptr where they are not known.
+  using KnownFields = std::array<const std::vector<double>*, 4>;
+  bool find_table(const Occasion& occasion, const KnownFields& known);
+  bool moves_there(const Occasion& occasion, ModeState& state);
+  bool slides_on_both(const Occasion& occasion, ModeState& state);
+  void describe(const ModeState& before, const Occasion& occasion, const switching::PlaneDecision& decision,
+                Transition& transition) const;
+
+  const Surroundings& surroundings_;
+  bool any_ = false;                     ///< the system may have such meetings
+  std::vector<double> alpha_;            ///< n_psi
+  std::vector<double> f_;                ///< n_x
+  std::vector<double> rows_[2];          ///< gradients of the two surfaces
+  std::vector<std::size_t> columns_[2];  ///< nonzero ones of these
+  std::array<double, 2> rates_{};
+  std::array<int, 2> constant_rows_{-1, -1};  ///< the surfaces of these, if they are the same everywhere
+  std::array<double, 2> scales_{};            ///< largest normal components
+  std::array<std::array<double, 4>, 2> velocities_{};
+  FieldMemory corners_;  ///< of the four regions that meet
+  ModeField field_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,148 @@
+// Regions by `indicator` that meet where their indicators depend on each other, as four quadrants do.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/switching/regions/region_spiral.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// psi' of all candidates but the reference along the field of each, as a matrix.
+MatrixXd velocities_of(const switching::RegionRates& rates) {
+  const Index n = rates.regions;
+  MatrixXd velocities(n - 1, n);
+  for (Index i = 1; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) {
+      velocities(i - 1, j) = -rates.rate(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+    }
+  }
+  return velocities;
+}
+
+}  // namespace
+
+/// grad psi of all candidates but the reference.
+MatrixXd Decider::region_gradients(const std::vector<int>& candidates, double t, const double* x) {
+  const auto n = at(s_.kernel.states());
+  MatrixXd rows(static_cast<Index>(candidates.size()) - 1, static_cast<Index>(n));
+  std::vector<double> row(n);
+  for (std::size_t k = 1; k < candidates.size(); ++k) {
+    double rate = 0.0;
+    s_.kernel.gradient(candidates[k], t, x, base_.alpha.data(), row.data(), &rate);
+    rows.row(static_cast<Index>(k) - 1) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), static_cast<Index>(n));
+  }
+  return rows;
+}
+
+/// Indicators whose gradients depend on each other, but not their explicit rates, do not stay equal: the sets of those
+/// that do are found as if they were independent.
+MeetingRegions Decider::meeting_of(std::vector<int> candidates) {
+  MeetingRegions meeting{std::move(candidates), std::nullopt};
+  const MatrixXd rows = region_gradients(meeting.candidates, occasion_.t, occasion_.x);
+  if (!rows.allFinite()) return meeting;
+  RegionBasis basis = basis_of(rows);
+  if (basis.spans_all(rows.rows()) || basis.base.empty()) return meeting;
+  const MatrixXd velocities = velocities_of(region_rates(meeting.candidates, occasion_.t, occasion_.x));
+  const MatrixXd followed = coordinates_in(basis, rows).bottomRows(rows.rows()) * velocities(basis.base, Eigen::all);
+  constexpr double same = 1e-6;  // as for gradients
+  if ((velocities - followed).cwiseAbs().maxCoeff() <= same * velocities.cwiseAbs().maxCoeff()) {
+    meeting.basis = std::move(basis);
+  }
+  return meeting;
+}
+
+switching::RegionTie Decider::tie_at(const MeetingRegions& meeting, double t, const double* x) {
+  const auto& basis = *meeting.basis;
+  auto polytope = switching::RegionPolytope::make(coordinates_in(basis, region_gradients(meeting.candidates, t, x)));
+  const MatrixXd velocities = velocities_of(region_rates(meeting.candidates, t, x));
+  return {std::move(*polytope), velocities(basis.base, Eigen::all)};
+}
+
+/// Whether the regions of a set depend on each other a little later along its motion, too: elsewhere a point at which
+/// they happen to do so is left at once by some of them.
+bool Decider::stays_tied(const MeetingRegions& meeting, const switching::RegionSet& set) {
+  std::vector<int> regions;
+  for (const int k : set.active) regions.push_back(meeting.candidates[at(k)]);
+  if (regions.size() < 3) return true;
+  const auto basis = basis_of(region_gradients(regions, occasion_.t, occasion_.x));
+  if (basis.spans_all(static_cast<Index>(regions.size()) - 1)) return true;
+  std::vector<double> ahead;
+  step_ahead(meeting, set, ahead);
+  const double t = occasion_.t + 1e-2 * occasion_.time_scale;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (const Index k : meeting.basis->base) {
+      move_onto(s_.kernel, base_, meeting.candidates[static_cast<std::size_t>(k) + 1], t, ahead);
+    }
+  }
+  // A hundredth of a step ahead what depends by chance is independent by about that much; what always depends is so
+  // but for the error of the point, its cube.
+  constexpr double lasting = 1e-4;
+  return remainder(basis, region_gradients(regions, t, ahead.data())) <= lasting;
+}
+
+/// Whether these are the weights of before, which lose their stability here, or cease to exist with those of the root
+/// that they coalesce with.
+bool Decider::is_lost(const MeetingRegions& meeting, const switching::RegionSet& set) {
+  const auto is_lost = [&](int j) { return contains(occasion_.coalesced, j) || contains(occasion_.destabilised, j); };
+  if (std::none_of(meeting.candidates.begin(), meeting.candidates.end(), is_lost)) return false;
+  std::vector<double> change;
+  for (const int j : meeting.candidates) change.push_back(before_.mode[at(j)] == 0 ? before_.alpha[at(j)] : 0.0);
+  for (std::size_t k = 0; k < set.active.size(); ++k) change[at(set.active[k])] -= set.weights[k];
+  // A double root is located to the root of a rounding; other roots are at a distance of the order of one.
+  constexpr double near = 1e-4;
+  return std::all_of(change.begin(), change.end(), [](double c) { return std::abs(c) <= near; });
+}
+
+/// No set goes on where the fields of all regions turn around the point: a lap that grows leaves it.
+bool Decider::spiral_out(const MeetingRegions& meeting, const evaluation::RegionRange& range) {
+  if (!meeting.basis || meeting.basis->base.size() != 2) return false;
+  const auto lap = switching::region_spiral(tie_at(meeting, occasion_.t, occasion_.x));
+  if (!lap || !(lap->lap_ratio > 1.0)) return false;
+  const auto& candidates = meeting.candidates;
+  // As around an intersection of two surfaces.
+  double delta = 1e-6 * occasion_.time_scale / lap->duration();
+  for (std::size_t k = 1; k < candidates.size(); ++k) {
+    delta = std::max(delta, 1e5 * fields_.noise(candidates[k]) / (lap->lap_ratio - 1.0));
+  }
+  const int first = candidates[at(lap->regions.front())], last = candidates[at(lap->regions.back())];
+  SpiralStart start{delta * lap->duration(), {occasion_.x, occasion_.x + s_.kernel.states()}, last, lap->lap_ratio};
+  std::vector<double> f(start.x.size());
+  for (std::size_t k = 0; k < lap->regions.size(); ++k) {
+    std::vector<double> alpha = base_.alpha;
+    for (const int region : candidates) alpha[at(region)] = 0.0;
+    alpha[at(candidates[at(lap->regions[k])])] = 1.0;
+    s_.kernel.field(occasion_.t, occasion_.x, alpha.data(), f.data());
+    for (std::size_t i = 0; i < f.size(); ++i) start.x[i] += delta * lap->durations[k] * f[i];
+  }
+  transition_.beyond_spiral = std::move(start);
+  transition_.unique = false;
+  RegionChoice choice{range, {{{first, 1.0}}}, {}};
+  choice.reason = fmt::format("{}: no set of them goes on, the solution spirals out", names(s_.system, candidates));
+  group_reasons_.push_back(choice.reason);
+  region_choices_.push_back(std::move(choice));
+  return true;
+}
+
+/// Whether all weights that keep the indicators of a set equal move the solution alike.
+bool Decider::moves_in_one_way(const MeetingRegions& meeting, const switching::RegionSet& set) {
+  MatrixXd fields(s_.kernel.states(), static_cast<Index>(meeting.candidates.size()));
+  std::vector<double> f(at(s_.kernel.states()));
+  for (std::size_t k = 0; k < meeting.candidates.size(); ++k) {
+    std::vector<double> alpha = base_.alpha;
+    for (const int region : meeting.candidates) alpha[at(region)] = 0.0;
+    alpha[at(meeting.candidates[k])] = 1.0;
+    s_.kernel.field(occasion_.t, occasion_.x, alpha.data(), f.data());
+    fields.col(static_cast<Index>(k)) = Eigen::Map<const Eigen::VectorXd>(f.data(), fields.rows());
+  }
+  return !switching::motion_depends_on_weights(tie_at(meeting, occasion_.t, occasion_.x), set, fields);
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,182 @@
+// Surfaces whose gradients depend on each other all along the set where they vanish: fewer conditions than selections.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <Eigen/QR>
+
+#include "saltus/event_integrator/decide/transition.hpp"
+#include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/field/higher_order.hpp"
+#include "saltus/switching/table/additive_map.hpp"
+#include "saltus/switching/table/field_accuracy.hpp"
+#include "saltus/switching/table/independent_rows.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using Eigen::Index;
+
+/// Selections whose corners are numbered by bits.
+constexpr std::size_t most_numbered_surfaces = 60;
+
+class DependentSearch {
+ public:
+  DependentSearch(const Surroundings& s, const ModeState& state, double t, std::vector<double>& x)
+      : s_(s), sliding_(state.sliding), t_(t), x_(x), alpha_(state.alpha), functions_(s.kernel) {
+    for (const int j : sliding_) alpha_[at(j)] = 0.5;
+  }
+
+  std::optional<HigherOrderSet> run() {
+    choose_independent();
+    if (set_.functions.size() == sliding_.size()) return std::nullopt;
+    static_cast<void>(functions_.project(t_, x_.data()));
+    if (!stay_dependent()) return std::nullopt;
+    if (!fields()) return std::nullopt;
+    if (!make_balances()) return std::nullopt;
+    return checked();
+  }
+
+  [[nodiscard]] std::string take_problem() { return std::move(problem_); }
+
+ private:
+  bool reject(std::string why) {
+    problem_ = std::move(why);
+    return false;
+  }
+
+  /// Functions whose gradients the ones before do not span.
+  void choose_independent() {
+    std::vector<HeldFunction> all;
+    for (const int j : sliding_) all.push_back({j, 0});
+    functions_.set(std::move(all), alpha_);
+    functions_.differentiate(t_, x_.data());
+    const auto independent = switching::independent_rows(functions_.rows());
+    for (std::size_t i = 0; i < sliding_.size(); ++i) {
+      if (std::binary_search(independent.begin(), independent.end(), i)) {
+        set_.functions.push_back({sliding_[i], 0});
+      } else {
+        dependent_.push_back(sliding_[i]);
+      }
+    }
+    functions_.set(set_.functions, alpha_);
+  }
+
+  /// The functions that were not chosen vanish with the others, now, near by on the set, and as time goes.
+  bool stay_dependent() {
+    std::vector<double> values(at(s_.kernel.event_functions())), row(x_.size());
+    for (const unsigned pattern : {0U, 1U, 2U, 3U}) {
+      std::vector<double> x = x_;
+      functions_.differentiate(t_, x.data());
+      if (pattern > 0) x = functions_.displaced(t_, x_.data(), 0x1p-10, pattern);
+      functions_.differentiate(t_, x.data());
+      s_.kernel.functions(t_, x.data(), alpha_.data(), values.data());
+      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> spanned(functions_.rows().transpose());
+      for (const int j : dependent_) {
+        double rate = 0.0, size = 0.0;
+        s_.kernel.gradient(j, t_, x.data(), alpha_.data(), row.data(), &rate);
+        for (std::size_t i = 0; i < x.size(); ++i) size += std::abs(row[i]) * (1.0 + std::abs(x[i]));
+        if (!(std::abs(values[at(j)]) <= switching::field_accuracy * size)) return reject("they part again");
+        const Eigen::Map<const Eigen::VectorXd> gradient(row.data(), index(row.size()));
+        const Eigen::VectorXd shares = spanned.solve(gradient);
+        const double rest = (functions_.rows().transpose() * shares - gradient).cwiseAbs().maxCoeff();
+        if (!(rest <= 1e-6 * gradient.cwiseAbs().maxCoeff())) return reject("they part again");
+        const double follows = functions_.rates().dot(shares);
+        const double terms = std::abs(rate) + functions_.rates().cwiseAbs().dot(shares.cwiseAbs());
+        if (!(std::abs(follows - rate) <= 1e-6 * terms)) return reject("they part again");
+      }
+    }
+    return true;
+  }
+
+  /// What each of the selections adds to f.
+  bool fields() {
+    std::vector<double> trial = alpha_, f(x_.size());
+    const auto field = [&](const std::vector<double>& selections, Eigen::VectorXd& value) {
+      for (std::size_t i = 0; i < sliding_.size(); ++i) trial[at(sliding_[i])] = selections[i];
+      s_.kernel.field(t_, x_.data(), trial.data(), f.data());
+      value = Eigen::Map<const Eigen::VectorXd>(f.data(), index(f.size()));
+    };
+    auto map = switching::additive_map(sliding_.size(), field);
+    if (!map) return reject("their selections multiply each other");
+    if (!map->constant.allFinite() || !map->effects.allFinite()) return reject("a field is not finite on the surfaces");
+    jumps_ = std::move(map->effects);
+    return true;
+  }
+
+  /// Functions that share selections are balanced together.
+  bool make_balances() {
+    functions_.differentiate(t_, x_.data());
+    const auto found =
+        switching::balances_of(functions_.rows() * jumps_, functions_.rows().cwiseAbs() * jumps_.cwiseAbs());
+    for (const std::size_t i : found.unused) {
+      if (jumps_.col(index(i)).cwiseAbs().maxCoeff() > 0.0) {
+        return reject("the motion depends on a selection that nothing determines");
+      }
+      set_.undetermined.push_back(sliding_[i]);
+    }
+    for (const auto& balance : found.all) {
+      if (balance.rows.size() < balance.functions.size()) return reject("no selection moves some of the surfaces");
+      if (balance.rows.size() == balance.functions.size()) continue;
+      for (const std::size_t i : balance.rows) set_.undetermined.push_back(sliding_[i]);
+    }
+    set_.balances = found.all;
+    std::sort(set_.undetermined.begin(), set_.undetermined.end());
+    return true;
+  }
+
+  std::optional<HigherOrderSet> checked() {
+    HigherOrderField field(s_.kernel);
+    field.enter(set_, sliding_, alpha_);
+    field.evaluate(t_, x_.data());
+    for (const auto& range : field.ranges()) {
+      const double rounding = switching::field_accuracy * range.terms;
+      if (range.min <= rounding && range.max >= -rounding) continue;
+      static_cast<void>(reject("no selection holds the surfaces at zero"));
+      return std::nullopt;
+    }
+    if (!is_finite(field.motion())) {
+      static_cast<void>(reject(field.too_many() ? "there are too many of them"
+                                                : "the motion depends on selections that are not determined"));
+      return std::nullopt;
+    }
+    return std::move(set_);
+  }
+
+  const Surroundings& s_;
+  const std::vector<int>& sliding_;
+  double t_;
+  std::vector<double>& x_;
+  std::vector<double> alpha_;
+  std::vector<int> dependent_;
+  Eigen::MatrixXd jumps_;  ///< n_x x q
+  HeldFunctions functions_;
+  HigherOrderSet set_;
+  std::string problem_;
+};
+
+}  // namespace
+
+bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces) {
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    const auto& inner = s.kernel.inner(j);
+    const bool own = contains(surfaces, j);
+    if (own && (s.system.switching[at(j)].role != model::SwitchingRole::listed || !inner.empty())) return false;
+    if (std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(surfaces, i); })) return false;
+  }
+  return true;
+}
+
+std::optional<HigherOrderSet> find_dependent_set(const Surroundings& surroundings, const ModeState& state, double t,
+                                                 std::vector<double>& x, std::string& problem) {
+  problem.clear();
+  if (state.sliding.size() < 2 || state.sliding.size() > most_numbered_surfaces) return std::nullopt;
+  if (!are_plain_surfaces(surroundings, state.sliding)) return std::nullopt;
+  DependentSearch search(surroundings, state, t, x);
+  auto found = search.run();
+  if (!found) problem = search.take_problem();
+  return found;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,19 @@
+// Finds the surfaces that guards at rest keep at zero: dry friction in the direction of a wall at which a mass rests.
+#pragma once
+
+#include <vector>
+
+#include "saltus/event_integrator/decide/transition.hpp"
+#include "saltus/event_integrator/jumps/holding.hpp"
+#include "saltus/event_integrator/jumps/resting_surfaces.hpp"
+
+namespace saltus::event_integrator {
+
+/// At a point on the held guards, in the cells of the kernel. Not among them are kinks, and functions nested in others
+/// or around them. The problem is a selection that changes what presses on several guards, or selections that multiply
+/// each other in it: where they are left is then a question of all of them together.
+/// Cost: three projections onto the guards and a few evaluations of f per surface at zero.
+[[nodiscard]] RestingSurfaces find_resting_surfaces(const Surroundings& surroundings, Holding& holding, double t,
+                                                    const std::vector<double>& alpha, const std::vector<double>& x);
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,170 @@
+// Surfaces at zero whose gradients depend on each other: which of them are slid on, and which are left, as the solution
+// of a complementarity problem.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/field/higher_order.hpp"
+#include "saltus/switching/selections/selection_complementarity.hpp"
+#include "saltus/switching/table/additive_map.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// y = w + W lambda for the surfaces at zero; nullopt where selections multiply each other, or velocities are not
+/// finite.
+std::optional<switching::AdditiveMap> additive_velocities(const Surroundings& s, const ModeState& state,
+                                                          const Occasion& occasion) {
+  const auto& meeting = occasion.at_zero;
+  const ProjectedFields fields(s.kernel, occasion);
+  std::vector<double> alpha = state.alpha;
+  const auto velocities = [&](const std::vector<double>& selections, Eigen::VectorXd& value) {
+    for (std::size_t i = 0; i < meeting.size(); ++i) alpha[at(meeting[i])] = selections[i];
+    const auto values = fields.velocities(alpha, meeting);
+    value = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  };
+  auto map = switching::additive_map(meeting.size(), velocities);
+  if (!map || !map->effects.allFinite() || !map->constant.allFinite()) return std::nullopt;
+  return map;
+}
+
+/// Whether selections in [0, 1] are determined on all sliding surfaces, as usual.
+bool slides_as_usual(const Surroundings& s, const ModeState& state, const Occasion& occasion,
+                     const std::vector<double>& x, std::vector<double>& alpha) {
+  ModeField field(s.kernel, s.affine_in_alpha);
+  field.enter(state);
+  std::vector<double> xdot(x.size());
+  field(occasion.t, x.data(), xdot.data());
+  alpha = field.alpha();
+  // As in the check of other modes.
+  constexpr double room = 1e-9;
+  return is_finite(xdot) && std::all_of(state.sliding.begin(), state.sliding.end(),
+                                        [&](int j) { return alpha[at(j)] >= -room && alpha[at(j)] <= 1.0 + room; });
+}
+
+/// Sets the sides of functions at zero that are not in `meeting` to where the motion of `moving` leaves them; each with
+/// the order of its zero.
+std::vector<std::pair<int, int>> set_followers(const Surroundings& s, const Occasion& occasion,
+                                               const std::vector<int>& meeting, const ModeState& moving,
+                                               ModeState& state) {
+  std::vector<std::pair<int, int>> followers;
+  ModeField field(s.kernel, s.affine_in_alpha);
+  field.enter(moving);
+  std::vector<double> xdot(at(s.kernel.states())), row(xdot.size());
+  field(occasion.t, occasion.x, xdot.data());
+  for (const int j : occasion.at_zero) {
+    if (contains(meeting, j)) continue;
+    double velocity = 0.0;
+    s.kernel.gradient(j, occasion.t, occasion.x, moving.alpha.data(), row.data(), &velocity);
+    double terms = std::abs(velocity);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (row[i] == 0.0) continue;
+      velocity += row[i] * xdot[i];
+      terms += std::abs(row[i] * xdot[i]);
+    }
+    const bool moves = std::abs(velocity) > 1e-9 * terms;
+    if (moves) set_surface(state, j, velocity > 0.0 ? 1 : -1, velocity > 0.0 ? 1.0 : 0.0);
+    followers.emplace_back(j, moves ? 1 : 2);
+  }
+  return followers;
+}
+
+}  // namespace
+
+std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
+                                         std::vector<double>& x, std::string& problem) {
+  if (auto held = hold(s, state, occasion, x, problem)) return held;
+  if (ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, state.sliding)) return std::nullopt;
+  set_corner_alpha(state);
+  std::vector<double> alpha;
+  if (!slides_as_usual(s, state, occasion, x, alpha)) return std::nullopt;
+  for (const int j : state.sliding) state.alpha[at(j)] = std::clamp(alpha[at(j)], 0.0, 1.0);
+  return transition_to(std::move(state));
+}
+
+bool slides_on_dependent(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+  return state.sliding.size() > 1 && ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, state.sliding);
+}
+
+std::optional<Transition> check_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
+                                          std::string& problem) {
+  std::vector<int> leaving;
+  for (const int j : occasion.at_zero) {
+    if (state.mode[at(j)] != 0) leaving.push_back(j);
+  }
+  std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
+  problem = "the fields do not lead on";
+  std::optional<Transition> next;
+  if (state.sliding.empty()) {
+    next = transition_to(std::move(state));
+  } else {
+    next = hold_dependent(s, std::move(state), occasion, x, problem);
+  }
+  if (!next || !leads_into_its_region(s, next->state, occasion, x, leaving)) return std::nullopt;
+  for (const int j : leaving) next->zero_order[at(j)] = 1;
+  return next;
+}
+
+std::vector<int> acting_surfaces(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+  std::vector<int> acting;
+  std::vector<double> alpha = state.alpha, below(at(s.kernel.states())), above(below.size());
+  for (const int j : occasion.at_zero) {
+    if (s.system.switching[at(j)].role == model::SwitchingRole::kink) continue;
+    double& own = alpha[at(j)];
+    const double before = std::exchange(own, 0.0);
+    s.kernel.field(occasion.t, occasion.x, alpha.data(), below.data());
+    own = 1.0;
+    s.kernel.field(occasion.t, occasion.x, alpha.data(), above.data());
+    own = before;
+    if (below != above) acting.push_back(j);
+  }
+  return acting;
+}
+
+std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                                           std::string& problem) {
+  Occasion met = occasion;
+  met.at_zero = acting_surfaces(s, before, occasion);
+  const auto& meeting = met.at_zero;
+  problem.clear();
+  if (!are_plain_surfaces(s, meeting)) return std::nullopt;
+  problem = "their selections multiply each other";
+  ModeState state = before;
+  state.higher.reset();
+  // Functions that move nothing have a side, which follows from the motion.
+  for (const int j : occasion.at_zero) {
+    if (state.mode[at(j)] == 0 && !contains(meeting, j)) set_surface(state, j, 1, 1.0);
+  }
+  const auto velocities = additive_velocities(s, state, met);
+  if (!velocities) return std::nullopt;
+  const auto solution = switching::solve_complementarity(velocities->effects, velocities->constant, 1e-9);
+  for (std::size_t i = 0; i < meeting.size(); ++i) {
+    const int mode = solution.mode[i];
+    set_surface(state, meeting[i], mode, mode == 0 ? 0.5 : mode > 0 ? 1.0 : 0.0);
+  }
+  auto next = check_dependent(s, state, met, problem);
+  if (!next) return std::nullopt;
+  const auto followers = set_followers(s, occasion, meeting, next->state, state);
+  if (!followers.empty()) {
+    next = check_dependent(s, std::move(state), met, problem);
+    if (!next) return std::nullopt;
+    for (const auto& [follower, order] : followers) next->zero_order[at(follower)] = order;
+  }
+  for (const int j : meeting) {
+    if (next->zero_order[at(j)] != 0 && contains(before.sliding, j)) next->zero_order[at(j)] = 2;
+  }
+  if (next->reason.empty()) {
+    next->reason = fmt::format("{}: their gradients depend on each other; slides on {}", names(s.system, meeting),
+                               next->state.sliding.empty() ? "none" : names(s.system, next->state.sliding));
+  }
+  // Else there may be others: not decided.
+  next->unique = solution.unique_velocity ? std::optional<bool>(true) : std::nullopt;
+  return next;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,318 @@
+#include "saltus/event_integrator/decide/start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/decide/continuations.hpp"
+#include "saltus/event_integrator/decide/projected_fields.hpp"
+#include "saltus/event_integrator/decide/tied_indicators.hpp"
+#include "saltus/event_integrator/mode/regions.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// psi_j, or where it holds signs that are not decided yet, and that it depends on, the value in one of their regions:
+/// 0 at a selection of 1/2 means nothing.
+double value_in_a_region(const Surroundings& s, double t, const double* x, const ModeState& state, int j,
+                         double noise) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  if (std::abs(values[at(j)]) > noise) return values[at(j)];
+  for (const double region : {0.0, 1.0}) {
+    std::vector<double> alpha = state.alpha;
+    for (const int inner : s.kernel.inner(j)) {
+      if (state.mode[at(inner)] == 0) alpha[at(inner)] = region;
+    }
+    s.kernel.functions(t, x, alpha.data(), values.data());
+    if (std::abs(values[at(j)]) > noise) break;
+  }
+  return values[at(j)];
+}
+
+/// A switching function of discrete states: its selection pointwise, as written where it is 0. It is in no mode, so
+/// that nothing looks for a zero of it or slides on it.
+void read_discrete(const Surroundings& s, double t, const double* x, int j, ModeState& state) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  const double psi = values[at(j)];
+  state.mode[at(j)] = 0;
+  state.alpha[at(j)] = psi > 0.0 ? 1.0 : psi < 0.0 ? 0.0 : s.system.switching[at(j)].alpha_at_zero;
+}
+
+/// Whether psi_j, exactly 0 here, is 0 whatever moves: n x while the discrete state n is 0. Such a function is decided
+/// as written until a jump changes that.
+bool vanishes_until_a_jump(const Surroundings& s, double t, const double* x, int j, const ModeState& state) {
+  const auto& discrete = s.system.discrete_states;
+  if (s.system.switching[at(j)].alpha_at_zero == 0.5) return false;
+  std::vector<double> row(discrete.size());
+  double rate = 0.0;
+  s.kernel.gradient(j, t, x, state.alpha.data(), row.data(), &rate);
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (!discrete[i] && row[i] != 0.0) return false;
+  }
+  return rate == 0.0 && s.kernel.lie_derivative(j, 2, t, x, state.alpha.data()) == 0.0;
+}
+
+/// The regions of a group by `indicator` at its minimum: the first of them is the reference, the others are at zero.
+/// With `held` ones the reference they are measured against and they are at the minimum.
+void read_regions(const Surroundings& s, double t, const double* x, const ProjectedFields& fields, std::size_t group,
+                  const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
+  const auto& range = s.kernel.region_groups()[group];
+  std::vector<double> values(at(s.kernel.event_functions()));
+  const auto is_held = [&](int j) { return std::find(held.begin(), held.end(), j) != held.end(); };
+  bool holds = false;
+  for (const int j : held) holds = holds || range.holds(j);
+  if (!holds) {
+    if (s.kernel.reference(group) < 0) s.kernel.set_reference(group, range.first);
+    s.kernel.functions(t, x, state.alpha.data(), values.data());
+    const auto first = values.begin() + range.first;
+    const auto smallest = std::max_element(first, first + range.count);  // of psi_i = g_r - g_i
+    s.kernel.set_reference(group, range.first + static_cast<int>(smallest - first));
+  }
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  const int reference = s.kernel.reference(group);
+  std::vector<ActiveRegion> active{{reference, 1.0}};
+  for (int j = range.first; j < range.first + range.count; ++j) {
+    if (j == reference) continue;
+    if (std::abs(values[at(j)]) <= fields.noise(j) || is_held(j)) active.push_back({j, 0.0});
+  }
+  for (auto& region : active) region.weight = 1.0 / static_cast<double>(active.size());
+  set_active(state, range, active);
+  for (std::size_t k = 1; k < active.size(); ++k) at_zero.push_back(active[k].region);
+}
+
+/// Signs of all switching functions, inner ones first; those at zero get 0.
+void read_signs(const Surroundings& s, double t, const double* x, const ProjectedFields& fields,
+                const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    if (s.system.switching[at(j)].role == model::SwitchingRole::region) continue;
+    if (std::binary_search(state.resting.begin(), state.resting.end(), j)) continue;
+    if (s.system.switching[at(j)].role == model::SwitchingRole::discrete) {
+      read_discrete(s, t, x, j, state);
+      continue;
+    }
+    const double psi =
+        s.kernel.inner(j).empty() ? values[at(j)] : value_in_a_region(s, t, x, state, j, fields.noise(j));
+    if (psi == 0.0 && vanishes_until_a_jump(s, t, x, j, state)) {
+      const double alpha = s.system.switching[at(j)].alpha_at_zero;
+      set_surface(state, j, alpha > 0.5 ? 1 : -1, alpha);
+      continue;
+    }
+    if (std::abs(psi) <= fields.noise(j) || std::find(held.begin(), held.end(), j) != held.end()) {
+      at_zero.push_back(j);
+      set_surface(state, j, 0, 0.5);
+    } else {
+      set_surface(state, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
+    }
+  }
+  for (std::size_t g = 0; g < s.kernel.region_groups().size(); ++g) {
+    read_regions(s, t, x, fields, g, held, state, at_zero);
+  }
+}
+
+/// A selection that is not finite marks a switching function that is undefined at the start.
+bool finite_at_start(const Surroundings& s, double t, const double* x, const ModeState& state, Transition& transition) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    if (std::isfinite(values[at(j)])) continue;
+    transition.termination = result::Termination::evaluation_failed;
+    transition.message = fmt::format(
+        "the switching function '{}' is not finite at the start t = {}; change the initial "
+        "values or its expression",
+        s.system.switching[at(j)].name, t);
+    return false;
+  }
+  return true;
+}
+
+/// Whether a mode is as given: of a region 1 says that it is active alone, 0 with others, -1 that it is not active.
+bool has_given_modes(const evaluation::ModelKernel& kernel, const ModeState& state,
+                     const std::vector<std::pair<int, int>>& given) {
+  return std::all_of(given.begin(), given.end(), [&](const auto& entry) {
+    const auto& [function, mode] = entry;
+    for (const auto& range : kernel.region_groups()) {
+      if (!range.holds(function)) continue;
+      const auto first = state.mode.begin() + range.first;
+      const bool alone = std::count(first, first + range.count, 0) == 1;
+      return mode == (state.mode[at(function)] != 0 ? -1 : alone ? 1 : 0);
+    }
+    return state.mode[at(function)] == mode;
+  });
+}
+
+/// The first one that is as given: of what was decided with the given surfaces, if any are, what was decided without,
+/// and its alternatives.
+std::optional<Transition> with_given_modes(const evaluation::ModelKernel& kernel,
+                                           const std::vector<std::pair<int, int>>& given,
+                                           const std::optional<Transition>& chosen, const Transition& decided) {
+  const auto fits = [&](const Transition& t) {
+    return t.termination == result::Termination::completed && has_given_modes(kernel, t.state, given);
+  };
+  if (chosen && fits(*chosen)) return chosen;
+  std::optional<Transition> found;
+  if (fits(decided)) {
+    found = decided;
+  } else {
+    const auto& others = decided.alternatives;
+    const auto other = std::find_if(others.begin(), others.end(), fits);
+    if (other != others.end()) found = *other;
+  }
+  if (found) found->alternatives.clear();
+  return found;
+}
+
+struct Point {
+  Occasion occasion;
+  ModeState state;
+};
+
+/// A point as one at which the solution starts: the surfaces through it, and the sides of the others that it is on.
+/// `held` are taken to pass through it, `resting` to stay there.
+Point read_point(const Surroundings& s, double t, const double* x, double time_scale, const std::vector<int>& held,
+                 const RestingSurfaces& resting = {}) {
+  Point point;
+  auto& [occasion, state] = point;
+  occasion.t = t;
+  occasion.x = x;
+  occasion.start = true;
+  occasion.time_scale = time_scale;
+  const ProjectedFields fields(s.kernel, occasion);
+  const auto n_psi = at(s.kernel.switching_functions());
+  state.mode.assign(n_psi, 1);
+  state.alpha.assign(n_psi, 1.0);
+  state.resting = resting.surfaces;
+  for (std::size_t i = 0; i < resting.surfaces.size(); ++i) {
+    state.mode[at(resting.surfaces[i])] = 0;
+    state.alpha[at(resting.surfaces[i])] = resting.alpha[i];
+  }
+  read_signs(s, t, x, fields, held, state, occasion.at_zero);
+  note_ties(s.kernel, state, occasion);
+  return point;
+}
+
+/// Whether nothing is at zero that would have to be decided, nor read anew behind a decision.
+bool signs_say_it_all(const Surroundings& s, const Occasion& occasion) {
+  if (!occasion.at_zero.empty() || !s.kernel.region_groups().empty()) return false;
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    if (!s.kernel.inner(j).empty()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Start decide_start(const Surroundings& s, double t, const double* x, double time_scale,
+                   const std::vector<std::pair<int, int>>& forced) {
+  Start start;
+  const auto [occasion, state] = read_point(s, t, x, time_scale, {});
+  start.at_zero = occasion.at_zero;
+  for (const int j : occasion.tied) {
+    if (std::find(start.at_zero.begin(), start.at_zero.end(), j) == start.at_zero.end()) start.at_zero.push_back(j);
+  }
+  if (!finite_at_start(s, t, x, state, start.transition)) return start;
+  start.transition = decide_mode(s, state, occasion);
+  other_continuations(s, state, occasion, start.transition);
+  if (forced.empty()) return start;
+
+  const auto decided = start.transition;
+  const auto is_region = [&](int j) { return s.system.switching[at(j)].role == model::SwitchingRole::region; };
+  for (const auto& [surface, mode] : forced) {
+    if (is_region(surface)) continue;
+    const bool at_zero = std::find(start.at_zero.begin(), start.at_zero.end(), surface) != start.at_zero.end();
+    if (!at_zero && mode != state.mode[at(surface)]) {
+      start.transition.termination = result::Termination::no_admissible_mode;
+      start.transition.message =
+          fmt::format("initial_mode {} = {} contradicts the sign of the switching function at the start",
+                      s.system.switching[at(surface)].name, mode);
+      return start;
+    }
+  }
+  std::vector<GivenMode> given;
+  for (const auto& [surface, mode] : forced) {
+    if (!is_region(surface)) given.push_back({surface, mode});
+  }
+  const auto is_given = [&](const Transition& transition) {
+    return transition.termination == result::Termination::completed && !transition.beyond_spiral &&
+           given.size() == forced.size() && std::all_of(given.begin(), given.end(), [&](const GivenMode& surface) {
+             return transition.state.mode[at(surface.surface)] == surface.mode;
+           });
+  };
+  if (is_given(decided)) {
+    start.transition.reason = "initial_mode" + (decided.reason.empty() ? "" : "; " + decided.reason);
+    return start;
+  }
+  auto chosen = given.empty() ? std::nullopt : decide_with(s, state, occasion, given);
+  if (!chosen) {
+    // Selections of three and more surfaces are looked for from the middle, where there may be no way to a root.
+    const auto found = std::find_if(decided.alternatives.begin(), decided.alternatives.end(), is_given);
+    if (found != decided.alternatives.end()) chosen = *found;
+  }
+  if (given.size() < forced.size()) chosen = with_given_modes(s.kernel, forced, chosen, decided);
+  if (!chosen) {
+    start.transition.termination = result::Termination::no_admissible_mode;
+    start.transition.message = "initial_mode does not continue the solution: its field does not move to where it says";
+    return start;
+  }
+  chosen->reason = "initial_mode" + (chosen->reason.empty() ? "" : "; " + chosen->reason);
+  start.transition = std::move(*chosen);
+  if (decided.termination != result::Termination::completed) return start;
+  start.transition.unique =
+      decided.state.mode == start.transition.state.mode ? decided.unique : std::optional<bool>(false);
+  if (decided.state.mode != start.transition.state.mode) {
+    start.transition.alternatives.push_back(decided);
+    start.transition.alternatives.back().alternatives.clear();
+  }
+  for (const auto& other : decided.alternatives) {
+    if (other.state.mode != start.transition.state.mode) start.transition.alternatives.push_back(other);
+  }
+  return start;
+}
+
+Transition decide_behind_jump(const Surroundings& s, const ModeState& before, double t, const double* x,
+                              double time_scale, const std::vector<int>& held, const RestingSurfaces& resting) {
+  Transition transition;
+  if (s.kernel.switching_functions() == 0) {  // nothing to decide
+    transition.beside.assign(x, x + s.kernel.states());
+    return transition;
+  }
+  auto [occasion, state] = read_point(s, t, x, time_scale, held, resting);
+  // Selections of the sliding motion before are where a search for the new ones starts.
+  for (const int j : held) {
+    const bool rests = std::binary_search(state.resting.begin(), state.resting.end(), j);
+    if (!rests) state.alpha[at(j)] = before.alpha[at(j)];
+  }
+  if (!finite_at_start(s, t, x, state, transition)) return transition;
+  if (signs_say_it_all(s, occasion)) {
+    transition.zero_order.assign(state.mode.size(), 0);
+    transition.beside.assign(x, x + s.kernel.states());
+    transition.state = std::move(state);
+    return transition;
+  }
+  transition = decide_mode(s, state, occasion);
+  other_continuations(s, state, occasion, transition);
+  return transition;
+}
+
+std::vector<double> selections_at(const Surroundings& s, double t, const double* x, std::vector<double> alpha) {
+  const auto n = at(s.kernel.event_functions());
+  std::vector<double> values(n), noise(n), slope(n);
+  s.kernel.scales(t, x, alpha.data(), noise.data(), slope.data());
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    s.kernel.functions(t, x, alpha.data(), values.data());
+    const auto& function = s.system.switching[at(j)];
+    if (function.role == model::SwitchingRole::region) continue;
+    const double psi = values[at(j)];
+    const bool discrete = function.role == model::SwitchingRole::discrete;
+    if (discrete && psi == 0.0) alpha[at(j)] = function.alpha_at_zero;
+    if (std::abs(psi) > (discrete ? 0.0 : 8.0 * rounding_unit * noise[at(j)])) alpha[at(j)] = psi > 0.0 ? 1.0 : 0.0;
+  }
+  return alpha;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,25 @@
+// Regions whose indicators are equal where a switch is.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/decide/transition.hpp"
+#include "saltus/event_integrator/mode/mode_state.hpp"
+
+namespace saltus::event_integrator {
+
+/// Regions of one group that are at its minimum where an occasion is: those at zero, and their references.
+void note_ties(const evaluation::ModelKernel& kernel, const ModeState& before, Occasion& occasion);
+
+/// Two of the regions at the minimum (`tied`) whose indicators are one and the same function, near by and as time goes,
+/// too: nothing says which of them is active.
+[[nodiscard]] std::optional<std::pair<int, int>> same_indicators(const evaluation::ModelKernel& kernel,
+                                                                 const ModeState& state, const Occasion& occasion);
+
+/// Adds to those at zero of a group the regions that are so to rounding of psi or of the time: where several reach the
+/// minimum within a few roundings, as at the end of a spiral, which one is located there means nothing.
+void complete_ties(const evaluation::ModelKernel& kernel, const ModeState& before, Occasion& occasion);
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,207 @@
+#include "saltus/event_integrator/decide/transition.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/decide/transition_internal.hpp"
+
+namespace saltus::event_integrator {
+
+void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
+                   const ModeState& before, const Occasion& occasion, std::string& reason) {
+  const auto& function = system.switching[at(surface)];
+  if (function.role != model::SwitchingRole::listed && function.role != model::SwitchingRole::region) return;
+  if (decision.mode == before.mode[at(surface)] && !occasion.start) return;
+  if (!reason.empty()) reason += "; ";
+  reason += function.name;
+  reason += ": ";
+  reason += decision.reason;
+}
+
+void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason) {
+  reason += ": ";
+  reason += why;
+  reason += " (";
+  reason += switching::name(leaf);
+  reason += ")";
+}
+
+void append_meeting(const model::System& system, const std::array<int, 2>& surfaces, switching::Leaf leaf,
+                    std::string_view why, std::string& reason) {
+  reason += system.switching[at(surfaces[0])].name;
+  reason += ", ";
+  reason += system.switching[at(surfaces[1])].name;
+  append_leaf(leaf, why, reason);
+}
+
+void begin_transition(const ModeState& before, const Occasion& occasion, std::size_t states, Transition& transition) {
+  auto& state = transition.state;
+  state.mode = before.mode;
+  state.alpha = before.alpha;
+  state.sliding = before.sliding;
+  state.higher.reset();
+  state.resting = before.resting;
+  transition.termination = result::Termination::completed;
+  transition.message.clear();
+  // Both fields are finite here; where they are not behind the projection onto the surface, this point is as good.
+  transition.beside.assign(occasion.x, occasion.x + states);
+  transition.zero_order.assign(state.mode.size(), 0);
+  transition.unique = true;
+  transition.other_choices.clear();
+  transition.beyond_spiral.reset();
+  transition.alternatives.clear();
+  transition.decision = -1;
+  transition.reason.clear();
+  transition.meeting.reset();
+}
+
+bool Decider::fail(result::Termination termination, std::string message) {
+  transition_.termination = termination;
+  transition_.message = std::move(message);
+  return false;
+}
+
+Transition Decider::run() {
+  base_ = before_;
+  const auto groups = groups_of(s_.kernel, occasion_, occasion_.at_zero);
+  // Nested functions that flip change the fields for everything else: decide again until nothing flips.
+  for (int pass = 0; pass < 8; ++pass) {
+    decisions_.clear();
+    group_reasons_.clear();
+    region_choices_.clear();
+    standing_.clear();
+    transition_.unique = true;
+    transition_.other_choices.clear();
+    transition_.beyond_spiral.reset();
+    transition_.meeting.reset();
+    for (const auto& group : groups) {
+      // Sliding that nothing has touched goes on, also where it was forced on a repelling surface.
+      const bool touched =
+          std::any_of(group.begin(), group.end(), [&](int j) { return contains(occasion_.touched, j); });
+      if ((touched || pass > 0 || occasion_.start) && !decide(group)) return transition_;
+    }
+    for (const auto& [surface, decision] : decisions_) {
+      set_surface(transition_.state, surface, decision.mode, decision.alpha);
+    }
+    apply_regions();
+    if (!read_nested_anew()) break;
+    base_ = transition_.state;
+    for (const int j : occasion_.at_zero) set_surface(base_, j, before_.mode[at(j)], before_.alpha[at(j)]);
+  }
+  for (const auto& [surface, decision] : decisions_) {
+    if (contains(standing_, surface)) continue;
+    if (!decision.reason.empty()) {
+      append_reason(s_.system, surface, decision, before_, occasion_, transition_.reason);
+    }
+    for (const int other : decision.other_modes) {
+      transition_.unique = false;
+      transition_.other_choices.push_back({{surface, other}});
+    }
+  }
+  for (const auto& reason : group_reasons_) transition_.reason += (transition_.reason.empty() ? "" : "; ") + reason;
+  if (set_corners() && check()) follow_other_regions();
+  return std::move(transition_);
+}
+
+Transition Decider::run_forced() {
+  if (set_corners()) check();
+  return std::move(transition_);
+}
+
+namespace {
+
+/// While it slides on an inner surface a nested function is recorded between its selections in both regions; the mode
+/// decides what it is.
+ModeState with_exact_selections(ModeState state) {
+  for (std::size_t j = 0; j < state.mode.size(); ++j) {
+    if (state.mode[j] != 0) state.alpha[j] = state.mode[j] > 0 ? 1.0 : 0.0;
+  }
+  return state;
+}
+
+Transition undecided(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+                     const std::string& problem) {
+  Transition transition;
+  transition.state = before;
+  transition.termination = result::Termination::outside_class;
+  transition.message = fmt::format("at t = {} the surfaces {} meet, whose gradients depend on each other: {}",
+                                   occasion.t, names(s.system, occasion.at_zero), problem);
+  return transition;
+}
+
+/// Whether surfaces that were not all slid on before are at zero here, and their gradients depend on each other.
+bool dependent_are_met(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+  // Two are dependent only where they touch, and those that were slid on before are not.
+  if (occasion.at_zero.size() < 3) return false;
+  const auto surfaces = acting_surfaces(s, state, occasion);
+  return surfaces.size() > 2 && (occasion.start || surfaces != state.sliding) &&
+         ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, surfaces);
+}
+
+}  // namespace
+
+Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion) {
+  if (before.higher && !occasion.start) return decide_from_higher_order(surroundings, before, occasion);
+  const ReferenceScope references(surroundings.kernel, before);
+  const ModeState exact = with_exact_selections(before);
+  if (auto rests = rest_where_nested_meet(surroundings, exact, occasion)) return std::move(*rests);
+  if (auto crossed = cross_with_jump(surroundings, exact, occasion)) return std::move(*crossed);
+  if (occasion.limit) {
+    // Rounding of the limit decides what the fields do there one by one.
+    if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
+  }
+  std::string problem;
+  if (dependent_are_met(surroundings, exact, occasion)) {
+    if (auto decided = decide_dependent(surroundings, exact, occasion, problem)) return std::move(*decided);
+    // The corners of more are not enumerated.
+    constexpr std::size_t most_enumerated = 10;
+    if (!problem.empty() && occasion.at_zero.size() > most_enumerated) {
+      return undecided(surroundings, exact, occasion, problem);
+    }
+  }
+  Transition transition = Decider(surroundings, exact, occasion).run();
+  if (transition.termination == result::Termination::outside_class) {
+    set_references(surroundings.kernel, before);
+    // The codimension of a kink and a surface is 2, but the kink itself does not hold the solution.
+    if (auto crossed = cross_kinks(surroundings, exact, occasion)) return std::move(*crossed);
+  }
+  if (transition.termination == result::Termination::outside_class ||
+      transition.termination == result::Termination::no_admissible_mode) {
+    if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
+    if (auto left = leave_where_nested_meet(surroundings, exact, occasion)) return std::move(*left);
+  }
+  if (transition.termination == result::Termination::no_admissible_mode) {
+    if (auto other = borderline_mode(surroundings, exact, occasion, transition.state)) return std::move(*other);
+  }
+  // Also where weights that soft minima leave open have been found for them: what keeps their difference at 0, a
+  // gradient of roundings, does not last.
+  const auto same = same_indicators(surroundings.kernel, exact, occasion);
+  const bool decided = transition.termination == result::Termination::completed;
+  if (same &&
+      (!decided || (transition.state.mode[at(same->first)] == 0 && transition.state.mode[at(same->second)] == 0))) {
+    transition.termination = result::Termination::outside_class;
+    transition.message = fmt::format(
+        "the regions '{}' and '{}' have the same indicator, and both are active at t = {}: nothing says which of them "
+        "the solution is in; make one region of them",
+        surroundings.system.switching[at(same->first)].name, surroundings.system.switching[at(same->second)].name,
+        occasion.t);
+  }
+  if (transition.termination != result::Termination::completed && !problem.empty()) {
+    return undecided(surroundings, exact, occasion, problem);
+  }
+  return transition;
+}
+
+Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced, const Occasion& occasion) {
+  const ReferenceScope references(surroundings.kernel, forced);
+  std::string problem;
+  if (slides_on_dependent(surroundings, forced, occasion)) {
+    if (auto held = check_dependent(surroundings, forced, occasion, problem)) return std::move(*held);
+  }
+  return Decider(surroundings, forced, occasion).run_forced();
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,130 @@
+// From "these surfaces are at zero here" to the next mode: gathers projected fields, asks the switching, checks the
+// answer.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/mode/mode_state.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/result/result.hpp"
+#include "saltus/switching/plane/intersection.hpp"
+#include "saltus/switching/table/group_decision.hpp"
+
+namespace saltus::event_integrator {
+
+/// Why the mode is decided afresh.
+struct Occasion {
+  double t = 0.0;
+  const double* x = nullptr;      ///< n_x, on all surfaces of `at_zero`
+  std::vector<int> at_zero;       ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
+  std::vector<int> touched;       ///< those of `at_zero` whose event this is
+  std::vector<int> exit_below;    ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
+  std::vector<int> exit_above;    ///< … upper field (alpha = 1)
+  std::vector<int> coalesced;     ///< first surfaces of coupled groups whose sliding root ceases to exist here
+  std::vector<int> destabilised;  ///< … loses its stability under every scaling
+  std::vector<int> tied;          ///< of groups by `indicator`: all regions with the smallest one here
+  bool start = false;             ///< no mode before
+  bool limit = false;             ///< infinitely many switches have ended here (with `start`)
+  double time_scale = 1.0;        ///< a step of the integrator: derivatives that do not move psi over it vanish
+};
+
+/// A mode of one surface that is given, with its selection if that is known.
+struct GivenMode {
+  int surface = 0;
+  int mode = 0;
+  double alpha = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Where a solution that spirals out of an intersection of two surfaces has completed its first lap.
+struct SpiralStart {
+  double duration = 0.0;
+  std::vector<double> x;
+  int surface = 0;  ///< on which x is
+  double lap_ratio = 0.0;
+};
+
+/// Two surfaces that influence each other, at zero together.
+struct Meeting {
+  std::array<int, 2> surfaces{};
+  std::array<std::array<double, 4>, 2> velocities{};  ///< normal components of the corner fields, bit i: alpha_i
+  std::optional<std::array<double, 2>> alpha;         ///< of the mode before; nullopt at a start
+};
+
+struct Transition {
+  result::Termination termination = result::Termination::completed;  ///< completed = a mode was found
+  std::string message;
+  ModeState state;
+  std::vector<double> beside;   ///< the point moved into the new regions by a few roundings
+  std::vector<int> zero_order;  ///< n_psi: order in t of the zero of psi_j at this time along the new field, 0 = none
+  std::optional<bool> unique = true;  ///< nullopt: not decided
+  /// Modes of some surfaces, other than the chosen ones, that continue the solution: what other_continuations() starts
+  /// from.
+  std::vector<std::vector<GivenMode>> other_choices;
+  std::optional<SpiralStart> beyond_spiral;  ///< the mode is the first region of a spiral: where to go on
+  int rooted = -1;  ///< surface beside which the mode's field, or its own function, has an infinite derivative
+  std::vector<Transition> alternatives;  ///< to the other admissible modes; these have no alternatives of their own
+  long decision = -1;                    ///< its number in the run, of those with alternatives
+  std::string reason;
+  std::optional<Meeting> meeting;  ///< the first one decided here
+};
+
+/// What the switching needs to know of the system besides its functions.
+struct Surroundings {
+  const evaluation::ModelKernel& kernel;
+  const model::System& system;
+  bool affine_in_alpha = true;
+  switching::SelectionPolicy policy = switching::SelectionPolicy::active_dominant;
+  std::vector<double> scaling;  ///< n_psi factors of the hidden dynamics under SelectionPolicy::scaled; empty = ones
+};
+
+/// Adds what decided about a surface, unless its mode stays, or it is not one that the result lists (a kink, a time).
+void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
+                   const ModeState& before, const Occasion& occasion, std::string& reason);
+
+/// Behind the names of two surfaces: what a tree decided about them, and why.
+void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason);
+/// The same with their names.
+void append_meeting(const model::System& system, const std::array<int, 2>& surfaces, switching::Leaf leaf,
+                    std::string_view why, std::string& reason);
+
+/// Makes of `transition`, whose storage is used again, the only one there is, with the mode as it was before: what is
+/// decided without detours starts from it.
+/// @param states  n_x
+void begin_transition(const ModeState& before, const Occasion& occasion, std::size_t states, Transition& transition);
+
+/// The mode behind an event, or a start, at one point.
+/// Surfaces that do not influence each other are decided one by one, the others in groups; switching functions nested
+/// around a surface that changes are read anew. Two that influence each other are decided by the trees of
+/// switching/intersection.hpp; more, and what no tree decides, by the hidden dynamics. The new mode is checked along
+/// its own field: it must move to where it says. Terminations: outside_class (two-fold, psi stays 0, hidden dynamics
+/// without a limit), no_admissible_mode (the check failed), evaluation_failed (fields undefined at the point).
+[[nodiscard]] Transition decide_mode(const Surroundings& surroundings, const ModeState& before,
+                                     const Occasion& occasion);
+
+/// A mode that the user forces at the start: only the check along its own field.
+[[nodiscard]] Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced,
+                                           const Occasion& occasion);
+
+/// The side of an event function that is zero at `start` to which the motion of a mode goes from there, by Runge-Kutta
+/// steps over a hundredth of the time scale; 0 where they do not agree.
+[[nodiscard]] int side_ahead(const Surroundings& surroundings, const ModeState& state, const Occasion& occasion,
+                             const std::vector<double>& start, int function);
+
+/// What to say where sliding on several surfaces that influence each other has run into a point at which its equations
+/// are singular to half of the digits, so that its selections, and the motion, are roundings; nullopt if it has not.
+[[nodiscard]] std::optional<std::string> lost_selections(const Surroundings& surroundings, const ModeState& state,
+                                                         double t, const double* x);
+
+/// What to say where sliding has lost its selections, or has run into a point at which both fields are tangent to the
+/// surface (two-fold), so that its selection has no limit, or at which the gradient of the surface vanishes; nullopt if
+/// there is none near by.
+[[nodiscard]] std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state,
+                                                          double t, const double* x);
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,285 @@
+// The mode behind an event must move to where it says.
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/field/rooted_exit.hpp"
+
+namespace saltus::event_integrator {
+
+std::string names(const model::System& system, const std::vector<int>& surfaces) {
+  std::string text;
+  for (const int j : surfaces) text += (text.empty() ? "" : ", ") + system.switching[at(j)].name;
+  return text;
+}
+
+std::string two_fold_at(const std::string& surface, double t) {
+  return fmt::format(
+      "both fields are tangent to '{}' at t = {} (two-fold point): the sliding motion is not determined there", surface,
+      t);
+}
+
+/// Why the motion on a surface is not determined.
+std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
+                            const std::vector<double>& alpha, int surface, double t) {
+  const auto& name = system.switching[at(surface)].name;
+  if (!fields.gradient_vanishes(alpha, surface)) return two_fold_at(name, t);
+  return fmt::format(
+      "the gradient of '{}' vanishes where '{}' is 0, at t = {} (a square or another power?): the motion on that "
+      "surface "
+      "is not determined; use a function with the same sign and a gradient there, such as the root",
+      name, name, t);
+}
+
+/// Selections of the regions that meet at the one sliding surface.
+bool Decider::set_corners() {
+  auto& state = transition_.state;
+  rebase(s_.kernel, state, transition_.zero_order);
+  set_references(s_.kernel, state);
+  if (state.sliding.empty()) {
+    complete_weights(s_.kernel, state);
+    return true;
+  }
+  for (std::size_t corner = 0; corner < 2; ++corner) {
+    state.corner_alpha[corner] = fields_.corner_alpha(state.alpha, state.sliding, corner);
+  }
+  complete_weights(s_.kernel, state);
+  const auto is_nested = [&](int j) { return !s_.kernel.inner(j).empty(); };
+  std::vector<int> nested(state.mode.size());
+  std::iota(nested.begin(), nested.end(), 0);
+  if (state.sliding.size() == 1 || std::none_of(nested.begin(), nested.end(), is_nested)) return true;
+  // Several sliding surfaces: a function nested around one of them must have one sign in all regions.
+  for (std::size_t corner = 1; corner < (std::size_t{1} << std::min<std::size_t>(state.sliding.size(), 10)); ++corner) {
+    const auto alpha = fields_.corner_alpha(state.alpha, state.sliding, corner);
+    for (int j = 0; j < s_.kernel.switching_functions(); ++j) {
+      if (!contains(state.sliding, j) && alpha[at(j)] != state.alpha[at(j)]) {
+        return fail(result::Termination::outside_class,
+                    fmt::format("at t = {} the sign of '{}' depends on the selections of several sliding surfaces ({})",
+                                occasion_.t, s_.system.switching[at(j)].name, names(s_.system, state.sliding)));
+      }
+    }
+  }
+  return true;
+}
+
+/// The new mode must move to where it says: signs along its own field, selections inside [0, 1].
+bool Decider::check() {
+  auto& state = transition_.state;
+  if (transition_.beyond_spiral) {  // no field leads away from the intersection by itself
+    transition_.beside = transition_.beyond_spiral->x;
+    return true;
+  }
+  ModeField field(s_.kernel, s_.affine_in_alpha);
+  field.enter(state);
+  std::vector<double> xdot(at(s_.kernel.states()));
+  field(occasion_.t, occasion_.x, xdot.data());
+  // Regions whose indicators depend on each other follow those that do not.
+  const auto held = field.independent();
+  if (held.size() > 1 && fields_.gradients_depend(state.alpha, held)) return fail_where_surfaces_touch(held);
+  transition_.beside = fields_.point_beside(state.alpha);
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) field(occasion_.t, transition_.beside.data(), xdot.data());
+  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) {
+    // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
+    for (const int j : state.sliding) {
+      if (!fields_.gradient_vanishes(state.alpha, j) && !fields_.nearly_two_fold(state.alpha, j)) continue;
+      return fail(result::Termination::outside_class, undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
+    }
+    if (!state.sliding.empty()) {
+      return fail(result::Termination::evaluation_failed, fmt::format("the sliding field on {} is not finite at t = {}",
+                                                                      names(s_.system, state.sliding), occasion_.t));
+    }
+  }
+  for (const int j : state.sliding) {
+    const double selection = field.alpha()[at(j)];
+    // 1e-9: an exit located to rounding leaves the selection at its bound only to the conditioning of the quotient.
+    if (!(selection >= -1e-9 && selection <= 1.0 + 1e-9)) {
+      const auto& name = s_.system.switching[at(j)].name;
+      // Behind an exit located on one field the selection is at its bound, unless the other field vanishes with it.
+      const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
+      if (at_exit || fields_.nearly_two_fold(state.alpha, j)) {
+        return fail(result::Termination::outside_class,
+                    undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
+      }
+      return fail(result::Termination::no_admissible_mode,
+                  fmt::format("sliding on '{}' at t = {} would need the selection {}", name, occasion_.t, selection));
+    }
+    state.alpha[at(j)] = std::clamp(selection, 0.0, 1.0);
+  }
+  // Functions nested around a sliding surface are between their own selections in the regions beside it.
+  for (int j = 0; j < s_.kernel.switching_functions(); ++j) {
+    const auto& inner = s_.kernel.inner(j);
+    if (std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(state.sliding, i); })) {
+      state.alpha[at(j)] = std::clamp(field.alpha()[at(j)], 0.0, 1.0);
+    }
+  }
+  complete_weights(s_.kernel, state);
+  // Regions are measured against the reference of the new mode: the one before may be at zero, too.
+  std::vector<int> at_zero = occasion_.at_zero;
+  for (const int j : occasion_.tied) {
+    if (!contains(at_zero, j)) at_zero.push_back(j);
+  }
+  for (const int j : at_zero) {
+    const int mode = state.mode[at(j)];
+    if (mode == 0) continue;
+    if (contains(standing_, j)) {
+      transition_.zero_order[at(j)] = 2;
+      continue;
+    }
+    double velocity = fields_.velocities(state.alpha, {j}).front();
+    const auto& tangent = mode > 0 ? occasion_.exit_above : occasion_.exit_below;
+    if (contains(tangent, j) && keeps_selections()) velocity = 0.0;
+    // The fields of all regions that meet: those on both sides of this surface may be tangent to it together.
+    const double scale =
+        std::max({scale_[at(j)], std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
+                  std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front())});
+    Motion motion = fields_.motion(state.alpha, j, velocity, scale);
+    const bool follows_selections =
+        std::any_of(state.sliding.begin(), state.sliding.end(), [&](int i) { return s_.kernel.depends(j, i); });
+    if (follows_selections && std::abs(velocity) <= sign_tolerance * scale) {
+      // A tangency along sliding whose selections change: no derivative with selections held speaks for it.
+      const double ahead = velocity_ahead(field, xdot, j);
+      motion = {};
+      if (std::abs(ahead) > velocity_rounding * scale) {
+        motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
+      }
+    }
+    const bool is_kink = s_.system.switching[at(j)].role == model::SwitchingRole::kink;
+    if (is_kink && motion.side.drift == switching::Drift::stays) {
+      // A state at rest there: both sides are the same.
+      transition_.zero_order[at(j)] = 2;
+      continue;
+    }
+    // Along a root psi goes where its regular derivatives say, if these say anything, but like another power of t.
+    const bool stays = motion.side.drift == switching::Drift::stays;
+    const bool tangent_root = s_.kernel.has_root(j) && motion.order != 1 && static_cast<int>(motion.side.drift) == mode;
+    if ((stays || tangent_root) && leaves_by_root(j)) {
+      transition_.zero_order[at(j)] = 2;
+      continue;
+    }
+    if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode, motion);
+    transition_.zero_order[at(j)] = std::min(motion.order, 2);
+  }
+  return true;
+}
+
+bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
+  return fail(
+      result::Termination::outside_class,
+      fmt::format("the surfaces {} touch at t = {}: their gradients depend on each other there, so that sliding "
+                  "on all of them does not determine the selections; state surfaces that coincide by one "
+                  "switching function",
+                  names(s_.system, surfaces), occasion_.t));
+}
+
+/// The field of the new mode does not move psi_j to where the mode says: why not.
+/// Whether the new field has an infinite derivative on a surface, which it leaves all the same: no derivative says so.
+bool Decider::leaves_by_root(int j) {
+  if (transition_.rooted >= 0 || s_.system.switching[at(j)].role != model::SwitchingRole::listed) return false;
+  const std::vector<double> x(occasion_.x, occasion_.x + s_.kernel.states());
+  RootedExit exit(s_.kernel, s_.affine_in_alpha, transition_.state, j);
+  if (!exit.has_root(occasion_.t, x) || !exit.leads_away(occasion_.t, x, 1e-2 * occasion_.time_scale)) return false;
+  transition_.rooted = j;
+  return true;
+}
+
+bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
+  const auto& state = transition_.state;
+  const auto& function = s_.system.switching[at(j)];
+  const auto& name = function.name;
+  if (motion.side.drift == switching::Drift::stays && function.role == model::SwitchingRole::region &&
+      state.sliding.size() > 1) {
+    return fail(
+        result::Termination::outside_class,
+        fmt::format("at t = {} more regions meet than their indicators tell apart, for an instant or with too many "
+                    "sides: that of '{}' follows from those of the others, and their weights are not determined; "
+                    "state these regions by conditions (when) of switching functions, or perturb a parameter",
+                    occasion_.t, name));
+  }
+  if (motion.side.drift == switching::Drift::stays) {
+    return fail(result::Termination::outside_class,
+                fmt::format("behind t = {} the field of the new mode does not leave '{}', to any order (boundary "
+                            "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
+                            occasion_.t, name));
+  }
+  std::array<switching::Side, 2> sides;
+  for (const std::size_t corner : {std::size_t{0}, std::size_t{1}}) {
+    const auto alpha = fields_.corner_alpha(state.alpha, {j}, corner);
+    sides[corner] = fields_.motion(alpha, j, fields_.velocities(alpha, {j}).front(), scale_[at(j)]).side;
+  }
+  const bool tangent =
+      std::max(std::abs(sides[0].velocity), std::abs(sides[1].velocity)) <= sign_tolerance * scale_[at(j)];
+  if (tangent && sides[0].drift == switching::Drift::up && sides[1].drift == switching::Drift::down) {
+    return fail(result::Termination::outside_class,
+                fmt::format("from t = {} on the fields on both sides of '{}' are tangent to it and turn towards it: "
+                            "sliding on which the derivative of '{}' is 0 for every selection (of second order)",
+                            occasion_.t, name, name));
+  }
+  if (tangent) return fail(result::Termination::outside_class, two_fold_at(name, occasion_.t));
+  if (fields_.gradients_depend(state.alpha, occasion_.at_zero)) return fail_where_surfaces_touch(occasion_.at_zero);
+  return fail(result::Termination::no_admissible_mode,
+              fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not", occasion_.t,
+                          mode > 0 ? "the positive side" : "the negative side", name));
+}
+
+/// Whether the new field is the sliding one of before at this point: selections were lost at their bounds only. Then
+/// the surfaces that are left through a bound are tangent to it. Coupled surfaces may be left with any selection.
+bool Decider::keeps_selections() const {
+  for (std::size_t j = 0; j < before_.mode.size(); ++j) {
+    if (before_.mode[j] != 0 || transition_.state.mode[j] == 0) continue;
+    const int surface = static_cast<int>(j);
+    if (!contains(occasion_.exit_below, surface) && !contains(occasion_.exit_above, surface)) return false;
+  }
+  return true;
+}
+
+/// Normal component of the mode's own field on a surface, a little later along it.
+double Decider::velocity_ahead(ModeField& field, const std::vector<double>& xdot, int surface) {
+  const double time = 1e-2 * occasion_.time_scale;
+  std::vector<double> x(occasion_.x, occasion_.x + xdot.size());
+  std::vector<double> later(xdot.size()), row(xdot.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * xdot[i];
+  field(occasion_.t + time, x.data(), later.data());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = occasion_.x[i] + 0.5 * time * (xdot[i] + later[i]);
+  field(occasion_.t + time, x.data(), later.data());
+  double velocity = 0.0;
+  s_.kernel.gradient(surface, occasion_.t + time, x.data(), field.alpha().data(), row.data(), &velocity);
+  for (std::size_t i = 0; i < x.size(); ++i) velocity += row[i] == 0.0 ? 0.0 : row[i] * later[i];
+  return velocity;
+}
+
+std::optional<std::string> lost_selections(const Surroundings& surroundings, const ModeState& state, double t,
+                                           const double* x) {
+  if (state.sliding.size() < 2 || state.higher) return std::nullopt;
+  ModeField field(surroundings.kernel, surroundings.affine_in_alpha);
+  field.enter(state);
+  // Selections are known to 1e-16 over this.
+  constexpr double parallel = 1e-8;
+  if (!(field.root_distance(t, x) < parallel)) return std::nullopt;
+  return fmt::format(
+      "the selections of sliding on {} have no limit at t = {:.17g}: det G, of the derivatives of the velocities of "
+      "these functions with respect to them, vanishes there (the fields that hold the solution are parallel, or two "
+      "roots meet), so that they do not determine what follows; end the simulation before, or perturb a parameter",
+      names(surroundings.system, state.sliding), t);
+}
+
+std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state, double t,
+                                            const double* x) {
+  if (auto lost = lost_selections(surroundings, state, t, x)) return lost;
+  Occasion occasion;
+  occasion.t = t;
+  occasion.x = x;
+  occasion.at_zero = state.sliding;
+  const ProjectedFields fields(surroundings.kernel, occasion);
+  for (const int j : state.sliding) {
+    if (fields.nearly_two_fold(state.alpha, j) || fields.gradient_vanishes(state.alpha, j)) {
+      return undetermined_at(fields, surroundings.system, state.alpha, j, t);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,193 @@
+// One group of surfaces that influence each other: which ones those are, and the rule that decides them.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/switching/selections/selection_root.hpp"
+
+namespace saltus::event_integrator {
+
+using switching::SurfaceDecision;
+using switching::Verdict;
+
+namespace {
+
+/// Largest group whose 2^m corners are looked at.
+constexpr std::size_t largest_group = 12;
+
+}  // namespace
+
+std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, const Occasion& occasion) {
+  std::vector<int> nested;
+  for (int j = 0; j < kernel.switching_functions(); ++j) {
+    if (!kernel.inner(j).empty() && !contains(occasion.at_zero, j)) nested.push_back(j);
+  }
+  return nested;
+}
+
+bool feels(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j) {
+  return kernel.depends(i, j) || same_group(kernel, i, j) || std::any_of(nested.begin(), nested.end(), [&](int around) {
+           return contains(kernel.inner(around), j) && kernel.depends(i, around);
+         });
+}
+
+std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion,
+                                        std::vector<int> open) {
+  const std::vector<int> nested = nested_away_from_zero(kernel, occasion);
+  std::vector<std::vector<int>> groups;
+  while (!open.empty()) {
+    std::vector<int> group{open.front()};
+    open.erase(open.begin());
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      for (std::size_t other = 0; other < open.size();) {
+        if (feels(kernel, nested, group[k], open[other]) || feels(kernel, nested, open[other], group[k])) {
+          group.push_back(open[other]);
+          open.erase(open.begin() + static_cast<std::ptrdiff_t>(other));
+        } else {
+          ++other;
+        }
+      }
+    }
+    std::sort(group.begin(), group.end());
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+SurfaceDecision Decider::ask_selection(const switching::CornerTable& table, int surface) {
+  std::vector<double> alpha = base_.alpha;
+  const auto g = [&](double selection) {
+    alpha[at(surface)] = selection;
+    return fields_.velocities(alpha, {surface}).front();
+  };
+  const double last = before_.mode[at(surface)] == 0 ? before_.alpha[at(surface)] : 0.0;
+  return switching::decide_selection({table.side(0, 0), table.side(0, 1), table.arrival[0]}, g, last);
+}
+
+switching::GroupDecision Decider::ask(const std::vector<int>& group, const switching::CornerTable& table) {
+  if (s_.affine_in_alpha || group.size() > 1) return switching::decide_group(table);
+  SurfaceDecision decision = ask_selection(table, group.front());
+  return {decision.verdict, 0, {decision}};
+}
+
+/// Sizes of the normal components in the regions around a point.
+void Decider::note_scales(const std::vector<int>& group, const switching::CornerTable& table) {
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    double& scale = scale_[at(group[k])];
+    scale = 0.0;
+    for (std::size_t corner = 0; corner < table.corners(); ++corner) {
+      scale = std::max(scale, std::abs(table.side(static_cast<int>(k), corner).velocity));
+    }
+  }
+}
+
+/// Nothing slides on a kink, and none is left to both sides: f is one and the same there. Velocities that say so, or
+/// nothing, are rounding, as at the edge of a thin layer that a solution drifts through; the kink was seen to be
+/// passed.
+bool Decider::passes_kink(const std::vector<int>& group, const switching::GroupDecision& decision) {
+  const int j = group.front();
+  const int arrived = before_.mode[at(j)];
+  if (group.size() > 1 || arrived == 0 || occasion_.start) return false;
+  if (!s_.system.switching[at(j)].is_kink()) return false;
+  const auto& surface = decision.surfaces.front();
+  if (decision.verdict == Verdict::decided && surface.mode != 0 && surface.other_modes.empty()) return false;
+  decisions_.emplace_back(j,
+                          SurfaceDecision{Verdict::decided, -arrived, arrived < 0 ? 1.0 : 0.0, {}, "a kink is passed"});
+  standing_.push_back(j);
+  return true;
+}
+
+/// Whether the selections of the surfaces that stay 0 act on nothing, the others being what was decided.
+bool Decider::standing_fields_agree(const std::vector<int>& group, const switching::GroupDecision& decision) const {
+  ModeState point = base_;
+  std::vector<int> standing;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const auto& surface = decision.surfaces[k];
+    if (surface.verdict == Verdict::stands) {
+      standing.push_back(group[k]);
+    } else {
+      point.alpha[at(group[k])] = surface.alpha;
+    }
+  }
+  return fields_.fields_agree(point, standing);
+}
+
+bool Decider::decide(const std::vector<int>& group) {
+  if (group.size() > 1) {
+    for (const int j : group) {
+      const auto is_other = [&](int i) { return i != j && same_group(s_.kernel, i, j); };
+      if (std::any_of(group.begin(), group.end(), is_other)) return decide_regions(group);
+    }
+  }
+  for (const int j : group) {
+    const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
+    // An exit is located where one field is tangent: its selection is at its bound to rounding over the other field,
+    // unless that vanishes, too. Ten times less or more makes no difference: it is 1e-9 or of the order of one. Between
+    // these it depends on what is left of the other field.
+    constexpr double lost = 1e-6;
+    constexpr double doubtful = 1e-9;
+    const double beyond = at_exit ? std::max(-before_.alpha[at(j)], before_.alpha[at(j)] - 1.0) : 0.0;
+    if (!(beyond <= lost) || (beyond > doubtful && fields_.nearly_two_fold(before_.alpha, j))) {
+      return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
+    }
+  }
+  if (group.size() > largest_group || (!s_.affine_in_alpha && group.size() > 1)) {
+    return fail(result::Termination::outside_class,
+                fmt::format("{} surfaces that influence each other meet at t = {}: {}; covered are up to {} with every "
+                            "selection entering affinely",
+                            group.size(), occasion_.t, names(s_.system, group), largest_group));
+  }
+  const auto table = fields_.table(base_, group);
+  note_scales(group, table);
+  note_meeting(group, table);
+  const auto tree = ask_tree(group, table);
+  if (tree && tree->undecided.empty()) {
+    const bool by_scaling = tree->by_scaling && s_.policy == switching::SelectionPolicy::scaled;
+    if (by_scaling) return resolve(group, table);
+    if (!tree->spirals_out) return accept(group, *tree);
+    if (spiral_out(group, switching::plane_table(table), *tree)) return true;
+  }
+  const auto decision = ask(group, table);
+  if (passes_kink(group, decision)) return true;
+  const auto culprit = [&] { return s_.system.switching[at(group[at(std::max(decision.culprit, 0))])].name; };
+  switch (decision.verdict) {
+    case Verdict::decided:
+      break;
+    case Verdict::stands:
+      // Nothing depends on the selection: any side continues the same solution.
+      if (!standing_fields_agree(group, decision)) {
+        return fail(result::Termination::outside_class,
+                    fmt::format("'{}' does not leave 0 at t = {} under either field, which differ there (boundary "
+                                "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
+                                culprit(), occasion_.t));
+      }
+      break;
+    case Verdict::two_fold:
+      return fail(
+          result::Termination::outside_class,
+          undetermined_at(fields_, s_.system, base_.alpha, group[at(std::max(decision.culprit, 0))], occasion_.t));
+    case Verdict::coupled:
+      return decide_coupled(group, table);
+  }
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    SurfaceDecision surface = decision.surfaces[k];
+    // One field has turned away from the surface, the other one moves along it: the solution can go on there and leave
+    // at any later time.
+    const bool turned = contains(occasion_.exit_below, group[k]) || contains(occasion_.exit_above, group[k]);
+    if (turned && surface.verdict == Verdict::decided && surface.mode == 0 && group.size() == 1) {
+      return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(group[k])].name, occasion_.t));
+    }
+    if (surface.verdict == Verdict::stands) {
+      const int kept = before_.mode[at(group[k])] != 0 && !occasion_.start ? before_.mode[at(group[k])] : 1;
+      surface = {Verdict::decided, kept, kept > 0 ? 1.0 : 0.0, {}, "psi stays 0 and the fields agree"};
+      standing_.push_back(group[k]);
+    }
+    decisions_.emplace_back(group[k], surface);
+  }
+  return true;
+}
+
+}  // namespace saltus::event_integrator

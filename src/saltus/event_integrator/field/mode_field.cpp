@@ -1,0 +1,241 @@
+#include "saltus/event_integrator/field/mode_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/switching/table/surface_decision.hpp"
+
+namespace saltus::event_integrator {
+
+ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha)
+    : kernel_(kernel), affine_in_alpha_(affine_in_alpha), several_exits_(kernel) {
+  const auto n = at(kernel.states());
+  const auto n_psi = at(kernel.switching_functions());
+  for (auto& f : f_) f.resize(n);
+  for (auto& corner : corner_) corner.resize(n_psi);
+  trial_.resize(n_psi);
+  alpha_.resize(n_psi);
+  values_.resize(at(kernel.event_functions()));
+  known_rows_.resize(n_psi);
+  row_of_.assign(n_psi, -1);
+}
+
+void ModeField::gradients(double t, const double* x) {
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    if (constant_row_[row]) continue;
+    if (!take_known_row(row)) {
+      // With the mode's selections, not the last ones: the field must not depend on what was evaluated before.
+      kernel_.gradient(sliding_[row], t, x, start_alpha_.data(), f_[0].data(), &rates_[static_cast<Eigen::Index>(row)]);
+      take_row(row);
+    }
+    if (sliding_.size() != 1) continue;
+    row_square_ = rows_.squaredNorm();
+    refer_to_constants();
+  }
+  find_ties();
+}
+
+ode::Attempt ModeField::attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
+                                const ode::Tolerances& tolerances) {
+  const auto f = [this](double t_stage, const double* x_stage, double* xdot) { (*this)(t_stage, x_stage, xdot); };
+  auto stages = native_stages();
+  if (stepper.wants_linear_field()) {
+    stages.linear = linear_field();
+    if (stages.linear != nullptr) return stepper.attempt(f, t, x, slope, h, tolerances, stages);
+  }
+  if (stepper.wants_pattern() && solve_ != SlidingSolve::higher_order) {
+    return stepper.attempt(f, t, x, slope, h, tolerances, {.functions = {}, .pattern = kernel_.jacobian_pattern()});
+  }
+  if (stepper.stages_function(stages.functions) == nullptr) return stepper.attempt(f, t, x, slope, h, tolerances);
+  const long before = stepper.evaluations();
+  const auto outcome = stepper.attempt(f, t, x, slope, h, tolerances, stages);
+  constants_[0].use->evaluations += (is_single() ? 2 : 1) * (stepper.evaluations() - before);
+  return outcome;
+}
+
+ode::RightHandSideStages ModeField::native_stages() const {
+  if (solve_ == SlidingSolve::none) {
+    if (!constants_[0].has_steps()) return {};
+    return {constants_[0].steps->field, constants_[0].values.data()};
+  }
+  if (!is_single() || !constant_row_[0] || !constants_[0].has_steps()) return {};
+  return {constants_[0].steps->sliding, &sliding_constants_};
+}
+
+const ode::LinearField* ModeField::linear_field() {
+  if (solve_ == SlidingSolve::none) return linear_motion_.of_region(kernel_, constants_[0]);
+  if (!is_single() || !constant_row_[0]) return nullptr;
+  return linear_motion_.on_surface(kernel_, constants_[0], constants_[1], {rows_.data(), coordinate_[0]});
+}
+
+double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f) const {
+  const auto r = static_cast<Eigen::Index>(row);
+  if (const int only = coordinate_[row]; only >= 0) return normal_[row].value.front() * f[at(only)] + rates_[r];
+  return normal_[row].dot(f, rates_[r]);
+}
+
+const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region, const double* x) {
+  if (solve_ != SlidingSolve::decoupled || !constant_row_[row]) return nullptr;
+  const double side = region == Region::below ? 0.0 : 1.0;
+  const bool several = sliding_.size() > 1;
+  if (several && !keeps_rows()) {
+    trial_ = start_alpha_;
+    for (const int j : sliding_) trial_[at(j)] = 0.0;
+    trial_[at(sliding_[row])] = side;
+  }
+  const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : trial_;
+  evaluation::FixedState fixed;
+  if (const int only = coordinate_[row]; only >= 0 && rates_[static_cast<Eigen::Index>(row)] == 0.0) {
+    fixed = {only, x[only]};
+  }
+  if (several && keeps_rows()) return several_exits_.of(sliding_[row], side, fixed, start_alpha_);
+  // What cells and references change is not in the key.
+  if (several || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
+    return kernel_.lie_row(sliding_[row], fixed, alpha.data(), exit_form_) ? &exit_form_ : nullptr;
+  }
+  const void* motion = constants_[0].use->motion;
+  for (const auto& known : exit_rows_) {
+    if (known.motion == motion && known.surface == sliding_[row] && known.fixed.component == fixed.component &&
+        known.fixed.value == fixed.value && known.alpha == alpha) {
+      return &known.form;
+    }
+  }
+  if (!kernel_.lie_row(sliding_[row], fixed, alpha.data(), exit_form_)) return nullptr;
+  auto& oldest = exit_rows_[next_exit_row_++ % exit_rows_.size()];
+  oldest.motion = motion;
+  oldest.surface = sliding_[row];
+  oldest.fixed = fixed;
+  oldest.alpha = alpha;
+  oldest.form = exit_form_;
+  return &oldest.form;
+}
+
+double ModeField::normal_terms(std::size_t row) const {
+  if (solve_ == SlidingSolve::coupled || solve_ == SlidingSolve::higher_order) return condition_[row];
+  const auto r = static_cast<Eigen::Index>(row);
+  double sum = std::abs(rates_[r]);
+  const auto& [column, value] = normal_[row];
+  for (std::size_t k = 0; k < column.size(); ++k) {
+    const std::size_t i = column[k];
+    sum += std::abs(value[k]) * std::max(std::abs(f_[0][i]), std::abs(f_[1][i]));
+  }
+  return sum;
+}
+
+/// The fields of the two regions that meet at the one sliding surface, and their normal components.
+void ModeField::evaluate_corners(double t, const double* x) {
+  gradients(t, x);
+  kernel_.prepared_field(t, x, constants_[0], f_[0].data());
+  kernel_.prepared_field(t, x, constants_[1], f_[1].data());
+  exits_[0] = {normal_velocity(0, f_[0]), normal_velocity(0, f_[1]), 0.0};
+}
+
+/// The usual sliding: everything in closed form.
+void ModeField::slide_on_one(double t, const double* x, double* xdot) {
+  evaluate_corners(t, x);
+  const double selection = switching::sliding_alpha(exits_[0].below, exits_[0].above);
+  for (const std::size_t i : between_) alpha_[i] = corner_[0][i] + selection * (corner_[1][i] - corner_[0][i]);
+  const auto n = f_[0].size();
+  for (std::size_t i = 0; i < n; ++i) xdot[i] = f_[0][i] + selection * (f_[1][i] - f_[0][i]);
+  const double* row = rows_.data();
+  if (const int only = coordinate_[0]; only >= 0) {
+    if (std::isfinite(xdot[only])) xdot[only] = rates_[0] == 0.0 ? 0.0 : -rates_[0] / row[only];
+    return;
+  }
+  double normal = rates_[0];
+  for (std::size_t i = 0; i < n; ++i) normal += row[i] * xdot[i];
+  if (!rooted_rows_.empty()) {  // as in balance_beside_roots()
+    const double factor = normal / (exits_[0].above - exits_[0].below);
+    for (std::size_t i = 0; i < n; ++i) xdot[i] -= (f_[1][i] - f_[0][i]) * factor;
+    return;
+  }
+  const double factor = row_square_ > 0.0 ? normal / row_square_ : not_a_number;
+  for (std::size_t i = 0; i < n; ++i) xdot[i] -= row[i] * factor;
+}
+
+double ModeField::selected_velocity(double t, const double* x, std::size_t row, double selection) {
+  trial_[at(sliding_[row])] = selection;
+  kernel_.field(t, x, trial_.data(), f_[1].data());
+  return normal_velocity(row, f_[1]);
+}
+
+void ModeField::evaluate_nonaffine(double t, const double* x) {
+  trial_ = start_alpha_;
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    const auto j = at(sliding_[row]);
+    double a = start_alpha_[j];
+    double b = a > 0.5 ? a - 1e-3 : a + 1e-3;
+    double at_a = selected_velocity(t, x, row, a);
+    double at_b = selected_velocity(t, x, row, b);
+    for (int iteration = 0; iteration < 30 && at_a != 0.0 && at_a != at_b; ++iteration) {
+      const double next = a - at_a * (a - b) / (at_a - at_b);
+      const double change = std::abs(next - a);
+      b = a;
+      at_b = at_a;
+      a = next;
+      at_a = selected_velocity(t, x, row, a);
+      if (change <= 2.0 * std::numeric_limits<double>::epsilon()) break;
+    }
+    const double width = 1e-4;  // central difference: exact for quadratics, 1e-8 relative otherwise
+    const double slope =
+        (selected_velocity(t, x, row, a + width) - selected_velocity(t, x, row, a - width)) / (2.0 * width);
+    // The secant has left the root it started from: this mode has no selection here.
+    if (!(std::abs(a - start_alpha_[j]) < 0.5)) a = not_a_number;
+    trial_[j] = a;
+    alpha_[j] = a;
+    exits_[row] = {a, a - 1.0, slope};
+  }
+  kernel_.field(t, x, alpha_.data(), f_[0].data());
+}
+
+void ModeField::select(double t, const double* x) {
+  if (solve_ != SlidingSolve::higher_order) gradients(t, x);
+  switch (solve_) {
+    case SlidingSolve::none:
+      return;
+    case SlidingSolve::decoupled:
+    case SlidingSolve::coupled:
+      return evaluate_groups(t, x);
+    case SlidingSolve::nonaffine:
+      return evaluate_nonaffine(t, x);
+    case SlidingSolve::higher_order:
+      return evaluate_higher_order(t, x);
+  }
+}
+
+/// A balance is lost where all its corners have one sign in some direction; one of its surfaces stands for that.
+void ModeField::evaluate_higher_order(double t, const double* x) {
+  higher_order_->evaluate(t, x);
+  alpha_ = higher_order_->alpha();
+  exits_.assign(sliding_.size(), {1.0, -1.0});
+  for (const auto& range : higher_order_->ranges()) {
+    exits_[range.row] = {range.max, range.min};
+    condition_[range.row] = range.exactness * range.terms;
+  }
+}
+
+void ModeField::slide(double t, const double* x, double* xdot) {
+  if (is_single()) return slide_on_one(t, x, xdot);
+  select(t, x);
+  if (solve_ == SlidingSolve::higher_order) {
+    std::copy(higher_order_->motion().begin(), higher_order_->motion().end(), xdot);
+    return;
+  }
+  if (!rooted_rows_.empty() && solve_ == SlidingSolve::decoupled) balance_beside_roots(t, x);
+  remove_normal_part(xdot);
+}
+
+void ModeField::exits(double t, const double* x, ExitValues* values) {
+  if (solve_ == SlidingSolve::none) return;
+  if (is_single()) {
+    evaluate_corners(t, x);
+  } else {
+    select(t, x);
+    if (solve_ == SlidingSolve::coupled) find_stability();
+  }
+  std::copy(exits_.begin(), exits_.end(), values);
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,367 @@
+// Sliding on several surfaces: selections group by group, as far as they influence each other.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/mode/regions.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/switching/plane/bilinear_root.hpp"
+#include "saltus/switching/table/surface_decision.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// Which of both roots a mode slides on, from the fields where it begins: the one whose selections it has; where these
+/// say nothing (a forced mode) the one with det G > 0 if it is in the square, else the other one if that is.
+switching::RootKind kind_of_mode(const switching::PairCorners& g, double alpha_1, double alpha_2) {
+  using switching::RootKind;
+  const auto rising = switching::bilinear_root(g, RootKind::rising);
+  const auto falling = switching::bilinear_root(g, RootKind::falling);
+  const auto has = [&](const switching::BilinearRoot& root) {
+    // Selections are carried along to about 1e-8.
+    return std::abs(root.alpha[0] - alpha_1) < 1e-6 && std::abs(root.alpha[1] - alpha_2) < 1e-6;
+  };
+  const auto inside = [](const switching::BilinearRoot& root) {
+    return std::min(root.alpha[0], root.alpha[1]) >= 0.0 && std::max(root.from_one[0], root.from_one[1]) <= 0.0;
+  };
+  if (has(rising) || (inside(rising) && !has(falling))) return RootKind::rising;
+  return inside(falling) || has(falling) ? RootKind::falling : RootKind::rising;
+}
+
+}  // namespace
+
+/// Groups of sliding surfaces that influence each other, and from them the way to solve.
+void ModeField::find_groups() {
+  const auto m = sliding_.size();
+  groups_.clear();
+  group_size_.assign(m, 0);
+  condition_.assign(m, 1.0);
+  speed_.assign(m, not_a_number);
+  kind_.assign(m, std::nullopt);
+  std::vector<bool> placed(m, false);
+  for (std::size_t row = 0; row < m; ++row) row_of_[at(sliding_[row])] = static_cast<int>(row);
+  for (std::size_t first = 0; first < m; ++first) {
+    if (placed[first]) continue;
+    std::vector<std::size_t> group{first};
+    placed[first] = true;
+    const auto place = [&](std::size_t other) {
+      if (placed[other]) return;
+      group.push_back(other);
+      placed[other] = true;
+    };
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      const int i = sliding_[group[k]];
+      for (const int j : kernel_.neighbours(i)) {
+        if (row_of_[at(j)] >= 0) place(at(row_of_[at(j)]));
+      }
+      for (std::size_t other = 0; !kernel_.region_groups().empty() && other < m; ++other) {
+        if (same_group(kernel_, i, sliding_[other])) place(other);
+      }
+    }
+    std::sort(group.begin(), group.end());
+    group_size_[first] = group.size();
+    groups_.push_back(std::move(group));
+  }
+  for (const int j : sliding_) row_of_[at(j)] = -1;
+  solve_ = !affine_in_alpha_     ? SlidingSolve::nonaffine
+           : groups_.size() == m ? SlidingSolve::decoupled
+                                 : SlidingSolve::coupled;
+  newton_.assign(m, std::nullopt);
+  selections_.resize(m);
+  for (const auto& group : groups_) {
+    if (group.size() > 2 || several_regions(group[0])) newton_[group[0]].emplace(static_cast<int>(group.size()));
+  }
+}
+
+/// Whether a row is in a group with several regions of one group by `indicator`: their weights follow from linear
+/// equations, and their exits are the zeros of these.
+bool ModeField::several_regions(std::size_t row) const {
+  if (regions_.empty()) return false;
+  const auto group = std::find_if(groups_.begin(), groups_.end(),
+                                  [&](const auto& rows) { return std::binary_search(rows.begin(), rows.end(), row); });
+  return std::any_of(regions_.begin(), regions_.end(), [&](const SlidingRegions& regions) {
+    return regions.rows.size() > 1 && std::binary_search(group->begin(), group->end(), regions.rows.front());
+  });
+}
+
+void ModeField::find_regions(const ModeState& state) {
+  regions_.clear();
+  independent_.clear();
+  for (const auto& group : kernel_.region_groups()) {
+    SlidingRegions regions;
+    regions.reference = reference_of(state, group);
+    for (std::size_t row = 0; row < sliding_.size(); ++row) {
+      if (group.holds(sliding_[row])) regions.rows.push_back(row);
+    }
+    if (!regions.rows.empty()) regions_.push_back(std::move(regions));
+  }
+  ties_known_ = std::none_of(regions_.begin(), regions_.end(), [](const auto& r) { return r.rows.size() > 1; });
+}
+
+/// Behind gradients(): which rows of regions depend on others, once in a mode, and how they do.
+void ModeField::find_ties() {
+  if (ties_known_ && independent_.empty()) return;
+  for (auto& regions : regions_) {
+    if (regions.rows.size() < 2 || (ties_known_ && (!regions.tie || regions.constant))) continue;
+    take_rows(rows_, regions.rows, tie_rows_);
+    if (ties_known_ && tie_rows_ == regions.gradients) continue;
+    regions.gradients = tie_rows_;
+    if (ties_known_) {
+      regions.tie->polytope().move(coordinates_in(regions.basis, tie_rows_));
+      continue;
+    }
+    regions.basis = basis_of(tie_rows_);
+    if (regions.basis.spans_all(tie_rows_.rows())) continue;
+    auto polytope = switching::RegionPolytope::make(coordinates_in(regions.basis, tie_rows_));
+    // Two exits for each row are what there is for the facets.
+    if (!polytope || polytope->facets().size() > 2 * regions.rows.size()) continue;
+    regions.tie.emplace(std::move(*polytope));
+    regions.constant = std::all_of(regions.rows.begin(), regions.rows.end(), [&](auto r) { return constant_row_[r]; });
+  }
+  if (!ties_known_) find_independent_rows();
+  ties_known_ = true;
+}
+
+void ModeField::find_independent_rows() {
+  const auto is_dependent = [&](std::size_t row) {
+    const auto* regions = tie_of(row);
+    if (regions == nullptr) return false;
+    const auto& base = regions->basis.base;
+    return std::none_of(base.begin(), base.end(), [&](auto k) { return regions->rows[at(k)] == row; });
+  };
+  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+    if (!is_dependent(row)) independent_.push_back(static_cast<Eigen::Index>(row));
+  }
+  if (independent_.size() == sliding_.size()) independent_.clear();
+}
+
+std::vector<int> ModeField::independent() const {
+  if (independent_.empty()) return sliding_;
+  std::vector<int> surfaces;
+  for (const auto row : independent_) surfaces.push_back(sliding_[at(row)]);
+  return surfaces;
+}
+
+/// The regions of a row, if they depend on each other.
+const ModeField::SlidingRegions* ModeField::tie_of(std::size_t row) const {
+  for (const auto& regions : regions_) {
+    if (regions.tie && std::binary_search(regions.rows.begin(), regions.rows.end(), row)) return &regions;
+  }
+  return nullptr;
+}
+
+/// The reference of a group has the weight that the others leave; where there are several others, that weight ends the
+/// mode at 0, and none of theirs at 1.
+void ModeField::weigh_references() {
+  for (const auto& regions : regions_) {
+    const auto& rows = regions.rows;
+    double weight = 1.0;
+    for (const std::size_t row : rows) weight -= alpha_[at(sliding_[row])];
+    alpha_[at(regions.reference)] = weight;
+    if (rows.size() == 1 || regions.tie) continue;
+    for (const std::size_t row : rows) exits_[row].above = row == rows.front() ? -weight : -1.0;
+  }
+}
+
+bool ModeField::has_loss(std::size_t row) const {
+  if (const auto* regions = tie_of(row)) return regions->rows.front() == row;
+  if (several_regions(row)) return on_other_surface(row);
+  return solve_ == SlidingSolve::nonaffine || (solve_ == SlidingSolve::coupled && group_size_[row] > 1);
+}
+
+/// Of the first row of a group with several regions: whether a surface is in it. The equations are not linear then.
+bool ModeField::on_other_surface(std::size_t row) const {
+  return group_size_[row] > 1 && std::any_of(groups_.begin(), groups_.end(), [&](const auto& group) {
+           return group.front() == row && std::any_of(group.begin(), group.end(), [&](std::size_t other) {
+                    return std::none_of(regions_.begin(), regions_.end(), [&](const auto& regions) {
+                      return std::binary_search(regions.rows.begin(), regions.rows.end(), other);
+                    });
+                  });
+         });
+}
+
+bool ModeField::has_stability(std::size_t row) const {
+  if (const auto* regions = tie_of(row)) return regions->rows.front() == row;
+  return solve_ == SlidingSolve::coupled && group_size_[row] > 1 && !several_regions(row);
+}
+
+/// Surfaces that no other sliding one influences: all at once.
+void ModeField::evaluate_alone(double t, const double* x) {
+  const auto alone = [&](const auto& group) { return group.size() == 1 && tie_of(group.front()) == nullptr; };
+  bool any = false;
+  for (const auto& group : groups_) {
+    if (!alone(group)) continue;
+    trial_[at(sliding_[group.front()])] = 1.0;
+    any = true;
+  }
+  if (!any) return;
+  kernel_.field(t, x, trial_.data(), f_[1].data());
+  for (const auto& group : groups_) {
+    if (!alone(group)) continue;
+    const std::size_t row = group.front();
+    const auto j = at(sliding_[row]);
+    trial_[j] = 0.0;
+    exits_[row].above = normal_velocity(row, f_[1]);
+    alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
+  }
+}
+
+void ModeField::evaluate_groups(double t, const double* x) {
+  trial_ = start_alpha_;
+  for (const int j : sliding_) trial_[at(j)] = 0.0;
+  kernel_.field(t, x, trial_.data(), f_[0].data());
+  for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {normal_velocity(row, f_[0]), 0.0, 0.0, 0.0};
+  evaluate_alone(t, x);
+  for (const auto& rows : groups_) {
+    const auto tie = std::find_if(regions_.begin(), regions_.end(), [&](const auto& regions) {
+      return regions.tie && regions.rows.front() == rows.front();
+    });
+    if (tie != regions_.end()) {
+      evaluate_tie(t, x, *tie);
+      continue;
+    }
+    if (rows.size() == 2 && !several_regions(rows.front())) {
+      evaluate_pair(t, x, rows);
+      continue;
+    }
+    if (rows.size() > 1) evaluate_many(t, x, rows);
+  }
+  weigh_references();
+  kernel_.field(t, x, alpha_.data(), f_[0].data());
+}
+
+/// Two surfaces: the root with det G > 0 in closed form; its exits are the zeros of that form, which are exact. Behind
+/// evaluate_groups()'s first corner.
+void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows) {
+  switching::PairCorners g;
+  for (std::size_t k = 0; k < 2; ++k) g[0][k] = exits_[rows[k]].below;
+  for (std::size_t corner = 1; corner < 4; ++corner) {
+    for (std::size_t k = 0; k < 2; ++k) trial_[at(sliding_[rows[k]])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    for (std::size_t k = 0; k < 2; ++k) g[corner][k] = normal_velocity(rows[k], f_[1]);
+  }
+  for (const std::size_t row : rows) trial_[at(sliding_[row])] = 0.0;
+  auto& kind = kind_[rows[0]];
+  if (!kind) kind = kind_of_mode(g, start_alpha_[at(sliding_[rows[0]])], start_alpha_[at(sliding_[rows[1]])]);
+  const auto root = switching::bilinear_root(g, *kind);
+  const auto selections = switching::balanced_selections(g, root);
+  for (std::size_t k = 0; k < 2; ++k) {
+    alpha_[at(sliding_[rows[k]])] = selections[k];
+    exits_[rows[k]] = {root.alpha[k], root.from_one[k], 0.0, 0.0};
+    condition_[rows[k]] = root.condition[k];
+  }
+  exits_[rows[0]].loss = root.discriminant;
+  exits_[rows[0]].stability = root.stability;
+}
+
+/// Regions that depend on each other: their weights from those of the mode. Behind evaluate_groups()'s first corner.
+void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions) {
+  const auto& rows = regions.rows;
+  const auto& base = regions.basis.base;
+  const auto velocities = [&](const std::vector<double>& f, Eigen::Index column) {
+    for (std::size_t k = 0; k < base.size(); ++k) {
+      tie_rates_(static_cast<Eigen::Index>(k), column) = normal_velocity(rows[at(base[k])], f);
+    }
+  };
+  tie_rates_.resize(static_cast<Eigen::Index>(base.size()), static_cast<Eigen::Index>(rows.size()) + 1);
+  theta_.assign(1, start_alpha_[at(regions.reference)]);
+  velocities(f_[0], 0);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto j = at(sliding_[rows[k]]);
+    trial_[j] = 1.0;
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    trial_[j] = 0.0;
+    velocities(f_[1], static_cast<Eigen::Index>(k) + 1);
+    theta_.push_back(start_alpha_[j]);
+  }
+  const bool found = regions.tie->solve(tie_rates_, theta_.data());
+  const auto facets = regions.tie->polytope().facets().size();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    alpha_[at(sliding_[rows[k]])] = found ? theta_[k + 1] : not_a_number;
+    const auto excess = [&](std::size_t facet) { return facet < facets ? regions.tie->excess(facet) : 1.0; };
+    exits_[rows[k]] = {found ? excess(2 * k) : not_a_number, found ? -excess(2 * k + 1) : not_a_number, 0.0, 0.0};
+    // Weights are as good as the equations are regular.
+    condition_[rows[k]] = 1.0 / std::max(std::abs(regions.tie->determinant()), 1e-6);
+  }
+  exits_[rows[0]].loss = regions.tie->determinant();
+}
+
+/// Largest normal components over all corners where the mode begins: the default speeds of its hidden dynamics.
+void ModeField::find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows) {
+  std::vector<double> alpha(rows.size());
+  std::vector<double> g(rows.size());
+  for (const std::size_t row : rows) speed_[row] = 0.0;
+  for (std::size_t corner = 0; corner < std::size_t{1} << rows.size(); ++corner) {
+    for (std::size_t k = 0; k < rows.size(); ++k) alpha[k] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+    velocities(alpha.data(), g.data());
+    for (std::size_t k = 0; k < rows.size(); ++k) speed_[rows[k]] = std::max(speed_[rows[k]], std::abs(g[k]));
+  }
+}
+
+/// More than two surfaces: Newton from the selections of the mode.
+void ModeField::evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows) {
+  for (std::size_t k = 0; k < rows.size(); ++k) selections_[k] = start_alpha_[at(sliding_[rows[k]])];
+  const auto velocities = [&](const double* alpha, double* g) {
+    for (std::size_t k = 0; k < rows.size(); ++k) trial_[at(sliding_[rows[k]])] = alpha[k];
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    for (std::size_t k = 0; k < rows.size(); ++k) g[k] = normal_velocity(rows[k], f_[1]);
+  };
+  if (std::isnan(speed_[rows[0]])) find_speeds(velocities, rows);
+  const bool found = newton_[rows[0]]->solve(velocities, selections_.data());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto j = at(sliding_[rows[k]]);
+    alpha_[j] = found ? selections_[k] : not_a_number;
+    exits_[rows[k]] = {alpha_[j], alpha_[j] - 1.0, 0.0, 0.0};
+    trial_[j] = 0.0;
+  }
+}
+
+/// Behind evaluate_groups(): what only the event functions need of groups of more than two.
+void ModeField::find_stability() {
+  for (const auto& rows : groups_) {
+    if (const auto* regions = tie_of(rows[0])) {
+      auto& exit = exits_[regions->rows.front()];
+      exit.stability = std::isfinite(exit.below) ? regions->tie->stability() : not_a_number;
+      continue;
+    }
+    if (rows.size() <= 2) continue;
+    const auto& newton = *newton_[rows[0]];
+    const auto jacobian = newton.jacobian();
+    double size = 1.0;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      double square = 0.0;
+      for (const double entry : jacobian.subspan(r * rows.size(), rows.size())) square += entry * entry;
+      size *= std::sqrt(square);
+    }
+    exits_[rows[0]].loss = newton.determinant() / size;
+    // Some scaling makes the root stable: one that Fisher and Fuller know of, or that of the hidden dynamics where the
+    // mode began, which may have settled there beyond their condition.
+    scaled_.assign(jacobian.begin(), jacobian.end());
+    for (std::size_t k = 0; k < scaled_.size(); ++k) scaled_[k] /= speed_[rows[k / rows.size()]];
+    exits_[rows[0]].stability =
+        std::max(newton.margin(), switching::hurwitz_margin(scaled_, static_cast<int>(rows.size())));
+  }
+}
+
+double ModeField::root_distance(double t, const double* x) {
+  if (solve_ != SlidingSolve::coupled) return 1.0;
+  select(t, x);
+  find_stability();
+  double smallest = 1.0;
+  for (const auto& rows : groups_) {
+    if (rows.size() < 2 || !has_loss(rows[0]) || tie_of(rows[0]) != nullptr) continue;
+    const double loss = exits_[rows[0]].loss;
+    smallest = std::min(smallest, rows.size() == 2 ? std::sqrt(std::max(0.0, loss)) : std::abs(loss));
+  }
+  return smallest;
+}
+
+void ModeField::follow(double t, const double* x) {
+  const auto is_large = [&](const auto& rows) { return rows.size() > 2 || tie_of(rows.front()) != nullptr; };
+  if (solve_ != SlidingSolve::coupled || std::none_of(groups_.begin(), groups_.end(), is_large)) return;
+  select(t, x);
+  if (is_finite(alpha_)) start_alpha_ = alpha_;
+}
+
+}  // namespace saltus::event_integrator

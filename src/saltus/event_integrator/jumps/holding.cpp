@@ -1,0 +1,295 @@
+#include "saltus/event_integrator/jumps/holding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/jumps/jumps.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
+namespace saltus::event_integrator {
+
+Holding::Holding(const evaluation::ModelKernel& kernel, const model::System& system)
+    : kernel_(kernel), system_(system), values_(at(kernel.event_functions())), row_(at(kernel.states())) {}
+
+Holding::~Holding() { release_all(); }
+
+std::vector<HeldGuard> Holding::resting() const {
+  std::vector<HeldGuard> all = guards_;
+  all.insert(all.end(), followers_.begin(), followers_.end());
+  return all;
+}
+
+bool Holding::holds(int function) const {
+  const auto is_it = [function](const HeldGuard& guard) { return guard.hold.function == function; };
+  return std::any_of(guards_.begin(), guards_.end(), is_it) || std::any_of(followers_.begin(), followers_.end(), is_it);
+}
+
+void Holding::release_all() {
+  if (guards_.empty() && followers_.empty()) return;
+  guards_.clear();
+  followers_.clear();
+  // The kernel's functions are the model's own ones; what they hold is a state of the run, which is its only user.
+  static_cast<void>(const_cast<evaluation::ModelKernel&>(kernel_).hold({}));
+}
+
+double Holding::second_derivative(const HeldGuard& guard, double t, const std::vector<double>& alpha,
+                                  const std::vector<double>& x) const {
+  return kernel_.lie_derivative(guard.hold.function, 2, t, x.data(), alpha.data());
+}
+
+std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, double t,
+                                         const std::vector<double>& alpha, std::vector<double>& x) {
+  release_all();
+  absorbing_.clear();
+  basis_.clear();
+  for (const auto* list : {&guards, &loose}) {
+    for (const auto& guard : *list) {
+      const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+      absorbing_.insert(absorbing_.end(), targets.begin(), targets.end());
+      pressing_ = std::max(pressing_, std::abs(second_derivative(guard, t, alpha, x)));
+    }
+  }
+  std::sort(absorbing_.begin(), absorbing_.end());
+  absorbing_.erase(std::unique(absorbing_.begin(), absorbing_.end()), absorbing_.end());
+  // Guards whose own jumps hold them come first: the others may be left to follow.
+  std::stable_partition(guards.begin(), guards.end(),
+                        [&](const HeldGuard& guard) { return can_rest(guard, t, alpha, x); });
+  for (const auto& guard : guards) {
+    auto& list = is_independent(guard, t, alpha, x) ? guards_ : loose;
+    list.push_back(guard);
+  }
+  if (auto problem = set(t, alpha, x)) return problem;
+  for (std::size_t k = 0; k < loose.size();) {
+    const double second = second_derivative(loose[k], t, alpha, x);
+    const bool still = std::abs(second) <= 1e-9 * pressing_;
+    const bool pressed = !still && second * loose[k].inward > 0.0;
+    const std::size_t dimension = basis_.size();
+    const bool independent = (still || pressed) && is_independent(loose[k], t, alpha, x);
+    if (still && !independent) followers_.push_back(loose[k]);
+    if (pressed && !independent) return "their guards press on each other and cannot be held at rest together";
+    if (!pressed || !can_rest(loose[k], t, alpha, x)) {
+      basis_.resize(dimension);
+      ++k;
+      continue;
+    }
+    guards_.push_back(loose[k]);
+    loose.erase(loose.begin() + static_cast<std::ptrdiff_t>(k));
+    loose.insert(loose.end(), followers_.begin(), followers_.end());
+    followers_.clear();
+    if (auto problem = set(t, alpha, x)) return problem;
+    k = 0;
+  }
+  return std::nullopt;
+}
+
+/// Whether the rate of a guard does not depend on those in the basis, in the states that the jumps set; it is in the
+/// basis then.
+bool Holding::is_independent(const HeldGuard& guard, double t, const std::vector<double>& alpha,
+                             std::vector<double>& x) {
+  const double square = find_rate_row(guard.hold, absorbing_, t, alpha, x);
+  if (!(square > 0.0)) return false;
+  std::vector<double> rest = row_;
+  for (const auto& direction : basis_) {
+    double part = 0.0;
+    for (std::size_t i = 0; i < rest.size(); ++i) part += rest[i] * direction[i];
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= part * direction[i];
+  }
+  double rest_square = 0.0;
+  for (const double entry : rest) rest_square += entry * entry;
+  // Rows are good to about ten digits.
+  if (!(rest_square > 1e-12 * square)) return false;
+  for (double& entry : rest) entry /= std::sqrt(rest_square);
+  basis_.push_back(std::move(rest));
+  return true;
+}
+
+std::vector<evaluation::Hold> Holding::holds() const {
+  std::vector<evaluation::Hold> holds;
+  for (const auto& guard : guards_) holds.push_back(guard.hold);
+  return holds;
+}
+
+std::vector<double> Holding::free_field(double t, const std::vector<double>& alpha,
+                                        const std::vector<double>& x) const {
+  auto& kernel = const_cast<evaluation::ModelKernel&>(kernel_);
+  std::vector<double> f(x.size());
+  static_cast<void>(kernel.hold({}));
+  kernel.field(t, x.data(), alpha.data(), f.data());
+  // Known to the kernel already: this does not fail.
+  static_cast<void>(kernel.hold(holds()));
+  return f;
+}
+
+/// The kernel holds guards_, and x is there.
+std::optional<std::string> Holding::set(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+  const auto m = static_cast<Eigen::Index>(guards_.size());
+  rows_.resize(m, kernel_.states());
+  residual_.resize(m);
+  normal_.resize(m, m);
+  if (auto problem = moves_what_is_compared(t, alpha, x)) return problem;
+  auto done = const_cast<evaluation::ModelKernel&>(kernel_).hold(holds());
+  if (!done) return done.error().message;
+  static_cast<void>(project(t, alpha, x));
+  return std::nullopt;
+}
+
+/// A state of rate 0 is discrete: comparisons of it are read at jumps only. While it holds a guard it moves.
+std::optional<std::string> Holding::moves_what_is_compared(double t, const std::vector<double>& alpha,
+                                                           std::vector<double>& x) {
+  for (const auto& guard : guards_) {
+    static_cast<void>(find_rate_row(guard.hold, system_.jumps[at(guard.hold.jump)].targets, t, alpha, x));
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      if (row_[i] == 0.0 || !system_.discrete_states[i]) continue;
+      const auto compared = compared_at_jumps_only(system_, static_cast<int>(i));
+      if (!compared) continue;
+      return fmt::format(
+          "the state '{}' would have to move to hold the guard of '{}' at 0, but its right-hand side is 0, so '{}' is "
+          "read at jumps only: give the state a parameter of value 0 as its right-hand side",
+          system_.state_names[i], system_.jumps[at(guard.hold.jump)].name, *compared);
+    }
+  }
+  return std::nullopt;
+}
+
+/// d (dg/dt) / dx in some states, in row_; returns its square.
+double Holding::find_rate_row(const evaluation::Hold& hold, const std::vector<int>& states, double t,
+                              const std::vector<double>& alpha, std::vector<double>& x) {
+  const auto rate_of = [&] { return kernel_.lie_derivative(hold.function, 1, t, x.data(), alpha.data()); };
+  const double rate = rate_of();
+  double square = 0.0;
+  std::fill(row_.begin(), row_.end(), 0.0);
+  for (const int target : states) {
+    // dg/dt is affine in velocities, or nearly: a difference over 2^-20 of the state is good to ten digits.
+    const double kept = x[at(target)];
+    x[at(target)] = kept + std::ldexp(std::exp2(std::ceil(std::log2(std::abs(kept) + 1.0))), -20);
+    row_[at(target)] = (rate_of() - rate) / (x[at(target)] - kept);
+    x[at(target)] = kept;
+    square += row_[at(target)] * row_[at(target)];
+  }
+  return square;
+}
+
+bool Holding::can_rest(const HeldGuard& guard, double t, const std::vector<double>& alpha,
+                       const std::vector<double>& x) {
+  std::vector<double> point = x;
+  const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+  const double square = find_rate_row(guard.hold, targets, t, alpha, point);
+  return square > 0.0 && std::isfinite(square) && !lets_go_on(guard, square, t, alpha, std::move(point));
+}
+
+/// Whether a motion inward, as slow as the differences in row_ resolve, goes on behind the jump.
+bool Holding::lets_go_on(const HeldGuard& guard, double square, double t, const std::vector<double>& alpha,
+                         std::vector<double> point) const {
+  const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+  const auto rate_of = [&] { return kernel_.lie_derivative(guard.hold.function, 1, t, point.data(), alpha.data()); };
+  double size = 1.0;
+  for (const int target : targets) size = std::max(size, std::abs(point[at(target)]));
+  const double step = std::ldexp(size, -20) * guard.inward / std::sqrt(square);
+  const double rest = rate_of();
+  for (const int target : targets) point[at(target)] += step * row_[at(target)];
+  const double moved = rate_of() - rest;
+  std::vector<double> values(targets.size());
+  kernel_.jump_values(guard.hold.jump, t, point.data(), alpha.data(), values.data());
+  for (std::size_t i = 0; i < targets.size(); ++i) point[at(targets[i])] = values[i];
+  // Differences are good to ten digits: a stop leaves less than a thousandth.
+  return (rate_of() - rest) * guard.inward > 1e-3 * std::abs(moved);
+}
+
+/// Values and gradients of the held guards in the continuous states; whether any is not 0.
+bool Holding::find_positions(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
+  kernel_.functions(t, x.data(), alpha.data(), values_.data());
+  bool away = false;
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    const auto r = static_cast<Eigen::Index>(k);
+    residual_[r] = values_[at(guards_[k].hold.function)];
+    away = away || residual_[r] != 0.0;
+  }
+  if (!away) return false;
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    double rate = 0.0;
+    kernel_.gradient(guards_[k].hold.function, t, x.data(), alpha.data(), row_.data(), &rate);
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = system_.discrete_states[i] ? 0.0 : row_[i];
+    }
+  }
+  return true;
+}
+
+/// The same for their rates, in the states that the jumps set.
+bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+  bool away = false;
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    const auto r = static_cast<Eigen::Index>(k);
+    residual_[r] = kernel_.lie_derivative(guards_[k].hold.function, 1, t, x.data(), alpha.data());
+    away = away || residual_[r] != 0.0;
+  }
+  if (!away) return false;
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    const auto& targets = system_.jumps[at(guards_[k].hold.jump)].targets;
+    static_cast<void>(find_rate_row(guards_[k].hold, targets, t, alpha, x));
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = row_[i];
+    }
+  }
+  return true;
+}
+
+/// x less the shortest vector that makes the residuals 0; returns whether x changed.
+bool Holding::correct(std::vector<double>& x) {
+  if (guards_.size() == 1) {
+    residual_ /= rows_.squaredNorm();  // one division: a guard that is a coordinate becomes exactly 0
+  } else {
+    normal_.noalias() = rows_ * rows_.transpose();
+    cholesky_.compute(normal_);
+    if (cholesky_.info() != Eigen::Success) return false;
+    cholesky_.solveInPlace(residual_);
+  }
+  if (!residual_.allFinite()) return false;
+  bool moved = false;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double correction = 0.0;
+    for (Eigen::Index r = 0; r < residual_.size(); ++r) {
+      correction += rows_(r, static_cast<Eigen::Index>(i)) * residual_[r];
+    }
+    const double next = x[i] - correction;
+    moved = moved || next != x[i];
+    x[i] = next;
+  }
+  return moved;
+}
+
+bool Holding::project(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+  bool changed = contacts_ != nullptr && contacts_->project(t, alpha, x);
+  if (guards_.empty()) return changed;
+  // Newton with a slope good to ten digits: the second step is at rounding, the others settle its last bits.
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    const bool placed = find_positions(t, alpha, x) && correct(x);
+    const bool rested = find_rates(t, alpha, x) && correct(x);
+    changed = changed || placed || rested;
+    if (!placed && !rested) break;
+  }
+  return changed;
+}
+
+double Holding::largest_rate(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
+  double largest = 0.0;
+  const auto note = [&](int function, const std::vector<double>& point) {
+    const double rate = kernel_.lie_derivative(function, 1, t, point.data(), alpha.data());
+    largest = std::isfinite(rate) ? std::max(largest, std::abs(rate)) : rate;
+  };
+  for (const auto& guard : resting()) {
+    note(guard.hold.function, x);
+    const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+    std::vector<double> behind = x, values(targets.size());
+    kernel_.jump_values(guard.hold.jump, t, x.data(), alpha.data(), values.data());
+    for (std::size_t i = 0; i < targets.size(); ++i) behind[at(targets[i])] = values[i];
+    note(guard.hold.function, behind);
+  }
+  return largest;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,239 @@
+#include "saltus/event_integrator/jumps/jumps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "saltus/base/symbolic_lock.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using model::JumpTrigger;
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// Whether none of the guards of a jump depends on time, on a continuous state, or on a selection that can change by
+/// motion.
+std::vector<bool> discrete_guards(const model::System& system, const model::Jump& jump) {
+  using casadi::SX;
+  std::vector<SX> moving{system.t, system.u};
+  for (casadi_int i = 0; i < system.x.numel(); ++i) {
+    if (!system.discrete_states[at(i)]) moving.push_back(system.x(i));
+  }
+  for (casadi_int j = 0; j < system.alpha.numel(); ++j) {
+    if (system.switching[at(j)].role != model::SwitchingRole::discrete) {
+      moving.push_back(system.alpha(j));
+    }
+  }
+  const SX variables = SX::vertcat(moving);
+  std::vector<bool> discrete;
+  for (casadi_int g = 0; g < jump.guards.numel(); ++g) {
+    discrete.push_back(!SX::depends_on(jump.guards(g), variables));
+  }
+  return discrete;
+}
+
+}  // namespace
+
+std::optional<std::string> compared_at_jumps_only(const model::System& system, int state) {
+  const SymbolicLock lock;
+  const casadi::SX symbol = system.x(state);
+  for (const auto& function : system.switching) {
+    if (function.role == model::SwitchingRole::discrete && casadi::SX::depends_on(function.psi, symbol)) {
+      return function.name;
+    }
+  }
+  for (const auto& jump : system.jumps) {
+    const auto discrete = discrete_guards(system, jump);
+    for (std::size_t g = 0; g < discrete.size(); ++g) {
+      if (discrete[g] && casadi::SX::depends_on(jump.guards(static_cast<casadi_int>(g)), symbol)) return jump.name;
+    }
+  }
+  return std::nullopt;
+}
+
+Jumps::Jumps(const evaluation::ModelKernel& kernel, const model::System& system, double from)
+    : kernel_(kernel),
+      system_(system),
+      from_(from),
+      truth_(system.jumps.size(), 0U),
+      times_passed_(system.jumps.size(), 0),
+      discrete_guard_(at(kernel.event_functions()), false),
+      values_(at(kernel.event_functions())),
+      next_time_(never) {
+  const SymbolicLock lock;
+  for (std::size_t k = 0; k < system.jumps.size(); ++k) {
+    const auto discrete = discrete_guards(system, system.jumps[k]);
+    for (std::size_t g = 0; g < discrete.size(); ++g) {
+      discrete_guard_[at(kernel.jump_guard(static_cast<int>(k), static_cast<int>(g)))] = discrete[g];
+    }
+    const auto& times = system.jumps[k].times;
+    times_passed_[k] = std::lower_bound(times.begin(), times.end(), from) - times.begin();
+  }
+}
+
+bool Jumps::is_discrete_guard(int function) const { return discrete_guard_[at(function)]; }
+
+/// The next time of a jump with given times.
+double Jumps::time_of(int jump) const {
+  const auto& entry = system_.jumps[at(jump)];
+  if (entry.trigger != JumpTrigger::times) return never;
+  const long passed = times_passed_[at(jump)];
+  // A multiple of the period, not a sum of periods: nothing accumulates.
+  if (entry.every > 0.0) return from_ + static_cast<double>(passed + 1) * entry.every;
+  return passed < static_cast<long>(entry.times.size()) ? entry.times[at(passed)] : never;
+}
+
+void Jumps::find_next_time() {
+  next_time_ = never;
+  for (std::size_t k = 0; k < system_.jumps.size(); ++k) {
+    next_time_ = std::min(next_time_, time_of(static_cast<int>(k)));
+  }
+  for (const auto& execution : queue_) next_time_ = std::min(next_time_, execution.t);
+}
+
+/// Pointwise as written: signs of continuous guards are known just behind this time, discrete ones are exact.
+int Jumps::guard_sign(int function, const JumpPoint& point) const {
+  if (!discrete_guard_[at(function)]) return point.signs[at(function - kernel_.switching_functions())];
+  const double value = values_[at(function)];
+  return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+}
+
+/// step of each guard; values_ are those of the point.
+std::vector<double> Jumps::steps(int jump, const JumpPoint& point) const {
+  const auto& entry = system_.jumps[at(jump)];
+  std::vector<double> result;
+  for (std::size_t g = 0; g < static_cast<std::size_t>(entry.guards.numel()); ++g) {
+    const int sign = guard_sign(kernel_.jump_guard(jump, static_cast<int>(g)), point);
+    result.push_back(sign > 0 || (sign == 0 && entry.true_at_equality[g]) ? 1.0 : 0.0);
+  }
+  return result;
+}
+
+unsigned Jumps::truth(int jump, const JumpPoint& point) const {
+  const auto trigger = system_.jumps[at(jump)].trigger;
+  if (trigger == JumpTrigger::times) return 0U;
+  if (trigger == JumpTrigger::condition) {
+    return kernel_.jump_condition(jump, point.t, point.x.data(), point.alpha.data(), steps(jump, point).data()) ? 1U
+                                                                                                                : 0U;
+  }
+  const int sign = guard_sign(kernel_.jump_guard(jump, 0), point);
+  const unsigned below = trigger != JumpTrigger::guard_up && sign < 0 ? 1U : 0U;
+  const unsigned above = trigger == JumpTrigger::guard_up ? 1U : 2U;
+  return below | (trigger != JumpTrigger::guard_down && sign > 0 ? above : 0U);
+}
+
+void Jumps::begin(const JumpPoint& point) {
+  for (std::size_t k = 0; k < truth_.size(); ++k) truth_[k] = system_.jumps[k].at_start ? 0U : ~0U;
+  update(point);
+}
+
+void Jumps::update(const JumpPoint& point) {
+  if (none()) return;
+  kernel_.functions(point.t, point.x.data(), point.alpha.data(), values_.data());
+  for (std::size_t k = 0; k < truth_.size(); ++k) {
+    const int jump = static_cast<int>(k);
+    const unsigned now = truth(jump, point);
+    const bool became_true = (now & ~truth_[k]) != 0U;
+    truth_[k] = now;
+    if (became_true) trigger(jump, point);
+    while (time_of(jump) <= point.t) {
+      ++times_passed_[k];
+      trigger(jump, point);
+    }
+    if (!system_.jumps[k].persistent && now == 0U && system_.jumps[k].trigger != JumpTrigger::times) {
+      std::erase_if(queue_, [jump](const Execution& execution) { return execution.jump == jump; });
+    }
+  }
+  find_next_time();
+}
+
+void Jumps::accept(const std::vector<int>& jumps, const JumpPoint& point) {
+  kernel_.functions(point.t, point.x.data(), point.alpha.data(), values_.data());
+  for (const int jump : jumps) truth_[at(jump)] = truth(jump, point);
+}
+
+void Jumps::trigger(int jump, const JumpPoint& point) {
+  const double delay = kernel_.jump_delay(jump, point.t, point.x.data(), point.alpha.data());
+  if (!(delay >= 0.0 && std::isfinite(delay))) {
+    problem_ = fmt::format("the delay of the jump '{}' is {} at t = {:.17g}; it must be a finite number >= 0",
+                           system_.jumps[at(jump)].name, delay, point.t);
+    return;
+  }
+  Execution execution{jump, point.t + delay, {}};
+  if (system_.jumps[at(jump)].evaluated == model::JumpValues::at_trigger) {
+    execution.values.resize(system_.jumps[at(jump)].targets.size());
+    kernel_.jump_values(jump, point.t, point.x.data(), point.alpha.data(), execution.values.data());
+  }
+  queue_.push_back(std::move(execution));
+}
+
+bool Jumps::due(double t) const {
+  return std::any_of(queue_.begin(), queue_.end(), [t](const Execution& execution) { return execution.t <= t; });
+}
+
+int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
+  auto chosen = queue_.end();
+  double largest = 0.0;
+  for (auto entry = queue_.begin(); entry != queue_.end(); ++entry) {
+    if (entry->t > point.t) continue;
+    const double priority = kernel_.jump_priority(entry->jump, point.t, point.x.data(), point.alpha.data());
+    if (std::isnan(priority)) {
+      problem_ = fmt::format("the priority of the jump '{}' is not a number at t = {:.17g}",
+                             system_.jumps[at(entry->jump)].name, point.t);
+    }
+    const bool first = chosen == queue_.end();
+    if (first || priority > largest || (priority == largest && entry->jump < chosen->jump)) {
+      chosen = entry;
+      largest = priority;
+    }
+  }
+  const int jump = chosen->jump;
+  const auto& entry = system_.jumps[at(jump)];
+  std::vector<double> values = std::move(chosen->values);
+  queue_.erase(chosen);
+  if (entry.evaluated == model::JumpValues::at_execution) {
+    values.resize(entry.targets.size());
+    kernel_.jump_values(jump, point.t, point.x.data(), point.alpha.data(), values.data());
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) {
+      problem_ = fmt::format("the jump '{}' sets {} to {} at t = {:.17g}; guard its expression with if(…)", entry.name,
+                             system_.state_names[at(entry.targets[i])], values[i], point.t);
+      return jump;
+    }
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) x[at(entry.targets[i])] = values[i];
+  find_next_time();
+  return jump;
+}
+
+int Jumps::trigger_sign(int jump, int guard, const JumpPoint& point, int inward) const {
+  switch (system_.jumps[at(jump)].trigger) {
+    case JumpTrigger::times:
+      return 0;
+    case JumpTrigger::guard_down:
+      return -1;
+    case JumpTrigger::guard_up:
+      return 1;
+    case JumpTrigger::guard_both:
+      return inward;
+    case JumpTrigger::condition:
+      break;
+  }
+  kernel_.functions(point.t, point.x.data(), point.alpha.data(), values_.data());
+  auto alpha = steps(jump, point);
+  const auto holds = [&](double step) {
+    alpha[at(guard)] = step;
+    return kernel_.jump_condition(jump, point.t, point.x.data(), point.alpha.data(), alpha.data());
+  };
+  const bool above = holds(1.0);
+  const bool below = holds(0.0);
+  return above == below ? 0 : above ? 1 : -1;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,160 @@
+// Rows and events of a run, as they come.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "saltus/base/at.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/decide/transition.hpp"
+#include "saltus/event_integrator/mode/mode_state.hpp"
+#include "saltus/event_integrator/record/recording.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/ode/straight_lines.hpp"
+
+namespace saltus::event_integrator {
+
+/// States and modes on both sides of an event.
+struct Passage {
+  const std::vector<double>& x;
+  const std::vector<double>& x_after;
+  const ModeState& before;
+  const ModeState& after;
+};
+
+/// The surface that is slid on before and behind a switch of another one; the two influence each other.
+struct SlidAcross {
+  int surface = 0;
+  double alpha_before = 0.0, alpha_after = 0.0;
+  switching::Leaf leaf = switching::Leaf::none;
+  Meeting meeting;
+};
+
+/// A switch of one surface that changes nothing else, but for the selection of what is slid on across it.
+struct SurfaceSwitch {
+  int surface = 0;
+  int before = 0, after = 0;  ///< modes
+  double alpha_before = 0.0, alpha_after = 0.0;
+  std::string_view reason;  ///< a literal
+  const SlidAcross* slid = nullptr;
+};
+
+/// One execution of a jump.
+struct ExecutedJump {
+  int jump = 0;
+  std::vector<double> x, x_after;
+};
+
+class Recorder {
+ public:
+  Recorder(const evaluation::ModelKernel& kernel, const model::System& system);
+
+  /// From now on every row widens these: states, inputs, outputs (of which the last `selections` are cut to [0, 1]),
+  /// selections by switching function. They must outlive this.
+  void widen(ode::ColumnRanges& ranges, std::size_t selections) {
+    ranges_ = &ranges;
+    cut_outputs_ = selections;
+  }
+  /// One row in a mode; `alpha` over switching functions (the sliding values at this point).
+  /// Selections that nothing determines are recorded as NaN; outputs have the ones that they are handed.
+  void row(double t, const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha);
+  /// A row with the mode before the events at t, of which this is the first one (or would be, if there are none).
+  void row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event);
+  /// A switch, if a listed switching function changes its mode; returns whether it did.
+  bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
+  /// The same for the one surface that changes; it is listed, and the last mode recorded is the one before but for its
+  /// own selection, or that of what is slid on across it. Cost: O(1).
+  void switched(double t, const std::vector<double>& x, const SurfaceSwitch& change);
+  /// Whether a surface is listed.
+  [[nodiscard]] bool lists(int surface) const { return !listed_columns_[at(surface)].empty(); }
+  /// A row in the mode before or behind the last event, with its selections.
+  void row_before_last_event(const std::vector<double>& x, const std::vector<double>& alpha) {
+    const auto& event = recording_.event_list.back();
+    append_row(event.t, x, alpha, event.mode);
+  }
+  /// Where only the selection of `surface` may differ from that of the mode behind it.
+  void row_behind_last_event(const std::vector<double>& x, const std::vector<double>& alpha, std::size_t surface) {
+    const auto& event = recording_.event_list.back();
+    const int mode = recording_.modes.last_mode(surface);
+    append_row(event.t, x, alpha, recording_.modes.append_change(surface, mode, alpha[surface]));
+  }
+  /// A start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
+  bool started(double t, const std::vector<double>& x, const Transition& transition, const std::vector<int>& surfaces);
+  /// An event of [[events]].
+  void user(double t, const Passage& passage, int event);
+  /// Jumps executed at t one after the other; `transition` is the mode behind the last one, `before` null at a start.
+  void jumped(double t, std::span<const ExecutedJump> jumps, const ModeState* before, const Transition& transition);
+  /// The limit of a sequence of jumps, from the last computed state.
+  void accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string_view reason);
+  /// The limit of a sequence of switches of these surfaces, from the last computed state; `transition` leads on.
+  void spiralled(double t, const std::vector<int>& surfaces, const Passage& passage, const Transition& transition,
+                 std::string_view why);
+
+  [[nodiscard]] Recording take() { return std::move(recording_); }
+  [[nodiscard]] bool ends_at(double t) const {
+    return !recording_.row_times.empty() && recording_.row_times.back() == t;
+  }
+  /// Of the last event; there must be one.
+  [[nodiscard]] std::optional<bool> last_unique() const { return recording_.event_list.back().unique; }
+  [[nodiscard]] long events() const { return static_cast<long>(recording_.event_list.size()); }
+  [[nodiscard]] double event_time(long event) const { return recording_.event_list[at(event)].t; }
+  /// Whether one of the last events is about a listed switching function.
+  [[nodiscard]] bool switched_lately(int function, long events) const;
+  [[nodiscard]] std::size_t rows() const { return recording_.row_times.size(); }
+
+ private:
+  /// A new event; the reference is valid until the next one.
+  Recording::Event& begin(double t, result::EventKind kind);
+  void append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode);
+  void widen_ranges(const std::vector<double>& x, const std::vector<double>& alpha);
+  [[nodiscard]] std::size_t keep(const std::vector<double>& x);
+  [[nodiscard]] std::size_t number(const ModeState& state, const std::vector<double>& alpha,
+                                   const HigherOrderSet* higher);
+  [[nodiscard]] std::size_t number(const ModeState& state) { return number(state, state.alpha, state.higher.get()); }
+  void set_states(Recording::Event& event, const std::vector<double>& x, const std::vector<double>& x_after);
+  void set_passage(Recording::Event& event, const Passage& passage);
+  void add_surface(Recording::Event& event, std::size_t surface);
+  /// The place of a region of a group by `indicator` in the list of surfaces.
+  [[nodiscard]] std::size_t surface_of_region(int function) const {
+    return system_.columns.size() + static_cast<std::size_t>(function);
+  }
+  Recording::Range reason_of(const SurfaceSwitch& change);
+  void note_changed_regions(const ModeState& before, const ModeState& after);
+  void note_held_kinks(const ModeState& before, const ModeState& after);
+  void add_reason(Recording::Event& event, std::string_view reason);
+  void add_transition(Recording::Event& event, const Transition& transition);
+  void add_transition(Recording::Event& event, const Transition& transition, std::size_t mode_after);
+
+  /// The last switch: the number of the mode before it.
+  struct BeforeSwitch {
+    long event = -1;
+    std::size_t mode = 0;
+  };
+
+  /// Of the last switches of some surfaces, one after another: where its words stand in the recording.
+  struct KnownReason {
+    int surface = -1;
+    int slid = -1;  ///< on which it goes on sliding
+    std::string_view reason;
+    Recording::Range place;
+  };
+
+  const evaluation::ModelKernel& kernel_;
+  const model::System& system_;
+  Recording recording_;
+  ode::ColumnRanges* ranges_ = nullptr;  ///< nullptr: nobody asks for them
+  std::size_t cut_outputs_ = 0;
+  std::array<KnownReason, 16> known_reasons_;
+  std::vector<std::vector<std::size_t>> listed_columns_;  ///< by switching function: of the result, if it is listed
+  std::vector<std::size_t> changed_, columns_;            ///< of one event
+  std::vector<int> listed_before_, listed_after_;
+  BeforeSwitch before_switch_;
+  std::vector<double> determined_;  ///< selections, NaN where nothing determines them
+};
+
+}  // namespace saltus::event_integrator

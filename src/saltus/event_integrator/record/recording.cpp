@@ -1,0 +1,244 @@
+#include "saltus/event_integrator/record/recording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/event_integrator/mode/mode_differences_internal.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// The columns of one mode after the other: what changes from each to the next is turned into columns, the rest stays.
+class Columns {
+ public:
+  explicit Columns(const model::System& system) : system_(system), of_function_(system.switching.size()) {
+    for (std::size_t c = 0; c < system.columns.size(); ++c) of_function_[at(system.columns[c].function)].push_back(c);
+    columns_mode_.resize(system.columns.size());
+    columns_alpha_.resize(system.columns.size());
+  }
+
+  void set(const std::vector<int>& mode, const std::vector<double>& alpha) {
+    if (mode_.size() != mode.size()) {
+      mode_ = mode;
+      alpha_ = alpha;
+      for (std::size_t j = 0; j < mode.size(); ++j) set_function(j);
+      return;
+    }
+    const auto take = [&](std::size_t j) {
+      mode_[j] = mode[j];
+      alpha_[j] = alpha[j];
+      set_function(j);
+    };
+    for_each_difference(alpha_, alpha, take);
+    for_each_difference(mode_, mode, take);
+  }
+  [[nodiscard]] const result::Mode& mode() const { return columns_mode_; }
+  [[nodiscard]] const std::vector<double>& alpha() const { return columns_alpha_; }
+
+ private:
+  void set_function(std::size_t j) {
+    // Functions of discrete states are in no mode: their sign is that of their selection.
+    const bool discrete = system_.switching[j].role == model::SwitchingRole::discrete;
+    const int sign = discrete ? (alpha_[j] > 0.5 ? 1 : alpha_[j] < 0.5 ? -1 : 0) : mode_[j];
+    for (const std::size_t c : of_function_[j]) {
+      const int orientation = system_.columns[c].orientation;
+      columns_mode_[c] = orientation * sign;
+      columns_alpha_[c] = orientation > 0 ? alpha_[j] : 1.0 - alpha_[j];
+    }
+  }
+
+  const model::System& system_;
+  std::vector<std::vector<std::size_t>> of_function_;
+  std::vector<int> mode_;      ///< by function, as are
+  std::vector<double> alpha_;  ///< these
+  result::Mode columns_mode_;
+  std::vector<double> columns_alpha_;
+};
+
+/// Names of the active modes of every group by `indicator`.
+result::Regions active_regions(const model::System& system, const std::vector<int>& mode) {
+  result::Regions active;
+  for (const auto& group : system.mode_groups) {
+    if (group.first < 0) continue;
+    active.emplace_back();
+    for (int i = 0; i < group.regions; ++i) {
+      if (mode[at(group.first + i)] == 0) active.back().push_back(group.mode_names[at(i)]);
+    }
+  }
+  return active;
+}
+
+/// Weights of all modes by `indicator`: those of the inactive ones are exactly 0.
+std::vector<double> region_weights(const model::System& system, const std::vector<int>& mode,
+                                   const std::vector<double>& alpha) {
+  std::vector<double> theta;
+  for (const auto& group : system.mode_groups) {
+    for (int j = group.first; group.first >= 0 && j < group.first + group.regions; ++j) {
+      theta.push_back(mode[at(j)] == 0 ? alpha[at(j)] : 0.0);
+    }
+  }
+  return theta;
+}
+
+/// `count` numbers of a list from `begin` on.
+std::vector<double> part(const std::vector<double>& list, std::size_t begin, std::size_t count) {
+  const auto first = list.begin() + static_cast<std::ptrdiff_t>(begin);
+  return {first, first + static_cast<std::ptrdiff_t>(count)};
+}
+
+/// Two columns of the result with their orientations; nullopt if one of the surfaces is in none.
+std::optional<result::Intersection> intersection(const model::System& system, const Meeting& meeting,
+                                                 const std::vector<double>& alpha_after) {
+  result::Intersection shown;
+  std::array<int, 2> orientation{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto column = std::find_if(system.columns.begin(), system.columns.end(),
+                                     [&](const auto& c) { return c.function == meeting.surfaces[k]; });
+    if (column == system.columns.end()) return std::nullopt;
+    shown.surfaces[k] = column->name;
+    orientation[k] = column->orientation;
+  }
+  const auto oriented = [&](std::size_t k, double alpha) { return orientation[k] > 0 ? alpha : 1.0 - alpha; };
+  // The corner of the columns where a surface is turned around is the one across.
+  const std::size_t turned = (orientation[0] < 0 ? 1U : 0U) | (orientation[1] < 0 ? 2U : 0U);
+  if (meeting.alpha) shown.alpha_before.emplace();
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      shown.velocities[k][corner] = orientation[k] * meeting.velocities[k][corner ^ turned];
+    }
+    if (meeting.alpha) (*shown.alpha_before)[k] = oriented(k, (*meeting.alpha)[k]);
+    shown.alpha_after[k] = oriented(k, alpha_after[at(meeting.surfaces[k])]);
+  }
+  return shown;
+}
+
+}  // namespace
+
+void Recording::drop(std::size_t events, std::size_t rows) {
+  const auto drop_from = [](auto& list, std::size_t count) {
+    list.erase(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  drop_from(event_list, events);  // what they refer to stays
+  drop_from(row_times, rows);
+  drop_from(row_states, rows * n_x);
+  drop_from(row_inputs, rows * n_u);
+  drop_from(row_outputs, rows * n_y);
+  drop_from(row_modes, rows);
+  if (event_list.empty()) return;
+  const double begin = event_list.front().t;
+  std::erase_if(families, [&](const Family& family) {
+    const bool goes_on = family.kind == result::FamilyKind::later_departure && family.until > begin;
+    return family.event < events && !goes_on;
+  });
+  for (auto& family : families) {
+    family.event -= std::min(events, family.event);
+    family.from = std::max(family.from, begin);
+  }
+}
+
+std::vector<result::Event> Recording::events(const model::System& system) const {
+  ModeLog::Reader reader(modes);
+  Columns columns(system);
+  std::vector<result::Event> expanded;
+  expanded.reserve(event_list.size());
+  for (const Event& event : event_list) {
+    auto& entry = expanded.emplace_back();
+    entry.t = event.t;
+    entry.kind = event.kind;
+    if (event.kind == result::EventKind::jump) entry.name = system.jumps[event.entry].name;
+    if (event.kind == result::EventKind::user) entry.name = system.events[event.entry].name;
+    for (std::size_t k = event.surfaces.begin; k < event.surfaces.end; ++k) {
+      const std::size_t surface = surfaces[k];
+      const bool column = surface < system.columns.size();
+      entry.surfaces.push_back(event.of_jumps ? system.jumps[surface].name
+                               : column       ? system.columns[surface].name
+                                              : system.switching[surface - system.columns.size()].name);
+    }
+    entry.x = part(states, event.x, n_x);
+    entry.x_after = part(states, event.x_after, n_x);
+    const auto expand = [&](std::size_t number, auto& mode, auto& alpha, auto& regions) {
+      if (number == none) return;
+      reader.seek(number);
+      columns.set(reader.mode(), reader.alpha());
+      mode = columns.mode();
+      alpha = columns.alpha();
+      if (auto active = active_regions(system, reader.mode()); !active.empty()) regions = std::move(active);
+    };
+    expand(event.mode, entry.mode_before, entry.alpha_before, entry.regions_before);
+    expand(event.mode_after, entry.mode_after, entry.alpha_after, entry.regions_after);
+    if (event.meeting != none) entry.intersection = intersection(system, meetings[event.meeting], reader.alpha());
+    entry.unique = event.unique;
+    for (std::size_t k = event.alternatives.begin; k < event.alternatives.end; ++k) {
+      const auto& other = alternatives[k];
+      columns.set(other.mode, other.alpha);
+      entry.alternatives.push_back({columns.mode(), columns.alpha(), active_regions(system, other.mode)});
+    }
+    entry.reason = text.substr(event.reason.begin, event.reason.end - event.reason.begin);
+  }
+  return expanded;
+}
+
+std::vector<long> Recording::family_numbers() const {
+  std::vector<long> numbers;
+  for (const Family& family : families) numbers.push_back(family.number);
+  return numbers;
+}
+
+std::vector<result::Family> Recording::listed_families(const model::System& system) const {
+  Columns columns(system);
+  std::vector<result::Family> listed;
+  for (const Family& family : families) {
+    columns.set(family.mode, family.alpha);
+    listed.push_back({family.kind,
+                      family.event,
+                      family.from,
+                      family.until,
+                      {columns.mode(), columns.alpha(), active_regions(system, family.mode)},
+                      family.lap_ratio});
+  }
+  return listed;
+}
+
+result::Trajectory Recording::trajectory(const model::System& system) const {
+  ModeLog::Reader reader(modes);
+  Columns columns(system);
+  result::Trajectory rows;
+  const std::size_t count = row_times.size();
+  rows.t = row_times;
+  for (auto* column : {&rows.x, &rows.u, &rows.alpha, &rows.outputs}) column->reserve(count);
+  rows.mode.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    rows.x.push_back(part(row_states, k * n_x, n_x));
+    rows.u.push_back(part(row_inputs, k * n_u, n_u));
+    rows.outputs.push_back(part(row_outputs, k * n_y, n_y));
+    reader.seek(row_modes[k]);
+    columns.set(reader.mode(), reader.alpha());
+    rows.alpha.push_back(columns.alpha());
+    rows.mode.push_back(columns.mode());
+    if (auto active = active_regions(system, reader.mode()); !active.empty()) {
+      rows.regions.push_back(std::move(active));
+      rows.theta.push_back(region_weights(system, reader.mode(), reader.alpha()));
+    }
+  }
+  return rows;
+}
+
+result::Final Recording::last(const model::System& system) const {
+  SALTUS_ASSERT(!row_times.empty());
+  ModeLog::Reader reader(modes);
+  Columns columns(system);
+  reader.seek(row_modes.back());
+  columns.set(reader.mode(), reader.alpha());
+  return {row_times.back(),
+          part(row_states, row_states.size() - n_x, n_x),
+          columns.mode(),
+          columns.alpha(),
+          part(row_outputs, row_outputs.size() - n_y, n_y),
+          active_regions(system, reader.mode()),
+          region_weights(system, reader.mode(), reader.alpha())};
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,191 @@
+// Accumulation of jumps: its limit, and what holds behind it.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/run/run_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using result::Termination;
+
+/// Notes the jumps of an event: when, where to, and which guards were at zero.
+void Run::note_series(const Landing& landing) {
+  if (landing.executed.empty()) return;
+  auto& magnitude = values_.magnitude;
+  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), values_.slope.data());
+  executed_.clear();
+  for (const auto& executed : landing.executed.items()) executed_.push_back(executed.jump);
+  for (const int jump : executed_) {
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      const bool at_zero = std::find(landing.zeros.begin(), landing.zeros.end(), function) != landing.zeros.end();
+      if (!at_zero || jumps_.is_discrete_guard(function)) continue;
+      const int inward = jumps_.trigger_sign(jump, g, jump_point(),
+                                             -search_.user_signs()[at(function - kernel_.switching_functions())]);
+      last_guard_[at(jump)] = {{jump, function}, inward};
+      const double rate = landing.rates[at(function)].value;
+      last_rate_[at(jump)] = rate;
+      // Between two zeros a time T apart a guard gets about as far as its rate times T/4: here 200 roundings.
+      shortest_lap_[at(jump)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(function)] / rate : 0.0;
+    }
+  }
+  jump_series_.add(t_, executed_, x_);
+  if (!landing.resting.empty()) jump_series_.clear_laps();
+}
+
+/// Held guards on which nothing presses any more are free; returns whether there were any.
+bool Run::release(const Located& located) {
+  freed_.clear();
+  if (holding_.guards().empty()) return false;
+  std::vector<HeldGuard> guards = holding_.guards();
+  auto signs = search_.user_signs();
+  std::vector<bool> vanish(signs.size(), false);
+  std::vector<int> orders(signs.size(), 1);
+  for (const auto function : located.functions) {
+    const auto& entry = search_.functions()[function];
+    if (entry.kind == FunctionKind::user) vanish[at(entry.index - kernel_.switching_functions())] = true;
+    if (entry.kind != FunctionKind::release) continue;
+    std::erase_if(guards, [&](const HeldGuard& guard) { return guard.hold.function == entry.index; });
+  }
+  if (guards.size() == holding_.guards().size()) return false;
+  const auto before = holding_.resting();
+  const auto problem = holding_.hold(std::move(guards), holding_.followers(), t_, state_.alpha, x_);
+  if (problem) fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", t_, *problem));
+  for (const auto& guard : before) {
+    if (holding_.holds(guard.hold.function)) continue;
+    // It moves outward from here, whatever the roundings of its derivatives say.
+    const auto user = at(guard.hold.function - kernel_.switching_functions());
+    signs[user] = -guard.inward;
+    vanish[user] = true;
+    orders[user] = 2;  // at least: nothing presses on it
+  }
+  search_.set_held(holding_.guards(), holding_.followers());
+  search_.set_user_signs(signs, vanish, orders);
+  RestingSurfaces resting;
+  if (!state_.resting.empty() && find_resting(resting)) {
+    std::set_difference(state_.resting.begin(), state_.resting.end(), resting.surfaces.begin(), resting.surfaces.end(),
+                        std::back_inserter(freed_));
+  }
+  return true;
+}
+
+/// Whether jumps change nothing at their limit, and their conditions come true there by what they do not set: the
+/// conditions then hold behind it, and nothing fires again. Their guards are at zero in `landing`.
+bool Run::change_nothing(const std::vector<int>& jumps, Landing& landing) {
+  std::vector<double> slope(x_.size());
+  kernel_.field(t_, x_.data(), state_.alpha.data(), slope.data());
+  std::vector<bool> vanish = search_.user_zeros();
+  for (const int jump : jumps) {
+    const auto& targets = surroundings_.system.jumps[at(jump)].targets;
+    std::vector<double> values(targets.size());
+    kernel_.jump_values(jump, t_, x_.data(), state_.alpha.data(), values.data());
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const double x = x_[at(targets[i])];
+      if (!(std::abs(values[i] - x) <= tolerances_.atol + tolerances_.rtol * std::abs(x))) return false;
+      slope[at(targets[i])] = 0.0;
+    }
+    bool comes_true = false;
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      const Rate rate = rate_along_field(function, t_, x_.data(), slope.data());
+      const double resolved = tolerances_.atol * rate.slope + tolerances_.rtol * rate.magnitude;
+      if (jumps_.is_discrete_guard(function) || !(std::abs(landing.zero_values[at(function)]) <= resolved)) continue;
+      comes_true = jumps_.trigger_sign(jump, g, jump_point(), 0) * rate.value > 0.0;
+      if (!comes_true) return false;
+      landing.zeros.push_back(function);
+      vanish[at(function - kernel_.switching_functions())] = true;
+    }
+    if (!comes_true) return false;
+  }
+  search_.set_user_signs(search_.user_signs(), vanish);
+  return true;
+}
+
+/// If the jumps up to here have a limit that nothing else precedes, the run goes on from there.
+void Run::accumulate_jumps() {
+  if (jumps_.none()) return;
+  const auto limit = jump_series_.limit(shortest_lap_);
+  if (limit && limit->t <= std::min(options_.until, jumps_.next_time())) follow_limit(*limit);
+}
+
+void Run::follow_limit(const SeriesLimit& limit) {
+  field_(t_, x_.data(), slope_.data());
+  if (!state_.sliding.empty()) state_.alpha = field_.alpha();
+  const ModeState before = state_;
+  const std::vector<double> x_last = x_;
+  if (std::any_of(limit.events.begin(), limit.events.end(), [&](int jump) { return contacts_.owns(jump); })) {
+    return settle_contacts(limit, x_last, before);
+  }
+  std::vector<HeldGuard> guards = holding_.resting();
+  std::vector<int> jumps;
+  double rate = 0.0;
+  for (const int jump : limit.events) {
+    if (last_guard_[at(jump)].hold.jump < 0) continue;
+    guards.push_back(last_guard_[at(jump)]);
+    jumps.push_back(jump);
+    rate = std::max(rate, last_rate_[at(jump)]);
+  }
+  if (limit.rattling) {
+    jump_series_.clear();
+  } else {
+    jump_series_.clear_laps();
+  }
+  pass_to(limit.t, limit.x);
+  Landing& landing = landing_here();
+  const auto accumulated = [&] {
+    recorder_.accumulated(t_, limit.events, {x_last, x_, before, state_},
+                          limit.rattling
+                              ? "these jumps follow each other faster than their guards are resolved"
+                              : "the intervals of these jumps shrink geometrically: the state is their limit");
+    row(t_, x_);
+    last_event_time_ = t_;
+  };
+  const bool ends = jumps.empty() && change_nothing(limit.events, landing);
+  if (jumps.empty() && !ends) {
+    fail(Termination::outside_class,
+         fmt::format("the jumps {} accumulate at t = {:.17g}, but no guard of theirs is left at 0: what follows is not "
+                     "determined",
+                     jump_names(limit.events), t_));
+  }
+  if (running_ && !ends && hold(std::move(guards), {}, landing) &&
+      !(holding_.largest_rate(t_, state_.alpha, x_) <= 1e-3 * rate)) {
+    fail(Termination::outside_class,
+         fmt::format("the jumps {} accumulate at t = {:.17g}, but their guards cannot be at rest at 0 together",
+                     jump_names(jumps), t_));
+  }
+  if (!running_ || !free_passing(landing) || !decide_behind_jumps(landing)) return accumulated();
+  give_directions(landing);
+  if (ends) jumps_.accept(limit.events, jump_point());
+  accumulated();
+  go_on_from_limit();
+}
+
+/// Skips to the limit of a sequence that is too fine to be followed; rows on the way have the last state.
+void Run::pass_to(double t, std::vector<double> x) {
+  const auto& times = options_.output.times;
+  for (; next_output_ < times.size() && times[next_output_] < t; ++next_output_) {
+    if (times[next_output_] > t_) row(times[next_output_], x_);
+  }
+  while (next_output_ < times.size() && times[next_output_] <= t) ++next_output_;
+  const bool time_passes = t > t_;
+  t_ = t;
+  if (time_passes) row(t_, x_);
+  x_ = std::move(x);
+}
+
+/// Events and jumps behind the limit of a sequence, and a step to start with.
+void Run::go_on_from_limit() {
+  static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
+  jumps_.update(jump_point());
+  start_step();
+  if (jumps_have_problem() || !jumps_.due(t_)) return;
+  const Arrival arrival = arrive(RowBefore::written);
+  static_cast<void>(jump(before_, x_before_, landing_here()));
+  static_cast<void>(depart(arrival));
+}
+
+}  // namespace saltus::event_integrator

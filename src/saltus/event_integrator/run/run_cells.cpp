@@ -1,0 +1,85 @@
+// Ends of cells that are reached: what goes on there, and the rows of the trajectory around them.
+#include <algorithm>
+#include <utility>
+
+#include "saltus/event_integrator/decide/start.hpp"
+#include "saltus/event_integrator/run/run_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using result::Termination;
+
+bool Run::reaches_cell_end(const Located& located) const {
+  return std::any_of(located.functions.begin(), located.functions.end(),
+                     [&](std::size_t i) { return is_cell_end(search_.functions()[i].kind); });
+}
+
+CellChange Run::leave_cells(const Located& located) {
+  if (!reaches_cell_end(located)) return CellChange::none;
+  const auto change = cells_.leave(search_.functions(), located.functions, t_, x_.data(), state_.alpha);
+  for (const auto i : located.functions) {
+    if (is_cell_end(search_.functions()[i].kind)) search_.entered_cell(search_.functions()[i]);
+  }
+  return change;
+}
+
+/// Breaks at which values jump, at this time to rounding.
+Located Run::breaks_here() {
+  Located here{t_, x_, {}, {}};
+  for (std::size_t i = 0; i < search_.functions().size() && !cells_.empty(); ++i) {
+    if (!cells_.jumps_at(search_.functions()[i], t_, x_.data(), state_.alpha)) continue;
+    here.functions.push_back(i);
+    here.signs.push_back(search_.functions()[i].sign);
+  }
+  return here;
+}
+
+/// Values jump: the mode is decided as at a start, but what slides and is still at zero goes on sliding if it can.
+bool Run::jump_with_cells() {
+  const ModeState& before = before_;
+  std::vector<double> values(at(kernel_.event_functions())), magnitude(values.size()), slope(values.size());
+  kernel_.functions(t_, x_.data(), before.alpha.data(), values.data());
+  kernel_.scales(t_, x_.data(), before.alpha.data(), magnitude.data(), slope.data());
+  std::vector<int> held;
+  for (const int j : before.sliding) {
+    // The projection leaves a few roundings of psi; a jump leaves something of its size.
+    if (!cells_.moved_in(j) || std::abs(values[at(j)]) <= 64.0 * rounding_unit * magnitude[at(j)]) held.push_back(j);
+  }
+  held.insert(held.end(), freed_.begin(), freed_.end());
+  RestingSurfaces resting;
+  if (!find_resting(resting)) return false;
+  Transition& transition = transition_;
+  transition = decide_behind_jump(surroundings_, before, t_, x_.data(), h_scale_, held, resting);
+  if (transition.termination == Termination::completed && transition.state.mode != before.mode) {
+    transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the " +
+                        (cell_change_ == CellChange::jump ? "jump of " : "kink of ") +
+                        cells_.moved_names(surroundings_.system);
+  }
+  search_.forget_user_zeros();
+  return go_on();
+}
+
+/// Arguments that are defined on this side of a surface only are looked up behind it, a few roundings ahead if the
+/// surface itself is beside their domain.
+bool Run::find_undefined_cells() {
+  if (!cells_.any_undefined()) return true;
+  std::vector<double> ahead = x_;
+  for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += 8.0 * smallest_step() * slope_[i];
+  const auto change = std::max(cells_.locate_undefined(t_, x_.data(), state_.alpha),
+                               cells_.locate_undefined(t_, ahead.data(), state_.alpha));
+  return change == CellChange::none || enter(transition_);
+}
+
+/// Rows at an event, or at a restart: at requested times that are this time to rounding, before and behind.
+void Run::rows_at_event(const Arrival& arrival) {
+  const auto cells_behind = cells_.indices();
+  cells_.put(cells_before_);
+  const auto& times = options_.output.times;
+  for (; next_output_ < times.size() && times[next_output_] < t_; ++next_output_) {
+    recorder_.row_before(times[next_output_], x_before_, before_, arrival.events);
+  }
+  recorder_.row_before(t_, x_before_, before_, arrival.events);
+  cells_.put(cells_behind);
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,447 @@
+#include "saltus/event_integrator/search/event_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
+#include "saltus/event_integrator/search/cells.hpp"
+#include "saltus/event_integrator/search/event_search_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+constexpr int deepest = 10;  // a step is cut into at most 2^10 pieces before it is shortened instead
+
+/// cos(pi degree (n - k) / n) of the last two degrees.
+const std::array<std::array<double, ode::event_nodes>, 2>& tail_cosines() {
+  static const auto table = [] {
+    constexpr int n = ode::event_degree;
+    std::array<std::array<double, ode::event_nodes>, 2> cosines{};
+    for (int k = 0; k <= n; ++k) {
+      for (int last = 0; last < 2; ++last) {
+        cosines[at(last)][at(k)] = std::cos(std::numbers::pi * (n - 1 + last) * (n - k) / n);
+      }
+    }
+    return cosines;
+  }();
+  return table;
+}
+
+/// Size of the last two Chebyshev coefficients of an interpolant: what the next ones may be expected to be.
+double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
+  constexpr int n = ode::event_degree;
+  double tail = 0.0;
+  for (const int degree : {n - 1, n}) {
+    double sum = 0.0;
+    for (int k = 0; k <= n; ++k) {
+      const double weight = (k == 0 || k == n) ? 0.5 : 1.0;
+      sum += weight * values[at(k)] * tail_cosines()[at(degree - n + 1)][at(k)];
+    }
+    tail += std::abs(sum) * (degree == n ? 1.0 : 2.0) / n;
+  }
+  return tail;
+}
+
+/// Whether an interpolant that misses its function by `error` or so shows one passage through zero all the same: but
+/// for a band around zero, eight times as wide, the function is on one side before it and on the other one behind it.
+/// The place is then as good as the band is narrow, and location goes on from the retaken step: an error of a
+/// thousandth costs it one more step, cutting the interval in two eighteen evaluations and more.
+bool passes_once(const ode::BernsteinCoefficients& coefficients, int sign, double error, double size) {
+  constexpr double worth_a_step = 1e-3;
+  if (!(error <= worth_a_step * size)) return false;
+  ode::BernsteinCoefficients turned = coefficients;
+  for (double& b : turned) b *= sign;
+  return ode::falls_once(turned, 8.0 * error);
+}
+
+/// Whether a smooth function with these values at the five Chebyshev-Lobatto nodes of an interval keeps its sign by a
+/// wide margin: the sum of the Chebyshev coefficients bounds the interpolant, the last two say how much it may miss.
+bool stays_far(const std::array<double, 5>& v, int sign) {
+  const double r = std::numbers::sqrt2 / 2.0;
+  const double c0 = (0.5 * (v[0] + v[4]) + v[1] + v[2] + v[3]) / 4.0;
+  const double c1 = (0.5 * (v[4] - v[0]) + r * (v[3] - v[1])) / 2.0;
+  const double c2 = (0.5 * (v[0] + v[4]) - v[2]) / 2.0;
+  const double c3 = (0.5 * (v[4] - v[0]) - r * (v[3] - v[1])) / 2.0;
+  const double c4 = (0.5 * (v[0] + v[4]) - v[1] + v[2] - v[3]) / 4.0;
+  const double tail = std::abs(c3) + std::abs(c4);
+  return sign * c0 > std::abs(c1) + std::abs(c2) + 8.0 * tail;
+}
+
+}  // namespace
+
+/// The argument of a cell may be undefined where a branch that is not taken holds it; a step that looks beyond the end
+/// of its region may find it defined there.
+EventSearch::Finding EventSearch::not_finite(const EventFunction& function, double at_start) {
+  return {is_cell_end(function.kind) && !std::isfinite(at_start), {}};
+}
+
+EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
+                         const ode::Tolerances& tolerances)
+    : kernel_(kernel),
+      field_(field),
+      five_nodes_suffice_(ode::dense_degree(method) <= 4),
+      tolerances_(tolerances),
+      forms_(at(kernel.states())) {
+  for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
+  any_nesting_ = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
+  const auto n_phi = at(kernel.event_functions());
+  for (auto* vector : {&phi_, &magnitude_, &slope_}) vector->resize(n_phi);
+  for (auto* vector : {&x_, &low_, &high_, &wide_low_, &wide_high_}) vector->resize(at(kernel.states()));
+  of_surface_.resize(at(kernel.switching_functions()));
+  entered_.assign(at(kernel.cells()), -1);
+  user_sign_.assign(n_phi - at(kernel.switching_functions()) - 2 * entered_.size(), 0);
+  user_vanishes_.assign(user_sign_.size(), false);
+}
+
+void EventSearch::find_pressure(double t, const double* x) {
+  if (held_.empty()) return;
+  kernel_.hold_pressure(t, x, field_.alpha().data(), pressure_.data());
+}
+
+EventSearch::Parts EventSearch::parts_of(const std::vector<std::size_t>& which) const {
+  Parts parts;
+  for (const std::size_t i : which) {
+    if (is_threshold(i)) continue;
+    switch (functions_[i].kind) {
+      case FunctionKind::surface:
+      case FunctionKind::user:
+      case FunctionKind::cell_upper:
+      case FunctionKind::cell_lower:
+        parts.phi = true;
+        break;
+      case FunctionKind::nested:
+        parts.nested = true;
+        break;
+      case FunctionKind::exit_below:
+      case FunctionKind::exit_above:
+      case FunctionKind::loss:
+      case FunctionKind::instability:
+        parts.exits = true;
+        break;
+      case FunctionKind::release:
+        parts.pressure = true;
+        break;
+    }
+  }
+  return parts;
+}
+
+/// Rounding and tolerance levels of some functions for the step that starts at (t, x).
+void EventSearch::rescale(double t, const double* x, const std::vector<std::size_t>& which, const Parts& parts) {
+  if (parts.phi || parts.nested) kernel_.scales(t, x, state_.alpha.data(), magnitude_.data(), slope_.data());
+  if (parts.exits) field_.exits(t, x, exits_.data());
+  if (parts.pressure) find_pressure(t, x);
+  for (const std::size_t i : which) set_noise(i, x);
+}
+
+void EventSearch::set_noise(std::size_t i, const double* x) {
+  const auto& function = functions_[i];
+  if (uses_phi(function)) {
+    const bool by_form = is_threshold(i);
+    const auto j = at(function.index);
+    const double magnitude = by_form ? std::abs(forms_.factor(i) * x[forms_.state(i)]) : magnitude_[j];
+    const double slope = by_form ? std::abs(forms_.factor(i)) : slope_[j];
+    // A handful of roundings of terms as large as the magnitude.
+    noise_[i] = 8.0 * rounding_unit * magnitude;
+    accuracy_[i] = 0.1 * (tolerances_.atol * slope + tolerances_.rtol * magnitude);
+  } else if (function.kind == FunctionKind::release) {
+    const double size = std::abs(pressure_[at(function.row)]);
+    noise_[i] = 32.0 * rounding_unit * size;
+    accuracy_[i] = 0.1 * tolerances_.rtol * size;
+  } else {
+    const auto& exit = exits_[at(function.row)];
+    const bool coupled = field_.solve() == SlidingSolve::coupled;
+    const bool is_side = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
+    // Loss and stability of coupled surfaces are relative to their terms.
+    const double size = is_side ? std::abs(exit.below) + std::abs(exit.above) : coupled ? 1.0 : std::abs(exit.loss);
+    noise_[i] = 32.0 * rounding_unit * size;
+    // Near a two-fold point both fields vanish, but not the terms they are the sum of.
+    const bool by_sides = coupled || field_.solve() == SlidingSolve::higher_order;
+    if (field_.solve() == SlidingSolve::decoupled || (by_sides && is_side)) {
+      noise_[i] = std::max(noise_[i], 8.0 * rounding_unit * field_.normal_terms(at(function.row)));
+    }
+    accuracy_[i] = 0.1 * tolerances_.rtol * size;
+  }
+  if (!std::isfinite(noise_[i])) noise_[i] = 0.0;
+  accuracy_[i] = std::isfinite(accuracy_[i]) ? std::max(accuracy_[i], noise_[i]) : 0.0;
+}
+
+void EventSearch::evaluate_parts(double t, const double* x, const Parts& parts) {
+  if (parts.phi) kernel_.functions(t, x, state_.alpha.data(), phi_.data());
+  if (parts.nested) {
+    for (auto& corner : corners_) kernel_.functions(t, x, corner.alpha.data(), corner.phi.data());
+  }
+  if (parts.exits) field_.exits(t, x, exits_.data());
+  if (parts.pressure) find_pressure(t, x);
+}
+
+/// Value of function i at the point that evaluate_parts was last called with.
+double EventSearch::value(std::size_t i, const double* x) const {
+  const auto& function = functions_[i];
+  if (is_threshold(i)) return forms_.threshold_value(i, x) - function.offset;
+  switch (function.kind) {
+    case FunctionKind::surface:
+    case FunctionKind::user:
+    case FunctionKind::cell_upper:
+    case FunctionKind::cell_lower:
+      return phi_[at(function.index)] - function.offset;
+    case FunctionKind::nested:
+      return corners_[at(function.row)].phi[at(function.index)] - function.offset;
+    case FunctionKind::exit_below:
+      return exits_[at(function.row)].below - function.offset;
+    case FunctionKind::exit_above:
+      return exits_[at(function.row)].above - function.offset;
+    case FunctionKind::loss:
+      return exits_[at(function.row)].loss - function.offset;
+    case FunctionKind::instability:
+      return exits_[at(function.row)].stability - function.offset;
+    case FunctionKind::release:
+      return pressure_[at(function.row)] - function.offset;
+  }
+  __builtin_unreachable();
+}
+
+void EventSearch::evaluate(double t, const double* x, const std::vector<std::size_t>& which,
+                           std::vector<double>& values) {
+  values.resize(which.size());
+  std::size_t known = 0;
+  for (; known < which.size() && is_threshold(which[known]); ++known) {  // at the usual event all of them
+    values[known] = forms_.threshold_value(which[known], x) - functions_[which[known]].offset;
+  }
+  if (known == which.size()) return;
+  evaluate_parts(t, x, parts_of(which));
+  for (std::size_t k = known; k < which.size(); ++k) values[k] = value(which[k], x);
+}
+
+/// Samples of some functions at nodes of [from, to].
+void EventSearch::sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which,
+                         Nodes nodes) {
+  for (std::size_t node = nodes.first; node < ode::event_nodes; node += nodes.stride) {
+    const double theta = node_theta(from, to, node);
+    const double t = step.t + theta * step.h;
+    step.evaluate(theta, x_.data());
+    evaluate_parts(t, x_.data(), curved_parts_);
+    double* samples = samples_.data() + node * functions_.size();
+    for (const std::size_t i : which) {
+      samples[i] = forms_.has(i) ? forms_.value(i, t, x_.data()) - functions_[i].offset : value(i, x_.data());
+    }
+  }
+}
+
+double EventSearch::node_theta(double from, double to, std::size_t node) const {
+  return node == ode::event_degree ? to : from + (to - from) * ode::interpolation_nodes()[node];
+}
+
+/// Whether the samples at every second node show that a curved function stays far from zero.
+bool EventSearch::is_far(std::size_t i) const {
+  // NOTE: a dense output of degree 7 dips between five nodes (the relay loses events at loose tolerances).
+  if (!prefilter_[i] || functions_[i].sign == 0 || functions_[i].zero_order != 0) return false;
+  const auto value = [&](std::size_t node) { return samples_[node * functions_.size() + i]; };
+  return stays_far({value(0), value(2), value(4), value(6), value(8)}, functions_[i].sign);
+}
+
+/// Whether what is special about the start of the step are zeros only that are left at once.
+bool EventSearch::specials_leave(const ode::Stepper& stepper) {
+  if (special_.empty()) return true;
+  if (!stepper.mean_slopes(low_.data(), high_.data())) return false;
+  const StepBounds slopes{0.0, 0.0, low_.data(), high_.data()};
+  return std::all_of(special_.begin(), special_.end(), [&](std::size_t i) {
+    return functions_[i].sign != 0 && forms_.has(i) && forms_.leaves(i, functions_[i].sign, slopes);
+  });
+}
+
+bool EventSearch::may_vanish(const ode::Stepper& stepper) {
+  bounds_known_ = false;
+  if (functions_.empty()) return false;
+  if (!curved_.empty() || !specials_leave(stepper)) return true;
+  if (!stepper.bounds(low_.data(), high_.data())) return true;
+  bounds_ = {stepper.start_time(), stepper.start_time() + stepper.length(), low_.data(), high_.data()};
+  // What DenseStep::bounds says, bit for bit; of dop853 they are others.
+  bounds_known_ = stepper.method() == ode::Method::taylor || stepper.method() == ode::Method::dopri5;
+  return forms_.may_vanish(bounds_);
+}
+
+/// The functions that the exact search has to look at.
+void EventSearch::find_suspects(const ode::DenseStep& step) {
+  suspects_.clear();
+  bounds_ = {step.t, step.t + step.h, low_.data(), high_.data()};
+  if (!bounds_known_) step.bounds(low_.data(), high_.data());
+  forms_.append_suspects(bounds_, suspects_);
+  for (const std::size_t i : special_) {
+    if (forms_.has(i)) suspects_.push_back(i);
+  }
+  if (!curved_.empty()) {
+    if (five_nodes_suffice_) sample(step, 0.0, 1.0, curved_, {0, 2});
+    for (const std::size_t i : curved_) {
+      if (!is_far(i)) suspects_.push_back(i);
+    }
+  }
+  if (suspects_.size() > 1) std::sort(suspects_.begin(), suspects_.end());
+}
+
+/// The functions that the location of a hit has to look at: it retakes the step, whose end differs from the dense
+/// output by the tolerance; bounds as wide again as the step moves, or a thousand tolerances, are on the safe side.
+void EventSearch::find_candidates() {
+  for (std::size_t i = 0; i < low_.size(); ++i) {
+    const double size = std::max(std::abs(low_[i]), std::abs(high_[i]));
+    const double room = high_[i] - low_[i] + 1e3 * (tolerances_.atol + tolerances_.rtol * size);
+    wide_low_[i] = low_[i] - room;
+    wide_high_[i] = high_[i] + room;
+  }
+  const double length = bounds_.end - bounds_.begin;
+  const StepBounds wide{bounds_.begin - length, bounds_.end + length, wide_low_.data(), wide_high_.data()};
+  candidates_.clear();
+  if (!curved_.empty()) candidates_ = curved_;
+  forms_.append_suspects(wide, candidates_);
+  for (const std::size_t i : special_) {
+    if (forms_.has(i)) candidates_.push_back(i);
+  }
+  if (candidates_.size() > 1) std::sort(candidates_.begin(), candidates_.end());
+}
+
+SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
+  if (functions_.empty()) return SearchOutcome::none;
+  find_suspects(step);
+  if (suspects_.empty()) return SearchOutcome::none;
+  step.evaluate(0.0, x_.data());
+  if (suspects_.size() == 1 && is_threshold(suspects_.front())) {  // the usual event
+    set_noise(suspects_.front(), x_.data());
+  } else {
+    rescale(step.t, x_.data(), suspects_);
+    sampled_.clear();
+    for (const std::size_t i : suspects_) {
+      if (!forms_.has(i)) sampled_.push_back(i);
+    }
+    // Those between the ones that find_suspects has sampled.
+    const Nodes rest = five_nodes_suffice_ ? Nodes{1, 2} : Nodes{0, 1};
+    if (!sampled_.empty()) sample(step, 0.0, 1.0, sampled_, rest);
+  }
+  const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
+  if (outcome == SearchOutcome::hit) {
+    if (suspects_.size() == functions_.size()) {  // all of them, whatever the bounds
+      candidates_ = suspects_;
+      return outcome;
+    }
+    find_candidates();
+    if (candidates_ == suspects_) return outcome;  // their roundings are known
+    step.evaluate(0.0, x_.data());
+    rescale(step.t, x_.data(), candidates_);
+  }
+  return outcome;
+}
+
+/// Whether the interpolant of function i misses the function's values between the nodes.
+bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std::size_t i,
+                         const ode::BernsteinCoefficients& coefficients, double accuracy) {
+  // Three places that are not symmetric to each other: a periodic function does not fool the nodes and these as well.
+  for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{6}}) {
+    const double local = ode::check_nodes()[place];
+    const double theta = from + (to - from) * local;
+    step.evaluate(theta, x_.data());
+    const double t = step.t + theta * step.h;
+    evaluate_parts(t, x_.data(), curved_parts_);
+    if (!(std::abs(value(i, x_.data()) - ode::evaluate(coefficients, local)) <= accuracy)) return true;
+  }
+  return false;
+}
+
+/// The first sign change of an affine function along the whole step, from the polynomials of the states.
+EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::size_t i) const {
+  const auto& function = functions_[i];
+  // The form has other roundings than the function, whose own terms may be smaller.
+  const double rounding = std::max(noise_[i], 8.0 * rounding_unit * forms_.terms(i, bounds_));
+  if (function.sign != 0) {
+    auto along = forms_.nested_along(i, step);
+    along.c[0] -= function.offset;
+    along.end -= function.offset;
+    const auto zero = ode::plain_zero(along, function.sign, function.zero_order, rounding);
+    if (zero.kind == ode::PlainZero::Kind::none) return {};
+    if (zero.kind == ode::PlainZero::Kind::one) return {true, Hit{i, zero.theta, zero.slope / step.h, function.sign}};
+  }
+  auto coefficients = forms_.along(i, step);
+  if (function.offset != 0.0) {
+    for (double& b : coefficients) b -= function.offset;
+  }
+  double size = 0.0;
+  double none = 0.0;  // NaN if a coefficient is not finite: without a way out of the loop
+  for (const double b : coefficients) {
+    none += 0.0 * b;
+    size = std::max(size, std::abs(b));
+  }
+  if (std::isnan(none)) return not_finite(function, coefficients.front());
+  const double noise = std::max(rounding, 8.0 * rounding_unit * size);
+  const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise) : function.sign;
+  if (sign == 0) return {};
+  const auto change = ode::first_sign_change(coefficients, sign, function.zero_order, noise);
+  if (!change) return {};
+  const double theta = 0.5 * (change->lower + change->upper);
+  return {true, Hit{i, theta, ode::derivative(coefficients, theta) / step.h, sign}};
+}
+
+/// The first sign change of one function between two nodes' ends, from the samples or, along the whole step, its form.
+EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, double to, std::size_t i) {
+  if (step.is_series() && forms_.has(i)) return find_in_series(step, from, to, i);
+  if (forms_.has(i) && from == 0.0 && to == 1.0) return find_along(step, i);
+  const auto& function = functions_[i];
+  std::array<double, ode::event_nodes> values;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+    return not_finite(function, values.front());
+  }
+  const auto coefficients = ode::to_bernstein(values);
+  const int sign = function.sign == 0 ? sign_behind_zero(values, noise_[i]) : function.sign;
+  if (sign == 0) return {};
+  double size = 0.0;
+  for (const double b : coefficients) size = std::max(size, std::abs(b));
+  if (!forms_.has(i)) {
+    const bool is_exit = !uses_phi(function);
+    // Where the interpolant stays away from zero it need not be better than that distance; functions of time only, or
+    // with a vanishing gradient, have no other measure than their own size.
+    double margin = std::numeric_limits<double>::max();
+    for (const double b : coefficients) margin = std::min(margin, sign * b);
+    const double wanted = std::max({accuracy_[i], 0.125 * margin, 0.1 * tolerances_.rtol * size});
+    const double tail = chebyshev_tail(values);
+    const bool known_zero = from == 0.0 && (function.zero_order > 0 || function.offset != 0.0);
+    const bool passes = tail > wanted && is_exit && !known_zero && passes_once(coefficients, sign, tail, size);
+    if (!passes && (tail > wanted || (!is_exit && misses(step, from, to, i, coefficients, wanted)))) {
+      return {false, {}};
+    }
+  }
+  double noise = std::max(noise_[i], 8.0 * rounding_unit * size);
+  if (forms_.has(i)) noise = std::max(noise, 8.0 * rounding_unit * forms_.terms(i, bounds_));
+  const auto change = ode::first_sign_change(coefficients, sign, from == 0.0 ? function.zero_order : 0, noise);
+  if (!change) return {};
+  const double local = 0.5 * (change->lower + change->upper);
+  return {true,
+          Hit{i, from + (to - from) * local, ode::derivative(coefficients, local) / ((to - from) * step.h), sign}};
+}
+
+/// The samples of [from, to] are taken (of the whole step those of curved functions); cuts the interval where an
+/// interpolant is not good enough.
+SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit) {
+  SearchOutcome outcome = SearchOutcome::none;
+  bool resolved = true;
+  for (std::size_t k = 0; k < suspects_.size() && resolved; ++k) {
+    const auto finding = find(step, from, to, suspects_[k]);
+    resolved = finding.resolved;
+    if (finding.hit && (outcome == SearchOutcome::none || finding.hit->theta < hit.theta)) {
+      hit = *finding.hit;
+      outcome = SearchOutcome::hit;
+    }
+  }
+  if (resolved) return outcome;
+  if (depth >= deepest) return SearchOutcome::unresolved;
+  const double middle = 0.5 * (from + to);
+  for (const auto& [begin, end] : {std::pair{from, middle}, std::pair{middle, to}}) {
+    sample(step, begin, end, suspects_, {0, 1});
+    const SearchOutcome half = search_interval(step, begin, end, depth + 1, hit);
+    if (half != SearchOutcome::none) return half;
+  }
+  return SearchOutcome::none;
+}
+
+}  // namespace saltus::event_integrator

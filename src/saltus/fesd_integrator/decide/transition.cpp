@@ -1,0 +1,371 @@
+#include "saltus/fesd_integrator/decide/transition.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+
+namespace saltus::fesd_integrator {
+namespace {
+
+/// Rates and selections within this of their bounds are not decided by first derivatives. Events are located to about
+/// 1e-12; a selection that ends there is off by that, times the conditioning of its equation.
+constexpr double undecided = 1e-7;
+
+constexpr std::size_t most_patterns = 20000;
+
+}  // namespace
+
+/// Whether psi does not leave zero on a side, and sliding moves as that side does.
+bool Transition::is_sliding_of_another(const Option& option, const std::vector<Option>& others) {
+  if (option.trial != Trial::stays) return false;
+  return std::any_of(others.begin(), others.end(), [&](const Option& other) {
+    if (other.selections.size() != option.selections.size() || other.pattern == option.pattern) return false;
+    for (std::size_t k = 0; k < option.pattern.size(); ++k) {
+      if (other.pattern[k] != option.pattern[k] && other.pattern[k] != 0) return false;
+    }
+    for (std::size_t j = 0; j < option.selections.size(); ++j) {
+      if (!(std::abs(other.selections[j] - option.selections[j]) <= undecided)) return false;
+    }
+    return true;
+  });
+}
+
+Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
+    : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver) {
+  part_of_.resize(kernel.selections());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (int j = parts[p].first; j < parts[p].first + parts[p].count; ++j) part_of_[at(j)] = static_cast<int>(p);
+  }
+}
+
+/// Which functions are zero at the point, in groups that influence each other; signs of the others into `modes`.
+/// @return false where the indicators of regions are not finite, so that none of them is the smallest
+bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<int>& modes) {
+  const std::size_t n = kernel_.selections(), n_x = kernel_.states();
+  groups_.clear();
+  depends_ = false;
+  modes.assign(n, -1);
+  std::vector<double> middle(n, 0.5);
+  discretization::StageValues values;
+  kernel_.size(values);
+  kernel_.evaluate(decision.t, decision.x.data(), middle.data(), decision.held, values);
+  indicator_noise(values, decision.t, decision.size, noise_);
+  const auto forced = [&](int j) {
+    return std::find(decision.at_zero.begin(), decision.at_zero.end(), j) != decision.at_zero.end();
+  };
+  std::vector<int> members;
+  for (const Part& part : parts_) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int j = part.first; j < part.first + part.count; ++j) {
+      smallest = std::min(smallest, values.indicator[at(j)]);
+    }
+    if (part.simplex && !std::isfinite(smallest)) return false;
+    const std::size_t begin = members.size();
+    for (int j = part.first; j < part.first + part.count; ++j) {
+      const double value = part.simplex ? values.indicator[at(j)] - smallest : values.indicator[at(j)];
+      const bool zero = std::abs(value) <= 4.0 * noise_[at(j)] || forced(j);
+      if (part.simplex) {
+        // One of the tied regions alone, as a classical mode stands for the other groups while one is asked.
+        modes[at(j)] = zero && members.size() == begin ? 0 : -1;
+      } else {
+        modes[at(j)] = value > 0.0 ? 1 : -1;
+      }
+      if (zero) members.push_back(j);
+    }
+    if (part.simplex && members.size() == begin + 1) members.pop_back();  // one region: nothing to decide
+  }
+  modes_at_zero_ = modes;
+  for (const int j : members) modes_at_zero_[at(j)] = 0;
+  if (members.empty()) return true;
+
+  // The size of a rate: of its largest terms for any selections, as f may cancel inside.
+  size_.assign(n, 0.0);
+  // Groups: i influences j where d(psi_j)/dt depends on selection i, at any of three points of the cube.
+  std::vector<int> group(members.size());
+  std::iota(group.begin(), group.end(), 0);
+  const auto join = [&](std::size_t a, std::size_t b) {
+    const int from = group[b], to = group[a];
+    std::replace(group.begin(), group.end(), from, to);
+  };
+  for (const double level : {0.5, 0.0, 1.0}) {
+    std::vector<double> selections(n);
+    for (std::size_t j = 0; j < n; ++j) {
+      selections[j] = modes[j] == (parts_[at(part_of_[j])].simplex ? 0 : 1) ? 1.0 : 0.0;
+    }
+    for (const int j : members) selections[at(j)] = level;
+    kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values);
+    for (std::size_t j = 0; j < n; ++j) {
+      double sum = std::abs(values.indicator_t[j]);
+      for (std::size_t i = 0; i < n_x; ++i) sum += std::abs(values.indicator_x[i * n + j] * values.f[i]);
+      size_[j] = std::max(size_[j], sum);
+    }
+    for (std::size_t a = 0; a < members.size(); ++a) {
+      for (std::size_t b = 0; b < members.size(); ++b) {
+        if (group[a] == group[b]) continue;
+        const bool one_simplex =
+            part_of_[at(members[a])] == part_of_[at(members[b])] && parts_[at(part_of_[at(members[a])])].simplex;
+        bool influences = one_simplex;
+        for (std::size_t i = 0; i < n_x && !influences; ++i) {
+          influences = values.indicator_x[i * n + at(members[a])] * values.f_selection[at(members[b]) * n_x + i] != 0.0;
+        }
+        if (influences) join(a, b);
+      }
+    }
+  }
+  for (std::size_t a = 0; a < members.size(); ++a) {
+    if (std::find(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(a), group[a]) !=
+        group.begin() + static_cast<std::ptrdiff_t>(a)) {
+      continue;
+    }
+    Group& entry = groups_.emplace_back();
+    for (std::size_t b = a; b < members.size(); ++b) {
+      if (group[b] == group[a]) entry.members.push_back(members[b]);
+    }
+    if (rule == Rule::dependent && find_dependent(decision, modes, entry)) {
+      depends_ = true;
+    } else {
+      entry.patterns = patterns_of(entry, decision);
+    }
+  }
+  return true;
+}
+
+std::vector<std::vector<int>> Transition::patterns_of(const Group& group, const Decision& decision) const {
+  std::vector<std::vector<int>> patterns{{}};
+  for (const int j : group.members) {
+    const bool region = parts_[at(part_of_[at(j)])].simplex;
+    std::vector<std::vector<int>> longer;
+    for (const auto& pattern : patterns) {
+      for (const int mode : decision.before == nullptr ? std::array{1, -1, 0} : std::array{0, 1, -1}) {
+        if (region && mode == 1) continue;
+        longer.push_back(pattern);
+        longer.back().push_back(mode);
+      }
+      if (longer.size() > most_patterns) return {};
+    }
+    patterns = std::move(longer);
+  }
+  // Every simplex needs an active region.
+  std::erase_if(patterns, [&](const auto& pattern) {
+    for (std::size_t k = 0; k < pattern.size(); ++k) {
+      const int part = part_of_[at(group.members[k])];
+      if (!parts_[at(part)].simplex) continue;
+      bool active = false;
+      for (std::size_t l = 0; l < pattern.size(); ++l) {
+        active = active || (part_of_[at(group.members[l])] == part && pattern[l] == 0);
+      }
+      if (!active) return true;
+    }
+    return false;
+  });
+  const auto rank = [&](const auto& pattern) {
+    int changes = 0, sliding = 0;
+    for (std::size_t k = 0; k < pattern.size(); ++k) {
+      if (decision.before != nullptr) changes += decision.before->modes()[at(group.members[k])] != pattern[k] ? 1 : 0;
+      sliding += parts_[at(part_of_[at(group.members[k])])].simplex && pattern[k] == 0 ? 1 : 0;
+    }
+    return std::pair(changes, sliding);
+  };
+  std::stable_sort(patterns.begin(), patterns.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  return patterns;
+}
+
+/// How clearly the signs of a group hold just behind the point: > 0 they do, < 0 they do not, relative to the size of
+/// what is compared; the candidate gets its selections.
+double Transition::margin(const Decision& decision, const Group& group, Continuation& candidate) {
+  const auto& sliding = candidate.set.sliding();
+  std::vector<double> unknown(sliding.size(), 0.5);
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    if (sliding[k].reference >= 0) unknown[k] = 1.0 / static_cast<double>(sliding.size() + 1);
+  }
+  const double from_middle = margin_from(unknown, decision, group, candidate);
+  // The selections of several surfaces solve a multi-affine system with several roots: also from near the corners.
+  constexpr std::size_t most_sliding = 4;
+  const bool one_root = sliding.size() < 2 || !candidate.set.balances().empty();
+  if (from_middle >= -undecided || one_root || sliding.size() > most_sliding) return from_middle;
+  for (unsigned corner = 0; corner < 1U << sliding.size(); ++corner) {
+    for (std::size_t k = 0; k < unknown.size(); ++k) unknown[k] = (corner >> k & 1U) != 0 ? 0.85 : 0.15;
+    const double value = margin_from(unknown, decision, group, candidate);
+    if (value >= -undecided) return value;
+  }
+  return from_middle;
+}
+
+/// The same with the selections that Newton's method finds from `unknown`.
+double Transition::margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
+                               Continuation& candidate) {
+  const auto& set = candidate.set;
+  candidate.selections.resize(kernel_.selections());
+  set.selections(unknown.data(), candidate.selections.data());
+  // What begins to slide between switches that accumulate has a rate, however small.
+  const bool begins = decision.before != nullptr && set.sliding().size() > decision.before->sliding().size();
+  const double rounding = begins ? 0.0 : ProjectedField::rounding_of_rates(decision.size, decision.trial_length);
+  if (!projected_.solve(decision.t, decision.x.data(), set, decision.held, candidate.selections.data(), rounding)) {
+    return -1.0;
+  }
+  projected_.rates(rate_);
+  if (!take_from_trial(decision, candidate)) return -1.0;
+  if (!set.balances().empty()) margins_.evaluate(set, field_view(projected_.values()), candidate.selections.data());
+  double least = 1.0;
+  for (const Condition& condition : set.conditions()) {
+    if (std::find(group.members.begin(), group.members.end(), condition.selection) == group.members.end()) continue;
+    const bool margin = condition.kind != Condition::Kind::side && !set.is_determined(condition.selection);
+    double value = margin ? margins_.value(condition) : set.value(condition, rate_.data(), candidate.selections.data());
+    if (condition.kind == Condition::Kind::side) {
+      double size = size_[at(condition.selection)];
+      for (const int j : group.members) {
+        if (part_of_[at(j)] == part_of_[at(condition.selection)] && parts_[at(part_of_[at(j)])].simplex) {
+          size = std::max(size, size_[at(j)]);
+        }
+      }
+      value = size > 0.0 ? value / size : 0.0;
+    }
+    if (!std::isfinite(value)) return -1.0;
+    least = std::min(least, value);
+  }
+  return least;
+}
+
+ElementSolver::Outcome Transition::solve_trial(const Decision& decision, const Continuation& candidate, double length) {
+  const Point left{decision.t, {decision.x.begin(), decision.x.end()}, candidate.selections, decision.size};
+  return solver_.solve(left, length, {&candidate.set, 1}, decision.held, ElementSolver::Guess::left_end, trial_);
+}
+
+/// Selections that follow from a higher derivative of their surface are those of a short element.
+bool Transition::take_from_trial(const Decision& decision, Continuation& candidate) {
+  const auto& sliding = candidate.set.sliding();
+  bool any = false;
+  for (std::size_t k = 0; k < sliding.size(); ++k) any = any || projected_.in_no_equation(k);
+  if (projected_.regular() || !any) return true;
+  if (solve_trial(decision, candidate, decision.trial_length) != ElementSolver::Outcome::solved) return false;
+  const std::size_t n = kernel_.selections();
+  const double* last = trial_.stage_selections.data() + trial_.stage_selections.size() - n;
+  projected_.take_undetermined(candidate.set, last, candidate.selections.data());
+  return true;
+}
+
+/// By the end of an element: where psi leaves zero like t^3 its polynomial has other signs on the way.
+Transition::Trial Transition::try_element(const Decision& decision, const Group& group, const Continuation& candidate,
+                                          double length) {
+  if (solve_trial(decision, candidate, length) != ElementSolver::Outcome::solved) return Trial::unsolved;
+  auto selections = candidate.selections;
+  Violation ignored;
+  const std::span<const int> members(group.members.data(), group.members.size());
+  const auto answer = watch_.look(trial_, candidate.set, decision.held, selections, ignored, members);
+  if (answer == Watch::Answer::not_finite) return Trial::unsolved;
+  constexpr double clear = 16.0;  // of roundings
+  bool stays = false;
+  for (const Condition& condition : candidate.set.conditions()) {
+    if (std::find(members.begin(), members.end(), condition.selection) == members.end()) continue;
+    const double value = watch_.end_value(candidate.set, condition), rounding = clear * watch_.noise(condition);
+    if (value < -rounding) return Trial::fails;
+    stays = stays || !(value > rounding);
+  }
+  return stays ? Trial::stays : Trial::holds;
+}
+
+/// By the shortest element behind which signs are clear of their roundings: psi may leave zero like t^3 or t^4.
+Transition::Trial Transition::try_elements(const Decision& decision, const Group& group,
+                                           const Continuation& candidate) {
+  const auto attempt = [&](double factor) {
+    return try_element(decision, group, candidate, factor * decision.trial_length);
+  };
+  Trial trial = attempt(1.0);
+  if (trial == Trial::fails) {
+    // What ends inside of the trial is the next switch.
+    const Trial nearer = attempt(0.125);
+    return nearer == Trial::holds ? nearer : trial;
+  }
+  // The trial length is the 128th part of an element.
+  for (const double factor : {8.0, 64.0}) {
+    if (trial != Trial::stays) break;
+    const Trial longer = attempt(factor);
+    if (longer == Trial::unsolved) break;
+    trial = longer;
+  }
+  return trial;
+}
+
+std::vector<Continuation> Transition::continuations(const Decision& decision) {
+  auto found = continuations(decision, Rule::dependent);
+  return found.empty() && depends_ ? continuations(decision, Rule::enumeration) : found;
+}
+
+std::vector<Continuation> Transition::continuations(const Decision& decision, Rule rule) {
+  std::vector<int> modes;
+  finite_ = find_groups(decision, rule, modes);
+  if (!finite_) return {};
+  // A first guess at every group, so that each is asked with the others in place: what has the largest margin.
+  std::vector<std::vector<Option>> options(groups_.size());
+  const auto put = [](const Group& group, const std::vector<int>& pattern, std::vector<int>& into) {
+    for (std::size_t k = 0; k < pattern.size(); ++k) into[at(group.members[k])] = pattern[k];
+  };
+  std::vector<int> guess = modes;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    double best = -2.0;
+    for (const auto& pattern : groups_[g].patterns) {
+      auto trial = modes;
+      put(groups_[g], pattern, trial);
+      Continuation candidate{make_set(decision, trial), {}};
+      const double value = margin(decision, groups_[g], candidate);
+      if (value < -undecided) continue;
+      options[g].push_back({pattern, value});
+      if (value <= best) continue;
+      best = value;
+      put(groups_[g], pattern, guess);
+    }
+    if (options[g].empty()) return {};
+  }
+  std::vector<std::vector<std::vector<int>>> admissible(groups_.size());
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    std::vector<Option> passed;
+    for (Option& option : options[g]) {
+      auto trial = guess;
+      put(groups_[g], option.pattern, trial);
+      Continuation candidate{make_set(decision, trial), {}};
+      if (option.margin <= undecided || groups_[g].dependent) {
+        if (margin(decision, groups_[g], candidate) < -undecided) continue;
+        option.trial = try_elements(decision, groups_[g], candidate);
+        if (option.trial == Trial::fails || option.trial == Trial::unsolved) continue;
+      }
+      option.selections = std::move(candidate.selections);
+      passed.push_back(std::move(option));
+      if (groups_[g].dependent) break;
+    }
+    for (const Option& option : passed) {
+      if (!is_sliding_of_another(option, passed)) admissible[g].push_back(option.pattern);
+    }
+    if (admissible[g].empty()) return {};
+    put(groups_[g], admissible[g].front(), guess);
+  }
+  std::vector<Continuation> found;
+  Group all;
+  for (const Group& group : groups_) all.members.insert(all.members.end(), group.members.begin(), group.members.end());
+  const auto keep = [&](const std::vector<int>& chosen) {
+    Continuation candidate{make_set(decision, chosen), {}};
+    if (margin(decision, all, candidate) < -undecided) return;
+    candidate.decided = std::all_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.decided; });
+    if (!projected_.regular()) {
+      candidate.determined =
+          solve_trial(decision, candidate, decision.trial_length) == ElementSolver::Outcome::solved &&
+          solver_.determined();
+    }
+    found.push_back(std::move(candidate));
+  };
+  keep(guess);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    for (std::size_t k = 1; k < admissible[g].size(); ++k) {
+      auto other = guess;
+      put(groups_[g], admissible[g][k], other);
+      keep(other);
+    }
+  }
+  return found;
+}
+
+}  // namespace saltus::fesd_integrator

@@ -1,0 +1,108 @@
+// The next active set at a point: by enumeration of the patterns that are possible there.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/element/active_set.hpp"
+#include "saltus/fesd_integrator/element/element.hpp"
+#include "saltus/fesd_integrator/element/projected_field.hpp"
+#include "saltus/fesd_integrator/element/selection_margins.hpp"
+#include "saltus/fesd_integrator/watch/watch.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// A set that continues the solution, with the selections of its projected field.
+struct Continuation {
+  ActiveSet set;
+  std::vector<double> selections;
+  bool determined = true;  ///< ElementSolver::determined of an element that begins here
+  bool decided = true;     ///< whether there are no others that were not looked for
+};
+
+/// What is known of a point where a set ended.
+struct Decision {
+  double t = 0.0;
+  std::span<const double> x;
+  const double* held = nullptr;
+  const ActiveSet* before = nullptr;  ///< nullptr at a start
+  std::span<const int> at_zero{};     ///< selections whose indicator is zero there whatever its rounding
+  double size = 0.0;                  ///< of the states around, as in Point
+  double trial_length = 0.0;          ///< of an element, where first derivatives do not decide
+};
+
+/// All sets that continue a solution from a point. Of the functions that are zero there, every pattern of signs and
+/// sliding (every set of active regions) is asked: with the selections of its projected field, do its signs hold just
+/// behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a short
+/// element does, or a longer one where psi is within its rounding behind that. A side that the solution does not get
+/// to, as psi stays at zero, is no other continuation than sliding with the selections of that side. Functions that do
+/// not influence each other are enumerated one by one. Surfaces whose gradients depend on each other, with selections
+/// that enter additively, are not enumerated: a complementarity problem says which are slid on and which are left [ADR
+/// 20]; where it leaves that open, the one just behind the point does.
+///
+/// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
+/// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
+class Transition {
+ public:
+  Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver);
+
+  /// Empty if nothing continues. Cost: 3^m evaluations for m functions that influence each other, at most
+  /// `most_patterns`.
+  [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision);
+  /// Of the last decision: the modes where everything that is zero there slides, or is active.
+  [[nodiscard]] const std::vector<int>& modes_at_zero() const { return modes_at_zero_; }
+  /// Whether the indicators of regions were finite there; nothing continues where they are not.
+  [[nodiscard]] bool finite() const { return finite_; }
+
+ private:
+  struct Group {
+    std::vector<int> members;                ///< functions of the step form, or regions of a simplex
+    std::vector<std::vector<int>> patterns;  ///< modes of the members
+    bool dependent = false;                  ///< these are by the complementarity problem, the likeliest one first
+    bool decided = true;                     ///< which has one motion as its solution
+  };
+  enum class Rule { dependent, enumeration };
+  [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision, Rule rule);
+  [[nodiscard]] bool find_dependent(const Decision& decision, const std::vector<int>& modes, Group& group);
+  [[nodiscard]] ActiveSet make_set(const Decision& decision, std::vector<int> modes);
+  [[nodiscard]] bool find_groups(const Decision& decision, Rule rule, std::vector<int>& modes);
+  [[nodiscard]] std::vector<std::vector<int>> patterns_of(const Group& group, const Decision& decision) const;
+  [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
+  [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
+                                   Continuation& candidate);
+  /// What a short element says of a set: its signs hold behind it, or not, or are within their roundings.
+  enum class Trial { holds, fails, stays, unsolved };
+  /// A pattern that may continue the solution.
+  struct Option {
+    std::vector<int> pattern;
+    double margin = 0.0;
+    Trial trial = Trial::holds;
+    std::vector<double> selections = {};
+  };
+  [[nodiscard]] static bool is_sliding_of_another(const Option& option, const std::vector<Option>& others);
+  [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate,
+                                                   double length);
+  [[nodiscard]] bool take_from_trial(const Decision& decision, Continuation& candidate);
+  [[nodiscard]] Trial try_element(const Decision& decision, const Group& group, const Continuation& candidate,
+                                  double length);
+  [[nodiscard]] Trial try_elements(const Decision& decision, const Group& group, const Continuation& candidate);
+
+  const discretization::StageKernel& kernel_;
+  std::span<const Part> parts_;
+  ElementSolver& solver_;
+  ProjectedField projected_;
+  Watch watch_;
+  Element trial_;
+  std::vector<Group> groups_;
+  std::vector<int> part_of_;
+  std::vector<int> modes_at_zero_;
+  bool depends_ = false;  ///< whether a group of the decision in hand is dependent
+  SelectionMargins margins_;
+  bool finite_ = true;
+  std::vector<double> rate_, size_, noise_;
+};
+
+}  // namespace saltus::fesd_integrator

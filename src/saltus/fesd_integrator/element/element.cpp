@@ -1,0 +1,114 @@
+#include "saltus/fesd_integrator/element/element.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "saltus/base/contracts.hpp"
+#include "saltus/fesd_integrator/element/element_equations_internal.hpp"
+#include "saltus/fesd_integrator/element/element_polynomial_internal.hpp"
+
+namespace saltus::fesd_integrator {
+namespace {
+
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+using Eigen::Index;
+
+constexpr int most_newton_steps = 40;
+
+}  // namespace
+
+struct ElementSolver::Implementation {
+  Implementation(const discretization::StageKernel& kernel, discretization::ButcherTableau tableau_in)
+      : tableau(std::move(tableau_in)),
+        n_x(static_cast<Index>(kernel.states())),
+        polynomial(tableau),
+        equations(kernel, tableau) {}
+
+  discretization::ButcherTableau tableau;
+  Index n_x;
+  ElementPolynomial polynomial;
+  ElementEquations equations;
+};
+
+ElementSolver::ElementSolver(const discretization::StageKernel& kernel, discretization::ButcherTableau tableau)
+    : implementation_(std::make_unique<Implementation>(kernel, std::move(tableau))) {}
+ElementSolver::ElementSolver(ElementSolver&&) noexcept = default;
+ElementSolver& ElementSolver::operator=(ElementSolver&&) noexcept = default;
+ElementSolver::~ElementSolver() = default;
+
+const discretization::ButcherTableau& ElementSolver::tableau() const { return implementation_->tableau; }
+
+ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::span<const ActiveSet> sets,
+                                            const double* held, Guess guess, Element& element) {
+  using Matrix = ElementEquations::Matrix;
+  auto& equations = implementation_->equations;
+  SALTUS_ASSERT(sets.size() == 1 || sets.size() == static_cast<std::size_t>(tableau().stages()));
+  equations.begin(left, h, sets, held, guess, element);
+  double before = std::numeric_limits<double>::infinity();
+  Matrix matrix = Matrix::its_own;
+  for (int iteration = 0;; ++iteration) {
+    if (iteration == most_newton_steps) return Outcome::not_converged;
+    const auto change = equations.step(held, matrix, element);
+    if (!change) return Outcome::not_finite;
+    // Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are
+    // roundings. With the matrix of the step before, a step leaves 2 change / before of itself.
+    const bool again = matrix == Matrix::of_the_step_before;
+    const bool quadratic = again ? *change * *change <= 1e-17 * before : *change <= 1e-9 && before <= 1e-3;
+    if (*change <= 1e-15 || quadratic || (*change <= equations.rounding() && *change >= 0.25 * before)) break;
+    constexpr double near = 1e-4;
+    const bool keep = !again && *change <= near && equations.keeps_matrix();
+    matrix = keep ? Matrix::of_the_step_before : Matrix::its_own;
+    before = *change;
+  }
+  if (!equations.finish(held, element)) return Outcome::not_converged;
+  return ConstVector(element.end.data(), static_cast<Index>(element.end.size())).allFinite() ? Outcome::solved
+                                                                                             : Outcome::not_finite;
+}
+
+bool ElementSolver::determined() const {
+  const auto& equations = implementation_->equations;
+  const Eigen::MatrixXd free = equations.free_directions();
+  constexpr double rounding = 1e-6;  // of columns of length 1
+  for (Index m = 0; m < tableau().stages() && free.cols() > 0; ++m) {
+    if (free.middleRows(equations.place(m), implementation_->n_x).cwiseAbs().maxCoeff() > rounding) return false;
+  }
+  return true;
+}
+
+void ElementSolver::interpolate(const Element& element, double theta, double* x) const {
+  implementation_->polynomial.evaluate(element, element.warp.inverse(theta), x);
+}
+
+void ElementSolver::slope(const Element& element, double tau, double* slope) const {
+  implementation_->polynomial.slope(element, tau, slope);
+}
+
+void ElementSolver::extrapolate(const Element& element, double h, Element& next) const {
+  const auto& self = *implementation_;
+  next.stage_states.resize(element.stage_states.size());
+  next.stage_selections = element.stage_selections;
+  for (Index m = 0; m < self.tableau.stages(); ++m) {
+    const double theta = 1.0 + self.tableau.c(m) * h / element.h;
+    self.polynomial.evaluate(element, theta, next.stage_states.data() + m * self.n_x);
+  }
+}
+
+const std::vector<double>& ElementSolver::watch_points() const { return implementation_->polynomial.watch_points(); }
+
+int ElementSolver::watch_stage(std::size_t point) const {
+  const auto& equations = implementation_->equations;
+  if (equations.explicit_method()) return -1;
+  for (Index m = 0; m < tableau().stages(); ++m) {
+    if (tableau().c(m) == watch_points()[point] && !equations.known(m)) return static_cast<int>(m);
+  }
+  return -1;
+}
+
+void ElementSolver::watch_state(const Element& element, std::size_t point, double* x) const {
+  implementation_->polynomial.watch_state(element, point, x);
+}
+
+}  // namespace saltus::fesd_integrator

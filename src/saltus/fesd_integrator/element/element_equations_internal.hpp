@@ -1,0 +1,89 @@
+// The equations of one finite element, and Newton steps for them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/base/at.hpp"
+#include "saltus/fesd_integrator/element/dense_system_internal.hpp"
+#include "saltus/fesd_integrator/element/element.hpp"
+#include "saltus/fesd_integrator/element/root_unknowns_internal.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// What ElementSolver solves, written down for one element after the other. The unknowns are the states of the stages
+/// and, times h, the selections that slide there. Owns the work space.
+class ElementEquations {
+ public:
+  ElementEquations(const discretization::StageKernel& kernel, const discretization::ButcherTableau& tableau);
+
+  /// Sizes the element and fills in the guess; its t, h, x and size are set.
+  void begin(const Point& left, double h, std::span<const ActiveSet> sets, const double* held,
+             ElementSolver::Guess guess, Element& element);
+  /// Which matrix a Newton step takes.
+  enum class Matrix { its_own, of_the_step_before };
+  /// One Newton step; nullopt if the system has no finite solution, else the largest change of a state, relative to the
+  /// largest state (of a root to that).
+  [[nodiscard]] std::optional<double> step(const double* held, Matrix matrix, Element& element);
+  /// Whether the matrix of the last step may serve once more.
+  [[nodiscard]] bool keeps_matrix() const { return system_.is_factorised() && roots_.empty() && !at_end_; }
+  /// Relative change of states that may be no more than the rounding of a step.
+  [[nodiscard]] double rounding() const { return roots_.empty() ? 1e-12 : 1e-9; }
+  /// Slopes of the stages and the right end; false if that cannot be put on the surfaces.
+  [[nodiscard]] bool finish(const double* held, Element& element);
+
+  /// Directions in which the unknowns of the last step may move without changing any equation.
+  [[nodiscard]] Eigen::MatrixXd free_directions() const { return system_.null_space(); }
+  /// Where the unknowns of a stage begin; the states come first.
+  [[nodiscard]] Eigen::Index place(Eigen::Index stage) const { return offset_[at(stage)]; }
+  /// Whether the selections of a stage are known: taken from the left end.
+  [[nodiscard]] bool known(Eigen::Index stage) const { return left_limit_ && stage == 0; }
+  [[nodiscard]] bool explicit_method() const { return explicit_method_; }
+
+ private:
+  enum class Parts { everything, values };
+  void set_warp(const TimeWarp& wanted);
+  void set_guess(std::size_t stage, const Point& left, ElementSolver::Guess guess, Element& element);
+  void guess_by_euler(const Point& left, const double* held, Element& element);
+  [[nodiscard]] const ActiveSet& set(Eigen::Index stage) const { return *sets_[at(stage)]; }
+  [[nodiscard]] Eigen::Index unknowns(Eigen::Index stage) const {
+    return known(stage) ? 0 : static_cast<Eigen::Index>(set(stage).sliding().size());
+  }
+  void find_directions(Eigen::Index stage, const discretization::StageValues& at);
+  [[nodiscard]] auto directions_of(Eigen::Index stage) {
+    return directions_.middleCols(stage * n_psi_, unknowns(stage));
+  }
+  void surface_row(const ActiveSet& active, std::size_t k, const discretization::StageValues& at);
+  [[nodiscard]] double size(const Element& element) const;
+  [[nodiscard]] double negligible(const Element& element) const { return 1e-13 * size(element); }
+  [[nodiscard]] Eigen::Index point_of(Eigen::Index stage) const;
+  void evaluate(const Element& element, const double* held, Parts parts);
+  void evaluate_end(const Element& element, const double* held);
+  void assemble_matrix(const Element& element);
+  void assemble_right(const Element& element);
+  [[nodiscard]] double update(Element& element);
+  [[nodiscard]] bool project(double t, const double* held, Element& element);
+
+  const discretization::StageKernel& kernel_;
+  const discretization::ButcherTableau& tableau_;
+  Eigen::Index n_x_, n_s_, n_psi_;
+  bool explicit_method_, left_limit_;
+  bool one_set_ = true, slides_ = false;
+  bool at_end_ = false;  ///< the surfaces of an explicit method vanish at the right end
+
+  DenseSystem system_, projection_;
+  std::vector<discretization::StageValues> values_;  ///< of the stages; one more for the end
+  Eigen::MatrixXd directions_;                       ///< n_x by n_psi per stage: f_alpha of what slides
+  std::vector<Eigen::Index> offset_;                 ///< of the unknowns of each stage
+  std::vector<const ActiveSet*> sets_;
+  Eigen::VectorXd end_, row_, mu_;
+  RootUnknowns roots_;
+  Eigen::MatrixXd A_;  ///< of the tableau, with the factors of the element's warp
+  Eigen::VectorXd b_, c_;
+  TimeWarp warp_;
+};
+
+}  // namespace saltus::fesd_integrator

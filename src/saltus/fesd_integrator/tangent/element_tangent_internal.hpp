@@ -1,0 +1,70 @@
+// How the end of a solved element moves with its left end, its length and the parameters.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/discretization/tangent_kernel.hpp"
+#include "saltus/fesd_integrator/element/active_set.hpp"
+#include "saltus/fesd_integrator/element/element.hpp"
+#include "saltus/fesd_integrator/element/selection_margins.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// Directions as columns: of the left end, its time, the length, the parameters.
+struct Directions {
+  Eigen::MatrixXd x;  ///< n_x rows
+  Eigen::RowVectorXd t;
+  Eigen::RowVectorXd h;
+  Eigen::MatrixXd p;  ///< n_p rows
+};
+
+class ElementTangent {
+ public:
+  /// The kernel must outlive it.
+  ElementTangent(const discretization::TangentKernel& kernel, discretization::ButcherTableau tableau);
+
+  /// d(end) along directions at the left end. `sets`: one, or one per stage. `left`: selections of the projected field
+  /// at the left end.
+  [[nodiscard]] Eigen::MatrixXd end(const Element& element, std::span<const ActiveSet> sets,
+                                    const std::vector<double>& left, const double* held, const Directions& go);
+  /// d(value of a condition) at the right end, up to its sign, along directions of that end. `right`: the selections
+  /// of the projected field there.
+  [[nodiscard]] Eigen::RowVectorXd condition(const Condition& condition, const Element& element, const ActiveSet& set,
+                                             const std::vector<double>& right, const double* held,
+                                             const Directions& go);
+
+ private:
+  [[nodiscard]] Eigen::RowVectorXd margin(const Condition& condition, const ActiveSet& set,
+                                          const std::vector<double>& right, const Directions& go);
+  using Index = Eigen::Index;
+  using Matrix = Eigen::MatrixXd;
+
+  struct System;
+  void add_projection(System& system, const Element& element, const ActiveSet& set, const double* held,
+                      const Directions& go);
+  void evaluate(double t, const double* x, const double* selections, const ActiveSet& set, const double* held,
+                discretization::TangentValues& at);
+  [[nodiscard]] Matrix basis(const ActiveSet& set) const;
+  [[nodiscard]] Matrix projected_selections(const ActiveSet& set, const discretization::TangentValues& at,
+                                            const Directions& go) const;
+  /// d f, d indicator, d rate at fixed selections; x only where go.x is that of the point.
+  [[nodiscard]] Matrix field(const discretization::TangentValues& at, const Eigen::RowVectorXd& t,
+                             const Matrix& p) const;
+  [[nodiscard]] Matrix indicator(const discretization::TangentValues& at, const Eigen::RowVectorXd& t,
+                                 const Matrix& p) const;
+
+  const discretization::TangentKernel& kernel_;
+  discretization::ButcherTableau tableau_;
+  Index n_x_, n_, n_p_, n_s_;
+  std::vector<discretization::TangentValues> values_;  ///< of the stages
+  discretization::TangentValues left_, right_;
+  discretization::DirectionValues direction_;
+  std::vector<double> inside_;
+  SelectionMargins margins_;
+};
+
+}  // namespace saltus::fesd_integrator

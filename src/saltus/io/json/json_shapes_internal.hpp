@@ -1,0 +1,18 @@
+// Whether the parts of a result that was read fit each other.
+#pragma once
+
+#include <string>
+
+#include "saltus/io/json/json_reader_internal.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::io {
+
+/// What tables and reports rely on when they index.
+void check_shapes(JsonReader& reader, const std::string& path, const result::Result& result);
+
+/// A branch has the columns of its parent, and leaves it at an alternative of an event that it lists.
+void check_branch(JsonReader& reader, const std::string& path, const result::Result& parent,
+                  const result::Result& branch);
+
+}  // namespace saltus::io

@@ -1,0 +1,268 @@
+// Result -> JSON.
+#include <cmath>
+#include <cstddef>
+
+#include "saltus/base/version.hpp"
+#include "saltus/io/json/json_optimization_internal.hpp"
+#include "saltus/io/json/json_parts_internal.hpp"
+#include "saltus/io/json/json_result.hpp"
+#include "saltus/io/json/json_stream_internal.hpp"
+
+namespace saltus::io {
+namespace {
+
+Json named_file_json(const result::NamedFile& file) {
+  Json json = Json::object();
+  json["name"] = file.name;
+  json["sha256"] = file.sha256;
+  json["text"] = or_null(file.text);
+  return json;
+}
+
+Json model_json(const result::ModelRecord& model) {
+  Json json = Json::object();
+  json["name"] = model.name;
+  json["sha256"] = model.sha256;
+  json["parameters"] = numbers_json(model.parameters);
+  json["initial_state"] = numbers_json(model.initial_state);
+  json["description"] = model.description;
+  for (const auto& [name, caption] : model.captions) {
+    json["captions"][name] = {{"unit", caption.unit}, {"label", caption.label}};
+  }
+  if (model.text.empty()) return json;
+  json["file"] = model.file;
+  json["text"] = model.text;
+  json["files"] = Json::array();
+  for (const auto& file : model.files) json["files"].push_back(named_file_json(file));
+  json["set"] = model.settings;
+  return json;
+}
+
+Json intersection_json(const result::Intersection& intersection) {
+  Json json = Json::object();
+  json["surfaces"] = intersection.surfaces;
+  json["velocities"] = intersection.velocities;
+  json["alpha_before"] = or_null(intersection.alpha_before);
+  json["alpha_after"] = intersection.alpha_after;
+  return json;
+}
+
+Json alternative_json(const result::Alternative& other) {
+  Json json = Json::object();
+  json["mode"] = other.mode;
+  json["alpha"] = other.alpha;
+  if (!other.regions.empty()) json["regions"] = other.regions;
+  return json;
+}
+
+Json family_json(const result::Family& family) {
+  Json json = Json::object();
+  json["kind"] = name(family.kind);
+  json["event"] = family.event;
+  json["from"] = family.from;
+  json["until"] = family.until;
+  json["to"] = alternative_json(family.to);
+  if (family.lap_ratio) json["lap_ratio"] = *family.lap_ratio;
+  return json;
+}
+
+Json departure_json(const result::Departure& departure) {
+  Json json = Json::object();
+  json["event"] = departure.event;
+  if (!departure.member) {
+    json["alternative"] = departure.alternative;
+    return json;
+  }
+  json["family"] = departure.member->family;
+  json["parameter"] = departure.member->parameter;
+  return json;
+}
+
+Json contact_modes_json(const std::vector<result::ContactMode>& modes) {
+  Json json = Json::array();
+  for (const auto mode : modes) json.push_back(name(mode));
+  return json;
+}
+
+void append_event(TextStream& stream, const result::Event& event, std::size_t indent) {
+  ObjectStream object(stream, indent);
+  const auto put = [&](const char* key, const auto& value) { append_json(object.key(key), value); };
+  put("t", event.t);
+  put("kind", std::string(name(event.kind)));
+  put("name", event.name);
+  put("surfaces", event.surfaces);
+  put("mode_before", event.mode_before);
+  put("mode_after", event.mode_after);
+  put("alpha_before", event.alpha_before);
+  put("alpha_after", event.alpha_after);
+  if (event.regions_before) object.member("regions_before", *event.regions_before);
+  if (event.regions_after) object.member("regions_after", *event.regions_after);
+  if (!event.contact_modes_before.empty()) {
+    object.member("contact_modes_before", contact_modes_json(event.contact_modes_before));
+    object.member("contact_modes_after", contact_modes_json(event.contact_modes_after));
+  }
+  if (event.impulse) object.member("impulse", *event.impulse);
+  put("x", event.x);
+  put("x_after", event.x_after);
+  object.key("unique") += !event.unique ? "null" : *event.unique ? "true" : "false";
+  Json alternatives = Json::array();
+  for (const auto& other : event.alternatives) alternatives.push_back(alternative_json(other));
+  object.member("alternatives", alternatives);
+  put("reason", event.reason);
+  if (event.intersection) object.member("intersection", intersection_json(*event.intersection));
+  object.end();
+}
+
+Json final_json(const result::Final& final) {
+  Json json = Json::object();
+  json["t"] = final.t;
+  json["x"] = final.x;
+  json["mode"] = final.mode;
+  json["alpha"] = final.alpha;
+  json["outputs"] = final.outputs;
+  if (!final.regions.empty()) {
+    json["regions"] = final.regions;
+    json["theta"] = final.theta;
+  }
+  if (!final.contact_modes.empty()) json["contact_modes"] = contact_modes_json(final.contact_modes);
+  return json;
+}
+
+void append_trajectory(TextStream& stream, const result::Trajectory& trajectory, std::size_t indent) {
+  ObjectStream object(stream, indent);
+  const auto rows = [&](const char* key, const auto& table) {
+    object.list(key, table, [&](const auto& row, std::size_t) { append_json(stream.text(), row); });
+  };
+  append_json(object.key("t"), trajectory.t);
+  rows("x", trajectory.x);
+  rows("u", trajectory.u);
+  rows("alpha", trajectory.alpha);
+  rows("mode", trajectory.mode);
+  rows("outputs", trajectory.outputs);
+  if (!trajectory.regions.empty()) {
+    rows("regions", trajectory.regions);
+    rows("theta", trajectory.theta);
+  }
+  if (!trajectory.contact_modes.empty()) {
+    object.list("contact_modes", trajectory.contact_modes,
+                [&](const auto& row, std::size_t) { stream.text() += contact_modes_json(row).dump(); });
+  }
+  object.end();
+}
+
+Json affine_json(const result::AffineSurface& affine) {
+  Json json = Json::object();
+  json["gradient"] = affine.gradient;
+  json["rate"] = affine.rate;
+  json["constant"] = affine.constant;
+  return json;
+}
+
+Json surface_json(const result::Surface& surface) {
+  Json curves = Json::array();
+  for (const auto& curve : surface.curves) {
+    Json piece = Json::object();
+    piece["t"] = or_null(curve.t);
+    piece["coordinates"] = curve.coordinates;
+    curves.push_back(std::move(piece));
+  }
+  Json json = Json::object();
+  json["name"] = surface.name;
+  json["role"] = name(surface.role);
+  json["states"] = surface.states;
+  json["depends_on_time"] = surface.depends_on_time;
+  json["affine"] = surface.affine ? affine_json(*surface.affine) : Json();
+  for (const auto& form : surface.within) json["within"].push_back(affine_json(form));
+  json["curves"] = std::move(curves);
+  return json;
+}
+
+Json arrows_json(const result::Arrows& arrows) {
+  return {{"x", arrows.x}, {"y", arrows.y}, {"dx", arrows.dx}, {"dy", arrows.dy}};
+}
+
+Json vector_field_json(const result::VectorField& field) {
+  return {{"t", field.t},
+          {"free", arrows_json(field.free)},
+          {"sides", arrows_json(field.sides)},
+          {"sliding", arrows_json(field.sliding)}};
+}
+
+Json options_json(const result::OptionRecord& options) {
+  Json json = Json::object();
+  for (const auto& [name, value] : options) {
+    std::visit([&json, &key = name](const auto& content) { json[key] = content; }, value);
+  }
+  return json;
+}
+
+/// What an optimisation has found, as members of the result.
+void append_optimum(ObjectStream& object, const result::Optimization& optimization) {
+  Json found = Json::object();
+  add_optimization(found, optimization);
+  for (const auto& [key, value] : found.items()) object.member(key.c_str(), value);
+}
+
+void append_head(ObjectStream& object, const result::Result& result) {
+  object.member("format", "saltus-result/1");
+  object.member("saltus", version);
+  object.member("model", model_json(result.model));
+  object.member("command", result.command);
+  if (!result.command_line.empty()) object.member("command_line", result.command_line);
+  object.member("method", result.method);
+  object.member("status", status_json(result.status));
+  object.member("states", result.states);
+  object.member("controls", result.controls);
+  object.member("switching_functions", result.switching_functions);
+  object.member("outputs", result.outputs);
+  Json groups = Json::array();
+  for (const auto& group : result.region_groups) groups.push_back({{"name", group.name}, {"modes", group.modes}});
+  if (!groups.empty()) object.member("region_groups", groups);
+  if (!result.contacts.empty()) object.member("contacts", result.contacts);
+  object.member("final", final_json(result.final));
+}
+
+void append_whole(TextStream& stream, const result::Result& result, std::size_t indent) {
+  ObjectStream object(stream, indent);
+  append_head(object, result);
+  object.list("events", result.events, [&](const auto& event, std::size_t at) { append_event(stream, event, at); });
+  object.key("trajectory");
+  append_trajectory(stream, result.trajectory, indent + 2);
+  if (result.optimization) append_optimum(object, *result.optimization);
+  Json surfaces = Json::array();
+  for (const auto& surface : result.surfaces) surfaces.push_back(surface_json(surface));
+  object.member("surfaces", surfaces);
+  if (result.vector_field) object.member("vector_field", vector_field_json(*result.vector_field));
+  object.member("statistics", result.optimization ? optimization_statistics_json(result.optimization->statistics)
+                                                  : statistics_json(result.statistics));
+  object.member("options", options_json(result.options));
+  if (result.sensitivities) object.member("sensitivities", sensitivities_json(*result.sensitivities));
+  if (result.optimization) object.member("start_values", start_values_json(*result.optimization));
+  if (result.elements) object.member("elements", elements_json(*result.elements));
+  if (result.comparison) object.member("comparison", comparison_json(*result.comparison));
+  if (result.order) object.member("order", order_json(*result.order));
+  Json families = Json::array();
+  for (const auto& family : result.families) families.push_back(family_json(family));
+  if (!families.empty()) object.member("families", families);
+  if (result.left_at) object.member("left_at", departure_json(*result.left_at));
+  if (!result.branches.empty()) {
+    object.list("branches", result.branches,
+                [&](const auto& branch, std::size_t at) { append_whole(stream, branch, at); });
+  }
+  object.end();
+}
+
+}  // namespace
+
+bool write_json(const result::Result& result, Sink sink) {
+  TextStream stream(sink);
+  append_whole(stream, result, 0);
+  stream.text() += '\n';
+  return stream.flush();
+}
+
+std::string to_json(const result::Result& result) {
+  return collected([&](Sink sink) { return write_json(result, sink); });
+}
+
+}  // namespace saltus::io

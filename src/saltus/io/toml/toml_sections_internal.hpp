@@ -1,0 +1,48 @@
+// Readers of the tables of a model file, one each.
+#pragma once
+
+#include <optional>
+
+#include "saltus/io/toml/toml_model.hpp"
+#include "saltus/io/toml/toml_reader_internal.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::io {
+
+void read_model_table(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_outputs(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_parameters(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_states(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_events(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_modes(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_jumps(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_mechanics(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_contacts(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_hysteresis(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_simulate(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+
+void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+
+/// Names of [tables.…]: expressions anywhere in the file may call them.
+[[nodiscard]] std::vector<std::string> table_names(const TomlTable& document);
+/// A file named in a model file, relative to it.
+[[nodiscard]] std::filesystem::path beside(const std::string& model, const std::string& file);
+/// Samples of a control from a file of numbers (source "file") or a stored result ("result").
+[[nodiscard]] Expected<model::SampledInput> sampled_input(const std::string& control, std::string_view source,
+                                                          const std::filesystem::path& file,
+                                                          const SourceLocation& location,
+                                                          std::vector<result::NamedFile>& files);
+
+/// The value of an option: truth, number, word or list of numbers; nullopt and an error for anything else.
+[[nodiscard]] std::optional<result::OptionValue> read_option_value(TomlReader& reader, const TomlValue& value);
+
+/// A table of name = expression.
+void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<model::NamedExpression>& expressions);
+
+/// The inclusion a word names, or an error without location.
+[[nodiscard]] Expected<model::Inclusion> inclusion_named(const std::string& word);
+
+}  // namespace saltus::io

@@ -1,0 +1,202 @@
+#include "saltus/model/optimal_control/ocp_builder.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/model/optimal_control/ocp_checks_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+using casadi::SX;
+
+int place_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+}  // namespace
+
+struct OcpBuilder::Parts {
+  /// What is stated of a free parameter or of a guess.
+  struct Named {
+    std::string name;
+    double lower = 0.0, upper = 0.0;
+    int output = 0;
+  };
+
+  Builder system;
+  Ocp ocp;
+  std::vector<std::string> free_states;
+  std::vector<Named> free_parameters, guesses;
+  std::optional<Error> error;
+  int outputs = 0;
+
+  explicit Parts(Builder builder) : system(std::move(builder)) {
+    auto built = system.build();
+    if (!built) {
+      error = built.error();
+      return;
+    }
+    outputs = ocp.user_outputs = static_cast<int>(built->output_names.size());
+    ocp.user_controls = static_cast<int>(built->control_names.size());
+  }
+
+  /// An output of the system's own beside the user's.
+  int add(const SX& expression) {
+    system.output(fmt::format("of_problem_{}", outputs), expression);
+    return outputs++;
+  }
+  void fail(std::optional<Error> mistake) {
+    if (!error) error = std::move(mistake);
+  }
+  void constrain(std::vector<OcpConstraint>& list, const std::string& name, double lower, const SX& e, double upper,
+                 const Softness& soft) {
+    OcpConstraint constraint{
+        .name = name, .output = add(e), .lower = lower, .upper = upper, .norm = soft.norm, .penalty = soft.penalty};
+    fail(check_constraint(constraint, {}));
+    list.push_back(std::move(constraint));
+  }
+  void unknown(const std::string& what, const std::string& name, const std::vector<std::string>& known) {
+    Error mistake;
+    mistake.code = ErrorCode::unknown_name;
+    mistake.message = fmt::format("expected the name of {}, found '{}'", what, name);
+    mistake.remedy = suggest(name, known);
+    fail(std::move(mistake));
+  }
+
+  void free_what_is_free() {
+    const auto& built = ocp.system;
+    ocp.free_states.assign(built.state_names.size(), false);
+    for (const auto& name : free_states) {
+      const int i = place_of(built.state_names, name);
+      if (i < 0) return unknown("a state", name, built.state_names);
+      ocp.free_states[static_cast<std::size_t>(i)] = true;
+    }
+    ocp.free_parameters.assign(built.parameter_names.size(), false);
+    ocp.parameter_lower = ocp.parameter_upper = built.parameter_values;
+    for (const auto& stated : free_parameters) {
+      const int place = place_of(built.parameter_names, stated.name);
+      if (place < 0) return unknown("a parameter", stated.name, built.parameter_names);
+      const auto i = static_cast<std::size_t>(place);
+      ocp.free_parameters[i] = true;
+      ocp.parameter_lower[i] = stated.lower;
+      ocp.parameter_upper[i] = stated.upper;
+      fail(check_range(fmt::format("parameter '{}'", stated.name), built.parameter_values[i], stated.lower,
+                       stated.upper, {}));
+    }
+  }
+
+  void take_guesses() {
+    using Kind = OcpGuess::Kind;
+    const auto& built = ocp.system;
+    for (const auto& stated : guesses) {
+      OcpGuess guess{.kind = Kind::state, .index = place_of(built.state_names, stated.name), .output = stated.output};
+      if (guess.index < 0) guess = {Kind::control, place_of(built.control_names, stated.name), stated.output};
+      if (guess.index < 0) {
+        guess = {Kind::parameter, place_of(built.parameter_names, stated.name), stated.output};
+        if (guess.index >= 0 && !ocp.free_parameters[static_cast<std::size_t>(guess.index)]) guess.index = -1;
+      }
+      GuessDescription description;
+      description.name = stated.name;
+      if (guess.index < 0) return fail(unknown_guess(description, ocp));
+      fail(check_guess(guess, description, ocp));
+      ocp.guess.push_back(guess);
+    }
+  }
+
+  Expected<Ocp> build() {
+    if (!error && !(ocp.horizon.value > 0.0)) fail(check_horizon(ocp.horizon, {}));
+    if (error) return tl::unexpected(*error);
+    auto built = system.build();
+    if (!built) return tl::unexpected(built.error());
+    ocp.system = std::move(*built);
+    ocp.guess.clear();
+    free_what_is_free();
+    take_guesses();
+    // The checks name places in a file: there are none.
+    Description nowhere;
+    nowhere.optimize.emplace();
+    nowhere.states.resize(ocp.system.state_names.size());
+    nowhere.jumps.resize(ocp.system.jumps.size());
+    fail(check_initial_states(ocp, nowhere));
+    fail(check(ocp, nowhere));
+    if (error) return tl::unexpected(*error);
+    return ocp;
+  }
+};
+
+OcpBuilder::OcpBuilder(Builder system) : parts_(std::make_unique<Parts>(std::move(system))) {}
+OcpBuilder::~OcpBuilder() = default;
+OcpBuilder::OcpBuilder(OcpBuilder&&) noexcept = default;
+OcpBuilder& OcpBuilder::operator=(OcpBuilder&&) noexcept = default;
+
+void OcpBuilder::start_time(double from) { parts_->ocp.from = from; }
+
+void OcpBuilder::horizon(double length) {
+  parts_->ocp.horizon = {.free = false, .value = length};
+  parts_->fail(check_horizon(parts_->ocp.horizon, {}));
+}
+
+void OcpBuilder::free_horizon(double initial, double lower, double upper) {
+  parts_->ocp.horizon = {.free = true, .value = initial, .lower = lower, .upper = upper};
+  parts_->fail(check_horizon(parts_->ocp.horizon, {}));
+}
+
+void OcpBuilder::minimize_time(double weight) { parts_->ocp.time_weight = weight; }
+void OcpBuilder::running_cost(const SX& cost) { parts_->ocp.running_cost = parts_->add(cost); }
+void OcpBuilder::terminal_cost(const SX& cost) { parts_->ocp.terminal_cost = parts_->add(cost); }
+
+void OcpBuilder::least_squares(const std::vector<SX>& of, const std::vector<SX>& reference,
+                               const Eigen::MatrixXd& weight, CostPoints at) {
+  const auto n = static_cast<Eigen::Index>(of.size());
+  OcpLeastSquares term;
+  term.at = at;
+  for (const auto& e : of) term.of.push_back(parts_->add(e));
+  for (const auto& e : reference) term.reference.push_back(parts_->add(e));
+  term.weight = weight.size() == 0 ? Eigen::MatrixXd::Identity(n, n) : weight;
+  if (term.weight.rows() != n || term.weight.cols() != n) {
+    Error mistake;
+    mistake.code = ErrorCode::invalid_model;
+    mistake.message =
+        fmt::format("the weight of least_squares is {} x {} for {} expressions", weight.rows(), weight.cols(), n);
+    mistake.remedy = "give a square matrix, or none";
+    return parts_->fail(std::move(mistake));
+  }
+  parts_->fail(check_least_squares(term, {}));
+  parts_->ocp.least_squares.push_back(std::move(term));
+}
+
+void OcpBuilder::path_constraint(const std::string& name, double lower, const SX& e, double upper,
+                                 const Softness& soft) {
+  parts_->constrain(parts_->ocp.path, name, lower, e, upper, soft);
+}
+
+void OcpBuilder::path_constraints_at(ConstraintPoints points) { parts_->ocp.path_at = points; }
+
+void OcpBuilder::terminal_constraint(const std::string& name, double lower, const SX& e, double upper,
+                                     const Softness& soft) {
+  parts_->constrain(parts_->ocp.terminal, name, lower, e, upper, soft);
+}
+
+void OcpBuilder::complementarity(const SX& a, const SX& b) {
+  const int first = parts_->add(a);
+  parts_->ocp.complementarities.emplace_back(first, parts_->add(b));
+}
+
+void OcpBuilder::free_state(const std::string& name) { parts_->free_states.push_back(name); }
+
+void OcpBuilder::free_parameter(const std::string& name, double lower, double upper) {
+  parts_->free_parameters.push_back({name, lower, upper, 0});
+}
+
+void OcpBuilder::guess(const std::string& name, const SX& e) {
+  parts_->guesses.push_back({name, 0.0, 0.0, parts_->add(e)});
+}
+
+Expected<Ocp> OcpBuilder::build() { return parts_->build(); }
+
+}  // namespace saltus::model

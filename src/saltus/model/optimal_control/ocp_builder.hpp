@@ -1,0 +1,80 @@
+// An optimal control problem stated in C++, in CasADi expressions.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/model/builder.hpp"
+#include "saltus/model/ocp.hpp"
+
+namespace saltus::model {
+
+/// How a constraint is held: hard, or by `penalty` times a norm of its violations in the objective.
+struct Softness {
+  ConstraintNorm norm = ConstraintNorm::hard;
+  double penalty = 0.0;
+};
+
+/// Builds an Ocp over the symbols of a Builder; names, rules and errors are those of the table [optimize].
+///
+///   Builder model("block");
+///   const SX q = model.state("q", {0}), v = model.state("v", {0}), u = model.control("u", {0, -2, 2});
+///   model.dynamics("q", v);
+///   model.dynamics("v", u - model.sign(v));
+///   OcpBuilder problem(std::move(model));
+///   problem.free_horizon(3, 0.1, 10);
+///   problem.minimize_time();
+///   problem.terminal_constraint("q == 1", 1, q, 1);
+///   problem.terminal_constraint("v == 0", 0, v, 0);
+///   Expected<Ocp> ocp = problem.build();
+///
+/// Expressions are scalar. The first mistake is kept and returned by build().
+class OcpBuilder {
+ public:
+  /// @param system  finished: its symbols stay valid
+  explicit OcpBuilder(Builder system);
+  ~OcpBuilder();
+  OcpBuilder(OcpBuilder&&) noexcept;
+  OcpBuilder& operator=(OcpBuilder&&) noexcept;
+
+  /// The time that the problem begins at; 0 by default.
+  void start_time(double from);
+  void horizon(double length);  ///< > 0
+  void free_horizon(double initial, double lower, double upper);
+  /// Adds weight T to the objective.
+  void minimize_time(double weight = 1.0);
+  void running_cost(const casadi::SX& cost);   ///< L(t, x, u, p), integrated
+  void terminal_cost(const casadi::SX& cost);  ///< E(x(T), T, p)
+  /// r'W r with r = of - reference, summed over the points.
+  /// @param reference  expressions of time and parameters, one each; empty: 0
+  /// @param weight  symmetric, n x n; 0 x 0 for the identity
+  void least_squares(const std::vector<casadi::SX>& of, const std::vector<casadi::SX>& reference = {},
+                     const Eigen::MatrixXd& weight = {}, CostPoints at = CostPoints::intervals);
+  /// lower <= e <= upper; one of them may be infinite.
+  void path_constraint(const std::string& name, double lower, const casadi::SX& e, double upper,
+                       const Softness& soft = {});
+  void path_constraints_at(ConstraintPoints points);
+  void terminal_constraint(const std::string& name, double lower, const casadi::SX& e, double upper,
+                           const Softness& soft = {});
+  /// 0 <= a _|_ b >= 0 along the path.
+  void complementarity(const casadi::SX& a, const casadi::SX& b);
+  /// The initial value is chosen between the bounds of the state.
+  void free_state(const std::string& name);
+  void free_parameter(const std::string& name, double lower, double upper);
+  /// Where the solution of a state, a control or a free parameter is looked for first: an expression of time and
+  /// parameters.
+  void guess(const std::string& name, const casadi::SX& e);
+
+  /// @return the problem, or the first mistake.
+  [[nodiscard]] Expected<Ocp> build();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace saltus::model

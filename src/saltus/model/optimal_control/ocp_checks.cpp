@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/base/at.hpp"
+#include "saltus/model/optimal_control/ocp_checks_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+using casadi::SX;
+
+Error mistake(std::string message, std::string remedy, const SourceLocation& location,
+              ErrorCode code = ErrorCode::invalid_model) {
+  return {code, std::move(message), std::move(remedy), location, {"in [optimize]"}};
+}
+
+/// The name of the first control that an expression depends on; empty if there is none.
+std::string control_in(const SX& expression, const System& system) {
+  for (std::size_t i = 0; i < system.control_names.size(); ++i) {
+    if (SX::depends_on(expression, system.u(static_cast<casadi_int>(i)))) return system.control_names[i];
+  }
+  return {};
+}
+
+std::optional<Error> check_functions(const Ocp& ocp, const SourceLocation& location) {
+  const System& system = ocp.system;
+  for (std::size_t j = 0; j < system.switching.size(); ++j) {
+    const auto& function = system.switching[j];
+    const auto control = control_in(function.psi, system);
+    if (control.empty()) continue;
+    const SX alpha = system.alpha(static_cast<casadi_int>(j));
+    if (SX::depends_on(system.f, alpha)) {
+      return mistake(fmt::format("the switching function '{}' depends on the control '{}'", function.name, control),
+                     fmt::format("make '{0}' a state with a rate that is the control: {0} = \"rate\"", control),
+                     location, ErrorCode::not_available);
+    }
+    if (SX::depends_on(system.outputs, alpha)) {
+      return mistake(
+          fmt::format("a cost or a constraint switches where '{}' changes its sign, a function of the control "
+                      "'{}'",
+                      function.name, control),
+          "abs and max of controls may enter convexly; step, sign and if of controls may not", location);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Error> check_horizon(const OcpHorizon& horizon, const SourceLocation& location) {
+  if (horizon.free) return check_range("the horizon", horizon.value, horizon.lower, horizon.upper, location);
+  if (horizon.value > 0.0) return std::nullopt;
+  return mistake(fmt::format("the horizon is {}", horizon.value), "give a number > 0", location);
+}
+
+std::optional<Error> check_range(const std::string& what, double initial, double lower, double upper,
+                                 const SourceLocation& location) {
+  if (!std::isfinite(lower) || !std::isfinite(upper)) {
+    return mistake(fmt::format("{} is free and needs two bounds", what), "add lower and upper", location);
+  }
+  if (lower > upper) {
+    return mistake(fmt::format("{} has the lower bound {} above its upper bound {}", what, lower, upper),
+                   "exchange them, or correct one", location);
+  }
+  if (initial < lower || initial > upper) {
+    return mistake(fmt::format("{} begins at {}, outside of its bounds [{}, {}]", what, initial, lower, upper),
+                   "move `initial` between the bounds", location);
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> check_constraint(const OcpConstraint& constraint, const SourceLocation& location) {
+  if (constraint.lower > constraint.upper) {
+    return mistake(fmt::format("the constraint '{}' has the lower bound {} above its upper bound {}", constraint.name,
+                               constraint.lower, constraint.upper),
+                   "exchange them", location);
+  }
+  if (constraint.norm != ConstraintNorm::hard && !(constraint.penalty > 0.0)) {
+    return mistake(fmt::format("the penalty of '{}' is {}", constraint.name, constraint.penalty), "give a number > 0",
+                   location);
+  }
+  return std::nullopt;
+}
+
+Error wrong_sample_width(const LeastSquaresDescription& stated, std::size_t row) {
+  return mistake(fmt::format("row {} of the reference '{}' has {} numbers, there are {} expressions", row + 1,
+                             stated.file, stated.samples[row].size(), stated.of.size()),
+                 "one column per expression of `of`, in their order", stated.location);
+}
+
+std::optional<Error> check_least_squares(const OcpLeastSquares& term, const LeastSquaresDescription& stated) {
+  const auto n = term.of.size();
+  if (!term.reference.empty() && term.reference.size() != n) {
+    return mistake(fmt::format("least_squares has {} expressions and {} references", n, term.reference.size()),
+                   "give one reference per expression, or none for 0", stated.location);
+  }
+  const auto& weight = stated.weight;
+  const bool is_square =
+      weight.size() == n && std::all_of(weight.begin(), weight.end(), [n](const auto& row) { return row.size() == n; });
+  const bool is_diagonal = weight.size() == 1 && weight.front().size() == n;
+  if (!weight.empty() && !is_square && !is_diagonal) {
+    return mistake(fmt::format("the weight of least_squares does not fit {} expressions", n),
+                   "give one number per expression, or a square matrix", stated.location);
+  }
+  if (!term.weight.isApprox(term.weight.transpose(), 1e-14)) {
+    return mistake("the weight of least_squares is not symmetric", "a matrix W and its transpose have to be equal",
+                   stated.location);
+  }
+  return std::nullopt;
+}
+
+Error unknown_guess(const GuessDescription& stated, const Ocp& ocp) {
+  std::vector<std::string> known = ocp.system.state_names;
+  known.insert(known.end(), ocp.system.control_names.begin(), ocp.system.control_names.begin() + ocp.user_controls);
+  for (std::size_t i = 0; i < ocp.free_parameters.size(); ++i) {
+    if (ocp.free_parameters[i]) known.push_back(ocp.system.parameter_names[i]);
+  }
+  return {ErrorCode::unknown_name,
+          fmt::format("expected the name of a state, a control or a free parameter, found '{}'", stated.name),
+          suggest(stated.name, known),
+          stated.location,
+          {"in [optimize] initial_guess"}};
+}
+
+std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& stated, const Ocp& ocp) {
+  const auto& system = ocp.system;
+  const SX expression = system.outputs(guess.output);
+  if (SX::depends_on(expression, system.alpha)) {
+    return mistake(fmt::format("the guess of '{}' has kinks or jumps", stated.name),
+                   "give a smooth expression of t, or the name of a stored result", stated.location);
+  }
+  SX moving = system.u;
+  for (int i = 0; i < static_cast<int>(system.state_names.size()); ++i) {
+    // A clock is the time.
+    if (!ocp.clock || ocp.clock->state != i) moving = SX::vertcat({moving, system.x(i)});
+  }
+  if (!SX::depends_on(expression, moving)) return std::nullopt;
+  return mistake(fmt::format("the guess of '{}' depends on states or controls", stated.name),
+                 "a guess is an expression of t and parameters", stated.location);
+}
+
+std::optional<Error> check_initial_states(const Ocp& ocp, const Description& description) {
+  const auto& system = ocp.system;
+  for (std::size_t i = 0; i < description.states.size(); ++i) {
+    const auto& location = description.states[i].location;
+    const double initial = system.initial_state[i];
+    if (ocp.free_states[i]) {
+      if (auto error = check_range(fmt::format("state '{}'", system.state_names[i]), initial, system.state_lower[i],
+                                   system.state_upper[i], location))
+        return error;
+    } else if (initial < system.state_lower[i] || initial > system.state_upper[i]) {
+      return mistake(fmt::format("state '{}' starts at {}, outside of its bounds [{}, {}]", system.state_names[i],
+                                 initial, system.state_lower[i], system.state_upper[i]),
+                     "move the initial value between the bounds, or make it free", location);
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> check(Ocp& ocp, const Description& description) {
+  const auto& system = ocp.system;
+  const SourceLocation& location = description.optimize->location;
+  if (!system.jumps.empty()) {
+    return mistake("[optimize] does not cover [[jumps]]",
+                   "states that jump at contacts or by hysteresis have forms of their own: time frozen by hand "
+                   "([time_freezing] clock), or a model without the jumps",
+                   description.jumps.front().location, ErrorCode::not_available);
+  }
+  for (std::size_t i = 0; i < description.states.size(); ++i) {
+    if (!system.discrete_states[i]) continue;
+    return mistake(fmt::format("the state '{}' is discrete: nothing moves it", system.state_names[i]),
+                   "make it a parameter, with free = true if it is to be chosen", description.states[i].location,
+                   ErrorCode::not_available);
+  }
+  if (ocp.clock) {
+    const SX all = SX::vertcat({system.f, system.outputs});
+    if (SX::depends_on(all, system.t)) {
+      return mistake(
+          fmt::format("t beside the clock '{}'", system.state_names[at(ocp.clock->state)]),
+          fmt::format("write the clock's name, {}: time is frozen by hand", system.state_names[at(ocp.clock->state)]),
+          location);
+    }
+  }
+  for (const auto& event : description.events) {
+    if (event.action == AtEvent::stop) {
+      ocp.warnings.push_back(fmt::format("[[events]] with stop = true do not stop an optimisation"));
+    }
+  }
+  return check_functions(ocp, location);
+}
+
+}  // namespace saltus::model

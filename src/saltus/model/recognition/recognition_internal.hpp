@@ -1,0 +1,113 @@
+// Nonsmooth terms -> switching functions and selections alpha.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/model/graph/sharing_internal.hpp"
+#include "saltus/model/graph/sx_graph_internal.hpp"
+#include "saltus/model/recognition/condition.hpp"
+
+namespace saltus::model {
+
+/// A switching function in the order it was met; the alphas in psi belong to smaller numbers.
+struct MetFunction {
+  std::string name;
+  SXElem psi;
+  int psi_node = 0;
+  SXElem alpha;
+  int alpha_node = 0;
+  bool named = false;
+  /// Changes by jumps only: nothing moves it off 0, so alpha has a value there, the one written.
+  bool discrete = false;
+  /// Of one that depends on discrete states (for others they can make it vanish for a while, as n x does for n = 0);
+  /// nothing: it does not matter (abs) or nobody asked.
+  std::optional<double> alpha_at_zero{};
+};
+
+/// A name of [switching]: a function, seen with this orientation.
+struct DeclaredFunction {
+  std::string name;
+  SharedFunction function;
+  std::string alias_of;  ///< empty unless the function had a declared name before
+};
+
+/// Largest number of smooth branches a chain of nested nonsmooth terms may unfold into.
+inline constexpr int branch_limit = 64;
+
+/// Collects the switching functions of one model. All results are expressions over the graph's symbols.
+/// Errors carry no location; whoever knows the text adds it.
+class Recognition {
+ public:
+  SxGraph graph;
+
+  [[nodiscard]] Expected<SXElem> step(const SXElem& e, const std::string& name);
+  [[nodiscard]] Expected<SXElem> sign(const SXElem& e, const std::string& name);
+  [[nodiscard]] Expected<SXElem> abs(const SXElem& e, const std::string& name);
+  /// `name` is the text of a - b.
+  [[nodiscard]] Expected<SXElem> max(const SXElem& a, const SXElem& b, const std::string& name);
+  [[nodiscard]] Expected<SXElem> min(const SXElem& a, const SXElem& b, const std::string& name);
+  [[nodiscard]] Expected<SXElem> select(const Condition& condition, const SXElem& a, const SXElem& b);
+
+  /// From now on floor and mod may be of states and controls, too, or no longer: where nothing but a record has them.
+  void take_whole_parts_of_all(bool all) { whole_parts_of_all_ = all; }
+  /// floor(e): e of time and parameters only.
+  [[nodiscard]] Expected<SXElem> floor(const SXElem& e, const std::string& name);
+  /// e - m floor(e/m): m a constant other than 0, e of time and parameters only.
+  [[nodiscard]] Expected<SXElem> mod(const SXElem& e, const SXElem& m, const std::string& name);
+  /// The value of a table at e. Alphas in e are taken out of it: the tables at e with them at 0 and 1, blended.
+  [[nodiscard]] Expected<SXElem> lookup(const std::shared_ptr<const CellTable>& table, const SXElem& e,
+                                        const std::string& name);
+
+  /// Where a condition holds, over the functions it consists of (literals by their numbers).
+  [[nodiscard]] Expected<Truth> truth(TruthDiagram& diagram, const Condition& condition);
+
+  /// Declares a named switching function. Its scaling is kept, even if an unnamed multiple was met before.
+  [[nodiscard]] Expected<DeclaredFunction> declare(const std::string& name, const SXElem& psi);
+
+  [[nodiscard]] const std::vector<MetFunction>& functions() const { return functions_; }
+  /// Whether an expression is constant between jumps: made of constants, parameters and discrete states.
+  [[nodiscard]] Expected<bool> changes_by_jumps_only(const SXElem& expression);
+  /// The scalar difference of a comparison; refused where its sides move and must not.
+  [[nodiscard]] Expected<SXElem> difference_of(const Comparison& comparison);
+  /// The value of an expression of constants and parameters; nothing if it is none.
+  [[nodiscard]] std::optional<double> parameter_value(const SXElem& expression);
+
+ private:
+  /// What step(e) turns out to be.
+  struct Selection {
+    enum class Kind { constant, alpha, polynomial } kind = Kind::constant;
+    double constant = 0.0;          ///< the value of e, not of its step
+    SharedFunction function{};      ///< of kind alpha
+    std::vector<int> literals{};    ///< of kind polynomial: e depends on nothing but these functions' alphas …
+    std::vector<double> corners{};  ///< … and has these values at their corners
+  };
+  /// @param at_zero  the selection where e is 0, if that matters; regarded for discrete functions only
+  [[nodiscard]] Expected<Selection> selection(const SXElem& e, const std::string& name, std::optional<double> at_zero);
+  [[nodiscard]] Expected<Selection> corner_selection(int node, const std::vector<int>& literals);
+  [[nodiscard]] Expected<SXElem> choose(const SXElem& difference, const std::string& name, const SXElem& a,
+                                        const SXElem& b);
+  [[nodiscard]] SXElem value(const Selection& selection);
+  [[nodiscard]] Expected<Truth> comparison_truth(TruthDiagram& diagram, const Comparison& comparison);
+  [[nodiscard]] std::optional<SharedFunction> find(int psi_node, std::optional<double> at_zero);
+  int append(const std::string& name, const SXElem& psi, int psi_node, std::optional<double> at_zero);
+  [[nodiscard]] Expected<SXElem> whole_part(const SXElem& e, const std::string& name);
+  [[nodiscard]] std::optional<SXElem> lookup_corners(const std::shared_ptr<const CellTable>& table, const SXElem& e,
+                                                     const std::string& name, int& corners);
+  [[nodiscard]] std::vector<int> alphas_in(int node) const;
+
+  bool whole_parts_of_all_ = false;
+  std::vector<MetFunction> functions_;
+  SharingIndex index_;
+  std::shared_ptr<const CellTable> integers_ = std::make_shared<const CellTable>(integer_cells());
+};
+
+/// Number of smooth branches an expression unfolds into when the alphas in it and in their switching functions are
+/// decided one after the other, each that has become constant not counting; stops counting above the limit.
+[[nodiscard]] int count_branches(const Tape& tape, int node, int limit);
+
+[[nodiscard]] Error chain_too_long(const std::string& name);
+
+}  // namespace saltus::model

@@ -1,0 +1,89 @@
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "saltus/model/statement/discrete_states_internal.hpp"
+
+namespace saltus::model {
+namespace {
+
+using expression::BinaryOperator;
+using expression::Node;
+using expression::UnaryOperator;
+
+/// Values of expressions of numbers.
+class Constants {
+ public:
+  explicit Constants(const Description& description) : description_(description) {}
+
+  /// Nothing for anything but numbers.
+  [[nodiscard]] std::optional<double> value(const Node& node) {
+    if (const auto* number = std::get_if<expression::Number>(&node.value)) return number->value;
+    if (const auto* name = std::get_if<expression::Name>(&node.value)) return definition(name->name);
+    if (const auto* unary = std::get_if<expression::Unary>(&node.value)) {
+      const auto operand = value(*unary->operand);
+      if (!operand || unary->op == UnaryOperator::logical_not) return std::nullopt;
+      return unary->op == UnaryOperator::minus ? -*operand : *operand;
+    }
+    const auto* binary = std::get_if<expression::Binary>(&node.value);
+    return binary == nullptr ? std::nullopt : joined(*binary);
+  }
+
+ private:
+  [[nodiscard]] std::optional<double> definition(const std::string& name) {
+    // Nothing while it is being worked out: a cycle, which is refused elsewhere.
+    const auto [it, fresh] = definitions_.emplace(name, std::nullopt);
+    if (!fresh) return it->second;
+    for (const auto& entry : description_.definitions) {
+      if (entry.name == name) definitions_[name] = value(*entry.expression);
+    }
+    return definitions_[name];
+  }
+
+  [[nodiscard]] std::optional<double> joined(const expression::Binary& binary) {
+    const auto left = value(*binary.left);
+    const auto right = left ? value(*binary.right) : std::nullopt;
+    if (!right) return std::nullopt;
+    switch (binary.op) {
+      case BinaryOperator::add:
+        return *left + *right;
+      case BinaryOperator::subtract:
+        return *left - *right;
+      case BinaryOperator::multiply:
+        return *left * *right;
+      case BinaryOperator::divide:
+        return *left / *right;
+      case BinaryOperator::power:
+        return std::pow(*left, *right);
+      default:
+        return std::nullopt;
+    }
+  }
+
+  const Description& description_;
+  std::map<std::string, std::optional<double>> definitions_;
+};
+
+}  // namespace
+
+std::vector<bool> discrete_states(const Description& description) {
+  Constants constants(description);
+  std::vector<bool> result;
+  for (const auto& state : description.states) {
+    bool stated = false, zero = true;
+    const auto look = [&](const std::vector<NamedExpression>& entries) {
+      for (const auto& entry : entries) {
+        if (entry.name != state.name) continue;
+        stated = true;
+        zero = zero && constants.value(*entry.expression) == 0.0;
+      }
+    };
+    look(description.dynamics);
+    for (const auto& mode : description.modes) look(mode.dynamics);
+    result.push_back(stated && zero);
+  }
+  return result;
+}
+
+}  // namespace saltus::model

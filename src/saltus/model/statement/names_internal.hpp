@@ -1,0 +1,48 @@
+// Who declared which name: one name, one meaning across all tables.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+
+namespace saltus::model {
+
+enum class NameKind {
+  parameter,
+  state,
+  control,
+  definition,
+  switching,
+  output,
+  event,
+  jump,
+  table,
+  hysteresis,
+  contact
+};
+
+/// "a parameter", "a state" …
+[[nodiscard]] std::string with_article(NameKind kind);
+
+struct Meaning {
+  NameKind kind = NameKind::parameter;
+  int index = 0;  ///< within its table
+  SourceLocation location;
+};
+
+class NameTable {
+ public:
+  /// Refuses names that are reserved, not made of letters, digits and underscores, or taken.
+  [[nodiscard]] std::optional<Error> declare(const std::string& name, const Meaning& meaning);
+  [[nodiscard]] const Meaning* find(const std::string& name) const;
+  /// Names of these kinds, in alphabetical order.
+  [[nodiscard]] std::vector<std::string> of(const std::vector<NameKind>& kinds) const;
+
+ private:
+  std::map<std::string, Meaning> meanings_;
+};
+
+}  // namespace saltus::model

@@ -1,0 +1,25 @@
+// Values of expressions at the start of a simulation, before there is a system.
+#pragma once
+
+#include <span>
+
+#include "saltus/model/statement/statement_internal.hpp"
+
+namespace saltus::model {
+
+/// The value of an expression of states and parameters with the states at their initial values, which are known. Time
+/// and controls count as 0. @param node  its number in the graph of `recognition`
+[[nodiscard]] inline double value_at_start(const Recognition& recognition, const Statement& statement, int node) {
+  const auto& tape = recognition.graph.tape();
+  Point point = blank_point(tape);
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    const auto& variable = tape.variables()[i];
+    const bool is_state = variable.kind == VariableKind::state || variable.kind == VariableKind::discrete;
+    if (is_state) point[i] = statement.states[at(variable.index)].initial;
+  }
+  TapeValues values;
+  evaluate(tape, tape.cone(std::span(&node, 1), Links::through_alpha), point, values);
+  return values.value[at(node)];
+}
+
+}  // namespace saltus::model

@@ -1,0 +1,73 @@
+// The one table of the options of an optimisation: names, ranges and meanings for model files, --set, --help, the
+// record in the result, and docs/options.md.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/model/ocp_description.hpp"
+#include "saltus/pipeline/options/optimize_options.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::pipeline {
+
+/// One option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = …) and on
+/// the command line (--set optimize.mpcc.sigma_final=…).
+struct OptimizeField {
+  std::string key;      ///< dotted, below [optimize]
+  std::string expects;  ///< "a number > 0"
+  std::string doc;      ///< one sentence
+  /// Writes a value into the options. Errors carry no location.
+  std::function<Expected<void>(OptimizeOptions&, const result::OptionValue&)> set;
+  /// Appends the value in force under its full name; nothing if the option is not.
+  std::function<void(const OptimizeOptions&, std::string_view key, result::OptionRecord&)> record;
+};
+
+/// All options of an optimisation, in the order of the documentation.
+[[nodiscard]] std::span<const OptimizeField> optimize_fields();
+
+/// Keys of optimize_fields().
+[[nodiscard]] std::vector<std::string> optimize_keys();
+
+/// A key of [optimize] that states the problem: an expression, a list of them, or a table.
+struct ProblemKey {
+  std::string_view key;      ///< "terminal_cost"
+  std::string_view expects;  ///< "an expression"
+  std::string_view doc;      ///< one sentence
+};
+
+/// All keys of [optimize] that are not options, in the order of the documentation.
+[[nodiscard]] std::span<const ProblemKey> problem_keys();
+
+/// The options with one of them replaced.
+/// @param key    dotted, below [optimize]: "elements", "mpcc.tolerance"
+/// @param value  as written; integers are taken where numbers are expected
+/// @return the options, or unknown_name (with the nearest known keys, those of the problem among them), invalid_option
+/// or
+///         not_available, each naming what was expected and what was found, without a location.
+[[nodiscard]] Expected<OptimizeOptions> with_value(OptimizeOptions options, std::string_view key,
+                                                   const result::OptionValue& value);
+
+/// Every option with its value in force, under its full name ("optimize.mpcc.tolerance"), for Result::options.
+[[nodiscard]] result::OptionRecord option_record(const OptimizeOptions& options);
+
+/// Checks the options against each other and against the problem: control_intervals given, elements and references of
+/// the right length, nothing that does not fit into memory, sigma falling.
+/// @return the first problem, or nullopt if an optimisation may start. The error has a location where `problem` has
+/// one.
+[[nodiscard]] std::optional<OptionProblem> find_problem(const OptimizeOptions& options,
+                                                        const model::OcpDescription& problem);
+
+/// Two lines per option, as options_help() of a simulation.
+[[nodiscard]] std::string optimize_options_help();
+
+/// The part of docs/options.md that is about [optimize].
+[[nodiscard]] std::string optimize_options_page();
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,264 @@
+// Where two or more selections vary: steps by series or of Runge-Kutta methods that end on the boundaries of zones.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "saltus/base/at.hpp"
+#include "saltus/ode/bernstein.hpp"
+#include "saltus/ode/step_control.hpp"
+#include "saltus/switching/hidden/hidden_trajectory_internal.hpp"
+
+namespace saltus::switching {
+namespace {
+
+/// Steps between two looks for a state of rest: each costs some of them, and says nothing on a long way.
+constexpr int shortest_pause = 4;
+constexpr int longest_pause = 32;
+/// Ratio of the speeds of surfaces up to which explicit steps do.
+constexpr double not_stiff = 10.0;
+/// In times that the fastest selection needs for its way at its largest speed: what happens beyond the zone in a step
+/// that ends on its boundary costs digits there.
+constexpr double longest_step = 30.0;
+
+/// Steps by series in a zone without an event.
+constexpr int most_series = 64;
+
+}  // namespace
+
+/// A step of a Runge-Kutta method, its dense output made when it is first needed.
+class HiddenTrajectory::RungeKuttaStep {
+ public:
+  RungeKuttaStep(const HiddenFace& face, ode::Stepper& stepper, ode::DenseStep& dense)
+      : face_(face), stepper_(stepper), dense_(dense) {}
+  [[nodiscard]] const double* slope_new() const { return stepper_.slope_new(); }
+  void bounds(double* low, double* high) {
+    if (stepper_.bounds(low, high)) return;
+    make_dense();
+    dense_.bounds(low, high);
+  }
+  void make_dense() {
+    const auto f = [this](double /*t*/, const double* u, double* v) { face_.velocity(u, v); };
+    if (!is_dense_) is_dense_ = stepper_.dense(f, dense_) == ode::Attempt::finite;
+  }
+  void evaluate(double theta, double* u) const { dense_.evaluate(theta, u); }
+
+ private:
+  const HiddenFace& face_;
+  ode::Stepper& stepper_;
+  ode::DenseStep& dense_;
+  bool is_dense_ = false;
+};
+
+class HiddenTrajectory::SeriesStep {
+ public:
+  SeriesStep(const PairSeries& series, const double* slope_new) : series_(series), slope_new_(slope_new) {}
+  [[nodiscard]] const double* slope_new() const { return slope_new_; }
+  void bounds(double* low, double* high) const { series_.bounds(low, high); }
+  void make_dense() const {}
+  void evaluate(double theta, double* u) const { series_.evaluate(theta, u); }
+
+ private:
+  const PairSeries& series_;
+  const double* slope_new_;
+};
+
+HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
+  const auto f = [this](double /*t*/, const double* u, double* v) { face_.velocity(u, v); };
+  double fastest = 0.0;
+  double slowest = infinite;
+  for (int j = 0; j < m_; ++j) {
+    fastest = std::max(fastest, face_.speed(j));
+    if (face_.speed(j) > 0.0) slowest = std::min(slowest, face_.speed(j));
+  }
+  if (!(fastest > 0.0)) return settle("no velocity depends on the selections", v_.data());
+  next_look_ = 0;
+  pause_ = shortest_pause;
+  int steps = 0;
+  if (face_.pair() != nullptr && fastest <= not_stiff * slowest) {
+    if (const auto status = cross_pair(fastest, steps)) return *status;
+  }
+  double h = h_ > 0.0 ? h_ : 0.05 / fastest;
+  h_ = 0.0;
+  ode::StiffnessWatch watch;
+  ode::StepControl control(stiff_ ? ode::Method::radau5 : options_.method);
+  if (stiff_stepper_) stiff_stepper_->restart();
+  for (; used_ < options_.budget; ++steps, ++used_) {
+    if (const auto status = look_for_rest_at(steps)) return *status;
+    auto& made = stiff_ ? stiff_stepper_ : stepper_;
+    if (!made) made.emplace(stiff_ ? ode::Method::radau5 : options_.method, m_);
+    ode::Stepper& stepper = *made;
+    const double tolerance = tolerance_here();
+    const ode::Tolerances tolerances{tolerance, tolerance};
+    if (stepper.attempt(f, 0.0, u_.data(), v_.data(), h, tolerances) != ode::Attempt::finite) {
+      h *= 0.25;
+      continue;
+    }
+    if (stepper.error_norm() > 1.0) {
+      h *= control.rejected(stepper.error_norm());
+      continue;
+    }
+    RungeKuttaStep step(face_, stepper, dense_);
+    const StepEvent event = first_event(step);
+    end_step(event, h, stepper.x_new());
+    if (event.kind == StepEvent::Kind::boundary) return at_boundary(event.component);
+    if (event.kind == StepEvent::Kind::maximum) {
+      h_ = h * control.accepted(stepper.error_norm());
+      return pass_section(static_cast<std::uint64_t>(2 * m_ + event.component));
+    }
+    std::copy_n(stepper.slope_new(), m_, v_.begin());
+    h *= control.accepted(stepper.error_norm());
+    if (!stiff_ && watch.looks_stiff(stepper)) {
+      stiff_ = true;
+      control = ode::StepControl(ode::Method::radau5);
+    }
+  }
+  return Status::goes_on;
+}
+
+/// Two selections vary, at similar speeds: no step is taken in vain. Ends with nothing where that takes many steps: one
+/// of them may be fast next to a slow way to rest, which Runge-Kutta steps notice.
+std::optional<HiddenTrajectory::Status> HiddenTrajectory::cross_pair(double fastest, int& steps) {
+  const double longest = longest_step / fastest;
+  for (; steps < most_series && used_ < options_.budget; ++steps, ++used_) {
+    if (const auto status = look_for_rest_at(steps)) return *status;
+    series_.take(*face_.pair(), face_.free(), u_, v_, tolerance_here(), longest);
+    series_.evaluate(1.0, series_end_.data());
+    face_.velocity(series_end_.data(), series_slope_.data());
+    SeriesStep step(series_, series_slope_.data());
+    const StepEvent event = first_event(step);
+    end_step(event, series_.h(), series_end_.data());
+    if (event.kind == StepEvent::Kind::boundary) return at_boundary(event.component);
+    if (event.kind == StepEvent::Kind::maximum) {
+      return pass_section(static_cast<std::uint64_t>(2 * m_ + event.component));
+    }
+    v_ = series_slope_;
+  }
+  return std::nullopt;
+}
+
+/// Looks for rest where it is time to; what the trajectory does then.
+std::optional<HiddenTrajectory::Status> HiddenTrajectory::look_for_rest_at(int step) {
+  if (step != next_look_) return std::nullopt;
+  const Rest rest = look_for_rest();
+  next_look_ += pause_;
+  pause_ = std::min(2 * pause_, longest_pause);
+  if (rest == Rest::settled) return settle("the hidden dynamics comes to rest: sliding", point_velocity_.data());
+  if (rest == Rest::moved) return Status::goes_on;
+  return std::nullopt;
+}
+
+/// Goes to the end of a step, which is its event if it has one; there with the velocity.
+void HiddenTrajectory::end_step(const StepEvent& event, double h, const double* u_new) {
+  const double* next = event.kind == StepEvent::Kind::none ? u_new : point_.data();
+  const double duration = event.theta * h;
+  recurrence_.add_time(duration);
+  for (int j = 0; j < m_; ++j) {
+    recurrence_.add_selection(j, 0.5 * duration * (std::clamp(u_[at(j)], 0.0, 1.0) + std::clamp(next[j], 0.0, 1.0)));
+    u_[at(j)] = next[j];
+  }
+  if (event.kind != StepEvent::Kind::none) face_.velocity(u_.data(), v_.data());
+}
+
+double HiddenTrajectory::tolerance_here() const {
+  double distance = 0.0;
+  for (int j = 0; j < m_; ++j) distance = std::max(distance, std::abs(u_[at(j)] - start_[at(j)]));
+  return std::clamp(distance * options_.tolerance_away, options_.tolerance, options_.tolerance_away);
+}
+
+/// The first boundary or maximum within an accepted step, with point_ there.
+template <class Step>
+HiddenTrajectory::StepEvent HiddenTrajectory::first_event(Step& step) {
+  StepEvent event;
+  step.bounds(low_.data(), high_.data());
+  const auto may_cross = [&](int j) {
+    const int z = zone_[at(j)];
+    return z == 0 ? low_[at(j)] < 0.0 || high_[at(j)] > 1.0 : z < 0 ? high_[at(j)] > 0.0 : low_[at(j)] < 1.0;
+  };
+  const double* slope_new = step.slope_new();
+  // Of two components that cycle within the square either one has maxima.
+  const int only = m_ == 2 && face_.free().size() == 2 ? 0 : -1;
+  const auto has_maximum = [&](int j) {
+    return (only < 0 || j == only) && zone_[at(j)] == 0 && v_[at(j)] > 0.0 && slope_new[j] < 0.0 &&
+           v_[at(j)] - slope_new[j] > 1e-7 * face_.speed(j);  // else it has come to rest
+  };
+  bool any = false;
+  bool any_may_cross = false;
+  for (int j = 0; j < m_; ++j) {
+    any_may_cross = any_may_cross || may_cross(j);
+    any = any || has_maximum(j);
+  }
+  if (!any && !any_may_cross) return event;
+  step.make_dense();
+  for (std::size_t node = 0; any_may_cross && node < ode::event_nodes; ++node) {
+    step.evaluate(ode::interpolation_nodes()[node], samples_.data() + node * at(m_));
+  }
+  for (int j = 0; j < m_; ++j) {
+    if (may_cross(j)) look_for_boundary(j, event);
+  }
+  for (int j = 0; j < m_; ++j) {
+    if (has_maximum(j)) look_for_maximum(j, step, event);
+  }
+  if (event.kind == StepEvent::Kind::none) return event;
+  step.evaluate(event.theta, point_.data());
+  if (event.kind == StepEvent::Kind::boundary) {
+    // at_boundary tells the ends of [0, 1] apart by where the component is.
+    point_[at(event.component)] = point_[at(event.component)] > 0.5 ? 1.0 : 0.0;
+  }
+  return event;
+}
+
+void HiddenTrajectory::look_for_boundary(int j, StepEvent& event) {
+  const int z = zone_[at(j)];
+  for (const double limit : {0.0, 1.0}) {
+    if ((z < 0 && limit > 0.0) || (z > 0 && limit < 1.0)) continue;
+    // Positive on this side of the boundary.
+    const double side = (limit == 0.0) == (z == 0) ? 1.0 : -1.0;
+    std::array<double, ode::event_nodes> values{};
+    for (std::size_t node = 0; node < values.size(); ++node) {
+      values[node] = side * (samples_[node * at(m_) + at(j)] - limit);
+    }
+    const double noise = 1e-15 * (1.0 + std::abs(u_[at(j)]));
+    const int zero_order = values[0] == 0.0 ? 1 : 0;
+    const auto change = ode::first_sign_change(ode::to_bernstein(values), 1, zero_order, noise);
+    if (change && change->upper < event.theta) event = {StepEvent::Kind::boundary, j, change->upper};
+    if (change && change->upper == event.theta && event.kind != StepEvent::Kind::boundary) {
+      event = {StepEvent::Kind::boundary, j, change->upper};
+    }
+  }
+}
+
+/// v_j passes from + to -: located on the velocity at the dense output, whose own derivative is less accurate. Regula
+/// falsi with halved ends (Illinois); the end at which v_j is not positive any more.
+template <class Step>
+void HiddenTrajectory::look_for_maximum(int j, const Step& step, StepEvent& event) {
+  constexpr double resolution = 0x1p-44;
+  double low = 0.0;
+  double high = 1.0;
+  double at_low = v_[at(j)];
+  double at_high = step.slope_new()[j];
+  int kept = 0;  // > 0: the lower end was, < 0: the upper one
+  for (int i = 0; i < 44 && high - low > resolution; ++i) {
+    double middle = low + (high - low) * (at_low / (at_low - at_high));
+    // At least a little beyond an end that is as good as the zero.
+    middle = std::clamp(middle, low + 0.5 * resolution, high - 0.5 * resolution);
+    step.evaluate(middle, point_.data());
+    face_.velocity(point_.data(), point_velocity_.data());
+    const double value = point_velocity_[at(j)];
+    if (value > 0.0) {
+      low = middle;
+      at_low = value;
+      if (kept < 0) at_high *= 0.5;
+      kept = -1;
+    } else {
+      high = middle;
+      at_high = value;
+      if (kept > 0) at_low *= 0.5;
+      kept = 1;
+    }
+    if (value == 0.0) break;
+  }
+  if (high < event.theta) event = {StepEvent::Kind::maximum, j, high};
+}
+
+}  // namespace saltus::switching

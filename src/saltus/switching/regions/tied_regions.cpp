@@ -1,0 +1,208 @@
+#include "saltus/switching/regions/tied_regions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "saltus/base/at.hpp"
+#include "saltus/switching/regions/region_weights.hpp"
+#include "saltus/switching/table/matrix_stability.hpp"
+
+namespace saltus::switching {
+namespace {
+
+using Eigen::MatrixXd;
+
+/// A face as a polytope of its own, in differences from its first region along a basis of them.
+struct Face {
+  std::vector<int> active;
+  RegionPolytope polytope;
+  MatrixXd rates;  ///< of the coordinates along the basis, for the regions of the face
+};
+
+/// Part of a difference that the ones before do not span, relative to it, below which it depends on them.
+constexpr double independent_difference = 1e-6;
+
+std::optional<Face> face_of(const RegionTie& tie, const std::vector<int>& active) {
+  const MatrixXd& points = tie.polytope.points();
+  const auto count = index(active.size());
+  MatrixXd differences(count, points.cols());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    differences.row(k) = points.row(active[static_cast<std::size_t>(k)]) - points.row(active[0]);
+  }
+  // The largest remainder first, so that coordinates are of the order of one.
+  MatrixXd rest = differences;
+  std::vector<Eigen::Index> basis;
+  const double size = differences.rowwise().norm().maxCoeff();
+  while (basis.size() < static_cast<std::size_t>(std::min(points.cols(), count - 1))) {
+    Eigen::Index best = 0;
+    if (!(rest.rowwise().norm().maxCoeff(&best) > independent_difference * size)) break;
+    const Eigen::RowVectorXd direction = rest.row(best).normalized();
+    rest -= (rest * direction.transpose()) * direction;
+    basis.push_back(best);
+  }
+  std::sort(basis.begin(), basis.end());
+  MatrixXd spanning(index(basis.size()), points.cols());
+  for (std::size_t k = 0; k < basis.size(); ++k) spanning.row(index(k)) = differences.row(basis[k]);
+  MatrixXd coordinates(count, index(basis.size()));
+  if (!basis.empty()) {
+    coordinates = (spanning * spanning.transpose()).ldlt().solve(spanning * differences.transpose()).transpose();
+  }
+  MatrixXd rates(index(basis.size()), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    rates.col(k) = spanning * tie.rates.col(active[static_cast<std::size_t>(k)]);
+  }
+  auto polytope = RegionPolytope::make(std::move(coordinates));
+  if (!polytope) return std::nullopt;
+  return Face{active, std::move(*polytope), std::move(rates)};
+}
+
+/// The smallest of what is to be positive: weights off the facets of the face, and how fast the others fall behind.
+double margin_of_tie(const RegionTie& tie, const RegionWeights& weights, const RegionSet& set) {
+  double margin = std::numeric_limits<double>::infinity();
+  for (std::size_t f = 0; f < weights.polytope().facets().size(); ++f) margin = std::min(margin, weights.excess(f));
+  Eigen::VectorXd velocity = Eigen::VectorXd::Zero(tie.rates.rows());
+  for (std::size_t k = 0; k < set.active.size(); ++k) velocity += set.weights[k] * tie.rates.col(set.active[k]);
+  const Eigen::VectorXd ahead = tie.polytope.points() * velocity;
+  const double scale = (tie.polytope.points() * tie.rates).cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < ahead.size(); ++i) {
+    if (std::binary_search(set.active.begin(), set.active.end(), static_cast<int>(i))) continue;
+    margin = std::min(margin, (ahead[set.active[0]] - ahead[i]) / (scale > 0.0 ? scale : 1.0));
+  }
+  return margin;
+}
+
+bool solve_on(const RegionTie& tie, const Face& face, RegionWeights& weights, const std::vector<double>& near,
+              RegionSet& set) {
+  set.active = face.active;
+  set.weights = near;
+  if (!weights.solve(face.rates, set.weights.data())) return false;
+  set.margin = margin_of_tie(tie, weights, set);
+  return !std::isnan(set.margin);
+}
+
+/// Whether the weights return to those of the set where they follow the indicators.
+bool face_attracts(const Face& face, const RegionSet& set) {
+  const auto m = face.rates.rows();
+  if (m == 0) return true;
+  const Eigen::Map<const Eigen::VectorXd> theta(set.weights.data(), index(set.weights.size()));
+  const MatrixXd dynamics = weight_dynamics(face.polytope.points(), face.rates, theta);
+  std::vector<double> entries;
+  for (Eigen::Index row = 0; row < m; ++row) {
+    for (Eigen::Index column = 0; column < m; ++column) entries.push_back(dynamics(row, column));
+  }
+  return is_hurwitz(entries, static_cast<int>(m));
+}
+
+/// Weights to start from: the centre, and near each region and the side opposite of it.
+std::vector<std::vector<double>> starts(const RegionPolytope& polytope) {
+  const MatrixXd centred = polytope.points().rowwise() - polytope.points().colwise().mean();
+  const double size = centred.rowwise().squaredNorm().maxCoeff();
+  std::vector<std::vector<double>> found;
+  const auto add = [&](const Eigen::VectorXd& exponents) {
+    const Eigen::ArrayXd weights = (exponents.array() - exponents.maxCoeff()).exp();
+    found.emplace_back(weights.data(), weights.data() + weights.size());
+    for (double& weight : found.back()) weight /= weights.sum();
+  };
+  add(Eigen::VectorXd::Zero(centred.rows()));
+  if (!(size > 0.0)) return found;
+  for (Eigen::Index i = 0; i < centred.rows(); ++i) {
+    const Eigen::VectorXd towards = 2.0 / size * (centred * centred.row(i).transpose());
+    add(towards);
+    add(-towards);
+  }
+  return found;
+}
+
+bool is_known(const std::vector<RegionSet>& sets, const RegionSet& set) {
+  return std::any_of(sets.begin(), sets.end(), [&](const RegionSet& other) {
+    return other.active == set.active && std::equal(set.weights.begin(), set.weights.end(), other.weights.begin(),
+                                                    [](double a, double b) { return std::abs(a - b) <= 1e-6; });
+  });
+}
+
+std::vector<int> regions_of(RegionBits face) {
+  std::vector<int> active;
+  for (int i = 0; face >> i != 0; ++i) {
+    if ((face >> i & 1U) != 0) active.push_back(i);
+  }
+  return active;
+}
+
+}  // namespace
+
+bool solve_region_face(const RegionTie& tie, const std::vector<int>& active, const std::vector<double>& near,
+                       RegionSet& set) {
+  const auto face = face_of(tie, active);
+  if (!face) return false;
+  RegionWeights weights(face->polytope);
+  return solve_on(tie, *face, weights, near, set);
+}
+
+std::vector<RegionSet> admissible_region_faces(const RegionTie& tie, double tolerance) {
+  std::vector<RegionSet> found;
+  for (const RegionBits bits : tie.polytope.faces()) {
+    const auto face = face_of(tie, regions_of(bits));
+    if (!face) continue;
+    RegionWeights weights(face->polytope);
+    for (const auto& start : starts(face->polytope)) {
+      RegionSet set;
+      if (!solve_on(tie, *face, weights, start, set) || !(set.margin >= -tolerance) || is_known(found, set)) continue;
+      set.attracts = face_attracts(*face, set);
+      found.push_back(std::move(set));
+    }
+  }
+  return found;
+}
+
+bool can_be_held(const RegionTie& tie) {
+  const auto m = tie.rates.rows();
+  const auto n = tie.rates.cols();
+  if (n <= m) return false;
+  std::vector<bool> taken(static_cast<std::size_t>(n), false);
+  std::fill(taken.begin(), taken.begin() + m + 1, true);
+  MatrixXd equations(m + 1, m + 1);
+  const Eigen::VectorXd sum_is_one = Eigen::VectorXd::Unit(m + 1, m);
+  do {
+    Eigen::Index column = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!taken[static_cast<std::size_t>(i)]) continue;
+      equations.col(column).head(m) = tie.rates.col(i);
+      equations(m, column++) = 1.0;
+    }
+    // A corner that is 0 to rounding may be on either side: a face of the others has it, too.
+    const Eigen::VectorXd weights = equations.partialPivLu().solve(sum_is_one);
+    if (weights.allFinite() && weights.minCoeff() >= 0.0) return true;
+  } while (std::prev_permutation(taken.begin(), taken.end()));
+  return false;
+}
+
+bool motion_depends_on_weights(const RegionTie& tie, const RegionSet& set, const Eigen::MatrixXd& fields) {
+  const auto face = face_of(tie, set.active);
+  if (!face) return false;
+  const auto count = index(set.active.size());
+  MatrixXd equations(face->rates.rows() + 1, count);
+  equations.topRows(face->rates.rows()) = face->rates;
+  equations.bottomRows(1).setOnes();
+  const double size = face->rates.size() > 0 ? face->rates.cwiseAbs().maxCoeff() : 0.0;
+  if (size > 0.0) equations.topRows(face->rates.rows()) /= size;
+  Eigen::FullPivLU<MatrixXd> factors(equations);
+  factors.setThreshold(1e-12);
+  if (factors.dimensionOfKernel() == 0) return false;
+  MatrixXd own(fields.rows(), count);
+  for (Eigen::Index k = 0; k < count; ++k) own.col(k) = fields.col(set.active[static_cast<std::size_t>(k)]);
+  // Weights are between 0 and 1: what their changes move, against what the fields do, state by state.
+  const MatrixXd kernel = factors.kernel();
+  const MatrixXd motion = own * kernel;
+  const double change = kernel.cwiseAbs().maxCoeff();
+  for (Eigen::Index row = 0; row < own.rows(); ++row) {
+    if (motion.row(row).cwiseAbs().maxCoeff() > 1e-9 * change * own.row(row).cwiseAbs().maxCoeff()) return true;
+  }
+  return false;
+}
+
+}  // namespace saltus::switching
