@@ -8,6 +8,8 @@ import fnmatch
 import re
 from pathlib import Path
 
+from sizes import SIZE_CHECKS
+
 ALWAYS_ALLOWED = {"base", "linalg"}
 SOURCE_SUFFIXES = {".cpp", ".hpp", ".h", ".py", ".sh", ".cmake", ".js", ".css"}
 SKIPPED_FOLDERS = {".git", ".venv", "build", "demo", "__pycache__"}
@@ -221,4 +223,5 @@ ALL_CHECKS = {
     "forbidden_words": check_forbidden_words,
     "citations": check_citations,
     "names_of_sources": check_names_of_sources,
+    **SIZE_CHECKS,
 }

@@ -9,7 +9,7 @@ namespace saltus::cli {
 namespace {
 
 /// As in CITATION.cff; a test compares.
-constexpr std::string_view entries =
+constexpr std::string_view bibliography =
     R"(% If Saltus helps your work, please cite it together with the papers of the methods you used.
 @software{{saltus,
   author  = {{{{The Saltus authors}}}},
@@ -43,7 +43,7 @@ Command add_cite(CLI::App& app) {
   auto* command = app.add_subcommand("cite", "print how to cite Saltus, for BibTeX");
   command->footer("Example:\n  saltus cite >> references.bib");
   return {"cite", [] {
-            print(fmt::format(entries, version));
+            print(fmt::format(bibliography, version));
             return ExitCode::done;
           }};
 }

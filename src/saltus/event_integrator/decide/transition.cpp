@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 
 namespace saltus::event_integrator {
