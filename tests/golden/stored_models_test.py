@@ -63,6 +63,9 @@ class StoredModels(tool.ToolTest):
         self.assertEqual(list(result["model"]["initial_state"]), result["states"])
         self.assertEqual(list(result["model"]["initial_state"].values()), result["trajectory"]["x"][0])
         self.assertEqual(result["command_line"], "saltus simulate stick-slip --until 3 --set belt=0.3")
+        equations = [(line["left"], line["where"]) for line in result["model"]["equations"]]
+        self.assertEqual(equations[:2], [("q'", ""), ("v'", "")])
+        self.assertIn("switching function", [where for _, where in equations])
 
     def test_it_runs_again_with_the_same_bits(self):
         runs = {"stick-slip": [], "two-belts": ["--method", "fesd"], "bouncing-ball": ["--set", "simulate.output=auto"],

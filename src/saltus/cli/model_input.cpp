@@ -108,6 +108,8 @@ void complete_record(const ModelInput& input, result::Result& result) {
   result.model.text = input.file.text;
   result.model.settings = input.settings;
   result.model.captions = input.file.captions;
+  constexpr std::size_t equations_shown = 200;
+  result.model.equations = io::stated_equations(input.file.description, equations_shown);
   if (!result.left_at) result.model.files = input.file.files;
   for (const auto& value : input.file.description.inputs) {
     result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));

@@ -161,6 +161,12 @@ json pairs(const Pairs& list) {
   return result;
 }
 
+json equations_data(const std::vector<result::StatedEquation>& equations) {
+  json data = json::array();
+  for (const auto& [left, right, where] : equations) data.push_back({left, right, where});
+  return data;
+}
+
 /// With what it takes to run it again: who gets the page alone sees what was solved.
 json model_data(const result::ModelRecord& model) {
   json files = json::array();
@@ -173,6 +179,7 @@ json model_data(const result::ModelRecord& model) {
           {"initial_state", pairs(head(model.initial_state, columns_in_page))},
           {"file", model.file},
           {"text", model.text},
+          {"equations", equations_data(model.equations)},
           {"files", std::move(files)},
           {"settings", model.settings}};
 }

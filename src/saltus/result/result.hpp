@@ -132,6 +132,13 @@ struct NamedFile {
   std::optional<std::string> text;  ///< not of files of more than 10^6 bytes
 };
 
+/// An equation of a model: left = right.
+struct StatedEquation {
+  std::string left;   ///< "v'", "s", "v behind impact"
+  std::string right;  ///< as it was read
+  std::string where;  ///< where or when it holds; empty: everywhere
+};
+
 struct ModelRecord {
   std::string name;
   std::string description;
@@ -139,11 +146,12 @@ struct ModelRecord {
   std::vector<std::pair<std::string, double>> parameters;
   std::vector<std::pair<std::string, double>> initial_state{};
   // What it takes to run it again; empty for a model stated in C++.
-  std::string file{};                   ///< its name, as it was opened
-  std::string text{};                   ///< of the model file
-  std::vector<NamedFile> files{};       ///< of a branch none: they are its root's
-  std::vector<std::string> settings{};  ///< NAME=VALUE, in their order: of --set, then of the other options
-  Captions captions{};                  ///< units and labels of its quantities
+  std::string file{};                       ///< its name, as it was opened
+  std::string text{};                       ///< of the model file
+  std::vector<NamedFile> files{};           ///< of a branch none: they are its root's
+  std::vector<std::string> settings{};      ///< NAME=VALUE, in their order: of --set, then of the other options
+  Captions captions{};                      ///< units and labels of its quantities
+  std::vector<StatedEquation> equations{};  ///< the first ones; its text has all
 };
 
 /// What a surface belongs to.

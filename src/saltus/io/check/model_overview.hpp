@@ -7,6 +7,7 @@
 #include "saltus/model/description.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/result/caption.hpp"
+#include "saltus/result/result.hpp"
 
 namespace saltus::io {
 
@@ -71,6 +72,11 @@ struct ModelOverview {
   std::vector<std::string> inclusion_differences;
   std::vector<std::string> warnings;
 };
+
+/// Lists the equations of a model in the order of its file: motion, modes, definitions, switching functions, jumps,
+/// outputs; at most `most` of them.
+[[nodiscard]] std::vector<result::StatedEquation> stated_equations(const model::Description& description,
+                                                                   std::size_t most);
 
 /// Reads the two, computes nothing.
 /// @param system  of this description, by model::build

@@ -21,6 +21,14 @@ result::NamedFile read_named_file(JsonReader& reader, const Json& json, const st
   return file;
 }
 
+result::StatedEquation read_equation(JsonReader& reader, const Json& json, const std::string& path) {
+  result::StatedEquation equation;
+  reader.read_member(json, path, "left", equation.left);
+  reader.read_member(json, path, "right", equation.right);
+  reader.read_if_there(json, path, "where", equation.where);
+  return equation;
+}
+
 void read_model(JsonReader& reader, const Json& json, const std::string& path, result::ModelRecord& model) {
   reader.read_member(json, path, "name", model.name);
   reader.read_member(json, path, "sha256", model.sha256);
@@ -39,6 +47,9 @@ void read_model(JsonReader& reader, const Json& json, const std::string& path, r
       reader.read_if_there(caption, place, "label", read.label);
       model.captions.emplace_back(name, read);
     }
+  }
+  if (json.contains("equations")) {
+    read_list(reader, json["equations"], path + "/equations", model.equations, read_equation);
   }
   reader.read_if_there(json, path, "file", model.file);
   reader.read_if_there(json, path, "text", model.text);

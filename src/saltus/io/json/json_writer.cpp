@@ -29,6 +29,9 @@ Json model_json(const result::ModelRecord& model) {
   for (const auto& [name, caption] : model.captions) {
     json["captions"][name] = {{"unit", caption.unit}, {"label", caption.label}};
   }
+  for (const auto& [left, right, where] : model.equations) {
+    json["equations"].push_back({{"left", left}, {"right", right}, {"where", where}});
+  }
   if (model.text.empty()) return json;
   json["file"] = model.file;
   json["text"] = model.text;

@@ -45,6 +45,18 @@ saltus.textFold = (title, text) => saltus.element(
     "details", {}, saltus.element("summary", {}, title),
     saltus.element("pre", {class: "source", tabindex: "0", "aria-label": title}, text));
 
+/** The equations as they were read; none where the result has none. */
+saltus.equationTable = (result) => {
+  const equations = result.model.equations ?? [];
+  if (equations.length === 0) return [];
+  const row = ([left, right, where]) => saltus.element(
+      "tr", {}, saltus.element("th", {scope: "row"}, left), saltus.element("td", {}, `= ${right}`),
+      saltus.element("td", {class: "quiet"}, where));
+  return [saltus.element(
+      "div", {class: "equations", tabindex: "0", role: "region", "aria-label": "equations"},
+      saltus.element("table", {}, saltus.element("tbody", {}, ...equations.map(row))))];
+};
+
 /** The model file and the files it names; null where the result has none. */
 saltus.modelCard = (result) => {
   const {text, file, files} = result.model;
@@ -55,7 +67,7 @@ saltus.modelCard = (result) => {
           saltus.element("p", {class: "quiet"}, `${other.name}: not in the result, SHA-256 ${other.sha256}`) :
           saltus.textFold(other.name, other.text));
   return saltus.card(
-      "Model", saltus.textFold(name, text), ...others,
+      "Model", ...saltus.equationTable(result), saltus.textFold(name, text), ...others,
       saltus.element(
           "button", {title: "the model file as it was", onclick: () => saltus.saveText(name, text, "text/plain")},
           "save model"));
