@@ -1,4 +1,4 @@
-// A seeded part of the atlas, every count exact or zero: docs/switching-atlas.md has the large one.
+// A seeded part of the atlas, every count exact or zero: README.md has the large one.
 #include "atlas.hpp"
 
 #include <algorithm>
@@ -89,7 +89,7 @@ TEST(Atlas, ExitsWhereTheRootLosesItsStability) {
 }
 
 /// A root that no scaling stabilises has no cycle about it at equal speeds either: integrations from beside it all
-/// leave (the table above, and of docs/switching-atlas.md). Some of the resolver's laps enter the square at nearly the
+/// leave (the table above, and of README.md). Some of the resolver's laps enter the square at nearly the
 /// same point while they grow outside, 8 of these instances so nearly that they once passed for a cycle.
 TEST(Atlas, NothingStaysAboutARootThatHasLostItsStability) {
   AtlasInstances instances(1);

@@ -153,6 +153,12 @@ class Overview(tool.ToolTest):
         self.assertEqual(report["outputs"][0]["label"], "lost")
         self.assertEqual(report["surfaces"][0]["rates"], ["v"])
         self.assertEqual(report["jumps"][0]["set"], [{"name": "on", "expression": "1"}])
+        out, _ = self.run_tool("check", "stick-slip", "--json", code=0)
+        self.assertEqual(json.loads(out)["complementarity_systems"], [
+            {"form": "step", "n_alpha": 1, "n_theta": 2, "n_beta": 0, "n_alg": 5, "n_comp": 2, "n_eq": 3},
+            {"form": "stewart", "n_alpha": 0, "n_theta": 2, "n_beta": 0, "n_alg": 5, "n_comp": 2, "n_eq": 3}])
+        out, _ = self.run_tool("check", "bouncing-ball", "--json", code=0)
+        self.assertIn("[[jumps]]", json.loads(out)["complementarity_systems"][0]["reason"])
         out, _ = self.run_tool("check", "turbo-car", "--json", code=0)
         self.assertGreater(json.loads(out)["optimization"]["problem"]["variables"], 100)
 

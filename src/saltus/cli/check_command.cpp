@@ -64,8 +64,9 @@ ExitCode run_check(const CheckArguments& arguments) {
   if (!system) return refuse_model(arguments, io::located(system.error(), input->file), *text);
   const auto optimization = optimize_overview(*input);
   if (!optimization) return refuse_model(arguments, optimization.error(), *text);
-  const auto overview = io::overview_of(input->file.description, *system, input->file.captions);
+  auto overview = io::overview_of(input->file.description, *system, input->file.captions);
   if (arguments.json) {
+    overview.forms = complementarity_forms(*system);
     print(io::check_json(text->path, {}, &overview, *optimization ? &**optimization : nullptr));
     return ExitCode::done;
   }

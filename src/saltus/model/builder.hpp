@@ -38,7 +38,7 @@ struct EventOptions {
   AtEvent action = AtEvent::record;
 };
 
-/// How a jump is executed once it is triggered (interface.md, [[jumps]]).
+/// How a jump is executed once it is triggered (docs/model-file.md, [[jumps]]).
 struct JumpOptions {
   std::optional<std::string> name{};  ///< jump1, jump2, … by position if absent
   bool at_start = false;              ///< also where the condition holds at the start
@@ -48,7 +48,7 @@ struct JumpOptions {
   JumpValues values = JumpValues::at_trigger;
 };
 
-/// M(q) dv/dt = force - grad potential - coriolis + forces of contacts, dq/dt = v (interface.md, [mechanics]).
+/// M(q) dv/dt = force - grad potential - coriolis + forces of contacts, dq/dt = v (docs/model-file.md, [mechanics]).
 struct Mechanics {
   std::vector<std::string> positions{}, velocities{};  ///< states, in the same order
   casadi::SX mass{};                                   ///< n x n over positions and parameters; 0 x 0: identity

@@ -13,9 +13,6 @@
 namespace saltus::cli {
 namespace {
 
-/// Switching functions up to which a check makes the complementarity systems: their cost grows faster than the model.
-constexpr std::size_t most_reformulated = 100;
-
 bool is_large(const model::System& system) { return system.switching.size() > most_reformulated; }
 
 std::string complementarity_text(const model::System& system) {

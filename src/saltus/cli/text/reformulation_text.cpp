@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/well_posedness.hpp"
 #include "saltus/reformulation/sizes.hpp"
 
@@ -43,6 +44,11 @@ std::string shortened(const std::vector<std::string>& names) {
   return text.substr(0, room) + count;
 }
 
+/// The system that finite elements discretise: the frozen one, where there are contacts or hysteresis.
+const model::System& of_elements(const model::System& system) {
+  return system.frozen && system.frozen->system ? *system.frozen->system : system;
+}
+
 std::string groups_text(const Sizes& sizes) {
   if (sizes.groups.size() < 2) return "";
   std::string text;
@@ -52,7 +58,8 @@ std::string groups_text(const Sizes& sizes) {
 
 }  // namespace
 
-std::string reformulation_text(const model::System& system) {
+std::string reformulation_text(const model::System& stated) {
+  const auto& system = of_elements(stated);
   std::string text = "\ncomplementarity systems (numbers of one stage, Table 4 of Nurkanović et al. 2024)\n";
   std::string table, reasons;
   for (const Row& row : rows) {
@@ -71,6 +78,34 @@ std::string reformulation_text(const model::System& system) {
   text += fmt::format("  {:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "form", "n_alpha", "n_theta", "n_beta", "n_alg",
                       "n_comp", "n_eq");
   return text + table + reasons;
+}
+
+std::vector<io::OverviewForm> complementarity_forms(const model::System& stated) {
+  const auto& system = of_elements(stated);
+  if (system.switching.size() > most_reformulated) {
+    return {{.name = "all", .reason = fmt::format("not made: more than {} switching functions", most_reformulated)}};
+  }
+  std::vector<io::OverviewForm> forms;
+  for (const Row& row : rows) {
+    io::OverviewForm form{.name = std::string(row.title)};
+    const auto sizes = reformulation::sizes_of(system, row.options);
+    if (!sizes) {
+      form.reason = fmt::format("{}; {}", sizes.error().message, sizes.error().remedy);
+    } else if (sizes->groups.empty()) {
+      return {};
+    } else {
+      const auto& total = sizes->total;
+      if (&row == &rows[1] && total.beta == 0) continue;
+      form.alpha = total.alpha;
+      form.theta = total.theta;
+      form.beta = total.beta;
+      form.algebraic = total.algebraic;
+      form.complementarities = total.complementarities;
+      form.equations = total.equations;
+    }
+    forms.push_back(std::move(form));
+  }
+  return forms;
 }
 
 std::string ranks_text(const model::System& system, const pipeline::SimulateOptions& options,

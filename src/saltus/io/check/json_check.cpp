@@ -86,6 +86,24 @@ Json jumps_json(const ModelOverview& overview) {
   return list;
 }
 
+Json forms_json(const std::vector<OverviewForm>& forms) {
+  Json list = Json::array();
+  for (const auto& form : forms) {
+    list.push_back({{"form", form.name}});
+    if (!form.reason.empty()) {
+      list.back()["reason"] = form.reason;
+      continue;
+    }
+    list.back().update({{"n_alpha", form.alpha},
+                        {"n_theta", form.theta},
+                        {"n_beta", form.beta},
+                        {"n_alg", form.algebraic},
+                        {"n_comp", form.complementarities},
+                        {"n_eq", form.equations}});
+  }
+  return list;
+}
+
 void add_overview(Json& json, const ModelOverview& overview) {
   json["name"] = overview.name;
   json["description"] = overview.description;
@@ -103,6 +121,7 @@ void add_overview(Json& json, const ModelOverview& overview) {
   json["inclusion"] = {{"kind", overview.inclusion},
                        {"multi_affine", overview.multi_affine},
                        {"differs_in", overview.inclusion_differences}};
+  json["complementarity_systems"] = forms_json(overview.forms);
   json["warnings"] = overview.warnings;
 }
 

@@ -57,6 +57,13 @@ struct OverviewEvent {
   bool stops = false;
 };
 
+/// The size of one stage as a complementarity system: Table 4 of [nurkanovic2024].
+struct OverviewForm {
+  std::string name;      ///< step; step, lifted; stewart
+  std::string reason{};  ///< why there is none; empty if there is one, whose numbers follow
+  int alpha = 0, theta = 0, beta = 0, algebraic = 0, complementarities = 0, equations = 0;
+};
+
 struct ModelOverview {
   std::string name, description;
   std::vector<OverviewQuantity> states, parameters, controls;
@@ -71,6 +78,7 @@ struct ModelOverview {
   bool multi_affine = true;
   std::vector<std::string> inclusion_differences;
   std::vector<std::string> warnings;
+  std::vector<OverviewForm> forms;  ///< filled by who knows them; none where nothing switches with the state
 };
 
 /// Lists the equations of a model in the order of its file: motion, modes, definitions, switching functions, jumps,

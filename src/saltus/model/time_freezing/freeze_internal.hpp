@@ -15,7 +15,7 @@ namespace saltus::model {
 
 enum class FrozenFor { simulation, optimisation };
 
-/// Numbers of [time_freezing] (interface.md).
+/// Numbers of [time_freezing] (docs/model-file.md).
 struct FreezingNumbers {
   double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
 };
