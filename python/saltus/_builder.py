@@ -9,6 +9,7 @@ from ._expression import Expression, Operand, expression, owner_of, refuse
 from ._model import Model
 from ._result import Result
 from ._settings import Value
+from ._sweep import Sweep
 
 Rates = typing.Mapping[typing.Any, Operand]
 
@@ -45,6 +46,9 @@ class Builder:
         self._jumps: list[dict[str, typing.Any]] = []
         self._events: list[dict[str, typing.Any]] = []
         self._inputs: dict[str, Expression] = {}
+        self._hysteresis: list[dict[str, typing.Any]] = []
+        self._contacts: list[dict[str, typing.Any]] = []
+        self._mechanics: dict[str, typing.Any] = {}
 
     # Names ---------------------------------------------------------------------------------------------------------
 
@@ -157,6 +161,75 @@ class Builder:
         }
         self._jumps.append(_given(entry))
 
+    def hysteresis(
+        self, name: str, input: Operand, *, on: Operand, off: Operand, initial: Operand = None
+    ) -> Expression:
+        """A name that is 0 or 1: it becomes 1 where `input` rises through `on`, and 0 where it falls through `off`.
+
+        >>> m = saltus.Builder("room")
+        >>> T = m.state("T", 15)
+        >>> heats = m.hysteresis("heats", -T, on=-18, off=-20, initial=1)
+        >>> m.rate(T, 10*heats - 0.1*T)
+        >>> len(m.simulate(until=10).events) > 5
+        True
+        """
+        self._take(name)
+        entry = {"name": name, "input": input, "on": on, "off": off, "initial": initial}
+        self._hysteresis.append({key: value if key == "name" else self._own(value) for key, value in _given(entry).items()})
+        return Expression(name, owner=self)
+
+    def mechanics(
+        self,
+        positions: typing.Sequence[Expression | str],
+        velocities: typing.Sequence[Expression | str],
+        *,
+        mass: typing.Sequence[typing.Sequence[Operand]] | None = None,
+        force: Rates | None = None,
+        potential: Operand = None,
+        coriolis: str | None = None,
+    ) -> None:
+        """Moves positions and velocities by M(q) v' = force - grad potential; `force` by velocity. Without `mass` M is
+        the identity; ``coriolis="auto"`` adds the terms of a mass matrix that depends on positions.
+
+        >>> m = saltus.Builder("ball")
+        >>> y, v = m.state("y", 1), m.state("v", 0)
+        >>> m.mechanics([y], [v], force={v: -9.81})
+        >>> m.contact("ground", gap=y, restitution=0.5)
+        >>> m.simulate(until=0.5).events[0]
+        <impact of ground at t = 0.451523641>
+        """
+        if self._mechanics:
+            raise refuse("the mechanics are stated twice", "state all positions and velocities at once")
+        entry = {
+            "positions": [self._state(name) for name in positions],
+            "velocities": [self._state(name) for name in velocities],
+            "mass": None if mass is None else [[self._own(value) for value in row] for row in mass],
+            "force": None if force is None else self._rates(force),
+            "potential": None if potential is None else self._own(potential),
+            "coriolis": coriolis,
+        }
+        self._mechanics = _given(entry)
+
+    def contact(
+        self,
+        name: str,
+        gap: Operand,
+        *,
+        tangent: Rates | None = None,
+        friction: Operand = None,
+        restitution: Operand = None,
+    ) -> None:
+        """Bodies that touch where `gap` is 0; `tangent` has the coefficients of velocities by position."""
+        self._take(name)
+        entry = {
+            "name": name,
+            "gap": self._own(gap),
+            "tangent": None if tangent is None else self._rates(tangent),
+            "friction": None if friction is None else self._own(friction),
+            "restitution": None if restitution is None else self._own(restitution),
+        }
+        self._contacts.append(_given(entry))
+
     # What becomes of it --------------------------------------------------------------------------------------------
 
     def to_toml(self) -> str:
@@ -165,7 +238,16 @@ class Builder:
         for part in ("parameters", "states", "controls", "definitions", "switching", "dynamics"):
             if self._parts[part]:
                 parts.append(f"[{part}]\n{_lines(self._parts[part])}")
-        for part, entries in (("modes", self._modes), ("jumps", self._jumps), ("events", self._events)):
+        if self._mechanics:
+            parts.append(f"[mechanics]\n{_lines(self._mechanics)}")
+        lists = {
+            "contacts": self._contacts,
+            "hysteresis": self._hysteresis,
+            "modes": self._modes,
+            "jumps": self._jumps,
+            "events": self._events,
+        }
+        for part, entries in lists.items():
             parts.extend(f"[[{part}]]\n{_lines(entry)}" for entry in entries)
         if self._parts["outputs"]:
             parts.append(f"[outputs]\n{_lines(self._parts['outputs'])}")
@@ -177,6 +259,7 @@ class Builder:
     def model(self) -> Model:
         """The model, to be simulated. Raises :class:`ModelError` for what is missing."""
         moved = {name for entry in self._modes for name in entry["dynamics"]}
+        moved.update(self._mechanics.get("positions", []), self._mechanics.get("velocities", []))
         for name in self._parts["states"]:
             if name not in self._parts["dynamics"] and name not in moved:
                 raise refuse(f"the state '{name}' has no rate", f"state it: m.rate({name}, …)")
@@ -186,11 +269,35 @@ class Builder:
         """:meth:`Model.simulate` of :meth:`model`."""
         return self.model().simulate(until, **options)
 
+    def sweep(self, **arguments: typing.Any) -> Sweep:
+        """:meth:`Model.sweep` of :meth:`model`."""
+        return self.model().sweep(**arguments)
+
+    def compare(self, until: float | None = None, **options: typing.Any) -> Result:
+        """:meth:`Model.compare` of :meth:`model`."""
+        return self.model().compare(until, **options)
+
+    def order(self, until: float | None = None, **options: typing.Any) -> Result:
+        """:meth:`Model.order` of :meth:`model`."""
+        return self.model().order(until, **options)
+
+    def check(self) -> str:
+        """:meth:`Model.check` of :meth:`model`."""
+        return self.model().check()
+
+    def _repr_html_(self) -> str:
+        return self.model()._repr_html_()
+
     # Checks --------------------------------------------------------------------------------------------------------
 
-    def _declare(self, part: str, name: str, value: typing.Any) -> Expression:
-        if name in self._taken and part != "outputs":
+    def _take(self, name: str) -> None:
+        if name in self._taken:
             raise refuse(f"the name '{name}' is taken", "every name of a model is declared once")
+        self._taken.add(name)
+
+    def _declare(self, part: str, name: str, value: typing.Any) -> Expression:
+        if part != "outputs":
+            self._take(name)
         self._taken.add(name)
         self._parts[part][name] = value
         return Expression(name, owner=self)

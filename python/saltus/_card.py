@@ -10,12 +10,14 @@ import numpy as np
 from ._shape import broken_at_jumps, sliding_spans, thinned
 
 if typing.TYPE_CHECKING:
+    from ._model import Model
     from ._result import Result
 
 WIDTH, HEIGHT, LEFT, GAP = 520, 56, 46, 8
 MOST_ROWS = 6
 MOST_POINTS = 600
 MOST_EVENTS = 8
+MOST_EQUATIONS = 40
 
 
 def card(r: Result) -> str:
@@ -29,6 +31,31 @@ def card(r: Result) -> str:
         f"<span style='color:{colour}'>{html.escape(str(r.status))}</span> at t = {r.status.time_reached:.6g} &nbsp; "
         f"{len(r.events)} events, {len(r.t)} rows{message}{_picture(r, shown)}{_events(r)}</div>"
     )
+
+
+def model_card(model: Model) -> str:
+    """Equations in LaTeX, which a notebook typesets, initial values and parameters."""
+    rows = "".join(
+        f"<tr><td style='text-align:right'>${left}$</td><td style='text-align:left'>$= {html.escape(right)}$</td>"
+        f"<td style='text-align:left;opacity:0.7'>{html.escape(where)}</td></tr>"
+        for left, right, where in model.equations(latex=True)[:MOST_EQUATIONS]
+    )
+    more = len(model.equations()) - MOST_EQUATIONS
+    rest = f"<div>and {more} more equations</div>" if more > 0 else ""
+    described = f" &nbsp; {html.escape(model.description)}" if model.description else ""
+    return (
+        "<div style='font:13px/1.45 system-ui,sans-serif;max-width:720px'>"
+        f"<b>{html.escape(model.name)}</b>{described}<table>{rows}</table>{rest}"
+        f"{_values('starts at', model.states)}{_values('parameters', model.parameters)}</div>"
+    )
+
+
+def _values(title: str, values: dict[str, float]) -> str:
+    if not values:
+        return ""
+    shown = ", ".join(f"{html.escape(name)} = {value:.6g}" for name, value in list(values.items())[:MOST_EQUATIONS])
+    more = ", …" if len(values) > MOST_EQUATIONS else ""
+    return f"<div>{title}: {shown}{more}</div>"
 
 
 def _picture(r: Result, names: list[str]) -> str:

@@ -30,6 +30,7 @@ class Event:
     unique: bool | None
     alternatives: list[Alternative]
     reason: str
+    def __repr__(self) -> str: ...
 
 class Run:
     model: str
@@ -72,6 +73,8 @@ class Model:
     def __init__(self, model: str) -> None: ...
     @typing.overload
     def __init__(self, text: str, name: str) -> None: ...
+    def equations(self, latex: bool) -> list[tuple[str, str, str]]: ...
+    def quantities(self, of_states: bool) -> list[tuple[str, float]]: ...
     def simulate(
         self,
         settings: list[str],

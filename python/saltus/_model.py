@@ -11,6 +11,7 @@ import typing
 import warnings
 
 from . import _core
+from ._card import model_card
 from ._errors import ModelWarning
 from ._progress import progress_line, progress_of_runs
 from ._result import Result
@@ -207,6 +208,37 @@ class Model:
                 raise
         _warn(warned)
         return Sweep(with_results(found), shape)
+
+    def equations(self, *, latex: bool = False) -> list[tuple[str, str, str]]:
+        """The equations as they were read: left side, right side, and where or when they hold; at most 1000.
+
+        >>> saltus.catalogue("bouncing-ball").equations()[1]
+        ("v'", '-g', '')
+        >>> saltus.catalogue("bouncing-ball").equations(latex=True)[1][0]
+        '\\\\dot{v}'
+        """
+        return self._core.equations(latex)
+
+    @property
+    def states(self) -> dict[str, float]:
+        """The states with their initial values.
+
+        >>> saltus.catalogue("bouncing-ball").states
+        {'y': 10.0, 'v': 0.0}
+        """
+        return dict(self._core.quantities(True))
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The parameters with their values.
+
+        >>> saltus.catalogue("bouncing-ball").parameters
+        {'g': 9.8, 'e': 0.9}
+        """
+        return dict(self._core.quantities(False))
+
+    def _repr_html_(self) -> str:
+        return model_card(self)
 
     def check(self, *, set: Settings | None = None) -> str:
         """What `saltus check` prints: states, switching functions and their kinds, methods, warnings.

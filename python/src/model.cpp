@@ -18,6 +18,7 @@
 #include "saltus/cli/optimum_record.hpp"
 #include "saltus/cli/run_command.hpp"
 #include "saltus/cli/text/check_text.hpp"
+#include "saltus/io/check/model_overview.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/model/ocp.hpp"
@@ -152,6 +153,28 @@ std::string check(Model& model, std::vector<std::string> settings) {
   return *text;
 }
 
+/// (left, right, where) of each equation.
+std::vector<std::tuple<std::string, std::string, std::string>> equations(const Model& model, bool latex) {
+  constexpr std::size_t most = 1000;
+  std::vector<std::tuple<std::string, std::string, std::string>> list;
+  const auto notation = latex ? io::Notation::latex : io::Notation::text;
+  for (auto& [left, right, where] : io::stated_equations(model.input().file.description, most, notation)) {
+    list.emplace_back(std::move(left), std::move(right), std::move(where));
+  }
+  return list;
+}
+
+/// (name, initial value) of states and parameters, as they are without settings.
+std::vector<std::pair<std::string, double>> quantities(Model& model, bool of_states) {
+  const Request request{{}, {}, cli::RunMethods::several};
+  const auto system = model.system(model.input(), request);
+  const auto& names = of_states ? system->state_names : system->parameter_names;
+  const auto& values = of_states ? system->initial_state : system->parameter_values;
+  std::vector<std::pair<std::string, double>> list;
+  for (std::size_t i = 0; i < names.size(); ++i) list.emplace_back(names[i], values[i]);
+  return list;
+}
+
 }  // namespace
 
 void add_model(nb::module_& module) {
@@ -173,6 +196,8 @@ void add_model(nb::module_& module) {
            nb::arg("warnings"))
       .def("values_at", values_at, nb::arg("run"), nb::arg("settings"), nb::arg("options"), nb::arg("times"),
            nb::arg("before"))
+      .def("equations", equations, nb::arg("latex"))
+      .def("quantities", quantities, nb::arg("of_states"))
       .def("check", check, nb::arg("settings"));
   add_sweep(type);
 }

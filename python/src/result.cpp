@@ -1,5 +1,7 @@
 #include "result.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
@@ -84,7 +86,11 @@ void add_event(nb::module_& module) {
       .def_prop_ro("x_after", [](const Event& self) { return array_of(self.x_after); })
       .def_ro("unique", &Event::unique)
       .def_ro("alternatives", &Event::alternatives)
-      .def_ro("reason", &Event::reason);
+      .def_ro("reason", &Event::reason)
+      .def("__repr__", [](const Event& self) {
+        const auto what = self.name ? *self.name : fmt::format("{}", fmt::join(self.surfaces, ", "));
+        return fmt::format("<{} of {} at t = {:.9g}>", name(self.kind), what.empty() ? "the model" : what, self.t);
+      });
 }
 
 /// The surfaces are looked for when the first report or file wants them.

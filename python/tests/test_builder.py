@@ -208,3 +208,42 @@ def test_tables_inputs_events_and_regions():
     m.jump(set={n: n + 1}, every=0.5)
     m.jump(set={n: n * 10}, at=[1.25])
     assert m.simulate(2.1).final["n"] == 22
+
+
+def test_contacts_and_mechanics():
+    """A ball that slides under friction stops where v = mu g t; dropped first, it lands with an impulse."""
+    m = saltus.Builder("ball")
+    x, y, u, v = m.state("x", 0), m.state("y", 0.1), m.state("u", 2), m.state("v", 0)
+    mu = m.parameter("mu", 0.5)
+    m.mechanics([x, y], [u, v], mass=[[2, 0], [0, 2]], force={v: -2 * 10})
+    m.contact("ground", gap=y, tangent={x: 1}, friction=mu)
+    r = m.simulate(until=2, rtol=1e-10)
+    lands = np.sqrt(2 * 0.1 / 10)
+    # The impact takes mu v_n of the tangential velocity.
+    slides = 2 - 0.5 * 10 * lands
+    assert [e.kind for e in r.events] == ["impact", "stick"]
+    assert r.events[0].t == pytest.approx(lands, abs=1e-9)
+    assert r.events[1].t == pytest.approx(lands + slides / 5, abs=1e-9)
+    with pytest.raises(saltus.ModelError, match="stated twice"):
+        m.mechanics([x], [u])
+    with pytest.raises(saltus.ModelError, match="is taken"):
+        m.contact("ground", gap=x)
+
+
+def test_hysteresis_switches_at_its_thresholds():
+    m = saltus.Builder("room")
+    T = m.state("T", 15)
+    heats = m.hysteresis("heats", -T, on=-18, off=-20, initial=1)
+    m.rate(T, 10 * heats - 0.1 * T)
+    r = m.simulate(until=10)
+    assert {round(float(e.x[0]), 9) for e in r.events} == {18.0, 20.0}
+
+
+def test_a_builder_is_a_model_in_all_it_does():
+    m = saltus.Builder("decay")
+    k = m.parameter("k", 1)
+    x = m.state("x", 1)
+    m.rate(x, -k * x)
+    assert m.sweep(k=[1, 2], until=1).results[1].final["x"] == pytest.approx(np.exp(-2), rel=1e-6)
+    assert "x' = -k*x" in m.check()
+    assert "dot{x}" in m._repr_html_()

@@ -151,3 +151,20 @@ def test_the_tool_itself():
     done = subprocess.run([*run, "simulat"], capture_output=True, text=True)
     assert done.returncode == 2
     assert "did you mean 'simulate'" in done.stderr
+
+
+def test_equations_and_card_of_every_model():
+    for name in saltus.models():
+        m = saltus.catalogue(name)
+        plain, latex = m.equations(), m.equations(latex=True)
+        assert len(plain) == len(latex) > 0
+        assert [where for *_, where in plain] == [where for *_, where in latex]
+        for _, right, _ in latex:
+            assert right.count("{") == right.count("}"), (name, right)
+            assert right.count("\\left") == right.count("\\right"), (name, right)
+        card = m._repr_html_()
+        assert len(card) < 100_000 and "<script" not in card
+
+
+def test_events_say_what_they_are(brake):
+    assert repr(brake.simulate().events[0]).startswith("<enter_sliding of ")

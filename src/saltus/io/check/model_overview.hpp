@@ -81,10 +81,14 @@ struct ModelOverview {
   std::vector<OverviewForm> forms;  ///< filled by who knows them; none where nothing switches with the state
 };
 
+/// How expressions are written.
+enum class Notation { text, latex };
+
 /// Lists the equations of a model in the order of its file: motion, modes, definitions, switching functions, jumps,
-/// outputs; at most `most` of them.
+/// outputs; at most `most` of them. `where` is plain text in both notations.
 [[nodiscard]] std::vector<result::StatedEquation> stated_equations(const model::Description& description,
-                                                                   std::size_t most);
+                                                                   std::size_t most,
+                                                                   Notation notation = Notation::text);
 
 /// Reads the two, computes nothing.
 /// @param system  of this description, by model::build

@@ -1,8 +1,10 @@
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "saltus/expression/latex.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/check/jump_words_internal.hpp"
 #include "saltus/io/check/model_overview.hpp"
@@ -15,22 +17,39 @@ using result::StatedEquation;
 /// Collects equations until there are enough.
 class EquationList {
  public:
-  explicit EquationList(std::size_t most) : most_(most) {}
+  EquationList(std::size_t most, Notation notation) : most_(most), notation_(notation) {}
 
-  void add(std::string left, const expression::NodePtr& right, std::string where = "") {
+  /// A left side in words.
+  void add(const std::string& left, const expression::NodePtr& right, std::string where = "") {
     if (!right || list_.size() >= most_) return;
-    list_.push_back({std::move(left), expression::to_spaced_text(*right), std::move(where)});
+    const bool is_text = notation_ == Notation::text;
+    list_.push_back({is_text ? left : fmt::format("\\text{{{}}}", escaped(left)),
+                     is_text ? expression::to_spaced_text(*right) : expression::to_latex(*right), std::move(where)});
   }
+  /// Names, with what stands behind each: "'" for a derivative.
   void add(const std::vector<model::NamedExpression>& entries, const char* mark, const std::string& where = "") {
     for (const auto& entry : entries) {
       if (list_.size() >= most_) return;
       add(entry.name + mark, entry.expression, where);
+      if (notation_ == Notation::text) continue;
+      const auto name = expression::latex_name(entry.name);
+      const std::string_view behind = mark;
+      list_.back().left = behind == "'"    ? fmt::format("\\dot{{{}}}", name)
+                          : behind.empty() ? name
+                                           : fmt::format("{}\\text{{{}}}", name, behind);
     }
   }
   [[nodiscard]] std::vector<StatedEquation> take() { return std::move(list_); }
 
  private:
+  static std::string escaped(const std::string& text) {
+    std::string result;
+    for (const char c : text) result += c == '_' ? std::string("\\_") : std::string(1, c);
+    return result;
+  }
+
   std::size_t most_;
+  Notation notation_;
   std::vector<StatedEquation> list_;
 };
 
@@ -64,8 +83,9 @@ std::string place_of(const model::ModeDescription& mode) {
 
 }  // namespace
 
-std::vector<StatedEquation> stated_equations(const model::Description& description, std::size_t most) {
-  EquationList equations(most);
+std::vector<StatedEquation> stated_equations(const model::Description& description, std::size_t most,
+                                             Notation notation) {
+  EquationList equations(most, notation);
   equations.add(description.dynamics, "'");
   add_mechanics(description, equations);
   for (const auto& mode : description.modes) equations.add(mode.dynamics, "'", place_of(mode));

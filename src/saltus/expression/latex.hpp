@@ -1,0 +1,17 @@
+// Expressions as LaTeX, for notebooks and pages with formulas.
+#pragma once
+
+#include <string>
+
+#include "saltus/expression/syntax_tree.hpp"
+
+namespace saltus::expression {
+
+/// Writes a name as LaTeX: Greek letters as such, digits at its end and what follows `_` as indices, words upright.
+[[nodiscard]] std::string latex_name(const std::string& name);
+
+/// Writes a tree as LaTeX: quotients as fractions, if() as cases, functions by their commands. Cost: linear in its
+/// text.
+[[nodiscard]] std::string to_latex(const Node& node);
+
+}  // namespace saltus::expression
