@@ -315,7 +315,7 @@ json final_data(const result::Final& final) {
           {"theta", shown(final.theta)}};
 }
 
-json statistics_data(const result::Statistics& statistics) {
+json counts_data(const result::Statistics& statistics) {
   return {{"steps", statistics.steps},
           {"rejected", statistics.rejected},
           {"rhs_evaluations", statistics.rhs_evaluations},
@@ -361,7 +361,7 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"optimization", optimization_data(result, share_of_trajectory)},
           {"comparison", comparison_data(result.comparison)},
           {"order", order_data(result.order)},
-          {"statistics", statistics_data(result.statistics)},
+          {"statistics", counts_data(result.statistics)},
           {"options", pairs(result.options)}};
 }
 
