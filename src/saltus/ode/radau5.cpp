@@ -34,7 +34,7 @@ double natural_size(const Tolerances& tolerances) {
 Radau5::Radau5(int n)
     : n_(n),
       start_(n),
-      previous_(static_cast<std::size_t>(3 * n)),
+      previous_{false, 0.0, std::vector<double>(static_cast<std::size_t>(3 * n))},
       systems_(n),
       z_(n, 3),
       w_(n, 3),
@@ -47,13 +47,13 @@ Radau5::Radau5(int n)
       complex_solution_(n) {}
 
 void Radau5::restart() {
-  started_ = converged_ = has_previous_ = jacobian_known_ = factors_known_ = false;
+  started_ = converged_ = previous_.known = jacobian_known_ = factors_.known = false;
   rate_ = 0.0;
 }
 
 Attempt Radau5::attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) {
   evaluations_ = &evaluations;
-  if (systems_.use(trial.pattern)) jacobian_known_ = factors_known_ = false;
+  if (systems_.use(trial.pattern)) jacobian_known_ = factors_.known = false;
   begin(trial);
   h_ = trial.h;
   converged_ = solve(trial) == Outcome::converged;
@@ -73,10 +73,10 @@ void Radau5::begin(const RadauTrial& trial) {
   // NOTE: the state may have been projected onto a sliding surface in between, the time is that of the step's end.
   const double end = t_ + h_;
   const bool follows = started_ && converged_ && std::abs(trial.t - end) <= 8.0 * epsilon * std::abs(end);
-  has_previous_ = follows;
+  previous_.known = follows;
   if (follows) {
-    previous_h_ = h_;
-    dense(previous_.data());
+    previous_.h = h_;
+    dense(previous_.polynomial.data());
   }
   if (rate_ > keep_rate || !follows) jacobian_known_ = false;
   jacobian_here_ = false;
@@ -90,7 +90,7 @@ Radau5::Outcome Radau5::solve(const RadauTrial& trial) {
   if (!factorize(trial.h)) return Outcome::undefined;
   start_values(trial.h);
   Outcome outcome = iterate(trial);
-  if (outcome != Outcome::converged && (has_previous_ || !jacobian_here_)) {
+  if (outcome != Outcome::converged && (previous_.known || !jacobian_here_)) {
     // What came from earlier steps did not help: once more without it.
     if (!jacobian_here_ && !differentiate(trial)) return Outcome::undefined;
     if (!factorize(trial.h)) return Outcome::undefined;
@@ -109,14 +109,14 @@ Radau5::Outcome Radau5::solve(const RadauTrial& trial) {
 
 /// The polynomial of the step before, beyond its end; zero at a restart.
 void Radau5::start_values(double h) {
-  if (!has_previous_) {
+  if (!previous_.known) {
     z_.setZero();
     w_.setZero();
     return;
   }
-  const Eigen::Map<const Matrix> p(previous_.data(), n_, 3);
+  const Eigen::Map<const Matrix> p(previous_.polynomial.data(), n_, 3);
   for (Eigen::Index j = 0; j < 3; ++j) {
-    const double beyond = Tableau::c[at(j)] * (h / previous_h_);
+    const double beyond = Tableau::c[at(j)] * (h / previous_.h);
     // The nested form from its end: x(t + h) - r (p1 - s (p2 + s p3)).
     const double s = 1.0 + beyond;
     z_.col(j) = beyond * (p.col(0) - s * (p.col(1) + s * p.col(2)));
@@ -132,10 +132,10 @@ void Radau5::transform_start() {
 }
 
 bool Radau5::factorize(double h) {
-  if (factors_known_ && std::abs(h - factors_h_) <= same_length * std::abs(h)) return true;
-  factors_known_ = systems_.factorize({Tableau::gamma / h, std::complex<double>(Tableau::alpha, Tableau::beta) / h});
-  factors_h_ = h;
-  return factors_known_;
+  if (factors_.known && std::abs(h - factors_.h) <= same_length * std::abs(h)) return true;
+  factors_.known = systems_.factorize({Tableau::gamma / h, std::complex<double>(Tableau::alpha, Tableau::beta) / h});
+  factors_.h = h;
+  return factors_.known;
 }
 
 /// Until the next correction would be a rounding, or corrections are rounding and no longer fall.
@@ -222,7 +222,7 @@ bool Radau5::differentiate(const RadauTrial& trial) {
     if (!either_way(one_column_)) return false;
   }
   jacobian_known_ = jacobian_here_ = true;
-  factors_known_ = false;
+  factors_.known = false;
   return true;
 }
 

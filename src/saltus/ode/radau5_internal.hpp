@@ -72,15 +72,21 @@ class Radau5 {
   Vector start_;
 
   // The step before, whose polynomial gives starting values.
-  bool has_previous_ = false;
-  double previous_h_ = 0.0;
-  std::vector<double> previous_;  ///< as from dense()
+  struct Previous {
+    bool known = false;
+    double h = 0.0;
+    std::vector<double> polynomial;  ///< as from dense()
+  };
+  Previous previous_;
 
   // Jacobian and factors.
   bool jacobian_known_ = false;
   bool jacobian_here_ = false;  ///< it belongs to start_
-  bool factors_known_ = false;
-  double factors_h_ = 0.0;
+  struct Factors {
+    bool known = false;
+    double h = 0.0;
+  };
+  Factors factors_;
   double rate_ = 0.0;  ///< of convergence of the last iteration
   RadauSystems systems_;
   double largest_ = 0.0;  ///< component of start_

@@ -2,13 +2,13 @@
 #include <bit>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <set>
 #include <unordered_map>
 
 #include <casadi/core/function.hpp>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/components.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/reformulation/groups_internal.hpp"
 
@@ -44,31 +44,13 @@ class SelectionNumbers {
   int count_ = 0;
 };
 
-/// Connected components of numbers 0, …, count - 1.
-class Components {
- public:
-  explicit Components(int count) : parent_(at(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  /// The smaller root stays.
-  void connect(int i, int j) {
-    const int a = root(i), b = root(j);
-    parent_[at(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 }  // namespace
 
 FieldGroups additive_groups(const Unnested& unnested) {
   const SelectionNumbers numbers(unnested);
   const auto symbols = numbers.symbols();
   const auto n_surfaces = static_cast<int>(unnested.surfaces.size());
-  Components components(numbers.count());
+  Components components(at(numbers.count()));
   FieldGroups result;
   std::vector<std::pair<int, FieldTerm>> terms;
   for (const SXElem& component : entries(unnested.f)) {
@@ -87,15 +69,15 @@ FieldGroups additive_groups(const Unnested& unnested) {
         terms[place->second].second.value += term;
         continue;
       }
-      for (const int i : in) components.connect(in.front(), i);
+      for (const int i : in) components.join(at(in.front()), at(i));
       const int first = in.front();
       in.erase(std::lower_bound(in.begin(), in.end(), n_surfaces), in.end());
       terms.emplace_back(first, FieldTerm{state, term, in});
     }
   }
-  std::map<int, std::size_t> group_of;
+  std::map<std::size_t, std::size_t> group_of;
   for (int i = 0; i < numbers.count(); ++i) {
-    const auto [place, is_new] = group_of.try_emplace(components.root(i), result.groups.size());
+    const auto [place, is_new] = group_of.try_emplace(components.first(at(i)), result.groups.size());
     if (is_new) result.groups.emplace_back();
     FieldGroup& group = result.groups[place->second];
     if (i < n_surfaces) {
@@ -104,7 +86,8 @@ FieldGroups additive_groups(const Unnested& unnested) {
       group.indicator_parts.push_back(i - n_surfaces);
     }
   }
-  for (auto& [first, term] : terms) result.groups[group_of.at(components.root(first))].terms.push_back(std::move(term));
+  for (auto& [first, term] : terms)
+    result.groups[group_of.at(components.first(at(first)))].terms.push_back(std::move(term));
   return result;
 }
 

@@ -289,34 +289,61 @@ json families_data(const std::vector<result::TreeEntry>& tree) {
   return families;
 }
 
-}  // namespace
-
-json page_data(const result::Result& result, std::size_t limit) {
-  json events = json::array();
+/// Events with as many values each as fit the limit of the page.
+json events_data(const result::Result& result, std::size_t limit) {
   // x, mode and alpha on both sides: six lists for every event.
   const std::size_t share = limit / (6 * std::max<std::size_t>(1, result.events.size()));
   const std::size_t values_of_event = std::clamp(share, least_values_of_event, columns_in_page);
+  json events = json::array();
   for (const auto& event : result.events) events.push_back(event_data(event, values_of_event));
-  const auto shown = [](const auto& list) { return head(list, columns_in_page); };
-  const auto tree = result::tree(result);
-  const std::size_t share_of_trajectory = limit / tree.size();
-  std::size_t not_followed = 0;
-  for (const auto& entry : tree) not_followed += result::not_followed(*entry.result);
+  return events;
+}
+
+/// Surfaces whose states are all shown.
+json surfaces_data(const result::Result& result) {
+  const auto states = head(result.states, columns_in_page);
   json surfaces = json::array();
-  const auto states = shown(result.states);
   for (const auto& surface : result.surfaces) {
     const bool drawn = std::all_of(surface.states.begin(), surface.states.end(), [&](const std::string& name) {
       return std::find(states.begin(), states.end(), name) != states.end();
     });
     if (drawn) surfaces.push_back(surface_data(surface, states));
   }
+  return surfaces;
+}
+
+json final_data(const result::Final& final) {
+  const auto shown = [](const auto& list) { return head(list, columns_in_page); };
+  return {{"t", final.t},
+          {"x", shown(final.x)},
+          {"mode", shown(final.mode)},
+          {"alpha", shown(final.alpha)},
+          {"outputs", shown(final.outputs)},
+          {"theta", shown(final.theta)}};
+}
+
+json counts_data(const result::Statistics& statistics) {
+  return {{"steps", statistics.steps},
+          {"rejected", statistics.rejected},
+          {"rhs_evaluations", statistics.rhs_evaluations},
+          {"wall_seconds", statistics.wall_seconds}};
+}
+
+}  // namespace
+
+json page_data(const result::Result& result, std::size_t limit) {
+  const auto shown = [](const auto& list) { return head(list, columns_in_page); };
+  const auto tree = result::tree(result);
+  const std::size_t share_of_trajectory = limit / tree.size();
+  std::size_t not_followed = 0;
+  for (const auto& entry : tree) not_followed += result::not_followed(*entry.result);
   return {{"saltus", version},
           {"model", model_data(result.model)},
           {"command", result.command},
           {"command_line", result.command_line},
           {"method", result.method},
           {"status", status_data(result.status)},
-          {"states", states},
+          {"states", shown(result.states)},
           {"controls", shown(result.controls)},
           {"switching_functions", shown(result.switching_functions)},
           {"regions", shown(result::region_labels(result.region_groups))},
@@ -327,19 +354,13 @@ json page_data(const result::Result& result, std::size_t limit) {
             {"switching functions", result.switching_functions.size()},
             {"outputs", result.outputs.size()}}},
           {"sensitivity_parameters", result.sensitivities ? result.sensitivities->parameters.size() : 0},
-          {"final",
-           {{"t", result.final.t},
-            {"x", shown(result.final.x)},
-            {"mode", shown(result.final.mode)},
-            {"alpha", shown(result.final.alpha)},
-            {"outputs", shown(result.final.outputs)},
-            {"theta", shown(result.final.theta)}}},
-          {"events", std::move(events)},
+          {"final", final_data(result.final)},
+          {"events", events_data(result, limit)},
           {"trajectory", trajectory_data(result, share_of_trajectory)},
           {"branches", branches_data(tree, share_of_trajectory)},
           {"not_followed", not_followed},
           {"families", families_data(tree)},
-          {"surfaces", std::move(surfaces)},
+          {"surfaces", surfaces_data(result)},
           {"captions", captions_data(result.model.captions)},
           {"vector_field", vector_field_data(result.vector_field)},
           {"elements", elements_data(result.elements)},
@@ -347,11 +368,7 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"optimization", optimization_data(result, share_of_trajectory)},
           {"comparison", comparison_data(result.comparison)},
           {"order", order_data(result.order)},
-          {"statistics",
-           {{"steps", result.statistics.steps},
-            {"rejected", result.statistics.rejected},
-            {"rhs_evaluations", result.statistics.rhs_evaluations},
-            {"wall_seconds", result.statistics.wall_seconds}}},
+          {"statistics", counts_data(result.statistics)},
           {"options", pairs(result.options)}};
 }
 

@@ -51,7 +51,7 @@ OcpSolution OcpProblem::read(ConstVectorView w) const {
     const bool is_free = free < kernel.free_parameters.size() && kernel.free_parameters[free] == static_cast<int>(i);
     solution.parameters[i] = is_free ? w[made.parameters[free++]] : kernel.fixed_parameters[fixed++];
   }
-  for (const int place : made.start_state) solution.initial_state.push_back(own.value(place, w));
+  for (const int place : made.start.state) solution.initial_state.push_back(own.value(place, w));
   Eigen::VectorXd left = Eigen::Map<const Eigen::VectorXd>(solution.initial_state.data(), kernel.states);
   const auto& sizes = kernel.shared;
   double start = made.from;

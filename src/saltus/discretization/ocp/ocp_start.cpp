@@ -22,9 +22,9 @@ class StartWriter {
     for (std::size_t i = 0; i < made_.parameters.size(); ++i) {
       set(made_.parameters[i], guess_.parameters[at(kernel_.free_parameters[i])]);
     }
-    for (std::size_t i = 0; i < made_.start_state.size(); ++i) set(made_.start_state[i], guess_.initial_state[i]);
-    for (const int place : made_.start_lambda) set(place, 0.5);
-    for (const int place : made_.start_own) set(place, 0.5);
+    for (std::size_t i = 0; i < made_.start.state.size(); ++i) set(made_.start.state[i], guess_.initial_state[i]);
+    for (const int place : made_.start.lambda) set(place, 0.5);
+    for (const int place : made_.start.own) set(place, 0.5);
     for (const int place : made_.boundary_own) set(place, 0.5);
     std::size_t row = 0;
     for (std::size_t k = 0; k < made_.interval.size(); ++k) {

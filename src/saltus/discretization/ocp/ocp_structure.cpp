@@ -60,19 +60,19 @@ class StructureBuilder {
     const int first = variables_.next();
     const auto& system = ocp_.system;
     for (std::size_t i = 0; i < ocp_.free_states.size(); ++i) {
-      made_->start_state.push_back(ocp_.free_states[i] ? variables_.variable(system.state_lower[i], system.state_upper[i],
+      made_->start.state.push_back(ocp_.free_states[i] ? variables_.variable(system.state_lower[i], system.state_upper[i],
                                                                   fmt::format("initial {}", system.state_names[i]))
                                                        : variables_.constant(system.initial_state[i]));
     }
     const Eigen::VectorXd lambda = constant_start_lambda();
     for (std::size_t k = 0; k < kernel_.pairs.size(); ++k) {
       const int selection = kernel_.pairs[k].selection;
-      made_->start_lambda.push_back(kernel_.start_is_constant[at(selection)]
+      made_->start.lambda.push_back(kernel_.start_is_constant[at(selection)]
                                         ? variables_.constant(lambda[static_cast<Eigen::Index>(k)])
                                         : variables_.variable(0.0, infinity, fmt::format("initial lambda[{}]", k)));
     }
     for (const auto& [part, count] : kernel_.simplex_parts) {
-      made_->start_own.push_back(kernel_.start_is_constant[at(part)] ? variables_.zero()
+      made_->start.own.push_back(kernel_.start_is_constant[at(part)] ? variables_.zero()
                                                                      : variables_.variable(-infinity, infinity, "initial mu"));
     }
     std::vector<int> theta(at(kernel_.selections), variables_.zero());
@@ -81,7 +81,7 @@ class StructureBuilder {
         theta[at(i)] = variables_.variable(0.0, 1.0, fmt::format("initial theta[{}]", i));
       }
     }
-    made_->start_own.insert(made_->start_own.end(), theta.begin(), theta.end());
+    made_->start.own.insert(made_->start.own.end(), theta.begin(), theta.end());
     made_->chain.start = {first, variables_.next() - first};
   }
 
@@ -147,7 +147,7 @@ class StructureBuilder {
     element.interval = k;
     element.number = n;
     element.length = interval.lengths.empty() ? variables_.constant(1.0 / interval.elements) : interval.lengths[at(n)];
-    element.left = made_->element.empty() ? made_->start_state : right_state(*made_, made_->element.back());
+    element.left = made_->element.empty() ? made_->start.state : right_state(*made_, made_->element.back());
     if (kernel_.depends_on_time) {
       element.left.push_back(n == 0 ? interval.t_left
                                     : made_->element.back().variable(kernel_.layout.end_time.first));
@@ -199,7 +199,7 @@ std::vector<int> right_state(const OcpStructure& made, const OcpElement& element
 }
 
 std::vector<int> OcpStructure::left_lambda(int number) const {
-  if (number == 0) return start_lambda;
+  if (number == 0) return start.lambda;
   const auto& block = kernel.layout.lambda;
   std::vector<int> places;
   for (int i = 0; i < block.size; ++i) places.push_back(element[at(number - 1)].variable(block.at(block.count - 1, i)));

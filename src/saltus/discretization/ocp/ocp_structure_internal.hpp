@@ -59,6 +59,11 @@ struct OcpElement {
   [[nodiscard]] int variable(int local) const { return first + local - 1; }
 };
 
+struct OcpStart {
+  std::vector<int> state, lambda;  ///< places
+  std::vector<int> own;            ///< mu and theta of the start: variables
+};
+
 struct OcpInterval {
   std::vector<int> shared;  ///< places, SharedSizes
   int first_element = 0, elements = 0;
@@ -76,8 +81,7 @@ struct OcpStructure {
   std::vector<OcpElement> element;
   int horizon = 0;  ///< place of T
   std::vector<int> parameters;  ///< variables of the free ones
-  std::vector<int> start_state, start_lambda;  ///< places
-  std::vector<int> start_own;  ///< mu and theta of the start: variables
+  OcpStart start;
   std::vector<int> boundary_own;  ///< variables of step equilibration
   std::vector<Placed> functions;
   std::vector<LinearRow> linear;

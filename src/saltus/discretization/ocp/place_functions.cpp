@@ -69,11 +69,11 @@ class FunctionPlacer {
   void add_start_function() {
     if (is_empty(kernel_.start)) return;
     std::vector<int> places{variables_.constant(ocp_.from)};
-    places.insert(places.end(), made_.start_state.begin(), made_.start_state.end());
+    places.insert(places.end(), made_.start.state.begin(), made_.start.state.end());
     const auto& shared = made_.interval.front().shared;
     places.insert(places.end(), shared.begin(), shared.end());
-    places.insert(places.end(), made_.start_lambda.begin(), made_.start_lambda.end());
-    places.insert(places.end(), made_.start_own.begin(), made_.start_own.end());
+    places.insert(places.end(), made_.start.lambda.begin(), made_.start.lambda.end());
+    places.insert(places.end(), made_.start.own.begin(), made_.start.own.end());
     copy(add(kernel_.start, "start"), std::move(places), 0, -1);
   }
 
@@ -158,7 +158,7 @@ class FunctionPlacer {
 
   [[nodiscard]] std::vector<int> first_places() {
     std::vector<int> places{variables_.constant(ocp_.from)};
-    places.insert(places.end(), made_.start_state.begin(), made_.start_state.end());
+    places.insert(places.end(), made_.start.state.begin(), made_.start.state.end());
     for (int i = 0; i < kernel_.selections; ++i) {
       places.push_back(made_.element.front().variable(kernel_.layout.selection.at(0, i)));
     }

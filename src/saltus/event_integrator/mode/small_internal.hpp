@@ -13,6 +13,7 @@
 
 namespace saltus::event_integrator {
 
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 inline bool is_finite(const std::vector<double>& values) {

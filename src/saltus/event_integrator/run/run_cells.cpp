@@ -16,7 +16,7 @@ bool Run::reaches_cell_end(const Located& located) const {
 
 CellChange Run::leave_cells(const Located& located) {
   if (!reaches_cell_end(located)) return CellChange::none;
-  const auto change = cells_.leave(search_.functions(), located.functions, t_, x_.data(), state_.alpha);
+  const auto change = cells_.leave(search_.functions(), located.functions, here_.t, here_.x.data(), here_.state.alpha);
   for (const auto i : located.functions) {
     if (is_cell_end(search_.functions()[i].kind)) search_.entered_cell(search_.functions()[i]);
   }
@@ -25,9 +25,9 @@ CellChange Run::leave_cells(const Located& located) {
 
 /// Breaks at which values jump, at this time to rounding.
 Located Run::breaks_here() {
-  Located here{t_, x_, {}, {}};
+  Located here{here_.t, here_.x, {}, {}};
   for (std::size_t i = 0; i < search_.functions().size() && !cells_.empty(); ++i) {
-    if (!cells_.jumps_at(search_.functions()[i], t_, x_.data(), state_.alpha)) continue;
+    if (!cells_.jumps_at(search_.functions()[i], here_.t, here_.x.data(), here_.state.alpha)) continue;
     here.functions.push_back(i);
     here.signs.push_back(search_.functions()[i].sign);
   }
@@ -38,8 +38,8 @@ Located Run::breaks_here() {
 bool Run::jump_with_cells() {
   const ModeState& before = before_;
   std::vector<double> values(at(kernel_.event_functions())), magnitude(values.size()), slope(values.size());
-  kernel_.functions(t_, x_.data(), before.alpha.data(), values.data());
-  kernel_.scales(t_, x_.data(), before.alpha.data(), magnitude.data(), slope.data());
+  kernel_.functions(here_.t, here_.x.data(), before.alpha.data(), values.data());
+  kernel_.scales(here_.t, here_.x.data(), before.alpha.data(), magnitude.data(), slope.data());
   std::vector<int> held;
   for (const int j : before.sliding) {
     // The projection leaves a few roundings of psi; a jump leaves something of its size.
@@ -49,7 +49,7 @@ bool Run::jump_with_cells() {
   RestingSurfaces resting;
   if (!find_resting(resting)) return false;
   Transition& transition = transition_;
-  transition = decide_behind_jump(surroundings_, before, t_, x_.data(), h_scale_, held, resting);
+  transition = decide_behind_jump(surroundings_, before, here_.t, here_.x.data(), here_.time_scale, held, resting);
   if (transition.termination == Termination::completed && transition.state.mode != before.mode) {
     transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the " +
                         (cell_change_ == CellChange::jump ? "jump of " : "kink of ") +
@@ -63,10 +63,10 @@ bool Run::jump_with_cells() {
 /// surface itself is beside their domain.
 bool Run::find_undefined_cells() {
   if (!cells_.any_undefined()) return true;
-  std::vector<double> ahead = x_;
-  for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += 8.0 * smallest_step() * slope_[i];
-  const auto change = std::max(cells_.locate_undefined(t_, x_.data(), state_.alpha),
-                               cells_.locate_undefined(t_, ahead.data(), state_.alpha));
+  std::vector<double> ahead = here_.x;
+  for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += 8.0 * here_.smallest_step() * here_.slope[i];
+  const auto change = std::max(cells_.locate_undefined(here_.t, here_.x.data(), here_.state.alpha),
+                               cells_.locate_undefined(here_.t, ahead.data(), here_.state.alpha));
   return change == CellChange::none || enter(transition_);
 }
 
@@ -74,11 +74,8 @@ bool Run::find_undefined_cells() {
 void Run::rows_at_event(const Arrival& arrival) {
   const auto cells_behind = cells_.indices();
   cells_.put(cells_before_);
-  const auto& times = options_.output.times;
-  for (; next_output_ < times.size() && times[next_output_] < t_; ++next_output_) {
-    recorder_.row_before(times[next_output_], x_before_, before_, arrival.events);
-  }
-  recorder_.row_before(t_, x_before_, before_, arrival.events);
+  rows_.each_before(-infinity, here_.t, [&](double t) { recorder_.row_before(t, x_before_, before_, arrival.events); });
+  recorder_.row_before(here_.t, x_before_, before_, arrival.events);
   cells_.put(cells_behind);
 }
 

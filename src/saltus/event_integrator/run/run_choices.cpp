@@ -15,7 +15,7 @@ namespace saltus::event_integrator {
 void Run::note_choice(long decision) {
   ++next_choice_;
   chosen_ = decision;
-  choice_row_ = arrival_row_;
+  choice_row_ = rows_.arrival();
   before_choice_ = result_.statistics;
   before_choice_.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
 }
@@ -35,13 +35,13 @@ void Run::choose(Transition& transition) {
 /// The first lap of a spiral has a size, 1 to lap_ratio times that of any one: its phase.
 void Run::choose_phase(Transition& transition) {
   const auto number = static_cast<long>(families_.count());
-  families_.add_spirals(t_, static_cast<std::size_t>(recorder_.events()), transition);
+  families_.add_spirals(here_.t, static_cast<std::size_t>(recorder_.events()), transition);
   const Choice next = next_choice();
   if (!next.phase || next.decision != number) return;
   SpiralStart& start = *transition.beyond_spiral;
   const double size = std::pow(start.lap_ratio, *next.phase);
   start.duration *= size;
-  for (std::size_t i = 0; i < x_.size(); ++i) start.x[i] = x_[i] + size * (start.x[i] - x_[i]);
+  for (std::size_t i = 0; i < here_.x.size(); ++i) start.x[i] = here_.x[i] + size * (start.x[i] - here_.x[i]);
   transition.unique = false;
   transition.reason = fmt::format("followed with the phase {}; {}", *next.phase, transition.reason);
   note_choice(transition.decision);
@@ -53,13 +53,14 @@ Run::Step Run::leave_later() {
   const auto& open = families_.open();
   const auto family = std::find_if(open.begin(), open.end(), [&](const auto& one) { return one.number == number; });
   if (family == open.end()) return Step::taken;
-  const Arrival arrival = arrive(recorder_.ends_at(t_) ? RowBefore::written : RowBefore::missing);
+  const Arrival arrival =
+      arrive(recorder_.ends_at(here_.t) ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
   Occasion& occasion = occasion_;
   occasion = Occasion{};
-  occasion.t = t_;
-  occasion.x = x_.data();
-  occasion.time_scale = h_scale_;
-  occasion.at_zero = state_.sliding;
+  occasion.t = here_.t;
+  occasion.x = here_.x.data();
+  occasion.time_scale = here_.time_scale;
+  occasion.at_zero = here_.state.sliding;
   for (const auto& given : family->given) occasion.touched.push_back(given.surface);
   auto left = decide_with(surroundings_, before_, occasion, family->given);
   if (!left) return Step::taken;
@@ -82,23 +83,23 @@ Run::Step Run::leave_later() {
 
 /// Behind an event: what its mode may be left into, now or later.
 void Run::watch_for_families() {
-  const bool may_repel = !state_.sliding.empty() && recorder_.last_unique() != true;
+  const bool may_repel = !here_.state.sliding.empty() && recorder_.last_unique() != true;
   const bool coupled = field_.solve() == SlidingSolve::coupled;
   if (families_.idle() && !may_repel && !coupled) return;
-  if (!families_.idle() && families_.is_on(state_)) return;
-  families_.enter({t_, x_.data(), h_scale_}, state_, static_cast<std::size_t>(recorder_.events() - 1),
-                  recorder_.last_unique());
+  if (!families_.idle() && families_.is_on(here_.state)) return;
+  families_.enter({here_.t, here_.x.data(), here_.time_scale}, here_.state,
+                  static_cast<std::size_t>(recorder_.events() - 1), recorder_.last_unique());
 }
 
 /// Behind a step.
 void Run::look_for_families(double t_begin) {
   bool known = false;
   const auto state_at = [&](double t, double* x) {
-    if (!known) static_cast<void>(stepper_.dense(right_hand_side(), dense_));
+    if (!known) static_cast<void>(steps_.remake_dense());
     known = true;
-    dense_.evaluate((t - dense_.t) / dense_.h, x);
+    steps_.dense().evaluate((t - steps_.dense().t) / steps_.dense().h, x);
   };
-  families_.look({t_, x_.data(), h_scale_}, t_begin, state_at);
+  families_.look({here_.t, here_.x.data(), here_.time_scale}, t_begin, state_at);
 }
 
 /// Takes away what lies before the last choice.

@@ -10,16 +10,16 @@ using result::Termination;
 /// Modes at the start; bodies that touch and approach collide at once.
 bool Run::begin_contacts(Landing& landing) {
   if (contacts_.none()) return true;
-  const auto before = x_;
-  if (auto problem = contacts_.resolve({t_, state_.alpha, h_scale_}, {}, x_)) {
+  const auto before = here_.x;
+  if (auto problem = contacts_.resolve({here_.t, here_.state.alpha, here_.time_scale}, {}, here_.x)) {
     fail(Termination::outside_class, std::move(*problem));
     return false;
   }
-  if (const auto jump = contacts_.jump_with_impulse(x_)) {
+  if (const auto jump = contacts_.jump_with_impulse(here_.x)) {
     ExecutedJump& executed = landing.executed.append();
     executed.x = before;
     executed.jump = *jump;
-    executed.x_after = x_;
+    executed.x_after = here_.x;
   }
   return true;
 }
@@ -27,7 +27,7 @@ bool Run::begin_contacts(Landing& landing) {
 /// All contacts whose modes end here, at once.
 bool Run::move_contacts() {
   const auto ended = contacts_.with_jumps([&](int jump) { return jumps_.holds(jump); });
-  auto problem = contacts_.resolve({t_, state_.alpha, h_scale_}, ended, x_);
+  auto problem = contacts_.resolve({here_.t, here_.state.alpha, here_.time_scale}, ended, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   return !problem;
 }
@@ -36,16 +36,16 @@ bool Run::move_contacts() {
 void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before) {
   jump_series_.clear();
   pass_to(limit.t, limit.x);
-  contacts_.copy_modes(x_last, x_);
-  contacts_.forget_impulses(x_);
+  contacts_.copy_modes(x_last, here_.x);
+  contacts_.forget_impulses(here_.x);
   Landing& landing = landing_here();
-  auto problem = contacts_.settle({t_, state_.alpha, h_scale_}, limit.events, x_);
+  auto problem = contacts_.settle({here_.t, here_.state.alpha, here_.time_scale}, limit.events, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   const auto accumulated = [&] {
-    recorder_.accumulated(t_, limit.events, {x_last, x_, before, state_},
+    recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},
                           "the intervals of these impacts shrink geometrically: the gaps close in their limit");
-    row(t_, x_);
-    last_event_time_ = t_;
+    row(here_.t, here_.x);
+    last_event_time_ = here_.t;
   };
   if (!running_) return accumulated();
   drop_zeros(landing);

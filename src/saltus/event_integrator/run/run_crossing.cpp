@@ -25,19 +25,19 @@ bool Run::has_ordinary_switches() const {
 /// Whether one listed surface is reached in a region or while sliding on one, or left by the solution that slides on it
 /// alone, behind the last switch.
 bool Run::is_ordinary(const Located& located) const {
-  if (!ordinary_ || located.functions.size() != 1 || state_.higher || !families_.idle()) return false;
+  if (!ordinary_ || located.functions.size() != 1 || here_.state.higher || !families_.idle()) return false;
   const auto& function = search_.functions()[located.functions.front()];
-  const bool slides = state_.sliding.size() == 1 && field_.solve() == SlidingSolve::decoupled;
+  const bool slides = here_.state.sliding.size() == 1 && field_.solve() == SlidingSolve::decoupled;
   const bool surface = function.kind == FunctionKind::surface && (search_.crosses() || slides);
   const bool exit = (function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above) && slides;
-  return (surface || exit) && recorder_.lists(function.index) && located.t > t_ && located.t != series_.last();
+  return (surface || exit) && recorder_.lists(function.index) && located.t > here_.t && located.t != series_.last();
 }
 
 /// Goes on behind an ordinary switch; otherwise nothing has happened.
 bool Run::switch_shortly(const Located& located) {
   const auto& function = search_.functions()[located.functions.front()];
   if (function.kind != FunctionKind::surface) return leave(located, function);
-  return state_.sliding.empty() ? meet(located, function.index) : pass(located, function.index);
+  return here_.state.sliding.empty() ? meet(located, function.index) : pass(located, function.index);
 }
 
 /// A surface that is reached in a region.
@@ -45,21 +45,21 @@ bool Run::meet(const Located& located, int surface) {
   const auto j = at(surface);
   const double t = located.t;
   const double* x = located.x.data();
-  const int mode = state_.mode[j];
-  const double alpha = state_.alpha[j];
-  field_(t, x, slope_.data());
-  state_.alpha[j] = 1.0 - alpha;
-  const auto& constants = field_memory_.of(state_.alpha, step_memory_.mark_with(j, -mode));
-  state_.alpha[j] = alpha;
+  const int mode = here_.state.mode[j];
+  const double alpha = here_.state.alpha[j];
+  field_(t, x, here_.slope.data());
+  here_.state.alpha[j] = 1.0 - alpha;
+  const auto& constants = field_memory_.of(here_.state.alpha, steps_.memory().mark_with(j, -mode));
+  here_.state.alpha[j] = alpha;
   kernel_.prepared_field(t, x, constants, slope_beyond_.data());
-  const auto decision = mode < 0 ? single_surface_.decide(state_, surface, t, x, slope_, slope_beyond_)
-                                 : single_surface_.decide(state_, surface, t, x, slope_beyond_, slope_);
+  const auto decision = mode < 0 ? single_surface_.decide(here_.state, surface, t, x, here_.slope, slope_beyond_)
+                                 : single_surface_.decide(here_.state, surface, t, x, slope_beyond_, here_.slope);
   if (!decision) return false;
   const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
   if (change.after != 0) {
-    std::copy(located.x.begin(), located.x.end(), x_.begin());
+    std::copy(located.x.begin(), located.x.end(), here_.x.begin());
     field_.cross(j, constants);
-    slope_.swap(slope_beyond_);
+    here_.slope.swap(slope_beyond_);
   } else {
     field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
     if (!begin_at(located)) return false;
@@ -71,17 +71,17 @@ bool Run::meet(const Located& located, int surface) {
 /// A surface that is reached while the solution slides on another one.
 bool Run::pass(const Located& located, int surface) {
   const auto j = at(surface);
-  const int slid = state_.sliding.front();
-  field_(located.t, located.x.data(), slope_.data());
+  const int slid = here_.state.sliding.front();
+  field_(located.t, located.x.data(), here_.slope.data());
   const double selection = field_.alpha()[at(slid)];
-  if (!is_finite(slope_) || !std::isfinite(selection)) return false;
-  state_.alpha[at(slid)] = selection;
+  if (!is_finite(here_.slope) || !std::isfinite(selection)) return false;
+  here_.state.alpha[at(slid)] = selection;
   look_at_both(located, slid, surface);
-  const bool is_pair = surface_pair_.look(state_, occasion_, &field_);
+  const bool is_pair = surface_pair_.look(here_.state, occasion_, &field_);
   if (is_pair) {
-    if (const auto alpha = surface_pair_.across(state_, occasion_)) return pass_across(located, surface, *alpha);
+    if (const auto alpha = surface_pair_.across(here_.state, occasion_)) return pass_across(located, surface, *alpha);
   }
-  before_ = state_;
+  before_ = here_.state;
   const bool decided = is_pair ? surface_pair_.conclude(before_, occasion_, transition_)
                                : single_surface_.decide(before_, occasion_, transition_);
   if (!decided) return false;
@@ -94,22 +94,21 @@ bool Run::pass(const Located& located, int surface) {
     field_.enter(next);
   }
   if (!begin_at(located)) return false;
-  t_ = located.t;
-  arrival_row_ = recorder_.rows();
-  recorder_.switched(t_, x_, before_, transition_);
-  recorder_.row_before(t_, located.x, before_, recorder_.events() - 1);
-  state_ = next;
-  stepper_.restart();
-  stiffness_.reset();
-  search_.enter(state_, transition_.zero_order, t_, x_.data());
+  here_.t = located.t;
+  rows_.arrive(OutputRows::Arrival::missing);
+  recorder_.switched(here_.t, here_.x, before_, transition_);
+  recorder_.row_before(here_.t, located.x, before_, recorder_.events() - 1);
+  here_.state = next;
+  steps_.begin_mode();
+  search_.enter(here_.state, transition_.zero_order, here_.t, here_.x.data());
   if (across) {
-    recorder_.row(t_, x_, state_, field_.alpha());
-    series_.note(t_, j, before_.mode[j]);
-    h_ = step_memory_.change(state_.mode, j, t_, h_);
+    recorder_.row(here_.t, here_.x, here_.state, field_.alpha());
+    series_.note(here_.t, j, before_.mode[j]);
+    here_.h = steps_.memory().change(here_.state.mode, j, here_.t, here_.h);
   } else {
-    row(t_, x_);
-    static_cast<void>(series_.repeats(t_, before_.mode, state_.mode));  // this is the first one at t
-    h_ = step_memory_.change(state_.mode, t_, h_);
+    row(here_.t, here_.x);
+    static_cast<void>(series_.repeats(here_.t, before_.mode, here_.state.mode));  // this is the first one at t
+    here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
   }
   end_switch();
   if (too_many_events()) return true;
@@ -123,12 +122,17 @@ bool Run::pass(const Located& located, int surface) {
 /// reaches, with these selections, in the order of the occasion.
 bool Run::pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha) {
   const auto j = at(surface);
-  const int slid = state_.sliding.front();
+  const int slid = here_.state.sliding.front();
   const std::size_t place = occasion_.at_zero[0] == surface ? 0 : 1;
-  const SlidAcross across{slid, state_.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
-                          surface_pair_.meeting(state_, occasion_)};
-  const SurfaceSwitch change{
-      surface, state_.mode[j], -state_.mode[j], state_.alpha[j], alpha[place], switching::reason_of_passage(), &across};
+  const SlidAcross across{slid, here_.state.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
+                          surface_pair_.meeting(here_.state, occasion_)};
+  const SurfaceSwitch change{surface,
+                             here_.state.mode[j],
+                             -here_.state.mode[j],
+                             here_.state.alpha[j],
+                             alpha[place],
+                             switching::reason_of_passage(),
+                             &across};
   pass_field(surface, change.alpha_after, across.alpha_after);
   if (!begin_at(located)) return false;
   go_on_behind(located, change);
@@ -138,7 +142,7 @@ bool Run::pass_across(const Located& located, int surface, const switching::Plan
 /// The field of the mode in which the solution goes on sliding across a surface.
 void Run::pass_field(int surface, double alpha, double selection) {
   const auto j = at(surface);
-  const std::size_t mark = step_memory_.mark_with(j, -state_.mode[j]);
+  const std::size_t mark = steps_.memory().mark_with(j, -here_.state.mode[j]);
   field_.pass(j, alpha, selection, [&](const std::vector<double>& selections) -> const evaluation::FieldConstants& {
     return field_memory_.of(selections, mark);
   });
@@ -146,11 +150,11 @@ void Run::pass_field(int surface, double alpha, double selection) {
 
 /// The state and the slope where the field in hand begins; false where that is not finite: the field is the one before.
 bool Run::begin_at(const Located& located) {
-  std::copy(located.x.begin(), located.x.end(), x_.begin());
-  field_.project(located.t, x_.data());
-  field_(located.t, x_.data(), slope_.data());
-  if (is_finite(slope_)) return true;
-  field_.enter(state_);
+  std::copy(located.x.begin(), located.x.end(), here_.x.begin());
+  field_.project(located.t, here_.x.data());
+  field_(located.t, here_.x.data(), here_.slope.data());
+  if (is_finite(here_.slope)) return true;
+  field_.enter(here_.state);
   return false;
 }
 
@@ -158,7 +162,7 @@ bool Run::begin_at(const Located& located) {
 void Run::look_at_both(const Located& located, int slid, int reached) {
   occasion_.t = located.t;
   occasion_.x = located.x.data();
-  occasion_.time_scale = h_scale_;
+  occasion_.time_scale = here_.time_scale;
   occasion_.at_zero = {std::min(slid, reached), std::max(slid, reached)};
   occasion_.touched.assign(1, reached);
   for (auto* none : {&occasion_.exit_below, &occasion_.exit_above, &occasion_.coalesced, &occasion_.destabilised}) {
@@ -169,9 +173,8 @@ void Run::look_at_both(const Located& located, int slid, int reached) {
 /// What follows a switch that was recorded and entered.
 void Run::end_switch() {
   restart_control();
-  const auto& times = options_.output.times;
-  while (next_output_ < times.size() && times[next_output_] <= t_) ++next_output_;
-  last_event_time_ = t_;
+  rows_.skip_here();
+  last_event_time_ = here_.t;
 }
 
 /// The only surface that is slid on, where the field of one side has become tangent to it.
@@ -180,41 +183,40 @@ bool Run::leave(const Located& located, const EventFunction& exit) {
   const auto j = at(surface);
   const double t = located.t;
   const double* x = located.x.data();
-  field_(t, x, slope_.data());
+  field_(t, x, here_.slope.data());
   const double alpha = field_.alpha()[j];
-  if (!is_finite(slope_) || !SingleSurface::is_within_bounds(alpha)) return false;
+  if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return false;
   const auto side = exit.kind == FunctionKind::exit_below ? Region::below : Region::above;
   field_.of_side(side, t, x, slope_beyond_.data());
   const SingleSurface::Motions motions{field_.sides(), search_.exit_rate(located.functions.front(), slope_beyond_)};
-  const double before = std::exchange(state_.alpha[j], side == Region::below ? 0.0 : 1.0);
-  const auto decision = single_surface_.decide_exit(state_, surface, {t, x, h_scale_}, motions, side);
-  state_.alpha[j] = before;
+  const double before = std::exchange(here_.state.alpha[j], side == Region::below ? 0.0 : 1.0);
+  const auto decision = single_surface_.decide_exit(here_.state, surface, {t, x, here_.time_scale}, motions, side);
+  here_.state.alpha[j] = before;
   if (!decision) return false;
-  x_ = located.x;
-  state_.alpha[j] = alpha;
+  here_.x = located.x;
+  here_.state.alpha[j] = alpha;
   field_.leave_to(side);
-  slope_.swap(slope_beyond_);
+  here_.slope.swap(slope_beyond_);
   go_on_behind(located, {surface, 0, decision->mode, alpha, decision->alpha, decision->reason});
   return true;
 }
 
-/// The field is that of the mode behind, and x_ and slope_ are there.
+/// The field is that of the mode behind, and here_.x and here_.slope are there.
 void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
   const auto j = at(change.surface);
-  t_ = located.t;
-  arrival_row_ = recorder_.rows();
-  recorder_.switched(t_, x_, change);
-  recorder_.row_before_last_event(located.x, state_.alpha);
-  set_surface(state_, change.surface, change.after, change.alpha_after);
-  if (change.slid != nullptr) state_.alpha[at(change.slid->surface)] = change.slid->alpha_after;
-  stepper_.restart();
-  stiffness_.reset();
+  here_.t = located.t;
+  rows_.arrive(OutputRows::Arrival::missing);
+  recorder_.switched(here_.t, here_.x, change);
+  recorder_.row_before_last_event(located.x, here_.state.alpha);
+  set_surface(here_.state, change.surface, change.after, change.alpha_after);
+  if (change.slid != nullptr) here_.state.alpha[at(change.slid->surface)] = change.slid->alpha_after;
+  steps_.begin_mode();
   begin_search(change);
   const bool slides = change.after == 0 || change.slid != nullptr;
-  recorder_.row_behind_last_event(x_, slides ? field_.alpha() : state_.alpha,
+  recorder_.row_behind_last_event(here_.x, slides ? field_.alpha() : here_.state.alpha,
                                   change.slid != nullptr ? at(change.slid->surface) : j);
-  series_.note(t_, j, change.before);
-  h_ = step_memory_.change(state_.mode, j, t_, h_);
+  series_.note(here_.t, j, change.before);
+  here_.h = steps_.memory().change(here_.state.mode, j, here_.t, here_.h);
   end_switch();
   if (too_many_events()) return;
   note_tightening_switch(change);
@@ -226,13 +228,13 @@ void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
 void Run::begin_search(const SurfaceSwitch& change) {
   const auto j = at(change.surface);
   const bool crosses = change.before != 0 && change.after != 0;
-  if (crosses && change.slid == nullptr) return search_.cross(j, state_, t_, x_.data());
-  set_corner_alpha(state_);
-  if (crosses && search_.pass(j, state_, t_, x_.data())) return;
-  zero_order_.assign(state_.mode.size(), 0);
+  if (crosses && change.slid == nullptr) return search_.cross(j, here_.state, here_.t, here_.x.data());
+  set_corner_alpha(here_.state);
+  if (crosses && search_.pass(j, here_.state, here_.t, here_.x.data())) return;
+  zero_order_.assign(here_.state.mode.size(), 0);
   zero_order_[j] = crosses ? 1 : change.after == 0 ? 0 : 2;
-  if (crosses) return search_.enter(state_, zero_order_, t_, x_.data());
-  search_.enter_again(state_, zero_order_, t_, x_.data());
+  if (crosses) return search_.enter(here_.state, zero_order_, here_.t, here_.x.data());
+  search_.enter_again(here_.state, zero_order_, here_.t, here_.x.data());
 }
 
 }  // namespace saltus::event_integrator

@@ -18,13 +18,13 @@ using result::Termination;
 ///                      was reached from is no second one
 std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_before, const ModeState& before,
                                                const std::vector<std::size_t>& before_jumps) {
-  auto fired = user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs());
+  auto fired = user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs());
   std::erase_if(fired, [&](std::size_t event) {
     const bool again = std::find(before_jumps.begin(), before_jumps.end(), event) != before_jumps.end();
     return again && !model::rule_of(surroundings_.system.events[event]).condition;
   });
   for (const std::size_t event : fired) {
-    recorder_.user(t_, {x_before, x_, before, state_}, static_cast<int>(event));
+    recorder_.user(here_.t, {x_before, here_.x, before, here_.state}, static_cast<int>(event));
     if (user_events_.stops(event) && running_) {
       fail(Termination::stopped_by_event,
            fmt::format("stopped by the event '{}'", surroundings_.system.events[event].name));
@@ -43,7 +43,7 @@ bool Run::too_many_events() {
     return true;
   }
   // Jumps have their own limits.
-  if (jumped_ || !series_.too_dense(t_)) return false;
+  if (jumped_ || !series_.too_dense(here_.t)) return false;
   if (!follow_dense_laps()) accumulates();
   return true;
 }
@@ -55,17 +55,17 @@ void Run::accumulates() {
       fmt::format(
           "switches accumulate at t = {:.17g} (spiral into an intersection of surfaces, or chattering), and the fields "
           "there do not say what follows their limit; end the simulation before, or perturb a parameter",
-          t_));
+          here_.t));
 }
 
 bool Run::change_mode(const Located& located) {
   cell_change_ = leave_cells(located);
   if (cell_change_ == CellChange::jump || change_resting_with_cells()) return running_ && jump_with_cells();
   Occasion& occasion = occasion_;
-  occasion.t = t_;
-  occasion.x = x_.data();
-  occasion.time_scale = h_scale_;
-  occasion.at_zero = state_.sliding;
+  occasion.t = here_.t;
+  occasion.x = here_.x.data();
+  occasion.time_scale = here_.time_scale;
+  occasion.at_zero = here_.state.sliding;
   for (auto* surfaces :
        {&occasion.touched, &occasion.exit_below, &occasion.exit_above, &occasion.coalesced, &occasion.destabilised}) {
     surfaces->clear();
@@ -81,42 +81,43 @@ bool Run::change_mode(const Located& located) {
     if (function.kind == FunctionKind::loss) {
       occasion.coalesced.push_back(function.index);
       // Towards a root that is lost steps shrink to nothing, over which no field changes.
-      occasion.time_scale = std::max(occasion.time_scale, longest_step_);
+      occasion.time_scale = std::max(occasion.time_scale, steps_.longest());
     }
     if (function.kind == FunctionKind::instability) occasion.destabilised.push_back(function.index);
     const bool nested = function.kind == FunctionKind::nested;
-    if (nested && !continuous_across(kernel_, corners_inside(kernel_, state_, function.index), function.index, t_, x_,
-                                     h_scale_)) {
+    if (nested && !continuous_across(kernel_, corners_inside(kernel_, here_.state, function.index), function.index,
+                                     here_.t, here_.x, here_.time_scale)) {
       fail(Termination::outside_class,
            fmt::format(
                "'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
                "it at t = {:.17g}: rewrite the nested term with named switching functions",
                surroundings_.system.switching[at(function.index)].name,
-               surroundings_.system.switching[at(sliding_inside(kernel_, state_, function.index).front())].name, t_));
+               surroundings_.system.switching[at(sliding_inside(kernel_, here_.state, function.index).front())].name,
+               here_.t));
       return false;
     }
     occasion.at_zero.push_back(function.index);
     occasion.touched.push_back(function.index);
   }
   const ModeState& from = freed_.empty() ? before_ : slid_on_freed(occasion);
-  for (const int j : state_.sliding) {
+  for (const int j : here_.state.sliding) {
     // Sliding goes on with the new gradient, or ends, behind a kink of its own psi.
     if (cell_change_ != CellChange::none && cells_.moved_in(j)) occasion.touched.push_back(j);
   }
   if (!any && occasion.touched.empty()) {
     if (cell_change_ == CellChange::none) return true;
     transition_ = Transition{};
-    transition_.state = state_;
-    transition_.zero_order = zeros_at(kernel_, state_, t_, x_.data());
+    transition_.state = here_.state;
+    transition_.zero_order = zeros_at(kernel_, here_.state, here_.t, here_.x.data());
     return enter(transition_);
   }
   std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
   occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
-  if (!kernel_.region_groups().empty()) complete_ties(kernel_, state_, occasion);
-  note_ties(kernel_, state_, occasion);
+  if (!kernel_.region_groups().empty()) complete_ties(kernel_, here_.state, occasion);
+  note_ties(kernel_, here_.state, occasion);
   Transition& transition = transition_;
   const bool slope_holds = cells_.empty() && jumps_.none();  // no cell was left, and no guard released, here
-  if (!single_surface_.decide(from, occasion, transition, slope_holds ? &slope_ : nullptr) &&
+  if (!single_surface_.decide(from, occasion, transition, slope_holds ? &here_.slope : nullptr) &&
       !surface_pair_.decide(from, occasion, transition)) {
     transition = decide_mode(surroundings_, from, occasion);
   }
@@ -132,12 +133,12 @@ bool Run::go_on() {
   if (transition.termination != Termination::completed) {
     drowned_ = drowned_here();
     if (drowned_) return false;
-    if (auto lost = lost_selections(surroundings_, before_, t_, x_.data())) {
+    if (auto lost = lost_selections(surroundings_, before_, here_.t, here_.x.data())) {
       fail(Termination::outside_class, std::move(*lost));
       return false;
     }
     // Where switches accumulate the fields may have no limit: that is the reason then.
-    const bool at_limit = transition.termination != Termination::outside_class && series_.shrinks(t_);
+    const bool at_limit = transition.termination != Termination::outside_class && series_.shrinks(here_.t);
     if (at_limit) {
       accumulates();
       return false;
@@ -146,18 +147,18 @@ bool Run::go_on() {
     return false;
   }
   choose(transition);
-  if (series_.repeats(t_, before_.mode, transition.state.mode)) {
+  if (series_.repeats(here_.t, before_.mode, transition.state.mode)) {
     accumulates();
     return false;
   }
   if (!enter(transition) || !find_undefined_cells()) return false;
-  if (!recorder_.switched(t_, x_, before_, transition) && chooses_here(transition)) {
+  if (!recorder_.switched(here_.t, here_.x, before_, transition) && chooses_here(transition)) {
     // To stay on a root that has lost its stability, or to change to the other one: the branch begins like a run in a
     // forced mode.
-    recorder_.started(t_, x_, transition, state_.sliding);
+    recorder_.started(here_.t, here_.x, transition, here_.state.sliding);
   }
   restart_control();
-  h_ = step_memory_.change(state_.mode, t_, h_);
+  here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
   return true;
 }
 
@@ -171,23 +172,23 @@ void Run::flip_user_functions(const Located& located) {
   };
   // The signs before become known now, if they were not; only then do all of them change.
   each([&](std::size_t function, int sign) {
-    if (search_.functions()[function].sign != sign) search_.set_user_sign(function, sign, t_, x_.data());
+    if (search_.functions()[function].sign != sign) search_.set_user_sign(function, sign, here_.t, here_.x.data());
   });
-  static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
-  each([&](std::size_t function, int sign) { search_.set_user_sign(function, -sign, t_, x_.data()); });
+  static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));
+  each([&](std::size_t function, int sign) { search_.set_user_sign(function, -sign, here_.t, here_.x.data()); });
 }
 
 /// Notes what is here before an event, the selections of a sliding mode among it.
-Run::Arrival Run::arrive(RowBefore row) {
-  field_(t_, x_.data(), slope_.data());
+Run::Arrival Run::arrive(OutputRows::Arrival row) {
+  field_(here_.t, here_.x.data(), here_.slope.data());
   // 0/0 in the last bit where both fields are tangent: the selections that the mode began with are as good.
-  if (!state_.sliding.empty() && is_finite(field_.alpha())) state_.alpha = field_.alpha();
-  before_ = state_;
-  x_before_ = x_;
+  if (!here_.state.sliding.empty() && is_finite(field_.alpha())) here_.state.alpha = field_.alpha();
+  before_ = here_.state;
+  x_before_ = here_.x;
   jumped_ = false;
   cells_before_ = cells_.indices();
   cell_change_ = CellChange::none;
-  arrival_row_ = recorder_.rows() - (row == RowBefore::written ? 1 : 0);
+  rows_.arrive(row);
   return {recorder_.events(), row};
 }
 
@@ -195,23 +196,23 @@ Run::Arrival Run::arrive(RowBefore row) {
 Run::Step Run::handle(const Located& located) {
   no_surface_at_.reset();
   if (is_ordinary(located) && switch_shortly(located)) return running_ ? Step::taken : Step::failed;
-  const bool ended_here = located.t == t_ && recorder_.ends_at(t_) && t_ != last_event_time_;
+  const bool ended_here = located.t == here_.t && recorder_.ends_at(here_.t) && here_.t != last_event_time_;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
-  if (located.t > t_) search_.forget_user_zeros();
-  const double t_begin = t_;
-  t_ = located.t;
-  x_ = located.x;
-  static_cast<void>(holding_.project(t_, state_.alpha, x_));
+  if (located.t > here_.t) search_.forget_user_zeros();
+  const double t_begin = here_.t;
+  here_.t = located.t;
+  here_.x = located.x;
+  static_cast<void>(holding_.project(here_.t, here_.state.alpha, here_.x));
   settle_on_roots(located);
   // A step may be as long as the mode.
-  if (families_.watches() && t_ > t_begin) look_for_families(t_begin);
+  if (families_.watches() && here_.t > t_begin) look_for_families(t_begin);
   // A step that ended exactly here has written the row before the event.
-  const Arrival arrival = arrive(ended_here ? RowBefore::written : RowBefore::missing);
+  const Arrival arrival = arrive(ended_here ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
   flip_user_functions(located);
   jumps_.update(jump_point());
   if (jumps_have_problem()) return depart(arrival);
   Landing& landing = landing_at(located);
-  if (jumps_.due(t_)) {
+  if (jumps_.due(here_.t)) {
     cell_change_ = leave_cells(located);
     static_cast<void>(jump(before_, x_before_, landing));
     return depart(arrival);
@@ -219,18 +220,18 @@ Run::Step Run::handle(const Located& located) {
   const bool released = release(located);
   if (change_mode(located) && released && freed_.empty()) {
     Transition same;
-    same.state = state_;
-    same.zero_order.assign(state_.mode.size(), 0);
+    same.state = here_.state;
+    same.zero_order.assign(here_.state.mode.size(), 0);
     static_cast<void>(enter(same));
   }
-  if (running_ && !jumps_.none() && state_.mode != before_.mode) leave_guards(landing);
-  if (running_) fire_user_events(x_, before_);
+  if (running_ && !jumps_.none() && here_.state.mode != before_.mode) leave_guards(landing);
+  if (running_) fire_user_events(here_.x, before_);
   if (running_ && !jumps_.none()) {
     // Conditions may depend on selections, too.
     jumps_.update(jump_point());
-    if (!jumps_have_problem() && jumps_.due(t_)) {
-      const ModeState before = state_;
-      static_cast<void>(jump(before, std::vector<double>(x_), landing));
+    if (!jumps_have_problem() && jumps_.due(here_.t)) {
+      const ModeState before = here_.state;
+      static_cast<void>(jump(before, std::vector<double>(here_.x), landing));
     }
   }
   return depart(arrival);
@@ -238,8 +239,8 @@ Run::Step Run::handle(const Located& located) {
 
 /// Whether a selection is another one than before that is no kink: one of time only, which makes no event.
 bool Run::selections_jumped() const {
-  for (std::size_t j = 0; j < state_.mode.size() && j < before_.mode.size(); ++j) {
-    if (state_.mode[j] != before_.mode[j] && !surroundings_.system.switching[j].is_kink()) return true;
+  for (std::size_t j = 0; j < here_.state.mode.size() && j < before_.mode.size(); ++j) {
+    if (here_.state.mode[j] != before_.mode[j] && !surroundings_.system.switching[j].is_kink()) return true;
   }
   return false;
 }
@@ -247,22 +248,19 @@ bool Run::selections_jumped() const {
 Run::Step Run::depart(const Arrival& arrival) {
   const bool event = recorder_.events() > arrival.events;
   if (event || !running_) {
-    if (arrival.row == RowBefore::missing) rows_at_event(arrival);
-    if (event) row(t_, x_);
-  } else if (options_.output.rows == OutputTimes::Rows::at_steps) {
+    if (arrival.row == OutputRows::Arrival::missing) rows_at_event(arrival);
+    if (event) row(here_.t, here_.x);
+  } else if (rows_.at_steps()) {
     // Inputs and outputs may jump here: their values before and behind.
-    if (cell_change_ == CellChange::jump || (line_rows_ && selections_jumped())) rows_at_event(arrival);
-    row(t_, x_);
+    if (cell_change_ == CellChange::jump || (rows_.asks_for_lines() && selections_jumped())) rows_at_event(arrival);
+    row(here_.t, here_.x);
   }
-  while (next_output_ < options_.output.times.size() && options_.output.times[next_output_] <= t_) {
-    // A requested time at a restart that is no event still gets its row.
-    const double requested = options_.output.times[next_output_];
-    const bool wanted = (requested == t_ || cell_change_ != CellChange::none) && !event &&
-                        options_.output.rows == OutputTimes::Rows::at_times && running_;
-    if (wanted) row(requested, x_);
-    ++next_output_;
-  }
-  if (event) last_event_time_ = t_;
+  // A requested time at a restart that is no event still gets its row.
+  rows_.each_until(-infinity, here_.t, [&](double t) {
+    const bool wanted = (t == here_.t || cell_change_ != CellChange::none) && !event && !rows_.at_steps() && running_;
+    if (wanted) row(t, here_.x);
+  });
+  if (event) last_event_time_ = here_.t;
   if (running_ && !too_many_events()) {
     if (event) {
       note_tightening_switch();

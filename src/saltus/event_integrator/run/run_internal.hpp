@@ -24,10 +24,14 @@
 #include "saltus/event_integrator/jumps/holding.hpp"
 #include "saltus/event_integrator/jumps/jumps.hpp"
 #include "saltus/event_integrator/jumps/resting_surfaces.hpp"
+#include "saltus/event_integrator/mode/field_rates.hpp"
+#include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
 #include "saltus/event_integrator/run/compact_integration.hpp"
-#include "saltus/event_integrator/run/step_memory.hpp"
+#include "saltus/event_integrator/run/output_rows.hpp"
+#include "saltus/event_integrator/run/step_attempt.hpp"
+#include "saltus/event_integrator/run/step_tolerances.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
 #include "saltus/event_integrator/search/event_search.hpp"
 #include "saltus/event_integrator/search/locate.hpp"
@@ -54,18 +58,12 @@ class Run {
 
  private:
   enum class Step { taken, shortened, failed };
-  enum class RowBefore { written, missing };
   enum class Behind { any, higher_order };  ///< a limit of switches
 
   /// Of an event in hand, beside before_ and x_before_.
   struct Arrival {
     long events = 0;  ///< recorded before it
-    RowBefore row = RowBefore::missing;
-  };
-  /// dg/dt, the sum of the sizes of its terms, and the size of those of g that its rounding follows from.
-  struct Rate {
-    double value = 0.0, terms = 0.0, magnitude = 0.0;
-    double slope = 0.0;  ///< sum of |d_i phi|
+    OutputRows::Arrival row = OutputRows::Arrival::missing;
   };
   /// Limits of switches that follow each other at once.
   struct LimitsInARow {
@@ -90,15 +88,8 @@ class Run {
     int function = 0;
     std::vector<int> around;
     double t = 0.0;
-    double ratio = std::numeric_limits<double>::infinity();
+    double ratio = infinity;
     double end = std::numeric_limits<double>::quiet_NaN();  ///< where g is 0, by what was seen until then
-  };
-
-  /// Rows between steps, where they are asked for. Columns are states, inputs, outputs, selections.
-  struct LineRows {
-    ode::ColumnRanges ranges;
-    ode::StraightLines lines;
-    std::vector<double> tolerance, low, high;
   };
 
   struct RestingGuards {
@@ -130,7 +121,7 @@ class Run {
   bool leave(const Located& located, const EventFunction& exit);
   void go_on_behind(const Located& located, const SurfaceSwitch& change);
   void begin_search(const SurfaceSwitch& change);
-  Arrival arrive(RowBefore row);
+  Arrival arrive(OutputRows::Arrival row);
   Step depart(const Arrival& arrival);
   [[nodiscard]] bool selections_jumped() const;
   void choose(Transition& transition);
@@ -142,7 +133,7 @@ class Run {
   void look_for_families(double t_begin);
   [[nodiscard]] double next_departure() const {
     const double time = next_choice().departure();
-    return time > t_ ? time : std::numeric_limits<double>::infinity();
+    return time > here_.t ? time : infinity;
   }
   /// The next one of the choices that a run was asked for; one that never comes if there is none.
   [[nodiscard]] Choice next_choice() const {
@@ -165,7 +156,7 @@ class Run {
   void leave_root();
   [[nodiscard]] int root_here();
   /// Where x and f are both 0 the step that was proposed says nothing.
-  [[nodiscard]] double root_step() const { return std::max(1e-2 * h_scale_, 1e-8 * span()); }
+  [[nodiscard]] double root_step() const { return std::max(1e-2 * here_.time_scale, 1e-8 * span()); }
   bool take_side_of_root();
   void settle_on_roots(const Located& located);
   void watch_nested_roots();
@@ -182,8 +173,7 @@ class Run {
   void note_switch_rates();
   void follow_shrinking();
   void end_shrinking();
-  void follow_roots();
-  void set_tolerances();
+  void limit_beside_coalescence();
   void tighten_beside_roots(double h);
   void accumulate_switches();
   [[nodiscard]] std::optional<SeriesLimit> drowned_here() const;
@@ -229,12 +219,11 @@ class Run {
   [[nodiscard]] Motion motion_of(int function, Landing& landing);
   [[nodiscard]] Occasion at_this_time() const;
   [[nodiscard]] Motion find_motion(int function, const Landing& landing);
-  [[nodiscard]] Rate rate_along_field(int function, double t, const double* x, const double* slope);
   bool release(const Located& located);
   void accumulate_jumps();
   void follow_limit(const SeriesLimit& limit);
   [[nodiscard]] std::string jump_names(const std::vector<int>& jumps) const;
-  [[nodiscard]] JumpPoint jump_point() const { return {t_, x_, state_.alpha, search_.user_signs()}; }
+  [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
   bool jumps_have_problem();
   void start_step();
   bool too_many_events();
@@ -250,52 +239,27 @@ class Run {
   bool shorten(double factor);
   void rows_until(double t_end);
   void rows_by_steps(double t_new);
-  void row_inside(double t);
   void rows_at_event(const Arrival& arrival);
-  [[nodiscard]] bool may_bend();
-  void columns_at(double theta, double* columns);
-  void rows_between_steps(double t_end);
   [[nodiscard]] bool reaches_cell_end(const Located& located) const;
-  void row(double t, const std::vector<double>& x);
   void fail(result::Termination termination, std::string message);
-  /// Below this a step is no longer seen in t.
-  [[nodiscard]] double smallest_step() const {
-    return std::max(4.0 * rounding_unit * std::abs(t_), std::numeric_limits<double>::min());
-  }
+  void row(double t, const std::vector<double>& x) { rows_.write(t, x); }
   /// For the steps of the mode behind an event. While switches tighten no step is like one before.
   void restart_control() {
-    longest_step_ = last_step_ = 0.0;
-    if (switch_laps_.empty()) {
-      control_.restart();
-    } else {
-      control_.reset();
-    }
+    steps_.restart_control(switch_laps_.empty() ? StepAttempt::Steps::may_repeat : StepAttempt::Steps::are_new);
   }
   [[nodiscard]] double span() const { return options_.until - options_.from; }
-  /// Of the last attempt: discrete states take no part in it.
-  [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }
-  double defect();
-  [[nodiscard]] bool leaps() const;
-  double confirmed_error();
   [[nodiscard]] std::string where() const;
-
-  auto right_hand_side() {
-    return [this](double t, const double* x, double* xdot) { field_(t, x, xdot); };
-  }
 
   const evaluation::ModelKernel& kernel_;
   const IntegrationOptions& options_;
   const StepObserver& observer_;
   Surroundings surroundings_;
   ModeField field_;
-  ode::Stepper stepper_;
-  ode::StepControl control_;
-  ode::StiffnessWatch stiffness_;
-  ode::Tolerances tolerances_;         ///< of a step
-  ode::Tolerances mode_tolerances_;    ///< of the mode
-  double lap_share_ = 1.0;             ///< part of atol while switches tighten
+  Position here_;
+  FieldRates rates_;
+  StepTolerances tolerances_;
+  StepAttempt steps_;
   double closed_lap_ = 0.0;            ///< the last one that they closed
-  double root_share_ = 1.0;            ///< part of both where roots of coupled surfaces are near
   std::vector<int> continued_roots_;   ///< surfaces whose regions' fields go on beyond them, less a root
   std::vector<int> ending_roots_;      ///< those whose regions' fields do not
   std::vector<Nearing> nearing_;       ///< of the mode
@@ -303,13 +267,9 @@ class Run {
   std::vector<double> nearing_slope_;  ///< a step before
   double nearing_step_ = 0.0;          ///< that step
   std::vector<double> rooted_values_;  ///< of event functions
-  double rooted_atol_ = 1.0;           ///< parts of the tolerances beside these
-  double rooted_rtol_ = 1.0;
-  double first_lap_ = 0.0;  ///< duration of the first one that was closed
+  double first_lap_ = 0.0;             ///< duration of the first one that was closed
   LimitsInARow limits_in_a_row_;
   std::optional<SeriesLimit> drowned_;  ///< the limit that the switch in hand is
-  ode::DenseStep dense_;
-  bool dense_is_last_ = false;  ///< dense_ is that of the last attempt
   Cells cells_;
   CellChange cell_change_ = CellChange::none;  ///< at the event being handled
   EventSearch search_;
@@ -343,13 +303,9 @@ class Run {
   std::vector<double> shortest_lap_;         ///< by jump: shorter ones drown in the rounding of the guard
   Recorder recorder_;
 
-  double t_;
-  std::vector<double> x_, slope_;
-  std::vector<double> row_x_, row_slope_, dense_slope_;
-  std::vector<double> gradient_;
-  std::vector<std::size_t> continuous_;  ///< states that are not discrete
-  double error_share_ = 1.0;             ///< the mean square over the continuous states to that over all, its root
-  ModeState state_;
+  OutputRows rows_;
+  std::vector<double> free_slope_;  ///< of a field that is asked for at the position
+
   ModeState before_;  ///< of the event being handled, as are the next four
   ModeState slid_;    ///< before_ with what a released guard has kept at zero slid on
   std::vector<double> x_before_;
@@ -362,28 +318,18 @@ class Run {
   std::vector<double> values_here_;          ///< of these
   std::optional<double>
       no_surface_at_;  ///< where surface_within_rounding() has found none, and nothing else has happened
-  double root_tried_at_ = -std::numeric_limits<double>::infinity();
-  bool undefined_ahead_ = false;    ///< of the last attempts one was undefined
-  std::optional<double> stiff_at_;  ///< where the explicit method first looked out of place
-  double h_ = 0.0;                  ///< proposed step
-  double h_try_ = 0.0;              ///< step under trial
-  double h_scale_ = 0.0;            ///< of the last full step: time scale of the second-order sign tests
-  double longest_step_ = 0.0;       ///< behind the last switch
-  double last_step_ = 0.0;          ///< the last one behind the last switch; 0 = none
-  std::size_t next_output_ = 0;
-  std::optional<LineRows> line_rows_;
-  bool jumped_ = false;  ///< at the event in hand
+  double root_tried_at_ = -infinity;
+  bool undefined_ahead_ = false;  ///< of the last attempts one was undefined
+  bool jumped_ = false;           ///< at the event in hand
   Families families_;
   long decisions_ = 0;  ///< with alternatives, or of spirals, so far
   long chosen_ = -1;    ///< the one at which the last choice was made
   std::size_t next_choice_ = 0;
-  std::size_t arrival_row_ = 0;  ///< the row before the event in hand, as are those of the last choice
   std::size_t choice_row_ = 0;
   result::Statistics before_choice_;
-  double last_event_time_ = -std::numeric_limits<double>::infinity();
+  double last_event_time_ = -infinity;
   long evaluations_before_;  ///< the kernel may have been used before
   SwitchSeries series_;
-  StepMemory step_memory_;
   CompactIntegration result_;
   bool running_ = true;
 };

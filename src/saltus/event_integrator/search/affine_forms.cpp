@@ -1,5 +1,7 @@
 #include "saltus/event_integrator/search/affine_forms.hpp"
 
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +11,6 @@
 namespace saltus::event_integrator {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // Of the size of the terms: the roundings of a value, of the bounds and of the dense output are a few units each. Twice
 // what the search takes for noise at most, so nothing it would find is passed over.
 constexpr double margin = 64.0 * std::numeric_limits<double>::epsilon();

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/components.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
@@ -37,24 +37,20 @@ bool Transition::is_sliding_of_another(const Option& option, const std::vector<O
 
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
     : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver) {
+  kernel.size(values_);
   part_of_.resize(kernel.selections());
   for (std::size_t p = 0; p < parts.size(); ++p) {
     for (int j = parts[p].first; j < parts[p].first + parts[p].count; ++j) part_of_[at(j)] = static_cast<int>(p);
   }
 }
 
-/// Which functions are zero at the point, in groups that influence each other; signs of the others into `modes`.
-/// @return false where the indicators of regions are not finite, so that none of them is the smallest
-bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<int>& modes) {
-  const std::size_t n = kernel_.selections(), n_x = kernel_.states();
-  groups_.clear();
-  depends_ = false;
-  modes.assign(n, -1);
-  std::vector<double> middle(n, 0.5);
-  discretization::StageValues values;
-  kernel_.size(values);
-  kernel_.evaluate(decision.t, decision.x.data(), middle.data(), decision.held, values);
-  indicator_noise(values, decision.t, decision.size, noise_);
+/// Which functions are zero at the point, whatever influences them; signs of the others into `modes`.
+/// @return nullopt where the indicators of regions are not finite, so that none of them is the smallest
+std::optional<std::vector<int>> Transition::find_zeros(const Decision& decision, std::vector<int>& modes) {
+  modes.assign(kernel_.selections(), -1);
+  const std::vector<double> middle(kernel_.selections(), 0.5);
+  kernel_.evaluate(decision.t, decision.x.data(), middle.data(), decision.held, values_);
+  indicator_noise(values_, decision.t, decision.size, noise_);
   const auto forced = [&](int j) {
     return std::find(decision.at_zero.begin(), decision.at_zero.end(), j) != decision.at_zero.end();
   };
@@ -62,12 +58,12 @@ bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<in
   for (const Part& part : parts_) {
     double smallest = std::numeric_limits<double>::infinity();
     for (int j = part.first; j < part.first + part.count; ++j) {
-      smallest = std::min(smallest, values.indicator[at(j)]);
+      smallest = std::min(smallest, values_.indicator[at(j)]);
     }
-    if (part.simplex && !std::isfinite(smallest)) return false;
+    if (part.simplex && !std::isfinite(smallest)) return std::nullopt;
     const std::size_t begin = members.size();
     for (int j = part.first; j < part.first + part.count; ++j) {
-      const double value = part.simplex ? values.indicator[at(j)] - smallest : values.indicator[at(j)];
+      const double value = part.simplex ? values_.indicator[at(j)] - smallest : values_.indicator[at(j)];
       const bool zero = std::abs(value) <= 4.0 * noise_[at(j)] || forced(j);
       if (part.simplex) {
         // One of the tied regions alone, as a classical mode stands for the other groups while one is asked.
@@ -81,51 +77,62 @@ bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<in
   }
   modes_at_zero_ = modes;
   for (const int j : members) modes_at_zero_[at(j)] = 0;
-  if (members.empty()) return true;
+  return members;
+}
 
-  // The size of a rate: of its largest terms for any selections, as f may cancel inside.
+/// Whether d(psi_a)/dt depends on selection b where values_ were evaluated, or both are regions of one simplex.
+bool Transition::influences(int a, int b) const {
+  if (part_of_[at(a)] == part_of_[at(b)] && parts_[at(part_of_[at(a)])].simplex) return true;
+  const std::size_t n = kernel_.selections(), n_x = kernel_.states();
+  for (std::size_t i = 0; i < n_x; ++i) {
+    if (values_.indicator_x[i * n + at(a)] * values_.f_selection[at(b) * n_x + i] != 0.0) return true;
+  }
+  return false;
+}
+
+/// Members that influence each other at any of three points of the cube, and the size of a rate: of its largest terms
+/// there, as f may cancel inside.
+std::vector<std::vector<int>> Transition::find_influences(const Decision& decision, const std::vector<int>& modes,
+                                                          const std::vector<int>& members) {
+  const std::size_t n = kernel_.selections(), n_x = kernel_.states();
   size_.assign(n, 0.0);
-  // Groups: i influences j where d(psi_j)/dt depends on selection i, at any of three points of the cube.
-  std::vector<int> group(members.size());
-  std::iota(group.begin(), group.end(), 0);
-  const auto join = [&](std::size_t a, std::size_t b) {
-    const int from = group[b], to = group[a];
-    std::replace(group.begin(), group.end(), from, to);
-  };
+  Components components(members.size());
+  std::vector<double> selections(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    selections[j] = modes[j] == (parts_[at(part_of_[j])].simplex ? 0 : 1) ? 1.0 : 0.0;
+  }
   for (const double level : {0.5, 0.0, 1.0}) {
-    std::vector<double> selections(n);
-    for (std::size_t j = 0; j < n; ++j) {
-      selections[j] = modes[j] == (parts_[at(part_of_[j])].simplex ? 0 : 1) ? 1.0 : 0.0;
-    }
     for (const int j : members) selections[at(j)] = level;
-    kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values);
+    kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values_);
     for (std::size_t j = 0; j < n; ++j) {
-      double sum = std::abs(values.indicator_t[j]);
-      for (std::size_t i = 0; i < n_x; ++i) sum += std::abs(values.indicator_x[i * n + j] * values.f[i]);
+      double sum = std::abs(values_.indicator_t[j]);
+      for (std::size_t i = 0; i < n_x; ++i) sum += std::abs(values_.indicator_x[i * n + j] * values_.f[i]);
       size_[j] = std::max(size_[j], sum);
     }
     for (std::size_t a = 0; a < members.size(); ++a) {
       for (std::size_t b = 0; b < members.size(); ++b) {
-        if (group[a] == group[b]) continue;
-        const bool one_simplex =
-            part_of_[at(members[a])] == part_of_[at(members[b])] && parts_[at(part_of_[at(members[a])])].simplex;
-        bool influences = one_simplex;
-        for (std::size_t i = 0; i < n_x && !influences; ++i) {
-          influences = values.indicator_x[i * n + at(members[a])] * values.f_selection[at(members[b]) * n_x + i] != 0.0;
-        }
-        if (influences) join(a, b);
+        if (!components.connected(a, b) && influences(members[a], members[b])) components.join(a, b);
       }
     }
   }
-  for (std::size_t a = 0; a < members.size(); ++a) {
-    if (std::find(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(a), group[a]) !=
-        group.begin() + static_cast<std::ptrdiff_t>(a)) {
-      continue;
-    }
+  std::vector<std::vector<int>> groups;
+  for (const auto& component : components.lists()) {
+    auto& group = groups.emplace_back();
+    for (const std::size_t k : component) group.push_back(members[k]);
+  }
+  return groups;
+}
+
+/// Groups of functions that are zero at the point and influence each other, and their patterns.
+/// @return false as find_zeros()
+bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<int>& modes) {
+  groups_.clear();
+  depends_ = false;
+  const auto members = find_zeros(decision, modes);
+  if (!members || members->empty()) return members.has_value();
+  for (auto& group : find_influences(decision, modes, *members)) {
     Group& entry = groups_.emplace_back();
-    for (std::size_t b = a; b < members.size(); ++b) {
-      if (group[b] == group[a]) entry.members.push_back(members[b]);
-    }
+    entry.members = std::move(group);
     if (rule == Rule::dependent && find_dependent(decision, modes, entry)) {
       depends_ = true;
     } else {
@@ -296,66 +303,88 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
   return found.empty() && depends_ ? continuations(decision, Rule::enumeration) : found;
 }
 
+void Transition::put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes) {
+  for (std::size_t k = 0; k < pattern.size(); ++k) modes[at(group.members[k])] = pattern[k];
+}
+
+/// The patterns of a group that its rates do not exclude while the other groups are as in `modes`; the one with the
+/// largest margin into `guess`.
+std::vector<Transition::Option> Transition::options_of(const Decision& decision, const Group& group,
+                                                       const std::vector<int>& modes, std::vector<int>& guess) {
+  std::vector<Option> options;
+  double best = -2.0;
+  for (const auto& pattern : group.patterns) {
+    auto trial = modes;
+    put(group, pattern, trial);
+    Continuation candidate{make_set(decision, trial), {}};
+    const double value = margin(decision, group, candidate);
+    if (value < -undecided) continue;
+    options.push_back({pattern, value});
+    if (value <= best) continue;
+    best = value;
+    put(group, pattern, guess);
+  }
+  return options;
+}
+
+/// Of these options those that hold with the other groups as in `guess`, by short elements where rates do not decide.
+std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision, const Group& group,
+                                                        std::vector<Option> options, const std::vector<int>& guess) {
+  std::vector<Option> passed;
+  for (Option& option : options) {
+    auto trial = guess;
+    put(group, option.pattern, trial);
+    Continuation candidate{make_set(decision, trial), {}};
+    if (option.margin <= undecided || group.dependent) {
+      if (margin(decision, group, candidate) < -undecided) continue;
+      option.trial = try_elements(decision, group, candidate);
+      if (option.trial == Trial::fails || option.trial == Trial::unsolved) continue;
+    }
+    option.selections = std::move(candidate.selections);
+    passed.push_back(std::move(option));
+    if (group.dependent) break;
+  }
+  std::vector<std::vector<int>> admissible;
+  for (const Option& option : passed) {
+    if (!is_sliding_of_another(option, passed)) admissible.push_back(option.pattern);
+  }
+  return admissible;
+}
+
+/// The set with these modes, if all groups together hold in it; nullopt if they do not.
+std::optional<Continuation> Transition::continuation_in(const Decision& decision, const std::vector<int>& modes) {
+  Group all;
+  for (const Group& group : groups_) all.members.insert(all.members.end(), group.members.begin(), group.members.end());
+  Continuation candidate{make_set(decision, modes), {}};
+  if (margin(decision, all, candidate) < -undecided) return std::nullopt;
+  candidate.decided = std::all_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.decided; });
+  if (!projected_.regular()) {
+    candidate.determined = solve_trial(decision, candidate, decision.trial_length) == ElementSolver::Outcome::solved &&
+                           solver_.determined();
+  }
+  return candidate;
+}
+
 std::vector<Continuation> Transition::continuations(const Decision& decision, Rule rule) {
   std::vector<int> modes;
   finite_ = find_groups(decision, rule, modes);
   if (!finite_) return {};
   // A first guess at every group, so that each is asked with the others in place: what has the largest margin.
-  std::vector<std::vector<Option>> options(groups_.size());
-  const auto put = [](const Group& group, const std::vector<int>& pattern, std::vector<int>& into) {
-    for (std::size_t k = 0; k < pattern.size(); ++k) into[at(group.members[k])] = pattern[k];
-  };
+  std::vector<std::vector<Option>> options;
   std::vector<int> guess = modes;
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    double best = -2.0;
-    for (const auto& pattern : groups_[g].patterns) {
-      auto trial = modes;
-      put(groups_[g], pattern, trial);
-      Continuation candidate{make_set(decision, trial), {}};
-      const double value = margin(decision, groups_[g], candidate);
-      if (value < -undecided) continue;
-      options[g].push_back({pattern, value});
-      if (value <= best) continue;
-      best = value;
-      put(groups_[g], pattern, guess);
-    }
-    if (options[g].empty()) return {};
+  for (const Group& group : groups_) {
+    options.push_back(options_of(decision, group, modes, guess));
+    if (options.back().empty()) return {};
   }
-  std::vector<std::vector<std::vector<int>>> admissible(groups_.size());
+  std::vector<std::vector<std::vector<int>>> admissible;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    std::vector<Option> passed;
-    for (Option& option : options[g]) {
-      auto trial = guess;
-      put(groups_[g], option.pattern, trial);
-      Continuation candidate{make_set(decision, trial), {}};
-      if (option.margin <= undecided || groups_[g].dependent) {
-        if (margin(decision, groups_[g], candidate) < -undecided) continue;
-        option.trial = try_elements(decision, groups_[g], candidate);
-        if (option.trial == Trial::fails || option.trial == Trial::unsolved) continue;
-      }
-      option.selections = std::move(candidate.selections);
-      passed.push_back(std::move(option));
-      if (groups_[g].dependent) break;
-    }
-    for (const Option& option : passed) {
-      if (!is_sliding_of_another(option, passed)) admissible[g].push_back(option.pattern);
-    }
+    admissible.push_back(admissible_of(decision, groups_[g], std::move(options[g]), guess));
     if (admissible[g].empty()) return {};
     put(groups_[g], admissible[g].front(), guess);
   }
   std::vector<Continuation> found;
-  Group all;
-  for (const Group& group : groups_) all.members.insert(all.members.end(), group.members.begin(), group.members.end());
   const auto keep = [&](const std::vector<int>& chosen) {
-    Continuation candidate{make_set(decision, chosen), {}};
-    if (margin(decision, all, candidate) < -undecided) return;
-    candidate.decided = std::all_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.decided; });
-    if (!projected_.regular()) {
-      candidate.determined =
-          solve_trial(decision, candidate, decision.trial_length) == ElementSolver::Outcome::solved &&
-          solver_.determined();
-    }
-    found.push_back(std::move(candidate));
+    if (auto next = continuation_in(decision, chosen)) found.push_back(std::move(*next));
   };
   keep(guess);
   for (std::size_t g = 0; g < groups_.size(); ++g) {

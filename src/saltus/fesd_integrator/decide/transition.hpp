@@ -67,7 +67,21 @@ class Transition {
   enum class Rule { dependent, enumeration };
   [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision, Rule rule);
   [[nodiscard]] bool find_dependent(const Decision& decision, const std::vector<int>& modes, Group& group);
+  /// The members of a group whose selections move the state, and those that follow them.
+  struct Dependent {
+    std::vector<int> acting, followers;
+    std::vector<double> selections;  ///< of all; work space
+  };
+  [[nodiscard]] Dependent split_by_action(const Decision& decision, const std::vector<int>& modes, const Group& group);
+  [[nodiscard]] static int side_before(const Decision& decision, int j);
+  [[nodiscard]] std::optional<std::vector<double>> solve_dependent(const Decision& decision, double t,
+                                                                   const std::vector<double>& x, Dependent& split,
+                                                                   Group& group);
   [[nodiscard]] ActiveSet make_set(const Decision& decision, std::vector<int> modes);
+  [[nodiscard]] std::optional<std::vector<int>> find_zeros(const Decision& decision, std::vector<int>& modes);
+  [[nodiscard]] bool influences(int a, int b) const;
+  [[nodiscard]] std::vector<std::vector<int>> find_influences(const Decision& decision, const std::vector<int>& modes,
+                                                              const std::vector<int>& members);
   [[nodiscard]] bool find_groups(const Decision& decision, Rule rule, std::vector<int>& modes);
   [[nodiscard]] std::vector<std::vector<int>> patterns_of(const Group& group, const Decision& decision) const;
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
@@ -82,6 +96,12 @@ class Transition {
     Trial trial = Trial::holds;
     std::vector<double> selections = {};
   };
+  static void put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes);
+  [[nodiscard]] std::vector<Option> options_of(const Decision& decision, const Group& group,
+                                               const std::vector<int>& modes, std::vector<int>& guess);
+  [[nodiscard]] std::vector<std::vector<int>> admissible_of(const Decision& decision, const Group& group,
+                                                            std::vector<Option> options, const std::vector<int>& guess);
+  [[nodiscard]] std::optional<Continuation> continuation_in(const Decision& decision, const std::vector<int>& modes);
   [[nodiscard]] static bool is_sliding_of_another(const Option& option, const std::vector<Option>& others);
   [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate,
                                                    double length);
@@ -103,6 +123,7 @@ class Transition {
   SelectionMargins margins_;
   bool finite_ = true;
   std::vector<double> rate_, size_, noise_;
+  discretization::StageValues values_;
 };
 
 }  // namespace saltus::fesd_integrator

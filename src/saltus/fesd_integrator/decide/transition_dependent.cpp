@@ -52,78 +52,89 @@ ActiveSet Transition::make_set(const Decision& decision, std::vector<int> modes)
   return set;
 }
 
+/// The members of a group that move the state, by their jumps of f; kinks, and functions of outputs alone, follow.
+Transition::Dependent Transition::split_by_action(const Decision& decision, const std::vector<int>& modes,
+                                                  const Group& group) {
+  const std::size_t n_x = kernel_.states();
+  Dependent split;
+  split.selections.resize(kernel_.selections());
+  const std::vector<double> nothing(kernel_.selections(), 0.0);
+  ActiveSet(parts_, modes).selections(nothing.data(), split.selections.data());
+  for (const int j : group.members) split.selections[at(j)] = side_before(decision, j) < 0 ? 0.0 : 1.0;
+  kernel_.evaluate(decision.t, decision.x.data(), split.selections.data(), decision.held, values_);
+  VectorXd terms = Eigen::Map<const VectorXd>(values_.f.data(), index(n_x)).cwiseAbs();
+  const Eigen::Map<const MatrixXd> jumps(values_.f_selection.data(), index(n_x), index(kernel_.selections()));
+  for (const int j : group.members) terms += jumps.col(j).cwiseAbs();
+  for (const int j : group.members) {
+    const bool acts = (jumps.col(j).cwiseAbs().array() > switching::field_accuracy * terms.array()).any();
+    (acts ? split.acting : split.followers).push_back(j);
+  }
+  return split;
+}
+
+int Transition::side_before(const Decision& decision, int j) {
+  return decision.before == nullptr ? 0 : decision.before->modes()[at(j)];
+}
+
+/// The pattern by the complementarity problem of the acting members at (t, x), into the group.
+/// @return its motion; nullopt where selections multiply each other
+std::optional<std::vector<double>> Transition::solve_dependent(const Decision& decision, double t,
+                                                               const std::vector<double>& x, Dependent& split,
+                                                               Group& group) {
+  std::vector<double> f(x.size());
+  const auto field = [&](const std::vector<double>& alpha, VectorXd& value) {
+    for (std::size_t i = 0; i < split.acting.size(); ++i) split.selections[at(split.acting[i])] = alpha[i];
+    kernel_.field(t, x.data(), split.selections.data(), decision.held, f.data());
+    value = Eigen::Map<const VectorXd>(f.data(), index(f.size()));
+  };
+  const auto map = switching::additive_map(split.acting.size(), field);
+  if (!map || !map->constant.allFinite() || !map->effects.allFinite()) return std::nullopt;
+  kernel_.evaluate(t, x.data(), split.selections.data(), decision.held, values_);
+  const auto gradients = gradients_of(values_, split.acting);
+  const auto solution = switching::solve_complementarity(
+      gradients.rows * map->effects, gradients.rows * map->constant + gradients.rates, switching::field_accuracy);
+  const VectorXd moves = map->constant + map->effects * solution.lambda;
+  const auto follow = gradients_of(values_, split.followers);
+  std::vector<int> pattern;
+  for (const int j : group.members) {
+    const auto acting = std::find(split.acting.begin(), split.acting.end(), j);
+    if (acting != split.acting.end()) {
+      pattern.push_back(solution.mode[at(acting - split.acting.begin())]);
+      continue;
+    }
+    const auto k = std::find(split.followers.begin(), split.followers.end(), j) - split.followers.begin();
+    const double velocity = follow.rows.row(k) * moves + follow.rates[k];
+    const double size = follow.rows.row(k).cwiseAbs() * moves.cwiseAbs() + std::abs(follow.rates[k]);
+    const bool goes = std::abs(velocity) > switching::field_accuracy * size;
+    pattern.push_back(goes ? (velocity > 0.0 ? 1 : -1) : side_before(decision, j) < 0 ? -1 : 1);
+  }
+  if (group.patterns.empty()) group.decided = solution.unique_velocity;
+  if (std::find(group.patterns.begin(), group.patterns.end(), pattern) == group.patterns.end()) {
+    group.patterns.push_back(std::move(pattern));
+  }
+  return std::vector<double>(moves.data(), moves.data() + moves.size());
+}
+
 /// Patterns of a group with surfaces whose gradients depend on each other: by the complementarity problem here, then by
 /// those a little further along the motion that the first one has. Functions that move nothing follow.
 /// @param modes  of all, as for the enumeration
 /// @return false if it is none, or selections multiply each other
 bool Transition::find_dependent(const Decision& decision, const std::vector<int>& modes, Group& group) {
-  const std::size_t n_x = kernel_.states(), m = group.members.size();
-  if (m < 2 || std::any_of(group.members.begin(), group.members.end(),
-                           [&](int j) { return parts_[at(part_of_[at(j)])].simplex; })) {
+  if (group.members.size() < 2 || std::any_of(group.members.begin(), group.members.end(),
+                                              [&](int j) { return parts_[at(part_of_[at(j)])].simplex; })) {
     return false;
   }
-  std::vector<double> selections(kernel_.selections());
-  const std::vector<double> nothing(kernel_.selections(), 0.0);
-  ActiveSet(parts_, modes).selections(nothing.data(), selections.data());
-  const auto side_before = [&](int j) { return decision.before == nullptr ? 0 : decision.before->modes()[at(j)]; };
-  for (const int j : group.members) selections[at(j)] = side_before(j) < 0 ? 0.0 : 1.0;
-  discretization::StageValues values;
-  kernel_.size(values);
-
-  // What acts: kinks, and functions of outputs alone, do not.
-  kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values);
-  VectorXd terms = Eigen::Map<const VectorXd>(values.f.data(), index(n_x)).cwiseAbs();
-  const Eigen::Map<const MatrixXd> jumps(values.f_selection.data(), index(n_x), index(kernel_.selections()));
-  for (const int j : group.members) terms += jumps.col(j).cwiseAbs();
-  std::vector<int> acting, followers;
-  for (const int j : group.members) {
-    const bool acts = (jumps.col(j).cwiseAbs().array() > switching::field_accuracy * terms.array()).any();
-    (acts ? acting : followers).push_back(j);
-  }
-  const auto own = gradients_of(values, acting);
-  if (acting.size() < 2 || switching::independent_rows(own.rows).size() == acting.size()) return false;
-
-  std::vector<double> f(n_x);
-  const auto decide_at = [&](double t, const std::vector<double>& x, std::vector<double>& motion) {
-    const auto field = [&](const std::vector<double>& alpha, VectorXd& value) {
-      for (std::size_t i = 0; i < acting.size(); ++i) selections[at(acting[i])] = alpha[i];
-      kernel_.field(t, x.data(), selections.data(), decision.held, f.data());
-      value = Eigen::Map<const VectorXd>(f.data(), index(n_x));
-    };
-    const auto map = switching::additive_map(acting.size(), field);
-    if (!map || !map->constant.allFinite() || !map->effects.allFinite()) return false;
-    kernel_.evaluate(t, x.data(), selections.data(), decision.held, values);
-    const auto gradients = gradients_of(values, acting);
-    const auto solution = switching::solve_complementarity(
-        gradients.rows * map->effects, gradients.rows * map->constant + gradients.rates, switching::field_accuracy);
-    const VectorXd moves = map->constant + map->effects * solution.lambda;
-    motion.assign(moves.data(), moves.data() + moves.size());
-    const auto follow = gradients_of(values, followers);
-    std::vector<int> pattern;
-    for (const int j : group.members) {
-      if (const auto k = std::find(acting.begin(), acting.end(), j); k != acting.end()) {
-        pattern.push_back(solution.mode[at(k - acting.begin())]);
-        continue;
-      }
-      const auto k = std::find(followers.begin(), followers.end(), j) - followers.begin();
-      const double velocity = follow.rows.row(k) * moves + follow.rates[k];
-      const double size = follow.rows.row(k).cwiseAbs() * moves.cwiseAbs() + std::abs(follow.rates[k]);
-      const bool goes = std::abs(velocity) > switching::field_accuracy * size;
-      pattern.push_back(goes ? (velocity > 0.0 ? 1 : -1) : side_before(j) < 0 ? -1 : 1);
-    }
-    if (group.patterns.empty()) group.decided = solution.unique_velocity;
-    if (std::find(group.patterns.begin(), group.patterns.end(), pattern) == group.patterns.end()) {
-      group.patterns.push_back(std::move(pattern));
-    }
-    return true;
-  };
+  Dependent split = split_by_action(decision, modes, group);
+  const auto own = gradients_of(values_, split.acting);
+  if (split.acting.size() < 2 || switching::independent_rows(own.rows).size() == split.acting.size()) return false;
   const std::vector<double> x(decision.x.begin(), decision.x.end());
-  std::vector<double> motion, ignored, ahead(n_x);
-  if (!decide_at(decision.t, x, motion)) return false;
+  const auto motion = solve_dependent(decision, decision.t, x, split, group);
+  if (!motion) return false;
+  auto ahead = x;
   for (const double factor : {1.0, 8.0, 64.0}) {
     const double h = factor * decision.trial_length;
-    for (std::size_t i = 0; i < n_x; ++i) ahead[i] = x[i] + h * motion[i];
-    if (!decide_at(decision.t + h, ahead, ignored)) break;
+    for (std::size_t i = 0; i < x.size(); ++i) ahead[i] = x[i] + h * (*motion)[i];
+    if (!solve_dependent(decision, decision.t + h, ahead, split, group)) break;
   }
   group.dependent = true;
   return true;

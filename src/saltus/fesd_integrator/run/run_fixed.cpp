@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/fesd_integrator/run/diagnosis_internal.hpp"
 #include "saltus/fesd_integrator/run/run_internal.hpp"
 
 namespace saltus::fesd_integrator {
@@ -17,11 +18,11 @@ constexpr int most_halvings_of_element = 10;
 
 void Run::advance_fixed(double end) {
   // A time event inside a step divides it: the parts keep the mean length at most.
-  const int count = std::max(1, static_cast<int>(std::ceil((end - t_) / nominal_ * options_.elements - 1e-9)));
-  const double begin = t_, h = (end - t_) / count;
-  if (propagation_ != nullptr) {
-    propagation_->begin_fixed_steps(count, {end, x_.data(), held_.data(), changing_at(end)});
-  }
+  const double begin = position_.t();
+  const double steps = (end - begin) / length_.nominal();
+  const int count = std::max(1, static_cast<int>(std::ceil(steps * context_.options.elements - 1e-9)));
+  const double h = (end - begin) / count;
+  tangents_.begin_fixed_steps(count, end);
   for (int i = 0; i < count && !stopped(); ++i) {
     advance_fixed_element({begin + i * h, h, i + 1 == count ? end : begin + (i + 1) * h});
   }
@@ -33,37 +34,43 @@ void Run::advance_fixed_element(const FixedSpan& span) {
   long done = 0, part = whole;
   while (done < whole && !stopped()) {
     const double fraction = static_cast<double>(part) / static_cast<double>(whole);
-    if (!fixed_.solve(begin_here(), fraction * span.h, set_, held_.data(), chain_.elements[0])) {
+    if (!fixed_.solve(position_.left_end(), fraction * span.h, position_.set(), context_.held.data(),
+                      chain_.element(0))) {
       reject();
-      if (stopped()) return;
       part /= 2;
-      if (part > 0) continue;
-      if (auto undefined = undefined_beyond()) {
-        stop(result::Termination::evaluation_failed, std::move(*undefined));
-        return;
-      }
-      stop(result::Termination::not_converged,
-           fmt::format("no active sets of the stages were found for the element at t = {:.10g}; more "
-                       "simulate.timestepping.steps, or method = \"fesd\"",
-                       t_));
-      return;
+      if (part == 0 && !stopped()) stop_without_fixed_sets();
+      continue;
     }
     done += part;
-    const double right =
-        done == whole ? span.end : span.t + span.h * (static_cast<double>(done) / static_cast<double>(whole));
-    set_before_ = set_;
-    selections_before_ = selections_;
-    if (propagation_ != nullptr) propagation_->fixed_step(chain_.elements[0], fixed_.sets(), held_.data(), fraction);
-    accept(chain_.elements[0], selections_, fixed_.end_selections(), right);
-    if (stopped()) return;
-    if (!(fixed_.end_set() == set_before_)) {
-      recorder_.switched(t_, x_, {&set_before_, &selections_before_, held_.data()},
-                         {{fixed_.end_set(), fixed_.end_selections()}}, held_.data(), "seen at the end of an element");
-    }
-    set_ = fixed_.end_set();
-    selections_ = fixed_.end_selections();
-    row_here();
+    const double right = span.t + span.h * (static_cast<double>(done) / static_cast<double>(whole));
+    accept_fixed(done == whole ? span.end : right, fraction);
   }
+}
+
+void Run::accept_fixed(double end, double part) {
+  before_.set = position_.set();
+  before_.selections = position_.selections();
+  tangents_.fixed_step(chain_.element(0), fixed_.sets(), part);
+  accept(chain_.element(0), before_.selections, fixed_.end_selections(), end);
+  if (stopped()) return;
+  if (!(fixed_.end_set() == before_.set)) {
+    recorder_.switched(end, position_.x(), {&before_.set, &before_.selections, context_.held.data()},
+                       {{fixed_.end_set(), fixed_.end_selections()}}, context_.held.data(),
+                       "seen at the end of an element");
+  }
+  position_.continue_with(fixed_.end_set(), fixed_.end_selections());
+  rows_.emit_here();
+}
+
+void Run::stop_without_fixed_sets() {
+  if (auto undefined = undefined_beyond(context_, position_, length_.nominal())) {
+    stop(result::Termination::evaluation_failed, std::move(*undefined));
+    return;
+  }
+  stop(result::Termination::not_converged,
+       fmt::format("no active sets of the stages were found for the element at t = {:.10g}; more "
+                   "simulate.timestepping.steps, or method = \"fesd\"",
+                   position_.t()));
 }
 
 }  // namespace saltus::fesd_integrator

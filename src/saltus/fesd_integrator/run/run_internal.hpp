@@ -1,4 +1,4 @@
-// One run: where it is, and how it goes on.
+// One run: its parts, and how it goes on from step to step and from switch to switch.
 #pragma once
 
 #include <cstddef>
@@ -6,23 +6,25 @@
 #include <string>
 #include <vector>
 
-#include "saltus/discretization/point_functions.hpp"
-#include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/accumulate/lap_series.hpp"
 #include "saltus/fesd_integrator/decide/transition.hpp"
-#include "saltus/fesd_integrator/element/active_set.hpp"
-#include "saltus/fesd_integrator/element/element.hpp"
-#include "saltus/fesd_integrator/element/facts.hpp"
 #include "saltus/fesd_integrator/element/fixed_element.hpp"
 #include "saltus/fesd_integrator/integration.hpp"
 #include "saltus/fesd_integrator/record/element_recorder.hpp"
 #include "saltus/fesd_integrator/record/recorder.hpp"
-#include "saltus/fesd_integrator/tangent/sensitivities.hpp"
+#include "saltus/fesd_integrator/run/chain_internal.hpp"
+#include "saltus/fesd_integrator/run/context_internal.hpp"
+#include "saltus/fesd_integrator/run/decision_count_internal.hpp"
+#include "saltus/fesd_integrator/run/element_interior_internal.hpp"
+#include "saltus/fesd_integrator/run/event_tracker_internal.hpp"
+#include "saltus/fesd_integrator/run/output_rows_internal.hpp"
+#include "saltus/fesd_integrator/run/part_length_internal.hpp"
+#include "saltus/fesd_integrator/run/position_internal.hpp"
+#include "saltus/fesd_integrator/run/rest_projection_internal.hpp"
+#include "saltus/fesd_integrator/run/run_status_internal.hpp"
+#include "saltus/fesd_integrator/run/switch_locator_internal.hpp"
+#include "saltus/fesd_integrator/run/tangents_internal.hpp"
 #include "saltus/fesd_integrator/watch/coarseness.hpp"
-#include "saltus/fesd_integrator/watch/held_values.hpp"
-#include "saltus/fesd_integrator/watch/user_events.hpp"
-#include "saltus/fesd_integrator/watch/watch.hpp"
-#include "saltus/ode/straight_lines.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -36,74 +38,78 @@ class Run {
   [[nodiscard]] Integration run();
 
  private:
-  /// Equal elements of one active set, solved one after the other.
-  struct Chain {
-    std::vector<Element> elements;
-    std::size_t count = 0;                    ///< solved
-    std::vector<std::vector<double>> left;    ///< selections at the left ends; of the right end of the last one behind
-    std::vector<std::vector<double>> errors;  ///< of each, as Watch::errors
-    std::vector<bool> determined;             ///< of each, ElementSolver::determined; where a problem has guessed it
-  };
-  enum class Solved { all, violated, missed, coarse, failed };
-  /// Elements of length h from here, up to the first that violates a condition, jumps over a switch or is too coarse.
-  [[nodiscard]] Solved solve_chain(int count, double h, Violation& violation);
-  /// Whether a condition ends along elements of half that length, a quarter, …, as far as it may end between them.
-  [[nodiscard]] bool jumps_over(const Point& left, double h, int halvings);
-  /// Lengths such that `count` elements end where the condition does: h, or nullopt if it does not end there.
-  [[nodiscard]] std::optional<double> locate(int count, double guess, const Violation& violation, double longest,
-                                             TimeWarp warp);
-  /// Warps of an element of length h that begins here, and of one that ends where a root of the mode at hand is zero,
-  /// which it is inside `beyond`; 1 where no root is zero.
-  [[nodiscard]] int warp_behind(double h);
-  [[nodiscard]] int warp_before(const Element& beyond);
-  struct Root;
-  template <class Take>
-  void for_each_root(double t, const double* x, Take&& take);
-  struct Located {
-    int count = 0;
-    double h = 0.0;
-    Condition condition;
-    bool coarse = false;   ///< too coarse to be taken
-    bool divides = false;  ///< what is behind is a step of its own: lengths cannot be within their bounds
-  };
-  /// The number of elements before a switch nearest to `count` with which all lengths are within step_bounds.
-  [[nodiscard]] bool fits_bounds(int elements, double remaining, double tau, int& count) const;
-  /// From the first violation of a trial to the chain that ends at the earliest switch; left in chain_.
-  [[nodiscard]] std::optional<Located> find_switch(int elements, double remaining, Violation violation,
-                                                   std::size_t element);
-
-  /// Where the part of a simulation step that is tried next ends.
-  [[nodiscard]] double part_end(double end);
-  /// Whether an element's estimated error is beyond its share, and shorter ones are allowed; notes the share.
-  [[nodiscard]] bool too_coarse(const Element& element, const std::vector<double>& errors);
-  /// Length of parts behind elements of length h with the shares that were noted.
-  void set_longest_part(double h, Solved solved);
-
   void start();
-  /// One simulation step, or what lies between two changes of what is held.
+  /// The continuation that agrees with IntegrationOptions::initial_mode, put first; false if there is none.
+  [[nodiscard]] bool put_forced_first(std::vector<Continuation>& found) const;
+  /// Functions at zero at the start, as the result counts them.
+  [[nodiscard]] std::vector<int> functions_at_zero() const;
+  [[nodiscard]] Integration take_integration();
+
+  // run_step: a simulation step, or what lies between two changes of what is held.
   void advance(double end);
-  /// `closing`: the condition that is zero at the end; nullptr if the end is fixed.
-  void accept_chain(std::size_t count, double end_time, const Condition* closing);
-  void accept(const Element& element, const std::vector<double>& left, const std::vector<double>& right, double end);
-  /// Decides how to go on here; `at_zero` as in Decision.
-  void decide(std::vector<int> at_zero, std::string_view reason, const ActiveSet& before,
-              const std::vector<double>& selections_before, const double* held_before);
-  /// Of the time of a switch in hand, by what closed the elements before it.
-  [[nodiscard]] double resolution_of(const Condition& condition, const std::vector<double>& selections_before);
+  /// The part of a simulation step that is tried next.
+  struct StepPart {
+    double end = 0.0;    ///< of the simulation step
+    double limit = 0.0;  ///< of the part
+    int elements = 0;    ///< that are left of it
+  };
+  [[nodiscard]] StepPart next_part(double end);
+  /// A try of equal elements up to the limit of a part, and what is to be done about it.
+  struct Attempt {
+    enum class Outcome {
+      all,        ///< every condition holds along them: they are accepted
+      coarse,     ///< their errors are beyond their share: the part gets shorter
+      crowded,    ///< more switches than elements can separate: the rest is a part of its own
+      unsolved,   ///< no solution, or a switch was missed: the part is halved
+      at_switch,  ///< a chain ends at a switch: it is accepted, and the next set decided
+    };
+    Outcome outcome = Outcome::all;
+    double h = 0.0;  ///< of the elements of `all`, or those that are too coarse
+    Located located = {};
+  };
+  [[nodiscard]] Attempt attempt(const StepPart& part);
+  [[nodiscard]] Attempt attempt_before(const StepPart& part, const Violation& violation);
+  void accept_part(StepPart& part, const Attempt& attempt);
+  void refine_part(StepPart& part, double h);
+  void halve_part(StepPart& part);
+  void go_to_switch(StepPart& part, const Located& located);
+  void accept_up_to(StepPart& part, const Located& located);
+  void decide_at(StepPart& part, const Located& located);
   /// Where elements have no solution any more: whether a selection that slides has met another root at its bound, with
   /// which it goes out of the real numbers. The run has gone on from there then.
   [[nodiscard]] bool left_at_double_root();
-  /// What slides is on its surfaces, whatever its rounding.
-  [[nodiscard]] std::vector<int> on_surfaces() const;
-  [[nodiscard]] bool put_on_surfaces(const ActiveSet& set, double t, std::vector<double>& x);
-  /// The same with d psi / dt = 0 of the surfaces that no selection moves at once, at most `farthest` away.
-  [[nodiscard]] bool put_at_rest(const ActiveSet& set, double t, std::vector<double>& x, double farthest);
-  /// Elements that resolve laps which shrink.
-  void follow_laps();
+
+  // run_decide: the sets that continue the solution.
+  /// `at_zero` as in Decision.
+  struct Before {
+    ActiveSet set;
+    std::vector<double> selections;
+  };
+  [[nodiscard]] Before before_here() const { return {position_.set(), position_.selections()}; }
+  void decide(std::vector<int> at_zero, std::string_view reason, const Before& before, const double* held_before);
+  [[nodiscard]] std::vector<Continuation> continuations(const ActiveSet* before, std::vector<int> at_zero);
+  void continue_with(const std::vector<Continuation>& found);
+  void hold_behind();
+  [[nodiscard]] bool stopped_where_not_finite();
+
+  // run_limits: switches that accumulate.
+  /// How well the time of a switch is known that closed the elements before it.
+  [[nodiscard]] double resolution_of(const Condition& condition, const std::vector<double>& selections_before);
+  void note_switch(const Condition& condition, const Before& before);
   /// True if the run has gone on from the limit of a sequence of switches, before anything that is held changes.
   bool go_to_limit(LapSeries::Wanted wanted);
-  void hold_behind();
-  /// The same with fixed lengths.
+  /// The set in which everything that a lap changes rests, and what is at zero in it.
+  struct Rest {
+    std::vector<int> modes, at_zero;
+  };
+  [[nodiscard]] Rest rest_of(const LapSeries::Limit& limit) const;
+
+  // run_accept: elements that are taken.
+  /// `closing`: the condition that is zero at the end; nullptr if the end is fixed.
+  void accept_chain(std::size_t count, double end_time, const Condition* closing);
+  void accept(const Element& element, const std::vector<double>& left, const std::vector<double>& right, double end);
+
+  // run_fixed: without switch detection.
   void advance_fixed(double end);
   struct FixedSpan {
     double t = 0.0;  ///< left end
@@ -112,140 +118,51 @@ class Run {
   };
   /// One element or, where it has no solution that was found, halves of it (quarters, …).
   void advance_fixed_element(const FixedSpan& span);
-  /// The same by the problem with complementarities of the whole step.
+  void accept_fixed(double end, double part);
+  void stop_without_fixed_sets();
+
+  // run_problem: by the problem with complementarities of the whole step.
   void advance_by_problem(StepProblem& problem, double end);
   void advance_by_problem(StepProblem& problem, double end, int halvings_allowed);
   /// Without selections there are no active sets to find.
   [[nodiscard]] bool can_fall_back() const {
-    return options_.fallback && propagation_ == nullptr && kernel_.selections() > 0;
+    return context_.options.fallback && !tangents_.asked() && context_.kernel.selections() > 0;
   }
-  /// What a derivative of the field that is not finite here (a root of zero) means for elements; nullopt: all are.
-  [[nodiscard]] std::optional<std::string> steep_here();
-  /// What is not finite a little further along the right-hand side, in words; nullopt if all is.
-  std::optional<std::string> undefined_beyond();
   /// By the problem, because no active sets were found; stops with this where that is of no help.
   void fall_back(double end, result::Termination termination, std::string message);
-  [[nodiscard]] bool solve_guessed(const std::vector<ElementGuess>& guesses, std::vector<ActiveSet>& sets);
+  /// The active sets of guessed elements, each solved again in its own.
+  struct Guessed {
+    std::vector<ActiveSet> sets;
+    std::vector<bool> determined;  ///< ElementSolver::determined
+  };
+  [[nodiscard]] bool solve_guessed(const std::vector<ElementGuess>& guesses, Guessed& guessed);
   void selections_behind(const ElementGuess& guess, const ActiveSet& set, Point& left);
-  void accept_guessed(const std::vector<ElementGuess>& guesses, const std::vector<ActiveSet>& sets, double end);
-  void row_here();
-  /// The point where the run is, as the left end of an element.
-  [[nodiscard]] Point& begin_here() {
-    left_.t = t_;
-    left_.x = x_;
-    left_.selections = selections_;
-    left_.size = size_;
-    return left_;
-  }
-  /// From here on in the first of these sets.
-  void continue_with(const std::vector<Continuation>& found);
-  [[nodiscard]] std::string coarse_message(const Coarseness::Worst& worst) const;
-  /// Of the set where the run is: what slides on which nothing determines all selections.
-  [[nodiscard]] std::string undetermined_message() const;
-  void emit_times(const Element* element, const std::vector<double>& selections, double until);
-  /// The same where times are those of the clock.
-  void emit_clock_times(const Element& element, const std::vector<double>& selections, double until);
-  /// Output times of an element: those that keep straight lines close to it.
-  void choose_times(const Element& element, const std::vector<double>& selections);
-  struct EventZero {
-    std::size_t function = 0;
-    double theta = 0.0;
-  };
-  /// Of an element in which zeros of event functions are looked for.
-  struct Stretch {
-    double from = 0.0, to = 1.0;
-    int halvings = 0;           ///< that are left
-    bool behind_zeros = false;  ///< what is zero where it begins was so before
-  };
-  void sample_events(const Element& element, const std::vector<double>& selections, const Stretch& part);
-  [[nodiscard]] std::optional<EventZero> first_event_zero(const Element& element, const std::vector<double>& selections,
-                                                          const Stretch& part);
-  void settle_event_signs(const Element& element, const std::vector<double>& selections);
-  void event_state(const Element& element, const std::vector<double>& selections, double theta);
-  [[nodiscard]] bool project_selections(double t, const std::vector<double>& x);
-  [[nodiscard]] double refined_event(const Element& element, const std::vector<double>& selections,
-                                     const EventZero& zero, std::vector<double>& x, std::vector<double>& at);
-  /// User events and output times of an element that is accepted; false if an event stops the run.
-  [[nodiscard]] bool record_user_events(const Element& element, const std::vector<double>& left, double end);
-  /// User events at a switch, behind it.
-  void fire_events_here();
-  /// Records events; true if one of them stops the run.
-  bool fire(const std::vector<std::size_t>& fired, double t, const std::vector<double>& x,
-            const std::vector<double>& selections);
-  void stop(result::Termination termination, std::string message);
-  [[nodiscard]] bool stopped() const { return status_.has_value(); }
-  [[nodiscard]] bool stopped_where_not_finite();
-  /// Counts an element; whether the run goes on.
-  [[nodiscard]] bool step_counts();
-  [[nodiscard]] bool within_max_steps();
-  /// Counts a try that is divided. A run that gets no further ends, too, and tells its observer until then.
-  void reject();
-  void show_progress();
+  void accept_guessed(const std::vector<ElementGuess>& guesses, const Guessed& guessed, double end);
 
-  const discretization::StageKernel& kernel_;
-  const discretization::PointFunctions& functions_;
-  const Facts& facts_;
-  const IntegrationOptions& options_;
-  const StepObserver& observer_;
-  SensitivityPropagation* propagation_;  ///< nullptr if nobody asks for sensitivities
-  ElementSolver solver_;
-  Watch watch_;
+  void stop(result::Termination termination, std::string message);
+  [[nodiscard]] bool stopped() const { return status_.stopped(); }
+  void reject() { status_.count_rejected(position_.t(), recorder_.events()); }
+
+  RunContext context_;
+  Position position_;
+  RunStatus status_;
+  PartLength length_;
+  Coarseness coarseness_;
+  Chain chain_;
+  SwitchLocator locator_;
   Transition transition_;
-  ProjectedField projected_;
-  SelectionMargins margins_;
+  DecisionCount decisions_;
+  LapSeries laps_;
+  RestProjection rest_;
   FixedElement fixed_;
-  HeldValues held_;
   Recorder recorder_;
   std::optional<ElementRecorder> element_recorder_;
-  UserEvents user_events_;
-
-  /// Where what is held changes next, if that ends the part of a simulation step that is under way.
-  struct TimeEvent {
-    double t = 0.0;
-    std::size_t changing = 0;
-  };
-  [[nodiscard]] std::optional<std::size_t> changing_at(double end) const {
-    return time_event_ && time_event_->t == end ? std::optional(time_event_->changing) : std::nullopt;
-  }
-
-  double t_ = 0.0;
-  std::vector<double> x_, selections_;
-  ActiveSet set_;
-  bool determined_ = true;                   ///< Continuation::determined of set_
-  std::optional<std::string> undetermined_;  ///< what to say of the first set that was not
-  /// Of the element that is solved, and of the one before it; members, so that steps do not allocate.
-  Point left_;
-  ActiveSet set_before_;
-  std::vector<double> selections_before_;
-  double size_ = 0.0;          ///< of the largest state of late
-  double nominal_ = 0.0;       ///< length of a simulation step
-  double mean_ = 0.0;          ///< length of elements of the part in hand
-  double lap_part_ = 0.0;      ///< length of parts of simulation steps while laps shrink; 0: any
-  double longest_part_ = 0.0;  ///< of a simulation step that is divided for its errors
-  double share_ = 0.0;         ///< the largest of the chain in hand, Coarseness::share
-  Chain chain_;
-  Coarseness coarseness_;
-  LapSeries laps_;
-  discretization::StageValues at_switch_;
-  discretization::RootValues at_roots_;
-  std::vector<double> zero_roots_;
-  int divided_for_look_ = 0;         ///< halvings of the step in hand because it jumped over a switch
-  std::optional<Element> previous_;  ///< the last element, if the next one continues it
-  int decisions_here_ = 0;
-  double decided_at_ = 0.0;
-  bool undecided_ = false;  ///< no mode was found to go on with: left to the fallback
-  bool ends_fixed_ =
-      false;  ///< the last chain of elements, with sensitivities: neither by a switch nor by a time event
-  std::optional<TimeEvent> time_event_;
-  std::size_t next_time_ = 0;  ///< in the times asked for, or in chosen_times_
-  std::optional<ode::ColumnRanges> ranges_;
-  ode::StraightLines lines_;
-  std::vector<double> chosen_times_, tolerance_;
-  std::vector<double> event_values_;
-  Element shorter_;
-  std::vector<double> between_x_, between_selections_, held_before_;
-  result::Statistics statistics_;
-  std::optional<result::Status> status_;
+  ElementInterior interior_;
+  OutputRows rows_;
+  EventTracker events_;
+  Tangents tangents_;
+  Before before_;  ///< of an element without switch detection; a member, so that steps do not allocate
+  std::vector<double> held_before_;  ///< likewise
 };
 
 }  // namespace saltus::fesd_integrator

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/components.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/switching/hidden/hidden_face_internal.hpp"
 #include "saltus/switching/hidden/hidden_trajectory_internal.hpp"
@@ -23,8 +24,7 @@ double generic(int j) { return 0.3 + 0.4 * std::fmod(0.618033988749895 * (j + 1)
 /// Connected groups of surfaces that feel each other, each ascending.
 std::vector<std::vector<int>> groups_of(int surfaces, ProjectedField g) {
   const std::size_t m = at(surfaces);
-  std::vector<int> group(m);
-  std::iota(group.begin(), group.end(), 0);
+  Components components(m);
   std::vector<double> alpha(m);
   for (int j = 0; j < surfaces; ++j) alpha[at(j)] = generic(j);
   std::vector<double> here(m);
@@ -37,15 +37,11 @@ std::vector<std::vector<int>> groups_of(int surfaces, ProjectedField g) {
     alpha[at(p)] = before;
     for (int j = 0; j < surfaces; ++j) {
       const double size = std::max(std::abs(here[at(j)]), std::abs(there[at(j)]));
-      if (std::abs(there[at(j)] - here[at(j)]) <= field_rounding * size || group[at(j)] == group[at(p)]) continue;
-      const int joined = std::min(group[at(j)], group[at(p)]);
-      const int old = std::max(group[at(j)], group[at(p)]);
-      std::replace(group.begin(), group.end(), old, joined);
+      if (std::abs(there[at(j)] - here[at(j)]) > field_rounding * size) components.join(at(j), at(p));
     }
   }
-  std::vector<std::vector<int>> groups(m);
-  for (int j = 0; j < surfaces; ++j) groups[at(group[at(j)])].push_back(j);
-  std::erase_if(groups, [](const auto& members) { return members.empty(); });
+  std::vector<std::vector<int>> groups;
+  for (const auto& component : components.lists()) groups.emplace_back(component.begin(), component.end());
   return groups;
 }
 

@@ -72,8 +72,7 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
     if (face_.speed(j) > 0.0) slowest = std::min(slowest, face_.speed(j));
   }
   if (!(fastest > 0.0)) return settle("no velocity depends on the selections", v_.data());
-  next_look_ = 0;
-  pause_ = shortest_pause;
+  looks_ = {0, shortest_pause};
   int steps = 0;
   if (face_.pair() != nullptr && fastest <= not_stiff * slowest) {
     if (const auto status = cross_pair(fastest, steps)) return *status;
@@ -122,28 +121,28 @@ std::optional<HiddenTrajectory::Status> HiddenTrajectory::cross_pair(double fast
   const double longest = longest_step / fastest;
   for (; steps < most_series && used_ < options_.budget; ++steps, ++used_) {
     if (const auto status = look_for_rest_at(steps)) return *status;
-    series_.take(*face_.pair(), face_.free(), u_, v_, tolerance_here(), longest);
-    series_.evaluate(1.0, series_end_.data());
-    face_.velocity(series_end_.data(), series_slope_.data());
-    SeriesStep step(series_, series_slope_.data());
+    series_.series.take(*face_.pair(), face_.free(), u_, v_, tolerance_here(), longest);
+    series_.series.evaluate(1.0, series_.end.data());
+    face_.velocity(series_.end.data(), series_.slope.data());
+    SeriesStep step(series_.series, series_.slope.data());
     const StepEvent event = first_event(step);
-    end_step(event, series_.h(), series_end_.data());
+    end_step(event, series_.series.h(), series_.end.data());
     if (event.kind == StepEvent::Kind::boundary) return at_boundary(event.component);
     if (event.kind == StepEvent::Kind::maximum) {
       return pass_section(static_cast<std::uint64_t>(2 * m_ + event.component));
     }
-    v_ = series_slope_;
+    v_ = series_.slope;
   }
   return std::nullopt;
 }
 
 /// Looks for rest where it is time to; what the trajectory does then.
 std::optional<HiddenTrajectory::Status> HiddenTrajectory::look_for_rest_at(int step) {
-  if (step != next_look_) return std::nullopt;
+  if (step != looks_.next) return std::nullopt;
   const Rest rest = look_for_rest();
-  next_look_ += pause_;
-  pause_ = std::min(2 * pause_, longest_pause);
-  if (rest == Rest::settled) return settle("the hidden dynamics comes to rest: sliding", point_velocity_.data());
+  looks_.next += looks_.pause;
+  looks_.pause = std::min(2 * looks_.pause, longest_pause);
+  if (rest == Rest::settled) return settle("the hidden dynamics comes to rest: sliding", rest_.velocity().data());
   if (rest == Rest::moved) return Status::goes_on;
   return std::nullopt;
 }

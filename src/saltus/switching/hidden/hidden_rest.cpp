@@ -18,122 +18,105 @@ constexpr double at_bound = 1e-12;
 
 }  // namespace
 
-/// Newton's method on the free components of the current zone: u becomes a point where they rest, v of all components
-/// there is in point_velocity_, its derivatives in derivatives_, the square part in matrix_.
-bool HiddenTrajectory::polish_rest(double* u) {
+bool HiddenTrajectory::is_resting() const {
   const auto& free = face_.free();
-  const std::size_t n = free.size();
-  LuFactors lu(static_cast<int>(n));
-  double size = 0.0;
-  for (int k = 0; k < 12; ++k) {
-    face_.velocity(u, point_velocity_.data());
-    face_.derivatives(u, point_velocity_.data(), derivatives_.data());
-    for (std::size_t i = 0; i < n; ++i) {
-      step_[i] = point_velocity_[at(free[i])];
-      std::copy_n(derivatives_.begin() + static_cast<std::ptrdiff_t>(at(free[i]) * n), n,
-                  matrix_.begin() + static_cast<std::ptrdiff_t>(i * n));
-    }
-    if (!lu.factor(std::span(matrix_).first(n * n))) return false;
-    lu.solve(step_.data());
-    size = 0.0;
-    for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(step_[i]));
-    if (!(size < 0.25)) return false;
-    if (size < 1e-14) return true;
-    for (std::size_t i = 0; i < n; ++i) u[free[i]] -= step_[i];
-  }
-  return size < 1e-10;
+  return std::all_of(free.begin(), free.end(),
+                     [&](int j) { return std::abs(v_[at(j)]) <= rounding_of_velocity * face_.speed(j); });
 }
 
-/// Is the current point so close to a stable state of rest of the free components that it must end there?
-///
-/// With e = root - u and the Jacobian J at the root, e' = (J + D) e where |D| is at most the change of J over e. It
-/// decays if J + 10 |D| I is stable, and saturated components keep going outwards if their final velocities exceed ten
-/// times what e changes in them. The factor 10 stands for the non-normality of J.
-HiddenTrajectory::Rest HiddenTrajectory::look_for_rest() {
+/// The root near the current point, into rest_; nullopt where it is not in the zone, or not stable near by.
+std::optional<HiddenTrajectory::RootPlace> HiddenTrajectory::find_root(bool resting) {
   const auto& free = face_.free();
   const std::size_t n = free.size();
-  bool resting = true;
-  for (const int j : free) resting = resting && std::abs(v_[at(j)]) <= rounding_of_velocity * face_.speed(j);
   face_.derivatives(u_.data(), v_.data(), derivatives_.data());
-  jacobian_here_.resize(n * n);
+  std::vector<double>& here = rest_.jacobian_here();
+  here.resize(n * n);
   for (std::size_t i = 0; i < n; ++i) {
     std::copy_n(derivatives_.begin() + static_cast<std::ptrdiff_t>(at(free[i]) * n), n,
-                jacobian_here_.begin() + static_cast<std::ptrdiff_t>(i * n));
+                here.begin() + static_cast<std::ptrdiff_t>(i * n));
   }
   // Where J is not stable here, it is not by that margin at a root near by.
-  const bool may_settle = resting || is_hurwitz(std::span(jacobian_here_), static_cast<int>(n));
-  root_ = u_;
-  const bool found = may_settle && polish_rest(root_.data());
+  if (!resting && !is_hurwitz(std::span(here), static_cast<int>(n))) return std::nullopt;
+  if (!rest_.find(u_)) return std::nullopt;
   // A root on the edge of the zone is one of its points: what crosses the edge there is rounding.
-  bool inside = found;
-  bool at_edge = false;
+  auto place = RootPlace::inside;
   for (const int j : free) {
-    double& selection = root_[at(j)];
-    inside = inside && -at_bound < selection && selection < 1.0 + at_bound;
-    at_edge = at_edge || !(at_bound < selection && selection < 1.0 - at_bound);
-    if (inside) selection = std::clamp(selection, 0.0, 1.0);
+    double& selection = rest_.root()[at(j)];
+    if (!(-at_bound < selection && selection < 1.0 + at_bound)) return std::nullopt;
+    if (!(at_bound < selection && selection < 1.0 - at_bound)) place = RootPlace::at_edge;
+    selection = std::clamp(selection, 0.0, 1.0);
   }
-  if (!inside) {
-    if (!resting) return Rest::none;
-    perturb();
-    return Rest::moved;
-  }
-  double change = 0.0;
-  for (std::size_t i = 0; i < n * n; ++i) change += (matrix_[i] - jacobian_here_[i]) * (matrix_[i] - jacobian_here_[i]);
-  const double shift = 10.0 * std::sqrt(change);
-  for (std::size_t i = 0; i < n; ++i) matrix_[i * n + i] += shift;
-  if (!is_hurwitz(std::span(matrix_).first(n * n), static_cast<int>(n))) {
-    if (!resting) return Rest::none;
-    perturb();
-    return Rest::moved;
-  }
+  return rest_.attracts() ? std::optional(place) : std::nullopt;
+}
+
+/// Which saturated component comes back first while the free ones rest at the root; nullopt where it is too far away to
+/// say that.
+std::optional<HiddenTrajectory::Return> HiddenTrajectory::first_return() const {
+  const auto& free = face_.free();
+  const std::size_t n = free.size();
   double distance = 0.0;
-  for (const int j : free) distance = std::max(distance, std::abs(root_[at(j)] - u_[at(j)]));
-  double returns = infinite;
-  int first = -1;
+  for (const int j : free) distance = std::max(distance, std::abs(rest_.root()[at(j)] - u_[at(j)]));
+  Return first;
   for (int j = 0; j < m_; ++j) {
     const int z = zone_[at(j)];
     if (z == 0) continue;
     double influence = 0.0;
     for (std::size_t p = 0; p < n; ++p) {
-      influence += std::abs(derivatives_[at(j) * n + p] * (root_[at(free[p])] - u_[at(free[p])]));
+      influence += std::abs(rest_.derivatives()[at(j) * n + p] * (rest_.root()[at(free[p])] - u_[at(free[p])]));
     }
-    const double outwards = z * point_velocity_[at(j)];
+    const double outwards = z * rest_.velocity()[at(j)];
     const double certain = std::max(10.0 * influence, rounding_of_velocity * face_.speed(j));
     if (outwards > certain) continue;
-    if (distance > 1e-11) return Rest::none;
+    if (distance > 1e-11) return std::nullopt;
     if (outwards >= -certain) continue;  // marginal, which settle() says
     const double t = std::abs(u_[at(j)] - boundary(j)) / -outwards;
-    if (t < returns) {
-      returns = t;
-      first = j;
-    }
+    if (t < first.time) first = {j, t};
   }
-  for (const int j : free) u_[at(j)] = root_[at(j)];
-  if (first < 0) {
-    end_.marginal = end_.marginal || at_edge;
+  return first;
+}
+
+/// The free components rest while the others move on at constant velocities until the first is back.
+void HiddenTrajectory::rest_until(const Return& first) {
+  recurrence_.add_time(first.time);
+  for (int j = 0; j < m_; ++j) {
+    recurrence_.add_selection(j, first.time * std::clamp(u_[at(j)], 0.0, 1.0));
+    if (zone_[at(j)] != 0) u_[at(j)] += first.time * rest_.velocity()[at(j)];
+  }
+  u_[at(first.component)] = boundary(first.component);
+  zone_[at(first.component)] = 0;
+}
+
+/// Is the current point so close to a stable state of rest of the free components that it must end there? They decay if
+/// RestPoint::attracts(), and saturated components keep going outwards if their final velocities exceed ten times what
+/// the distance changes in them.
+HiddenTrajectory::Rest HiddenTrajectory::look_for_rest() {
+  const bool resting = is_resting();
+  const auto place = find_root(resting);
+  if (!place) {
+    if (!resting) return Rest::none;
+    perturb();
+    return Rest::moved;
+  }
+  const auto first = first_return();
+  if (!first) return Rest::none;
+  for (const int j : face_.free()) u_[at(j)] = rest_.root()[at(j)];
+  if (first->component < 0) {
+    end_.marginal = end_.marginal || *place == RootPlace::at_edge;
     return Rest::settled;
   }
-  // The free components rest while the others move on at constant velocities until the first is back.
-  recurrence_.add_time(returns);
-  for (int j = 0; j < m_; ++j) {
-    recurrence_.add_selection(j, returns * std::clamp(u_[at(j)], 0.0, 1.0));
-    if (zone_[at(j)] != 0) u_[at(j)] += returns * point_velocity_[at(j)];
-  }
-  u_[at(first)] = boundary(first);
-  zone_[at(first)] = 0;
+  rest_until(*first);
   return Rest::moved;
 }
 
 bool HiddenTrajectory::rests_near(const std::vector<double>& u) {
   constexpr double near = 0.01;
   face_.enter(std::vector<int>(u.size(), 0));
-  root_ = u;
-  if (!polish_rest(root_.data())) return false;
+  if (!rest_.find(u)) return false;
+  const auto& root = rest_.root();
   for (std::size_t j = 0; j < u.size(); ++j) {
-    if (!(0.0 < root_[j] && root_[j] < 1.0 && std::abs(root_[j] - u[j]) < near)) return false;
+    if (!(0.0 < root[j] && root[j] < 1.0 && std::abs(root[j] - u[j]) < near)) return false;
   }
-  return !is_hurwitz(matrix_, m_);
+  return !is_hurwitz(rest_.jacobian(), m_);
 }
 
 /// The root that a cycle surrounds: with a stabilising scaling if there is one, the nearest to the mean over the lap.
@@ -147,18 +130,18 @@ bool HiddenTrajectory::enclosed_root(const Lap& lap) {
   for (const int j : free) start[at(j)] = lap.mean[at(j)];
   double nearest = infinite;
   const auto consider = [&] {
-    root_ = start;
-    if (!polish_rest(root_.data())) return;
+    if (!rest_.find(start)) return;
+    const auto& root = rest_.root();
     double distance = 0.0;
     for (const int j : free) {
-      if (!(0.0 < root_[at(j)] && root_[at(j)] < 1.0)) return;
-      distance = std::max(distance, std::abs(root_[at(j)] - lap.mean[at(j)]));
+      if (!(0.0 < root[at(j)] && root[at(j)] < 1.0)) return;
+      distance = std::max(distance, std::abs(root[at(j)] - lap.mean[at(j)]));
     }
     // Distances in the cube are below 1: any root with a stabilising scaling comes before those without.
-    if (!(fisher_fuller_margin(std::span(matrix_).first(n * n), static_cast<int>(n)) > 0.0)) distance += 1.0;
+    if (!(fisher_fuller_margin(rest_.jacobian(), static_cast<int>(n)) > 0.0)) distance += 1.0;
     if (distance >= nearest) return;
     nearest = distance;
-    for (const int j : free) end_.alpha[at(j)] = root_[at(j)];
+    for (const int j : free) end_.alpha[at(j)] = root[at(j)];
   };
   end_.alpha = start;
   consider();

@@ -26,17 +26,13 @@ HiddenTrajectory::HiddenTrajectory(HiddenFace& face, const TrajectoryOptions& op
       v_(at(m_)),
       zone_(at(m_)),
       recurrence_(m_),
-      series_(m_),
-      series_end_(at(m_)),
-      series_slope_(at(m_)),
+      series_{PairSeries(m_), std::vector<double>(at(m_)), std::vector<double>(at(m_))},
       low_(at(m_)),
       high_(at(m_)),
       point_(at(m_)),
       point_velocity_(at(m_)),
-      root_(at(m_)),
       derivatives_(at(m_ * m_)),
-      matrix_(at(m_ * m_)),
-      step_(at(m_)),
+      rest_(face),
       samples_(at(m_ * ode::event_nodes)) {}
 
 TrajectoryEnd HiddenTrajectory::follow(const std::vector<double>& u) {

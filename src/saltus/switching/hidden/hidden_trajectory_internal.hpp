@@ -12,6 +12,7 @@
 #include "saltus/switching/hidden/hidden_face_internal.hpp"
 #include "saltus/switching/hidden/hidden_recurrence_internal.hpp"
 #include "saltus/switching/hidden/hidden_series_internal.hpp"
+#include "saltus/switching/hidden/rest_point_internal.hpp"
 #include "saltus/switching/table/matrix_stability.hpp"
 
 namespace saltus::switching {
@@ -76,7 +77,16 @@ class HiddenTrajectory {
 
   Status settle(std::string_view reason, const double* limit_velocity);
   Rest look_for_rest();
-  bool polish_rest(double* u);
+  enum class RootPlace { inside, at_edge };
+  [[nodiscard]] bool is_resting() const;
+  [[nodiscard]] std::optional<RootPlace> find_root(bool resting);
+  /// Of a saturated component to its boundary, while the free ones rest.
+  struct Return {
+    int component = -1;  ///< -1: none comes back
+    double time = infinite;
+  };
+  [[nodiscard]] std::optional<Return> first_return() const;
+  void rest_until(const Return& first);
   bool enclosed_root(const Lap& lap);
   [[nodiscard]] double boundary(int j) const;
   [[nodiscard]] std::uint64_t zone_number() const;
@@ -91,12 +101,19 @@ class HiddenTrajectory {
   Recurrence recurrence_;
   std::optional<ode::Stepper> stepper_, stiff_stepper_;  ///< made when they are first needed
   ode::DenseStep dense_;
-  PairSeries series_;
-  std::vector<double> series_end_, series_slope_;
-  int next_look_ = 0, pause_ = 0;  ///< of looks for rest, in steps within a zone
+  struct SeriesPiece {
+    PairSeries series;
+    std::vector<double> end, slope;
+  };
+  SeriesPiece series_;
+  struct Looks {
+    int next = 0, pause = 0;  ///< of looks for rest, in steps within a zone
+  };
+  Looks looks_;
   bool stiff_ = false;
   double h_ = 0.0;  ///< proposed where the trajectory is still in the zone of its last step; else 0
-  std::vector<double> low_, high_, point_, point_velocity_, root_, derivatives_, matrix_, jacobian_here_, step_;
+  std::vector<double> low_, high_, point_, point_velocity_, derivatives_;
+  RestPoint rest_;
   std::vector<double> samples_;  ///< of the dense output at the interpolation nodes, node by node
   TrajectoryEnd end_;
 };

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/components.hpp"
 #include "saltus/switching/table/field_accuracy.hpp"
 
 namespace saltus::switching {
@@ -15,30 +16,19 @@ Balances balances_of(const Eigen::MatrixXd& effects, const Eigen::MatrixXd& term
     return std::abs(effects(index(k), index(i))) > field_accuracy * terms(index(k), index(i));
   };
   Balances balances;
-  std::vector<std::size_t> group(r);
-  std::iota(group.begin(), group.end(), std::size_t{0});
+  Components components(r);
   for (std::size_t i = 0; i < q; ++i) {
     std::size_t first = r;
     for (std::size_t k = 0; k < r; ++k) {
       if (!acts(k, i)) continue;
-      if (first == r) {
-        first = group[k];
-      } else if (group[k] != first) {
-        const std::size_t other = group[k];
-        std::replace(group.begin(), group.end(), other, first);
-      }
+      if (first == r) first = k;
+      components.join(first, k);
     }
     if (first == r) balances.unused.push_back(i);
   }
-  for (std::size_t k = 0; k < r; ++k) {
-    if (std::find(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(k), group[k]) !=
-        group.begin() + static_cast<std::ptrdiff_t>(k)) {
-      continue;
-    }
+  for (auto& functions : components.lists()) {
     Balance balance;
-    for (std::size_t other = k; other < r; ++other) {
-      if (group[other] == group[k]) balance.functions.push_back(other);
-    }
+    balance.functions = std::move(functions);
     for (std::size_t i = 0; i < q; ++i) {
       const auto& own = balance.functions;
       if (std::any_of(own.begin(), own.end(), [&](std::size_t f) { return acts(f, i); })) balance.rows.push_back(i);

@@ -68,12 +68,12 @@ std::optional<double> Run::shrinking_exponent(long n) const {
 
 /// Whether no selection of a surface moves psi at once: d psi/dt is the same on both sides (relative degree 2 or more).
 bool Run::has_one_rate(int surface) {
-  std::vector<double> alpha = state_.alpha;
+  std::vector<double> alpha = here_.state.alpha;
   Rate sides[2];
   for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
     alpha[at(surface)] = static_cast<double>(side);
-    kernel_.field(t_, x_.data(), alpha.data(), row_slope_.data());
-    sides[side] = rate_along_field(surface, t_, x_.data(), row_slope_.data());
+    kernel_.field(here_.t, here_.x.data(), alpha.data(), free_slope_.data());
+    sides[side] = rates_.along(surface, free_slope_);
   }
   constexpr double rounding = 1e-12;
   return std::abs(sides[1].value - sides[0].value) <= rounding * std::max(sides[0].terms, sides[1].terms);
@@ -89,11 +89,11 @@ std::string Run::shrinking_laps() {
   bool smoothed = false;  // the surfaces are edges of layers
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     const auto& function = surroundings_.system.switching[at(j)];
-    if (function.role != model::SwitchingRole::listed || state_.mode[at(j)] == 0) continue;
+    if (function.role != model::SwitchingRole::listed || here_.state.mode[at(j)] == 0) continue;
     if (!recorder_.switched_lately(j, longest_lap) || !has_one_rate(j)) continue;
     smoothed = smoothed || function.continuous;
     names += (names.empty() ? "'" : "', '") + function.name;
-    const Rate rate = rate_along_field(j, t_, x_.data(), slope_.data());
+    const Rate rate = rates_.here(j);
     farthest = std::max(farthest, 0.25 * std::abs(rate.value) * last_interval(events));
     rounding = std::max(rounding, rounding_unit * rate.magnitude);
   }

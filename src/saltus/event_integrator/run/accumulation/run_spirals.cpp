@@ -88,41 +88,42 @@ void put_onto_nested(const evaluation::ModelKernel& kernel, const ModeState& sta
 
 /// Notes the switch in hand as part of a sequence that tightens; empty if there is none.
 void Run::note_tightening_switch() {
-  if (before_.mode == state_.mode) return;
+  if (before_.mode == here_.state.mode) return;
   if (jumped_ || !series_.tightens()) return switch_laps_.clear();
   bool holds = true;  // kinks do not hold a solution, and times pass
   switch_labels_.clear();
-  for_each_difference(before_.mode, state_.mode, [&](std::size_t j) {
+  for_each_difference(before_.mode, here_.state.mode, [&](std::size_t j) {
     const auto role = surroundings_.system.switching[j].role;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
-    switch_labels_.push_back(label_of(static_cast<int>(j), state_.mode[j]));
+    switch_labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));
   });
   if (!holds) return switch_laps_.clear();
-  switch_laps_.add(t_, switch_labels_, x_);
+  switch_laps_.add(here_.t, switch_labels_, here_.x);
   // A limit asks for the rates of those switches only behind which laps have shrunk twice.
   if (switch_laps_.shrinks()) note_switch_rates();
 }
 
 /// How short laps of the switch in hand may get.
 void Run::note_switch_rates() {
-  kernel_.field(t_, x_.data(), before_.alpha.data(), row_slope_.data());
+  kernel_.field(here_.t, here_.x.data(), before_.alpha.data(), free_slope_.data());
   for (const int label : switch_labels_) {
     // Where sliding begins or ends psi moves on the other side only.
-    const Rate arriving = rate_along_field(surface_of(label), t_, x_.data(), row_slope_.data());
-    const Rate leaving = rate_along_field(surface_of(label), t_, x_.data(), slope_.data());
+    const Rate arriving = rates_.along(surface_of(label), free_slope_);
+    const Rate leaving = rates_.here(surface_of(label));
     const double rate = std::max(std::abs(arriving.value), std::abs(leaving.value));
     // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the lap. Shallower
     // laps are lost in the rounding of psi, or in ten times the atol that follows the laps. Not in rtol times the terms
     // of psi: every switch puts psi back to 0, and over laps far shorter than the steps that rtol allows the error of a
     // step is far smaller than that.
     const double unresolved =
-        std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude, 10.0 * tolerances_.atol * leaving.slope);
+        std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude, 10.0 * tolerances_.step().atol * leaving.slope);
     double& shortest = shortest_switch_lap_[at(label)];
     shortest = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
     // Where sliding ends psi leaves tangentially: its rate is rounding, and what bends it is what resolves the lap.
     constexpr double tangent = 1e-12;
     if (rate > tangent * std::max(arriving.terms, leaving.terms)) continue;
-    const double bend = std::abs(kernel_.lie_derivative(surface_of(label), 2, t_, x_.data(), state_.alpha.data()));
+    const double bend =
+        std::abs(kernel_.lie_derivative(surface_of(label), 2, here_.t, here_.x.data(), here_.state.alpha.data()));
     if (bend > 0.0) shortest = std::min(shortest, std::sqrt(8.0 * unresolved / bend));
   }
 }
@@ -132,9 +133,9 @@ void Run::note_switch_rates() {
 void Run::follow_shrinking() {
   if (switch_laps_.empty()) {
     first_lap_ = 0.0;
-    if (lap_share_ != 1.0 || !ending_roots_.empty()) {
-      lap_share_ = rooted_atol_ = rooted_rtol_ = 1.0;
-      set_tolerances();
+    if (tolerances_.part(StepTolerances::Reason::cycles).atol != 1.0 || !ending_roots_.empty()) {
+      tolerances_.lift(StepTolerances::Reason::cycles);
+      tolerances_.lift(StepTolerances::Reason::zeros);
     }
     return;
   }
@@ -143,15 +144,14 @@ void Run::follow_shrinking() {
   if (first_lap_ == 0.0) first_lap_ = *lap;
   closed_lap_ = *lap;
   const double share = std::clamp(*lap / first_lap_, 1e-6, 1.0);
-  lap_share_ = share * share;
-  set_tolerances();
+  tolerances_.limit(StepTolerances::Reason::cycles, {.rtol = 1.0, .atol = share * share});
 }
 
 /// Without a switch for many laps their sequence has ended before it had a limit, as spirals do in the layers of a
 /// regularisation: what comes has the tolerances of the run.
 void Run::end_shrinking() {
   constexpr double many = 16.0;
-  if (t_ - series_.last() <= many * closed_lap_) return;
+  if (here_.t - series_.last() <= many * closed_lap_) return;
   switch_laps_.clear();
   follow_shrinking();
 }
@@ -160,9 +160,9 @@ void Run::end_shrinking() {
 void Run::note_tightening_switch(const SurfaceSwitch& change) {
   if (!series_.tightens()) return switch_laps_.clear();
   switch_labels_.assign(1, label_of(change.surface, change.after));
-  switch_laps_.add(t_, switch_labels_, x_);
+  switch_laps_.add(here_.t, switch_labels_, here_.x);
   if (!switch_laps_.shrinks()) return;
-  before_ = state_;
+  before_ = here_.state;
   set_surface(before_, change.surface, change.before, change.alpha_before);
   if (change.slid != nullptr) before_.alpha[at(change.slid->surface)] = change.slid->alpha_before;
   note_switch_rates();
@@ -189,11 +189,11 @@ std::optional<SeriesLimit> Run::drowned_here() const {
   if (switch_laps_.empty() || occasion_.touched.size() != 1) return std::nullopt;
   const int surface = occasion_.touched.front();
   if (!contains(ending_roots_, surface)) return std::nullopt;
-  const double lap = t_ - last_event_time_;
+  const double lap = here_.t - last_event_time_;
   const double shortest =
       std::max(shortest_switch_lap_[at(label_of(surface, -1))], shortest_switch_lap_[at(label_of(surface, 1))]);
   if (!(lap <= shortest)) return std::nullopt;
-  return SeriesLimit{t_, x_, {label_of(surface, before_.mode[at(surface)])}, lap, false};
+  return SeriesLimit{here_.t, here_.x, {label_of(surface, before_.mode[at(surface)])}, lap, false};
 }
 
 /// Goes on from the limit that an undecided switch has turned out to be.
@@ -208,8 +208,8 @@ void Run::go_on_from_drowned() {
 /// with their derivatives (controllers with roots of several states, which reach their origin faster than laps shrink).
 /// Returns whether the run has gone on.
 bool Run::hold_what_drowns() {
-  find_functions(t_, x_.data(), values_here_);
-  SeriesLimit limit{t_, x_, {}, smallest_step(), false, true};
+  find_functions(here_.t, here_.x.data(), values_here_);
+  SeriesLimit limit{here_.t, here_.x, {}, here_.smallest_step(), false, true};
   for (std::size_t i = 0; i < values_here_.size(); ++i) {
     const auto& function = search_.functions()[i];
     if (function.kind != FunctionKind::surface || !(std::abs(values_here_[i]) <= search_.accuracy(i))) continue;
@@ -244,15 +244,15 @@ bool Run::limits_repeat(double t) {
 
 /// Returns whether the run has gone on, or has ended for another reason.
 bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
-  ModeState on = state_;
+  ModeState on = here_.state;
   on.higher.reset();
-  put_on(kernel_, limit, h_scale_, on);
+  put_on(kernel_, limit, here_.time_scale, on);
   std::vector<double> x = limit.x;
   Occasion occasion;
   std::vector<double> lap_change(at(kernel_.event_functions()));
   for (const int j : on.sliding) {
     for (const int i : kernel_.inner(j)) {
-      lap_change[at(i)] = limit.lap * std::abs(rate_along_field(i, t_, x_.data(), slope_.data()).value);
+      lap_change[at(i)] = limit.lap * std::abs(rates_.here(i).value);
     }
   }
   if (put_on_inner(kernel_, limit, lap_change, on)) {
@@ -268,17 +268,17 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   occasion.at_zero = occasion.touched = on.sliding;
   occasion.start = occasion.limit = true;  // no side is the one it comes from
   // What the last lap changes is at rest behind it, and what t does not resolve.
-  occasion.time_scale = std::max({h_scale_, limit.lap, 1e3 * rounding_unit * std::abs(limit.t)});
+  occasion.time_scale = std::max({here_.time_scale, limit.lap, 1e3 * rounding_unit * std::abs(limit.t)});
   note_ties(kernel_, on, occasion);
   Transition transition = decide_mode(surroundings_, on, occasion);
   if (transition.termination != result::Termination::completed) return false;
   if (wanted == Behind::higher_order && !transition.state.higher) return false;
   other_continuations(surroundings_, on, occasion, transition);
 
-  field_(t_, x_.data(), slope_.data());
-  if (!state_.sliding.empty()) state_.alpha = field_.alpha();
-  const ModeState before = state_;
-  const std::vector<double> x_last = x_;
+  field_(here_.t, here_.x.data(), here_.slope.data());
+  if (!here_.state.sliding.empty()) here_.state.alpha = field_.alpha();
+  const ModeState before = here_.state;
+  const std::vector<double> x_last = here_.x;
   pass_to(limit.t, std::move(x));
   if (!enter(transition)) return true;
   const auto why = limit.drowned ? "these are zero together, as far as they can be told apart"
@@ -286,13 +286,13 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   // What has been slid on through all laps may be left at their limit, too.
   std::vector<int> surfaces = on.sliding;
   for (const int label : limit.events) surfaces.push_back(surface_of(label));
-  recorder_.spiralled(t_, surfaces, {x_last, x_, before, state_}, transition, why);
-  row(t_, x_);
-  last_event_time_ = t_;
+  recorder_.spiralled(here_.t, surfaces, {x_last, here_.x, before, here_.state}, transition, why);
+  row(here_.t, here_.x);
+  last_event_time_ = here_.t;
   restart_control();
-  static_cast<void>(step_memory_.change(state_.mode, t_, h_));
+  static_cast<void>(steps_.memory().change(here_.state.mode, here_.t, here_.h));
   go_on_from_limit();
-  h_scale_ = h_;
+  here_.time_scale = here_.h;
   return true;
 }
 

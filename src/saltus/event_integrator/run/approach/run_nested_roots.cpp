@@ -10,12 +10,12 @@ namespace saltus::event_integrator {
 
 /// The functions of the mode that this may happen to.
 void Run::watch_nested_roots() {
-  if (!nearing_.empty()) rooted_atol_ = rooted_rtol_ = 1.0;
+  if (!nearing_.empty()) tolerances_.lift(StepTolerances::Reason::zeros);
   nearing_.clear();
-  nearing_since_ = t_;
-  for (const int j : state_.sliding) {
+  nearing_since_ = here_.t;
+  for (const int j : here_.state.sliding) {
     for (const int i : kernel_.inner(j)) {
-      if (state_.mode[at(i)] == 0 || !kernel_.has_root_inside(j, i)) continue;
+      if (here_.state.mode[at(i)] == 0 || !kernel_.has_root_inside(j, i)) continue;
       const auto is_it = [i](const Nearing& other) { return other.function == i; };
       auto place = std::find_if(nearing_.begin(), nearing_.end(), is_it);
       if (place == nearing_.end()) place = nearing_.insert(place, Nearing{i, {}});
@@ -29,13 +29,13 @@ void Run::watch_nested_roots() {
 void Run::tighten_beside_nested_roots(double& atol, double& rtol) {
   // Where g is a difference of states, its rounding moves the selection, which is of the size of |g'|^2 / g, by a part
   // of u / g: less than this could not be reached any more before g is as small as it may get.
-  const double smallest = 1e-12 / mode_tolerances_.rtol;
+  const double smallest = 1e-12 / tolerances_.mode().rtol;
   for (const Nearing& nearing : nearing_) {
-    const Rate rate = rate_along_field(nearing.function, t_, x_.data(), slope_.data());
-    const double wanted = mode_tolerances_.rtol * std::abs(rooted_values_[at(nearing.function)]);
+    const Rate rate = rates_.here(nearing.function);
+    const double wanted = tolerances_.mode().rtol * std::abs(rooted_values_[at(nearing.function)]);
     if (!(wanted > 0.0)) continue;
-    atol = std::min(atol, wanted / (rate.slope * mode_tolerances_.atol));
-    rtol = std::min(rtol, std::max(smallest, wanted / (rate.magnitude * mode_tolerances_.rtol)));
+    atol = std::min(atol, wanted / (rate.slope * tolerances_.mode().atol));
+    rtol = std::min(rtol, std::max(smallest, wanted / (rate.magnitude * tolerances_.mode().rtol)));
   }
 }
 
@@ -47,35 +47,35 @@ std::optional<double> Run::end_of_nearing(Nearing& nearing) {
   constexpr double agree = 0.1;    // of the tolerance of a step, over that time; the error itself is a third of it
   constexpr double bent = 1.02;    // of zeros that are crossed p is 1, to `little`
   const double g = rooted_values_[at(nearing.function)];
-  const Rate rate = rate_along_field(nearing.function, t_, x_.data(), slope_.data());
+  const Rate rate = rates_.here(nearing.function);
   const double ratio = g == 0.0 ? 0.0 : -g / rate.value;
-  const double since = t_ - nearing_since_;
-  const double resolved = 16.0 * smallest_step();
+  const double since = here_.t - nearing_since_;
+  const double resolved = 16.0 * here_.smallest_step();
   const Nearing last = nearing;
-  const double power = (t_ - last.t) / (last.ratio - ratio);
+  const double power = (here_.t - last.t) / (last.ratio - ratio);
   const double left = power * ratio;
   const bool turns = !(ratio >= 0.0) || ratio > last.ratio || !std::isfinite(last.ratio);
   const bool halved = !turns && ratio <= 0.5 * last.ratio;
   if (turns || halved) {
-    nearing.t = t_;
+    nearing.t = here_.t;
     nearing.ratio = ratio;
-    nearing.end = turns ? std::numeric_limits<double>::quiet_NaN() : t_ + left;
+    nearing.end = turns ? std::numeric_limits<double>::quiet_NaN() : here_.t + left;
   }
   if (turns || !(power > bent)) return std::nullopt;
   const bool agrees =
-      std::abs(t_ + left - last.end) <= std::max(agree * mode_tolerances_.rtol * since, 0.25 * resolved);
+      std::abs(here_.t + left - last.end) <= std::max(agree * tolerances_.mode().rtol * since, 0.25 * resolved);
   const bool rounds = std::abs(g) <= 1e5 * 8.0 * rounding_unit * rate.magnitude;  // five digits of g are left
-  if (left <= resolved || (halved && left <= little * since && (agrees || rounds))) return t_ + left;
+  if (left <= resolved || (halved && left <= little * since && (agrees || rounds))) return here_.t + left;
   return std::nullopt;
 }
 
 /// The point where these of nearing_ are 0: by a parabola through the last two slopes, then onto the set. nullopt where
 /// states that the set does not fix bend too much for that, or something else happens before.
 std::optional<Located> Run::at_nested_roots(double end, const std::vector<std::size_t>& reached) {
-  const double left = end - t_;
-  Located located{end, x_, {}, {}};
+  const double left = end - here_.t;
+  Located located{end, here_.x, {}, {}};
   std::vector<HeldFunction> held;
-  std::vector<double> alpha = state_.alpha;
+  std::vector<double> alpha = here_.state.alpha;
   const auto hold = [&](int j) {
     const auto is_it = [j](const HeldFunction& function) { return function.surface == j; };
     if (std::any_of(held.begin(), held.end(), is_it)) return;
@@ -96,20 +96,20 @@ std::optional<Located> Run::at_nested_roots(double end, const std::vector<std::s
   }
   HeldFunctions set(kernel_);
   set.set(held, alpha);
-  set.differentiate(t_, x_.data());
+  set.differentiate(here_.t, here_.x.data());
   std::size_t on_set = 0;
   for (Eigen::Index i = 0; i < set.rows().cols(); ++i) on_set += set.rows().col(i).isZero(0.0) ? 0U : 1U;
   const bool fixed = on_set <= held.size();
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    const double bend = 0.5 * left * (slope_[i] - nearing_slope_[i]) * std::min(1.0, left / nearing_step_);
-    located.x[i] += left * slope_[i] + bend;
+  for (std::size_t i = 0; i < here_.x.size(); ++i) {
+    const double bend = 0.5 * left * (here_.slope[i] - nearing_slope_[i]) * std::min(1.0, left / nearing_step_);
+    located.x[i] += left * here_.slope[i] + bend;
     const bool is_fixed = fixed && !set.rows().col(static_cast<Eigen::Index>(i)).isZero(0.0);
-    const double tolerance = mode_tolerances_.atol + mode_tolerances_.rtol * std::abs(x_[i]);
-    if (!is_fixed && left > 16.0 * smallest_step() && !(std::abs(bend) <= tolerance)) return std::nullopt;
+    const double tolerance = tolerances_.mode().atol + tolerances_.mode().rtol * std::abs(here_.x[i]);
+    if (!is_fixed && left > 16.0 * here_.smallest_step() && !(std::abs(bend) <= tolerance)) return std::nullopt;
   }
   static_cast<void>(set.project(end, located.x.data()));
   if (!is_finite(located.x)) return std::nullopt;
-  const auto before = all_functions(t_, x_.data());
+  const auto before = all_functions(here_.t, here_.x.data());
   const auto after = all_functions(end, located.x.data());
   for (std::size_t i = 0; i < before.size(); ++i) {
     const bool is_it = std::find(located.functions.begin(), located.functions.end(), i) != located.functions.end();
@@ -123,7 +123,7 @@ std::optional<Located> Run::at_nested_roots(double end, const std::vector<std::s
 /// Where functions that the motion runs into the zeros of get there, together with those that do within their accuracy.
 std::optional<Located> Run::nested_roots_ahead() {
   rooted_values_.resize(at(kernel_.event_functions()));
-  kernel_.functions(t_, x_.data(), state_.alpha.data(), rooted_values_.data());
+  kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), rooted_values_.data());
   std::optional<double> first;
   for (Nearing& nearing : nearing_) {
     const auto end = end_of_nearing(nearing);
@@ -131,7 +131,7 @@ std::optional<Located> Run::nested_roots_ahead() {
   }
   if (!first || *first >= std::min({options_.until, jumps_.next_time(), next_departure()})) return std::nullopt;
   std::vector<std::size_t> reached;
-  const double together = std::max(mode_tolerances_.rtol * (*first - nearing_since_), 16.0 * smallest_step());
+  const double together = std::max(tolerances_.mode().rtol * (*first - nearing_since_), 16.0 * here_.smallest_step());
   for (std::size_t k = 0; k < nearing_.size(); ++k) {
     if (std::abs(nearing_[k].end - *first) <= together) reached.push_back(k);
   }
@@ -140,23 +140,19 @@ std::optional<Located> Run::nested_roots_ahead() {
 
 /// Over the rest of the way, with the rows in it: on parabolas that begin with the slopes here.
 Run::Step Run::arrive_at_nested_roots(const Located& located) {
-  const auto& times = options_.output.times;
-  for (; next_output_ < times.size() && times[next_output_] < located.t; ++next_output_) {
-    const double t = times[next_output_];
-    if (t <= t_) continue;
-    const double h = located.t - t_;
-    const double s = (t - t_) / h;
-    for (std::size_t k = 0; k < x_.size(); ++k) {
-      const double mean = (located.x[k] - x_[k]) / h;
-      row_x_[k] = x_[k] + h * s * (slope_[k] + s * (mean - slope_[k]));
+  const double h = located.t - here_.t;
+  rows_.write_before(located.t, [&](double t, double* x) {
+    const double s = (t - here_.t) / h;
+    for (std::size_t k = 0; k < here_.x.size(); ++k) {
+      const double mean = (located.x[k] - here_.x[k]) / h;
+      x[k] = here_.x[k] + h * s * (here_.slope[k] + s * (mean - here_.slope[k]));
     }
-    row_inside(t);
-  }
+  });
   // Selections are 0/0 at the end: those of the last step are theirs to what changes over this way.
-  field_(t_, x_.data(), row_slope_.data());
-  if (is_finite(field_.alpha())) state_.alpha = field_.alpha();
+  field_(here_.t, here_.x.data(), free_slope_.data());
+  if (is_finite(field_.alpha())) here_.state.alpha = field_.alpha();
   // The last steps may have been short because of rounding.
-  h_scale_ = std::max({h_scale_, located.t - t_, 1e-3 * (t_ - nearing_since_)});
+  here_.time_scale = std::max({here_.time_scale, located.t - here_.t, 1e-3 * (here_.t - nearing_since_)});
   return handle(located);
 }
 
@@ -165,7 +161,7 @@ Run::Step Run::arrive_at_nested_roots(const Located& located) {
 void Run::leave_nested_root() {
   const double limit = std::min({options_.until, jumps_.next_time(), next_departure()});
   const auto is_in_mode = [&](double t) {
-    const auto values = all_functions(t, stepper_.x_new());
+    const auto values = all_functions(t, steps_.stepper().x_new());
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto& function = search_.functions()[i];
       if (function.kind == FunctionKind::surface && !(values[i] * function.sign > 0.0)) return false;
@@ -173,11 +169,11 @@ void Run::leave_nested_root() {
     }
     return true;
   };
-  for (double h = root_step(); h > smallest_step(); h *= 0.25) {
-    const double t_new = std::min(t_ + h, limit);
-    if (field_.attempt(stepper_, t_, x_.data(), slope_.data(), t_new - t_, tolerances_) == ode::Attempt::finite &&
-        error_norm() <= 1.0 && is_in_mode(t_new) && stepper_.dense(right_hand_side(), dense_) == ode::Attempt::finite) {
-      h_try_ = t_new - t_;
+  for (double h = root_step(); h > here_.smallest_step(); h *= 0.25) {
+    const double t_new = std::min(here_.t + h, limit);
+    if (steps_.take(t_new) == ode::Attempt::finite && steps_.error_norm() <= 1.0 && is_in_mode(t_new) &&
+        steps_.remake_dense()) {
+      steps_.set_length(t_new - here_.t);
       static_cast<void>(accept(t_new));
       return;
     }

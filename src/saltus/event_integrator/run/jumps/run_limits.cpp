@@ -16,7 +16,7 @@ using result::Termination;
 void Run::note_series(const Landing& landing) {
   if (landing.executed.empty()) return;
   auto& magnitude = values_.magnitude;
-  kernel_.scales(t_, x_.data(), state_.alpha.data(), magnitude.data(), values_.slope.data());
+  kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), magnitude.data(), values_.slope.data());
   executed_.clear();
   for (const auto& executed : landing.executed.items()) executed_.push_back(executed.jump);
   for (const int jump : executed_) {
@@ -33,7 +33,7 @@ void Run::note_series(const Landing& landing) {
       shortest_lap_[at(jump)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(function)] / rate : 0.0;
     }
   }
-  jump_series_.add(t_, executed_, x_);
+  jump_series_.add(here_.t, executed_, here_.x);
   if (!landing.resting.empty()) jump_series_.clear_laps();
 }
 
@@ -53,8 +53,8 @@ bool Run::release(const Located& located) {
   }
   if (guards.size() == holding_.guards().size()) return false;
   const auto before = holding_.resting();
-  const auto problem = holding_.hold(std::move(guards), holding_.followers(), t_, state_.alpha, x_);
-  if (problem) fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", t_, *problem));
+  const auto problem = holding_.hold(std::move(guards), holding_.followers(), here_.t, here_.state.alpha, here_.x);
+  if (problem) fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", here_.t, *problem));
   for (const auto& guard : before) {
     if (holding_.holds(guard.hold.function)) continue;
     // It moves outward from here, whatever the roundings of its derivatives say.
@@ -66,9 +66,9 @@ bool Run::release(const Located& located) {
   search_.set_held(holding_.guards(), holding_.followers());
   search_.set_user_signs(signs, vanish, orders);
   RestingSurfaces resting;
-  if (!state_.resting.empty() && find_resting(resting)) {
-    std::set_difference(state_.resting.begin(), state_.resting.end(), resting.surfaces.begin(), resting.surfaces.end(),
-                        std::back_inserter(freed_));
+  if (!here_.state.resting.empty() && find_resting(resting)) {
+    std::set_difference(here_.state.resting.begin(), here_.state.resting.end(), resting.surfaces.begin(),
+                        resting.surfaces.end(), std::back_inserter(freed_));
   }
   return true;
 }
@@ -76,23 +76,23 @@ bool Run::release(const Located& located) {
 /// Whether jumps change nothing at their limit, and their conditions come true there by what they do not set: the
 /// conditions then hold behind it, and nothing fires again. Their guards are at zero in `landing`.
 bool Run::change_nothing(const std::vector<int>& jumps, Landing& landing) {
-  std::vector<double> slope(x_.size());
-  kernel_.field(t_, x_.data(), state_.alpha.data(), slope.data());
+  std::vector<double> slope(here_.x.size());
+  kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
   std::vector<bool> vanish = search_.user_zeros();
   for (const int jump : jumps) {
     const auto& targets = surroundings_.system.jumps[at(jump)].targets;
     std::vector<double> values(targets.size());
-    kernel_.jump_values(jump, t_, x_.data(), state_.alpha.data(), values.data());
+    kernel_.jump_values(jump, here_.t, here_.x.data(), here_.state.alpha.data(), values.data());
     for (std::size_t i = 0; i < targets.size(); ++i) {
-      const double x = x_[at(targets[i])];
-      if (!(std::abs(values[i] - x) <= tolerances_.atol + tolerances_.rtol * std::abs(x))) return false;
+      const double x = here_.x[at(targets[i])];
+      if (!(std::abs(values[i] - x) <= tolerances_.step().atol + tolerances_.step().rtol * std::abs(x))) return false;
       slope[at(targets[i])] = 0.0;
     }
     bool comes_true = false;
     for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
-      const Rate rate = rate_along_field(function, t_, x_.data(), slope.data());
-      const double resolved = tolerances_.atol * rate.slope + tolerances_.rtol * rate.magnitude;
+      const Rate rate = rates_.along(function, slope);
+      const double resolved = tolerances_.step().atol * rate.slope + tolerances_.step().rtol * rate.magnitude;
       if (jumps_.is_discrete_guard(function) || !(std::abs(landing.zero_values[at(function)]) <= resolved)) continue;
       comes_true = jumps_.trigger_sign(jump, g, jump_point(), 0) * rate.value > 0.0;
       if (!comes_true) return false;
@@ -113,10 +113,10 @@ void Run::accumulate_jumps() {
 }
 
 void Run::follow_limit(const SeriesLimit& limit) {
-  field_(t_, x_.data(), slope_.data());
-  if (!state_.sliding.empty()) state_.alpha = field_.alpha();
-  const ModeState before = state_;
-  const std::vector<double> x_last = x_;
+  field_(here_.t, here_.x.data(), here_.slope.data());
+  if (!here_.state.sliding.empty()) here_.state.alpha = field_.alpha();
+  const ModeState before = here_.state;
+  const std::vector<double> x_last = here_.x;
   if (std::any_of(limit.events.begin(), limit.events.end(), [&](int jump) { return contacts_.owns(jump); })) {
     return settle_contacts(limit, x_last, before);
   }
@@ -137,25 +137,25 @@ void Run::follow_limit(const SeriesLimit& limit) {
   pass_to(limit.t, limit.x);
   Landing& landing = landing_here();
   const auto accumulated = [&] {
-    recorder_.accumulated(t_, limit.events, {x_last, x_, before, state_},
+    recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},
                           limit.rattling
                               ? "these jumps follow each other faster than their guards are resolved"
                               : "the intervals of these jumps shrink geometrically: the state is their limit");
-    row(t_, x_);
-    last_event_time_ = t_;
+    row(here_.t, here_.x);
+    last_event_time_ = here_.t;
   };
   const bool ends = jumps.empty() && change_nothing(limit.events, landing);
   if (jumps.empty() && !ends) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but no guard of theirs is left at 0: what follows is not "
                      "determined",
-                     jump_names(limit.events), t_));
+                     jump_names(limit.events), here_.t));
   }
   if (running_ && !ends && hold(std::move(guards), {}, landing) &&
-      !(holding_.largest_rate(t_, state_.alpha, x_) <= 1e-3 * rate)) {
+      !(holding_.largest_rate(here_.t, here_.state.alpha, here_.x) <= 1e-3 * rate)) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but their guards cannot be at rest at 0 together",
-                     jump_names(jumps), t_));
+                     jump_names(jumps), here_.t));
   }
   if (!running_ || !free_passing(landing) || !decide_behind_jumps(landing)) return accumulated();
   give_directions(landing);
@@ -166,24 +166,21 @@ void Run::follow_limit(const SeriesLimit& limit) {
 
 /// Skips to the limit of a sequence that is too fine to be followed; rows on the way have the last state.
 void Run::pass_to(double t, std::vector<double> x) {
-  const auto& times = options_.output.times;
-  for (; next_output_ < times.size() && times[next_output_] < t; ++next_output_) {
-    if (times[next_output_] > t_) row(times[next_output_], x_);
-  }
-  while (next_output_ < times.size() && times[next_output_] <= t) ++next_output_;
-  const bool time_passes = t > t_;
-  t_ = t;
-  if (time_passes) row(t_, x_);
-  x_ = std::move(x);
+  rows_.each_before(here_.t, t, [&](double requested) { row(requested, here_.x); });
+  const bool time_passes = t > here_.t;
+  here_.t = t;
+  rows_.skip_here();
+  if (time_passes) row(here_.t, here_.x);
+  here_.x = std::move(x);
 }
 
 /// Events and jumps behind the limit of a sequence, and a step to start with.
 void Run::go_on_from_limit() {
-  static_cast<void>(user_events_.update(t_, x_.data(), state_.alpha, search_.user_signs()));
+  static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));
   jumps_.update(jump_point());
   start_step();
-  if (jumps_have_problem() || !jumps_.due(t_)) return;
-  const Arrival arrival = arrive(RowBefore::written);
+  if (jumps_have_problem() || !jumps_.due(here_.t)) return;
+  const Arrival arrival = arrive(OutputRows::Arrival::written);
   static_cast<void>(jump(before_, x_before_, landing_here()));
   static_cast<void>(depart(arrival));
 }

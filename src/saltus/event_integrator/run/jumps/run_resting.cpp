@@ -18,23 +18,23 @@ using result::Termination;
 
 /// The surfaces that the held guards keep at zero; false if these cannot be followed, with the status set.
 bool Run::find_resting(RestingSurfaces& resting) {
-  resting = find_resting_surfaces(surroundings_, holding_, t_, state_.alpha, x_);
+  resting = find_resting_surfaces(surroundings_, holding_, here_.t, here_.state.alpha, here_.x);
   if (resting.problem.empty()) return true;
-  fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", t_, resting.problem));
+  fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", here_.t, resting.problem));
   return false;
 }
 
 /// The surfaces that keep a guard at zero at rest by sliding: with other selections of theirs it would leave. None if
 /// the guard is not kept so.
 std::vector<int> Run::surfaces_keeping(int function) {
-  if (state_.sliding.empty()) return {};
+  if (here_.state.sliding.empty()) return {};
   const auto bend = [&](const std::vector<double>& alpha) {
-    return kernel_.lie_derivative(function, 2, t_, x_.data(), alpha.data());
+    return kernel_.lie_derivative(function, 2, here_.t, here_.x.data(), alpha.data());
   };
   std::vector<int> surfaces;
   double range = 0.0;
-  for (const int j : state_.sliding) {
-    auto alpha = state_.alpha;
+  for (const int j : here_.state.sliding) {
+    auto alpha = here_.state.alpha;
     alpha[at(j)] = 0.0;
     const double below = bend(alpha);
     alpha[at(j)] = 1.0;
@@ -51,7 +51,7 @@ std::vector<int> Run::surfaces_keeping(int function) {
 std::vector<HeldGuard> Run::guards_kept_by_sliding(Landing& landing, const RestingGuards& others) {
   std::vector<HeldGuard> kept;
   std::vector<int> surfaces;
-  if (state_.sliding.empty() || !holding_.guards().empty()) return kept;
+  if (here_.state.sliding.empty() || !holding_.guards().empty()) return kept;
   const auto& vanish = search_.user_zeros();
   for (int jump = 0; jump < static_cast<int>(surroundings_.system.jumps.size()); ++jump) {
     if (contacts_.owns(jump)) continue;
@@ -62,7 +62,7 @@ std::vector<HeldGuard> Run::guards_kept_by_sliding(Landing& landing, const Resti
       const int inward = jumps_.trigger_sign(jump, g, jump_point(), static_cast<int>(motion.side.drift));
       if (motion.order == 1 || inward == 0) continue;
       const auto own = surfaces_keeping(function);
-      if (own.empty() || !holding_.can_rest({{jump, function}, inward}, t_, state_.alpha, x_)) continue;
+      if (own.empty() || !holding_.can_rest({{jump, function}, inward}, here_.t, here_.state.alpha, here_.x)) continue;
       kept.push_back({{jump, function}, inward});
       surfaces.insert(surfaces.end(), own.begin(), own.end());
     }
@@ -70,9 +70,10 @@ std::vector<HeldGuard> Run::guards_kept_by_sliding(Landing& landing, const Resti
   if (kept.empty()) return kept;
   auto guards = others.held;
   guards.insert(guards.end(), kept.begin(), kept.end());
-  auto x = x_;
-  const bool held = !holding_.hold(std::move(guards), others.loose, t_, state_.alpha, x);
-  const auto resting = held ? find_resting_surfaces(surroundings_, holding_, t_, state_.alpha, x) : RestingSurfaces{};
+  auto x = here_.x;
+  const bool held = !holding_.hold(std::move(guards), others.loose, here_.t, here_.state.alpha, x);
+  const auto resting =
+      held ? find_resting_surfaces(surroundings_, holding_, here_.t, here_.state.alpha, x) : RestingSurfaces{};
   holding_.release_all();
   const bool kept_by_guards =
       std::all_of(surfaces.begin(), surfaces.end(), [&](int j) { return contains(resting.surfaces, j); });
@@ -104,7 +105,7 @@ Run::RestingGuards Run::pressed_guards(Landing& landing) {
       const int inward = jumps_.trigger_sign(jump, g, jump_point(), drift);
       if (motion.order < 2 || inward == 0 || drift != inward) continue;
       const HeldGuard guard{{jump, function}, inward};
-      (holding_.can_rest(guard, t_, state_.alpha, x_) ? guards.held : guards.loose).push_back(guard);
+      (holding_.can_rest(guard, here_.t, here_.state.alpha, here_.x) ? guards.held : guards.loose).push_back(guard);
     }
   }
   return guards;
@@ -139,8 +140,8 @@ bool Run::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Land
       if (!contains(landing.zeros, guard.hold.function)) landing.zeros.push_back(guard.hold.function);
     }
   }
-  if (const auto problem = holding_.hold(std::move(guards), std::move(loose), t_, state_.alpha, x_)) {
-    fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", t_, *problem));
+  if (const auto problem = holding_.hold(std::move(guards), std::move(loose), here_.t, here_.state.alpha, here_.x)) {
+    fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", here_.t, *problem));
     return false;
   }
   search_.set_held(holding_.guards(), holding_.followers());
@@ -152,8 +153,8 @@ bool Run::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Land
 /// it there. false if the others cannot be held, with the status set.
 bool Run::free_passing(Landing& landing) {
   auto guards = holding_.resting();
-  const auto passed =
-      std::erase_if(guards, [&](const HeldGuard& guard) { return !holding_.can_rest(guard, t_, state_.alpha, x_); });
+  const auto passed = std::erase_if(
+      guards, [&](const HeldGuard& guard) { return !holding_.can_rest(guard, here_.t, here_.state.alpha, here_.x); });
   if (passed == 0) return true;
   RestingSurfaces resting;
   if (!find_resting(resting)) return false;
@@ -174,7 +175,7 @@ void Run::leave_guards(Landing& landing) {
       const int function = kernel_.jump_guard(jump, g);
       const auto user = at(function - kernel_.switching_functions());
       if (signs[user] != 0 || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
-      const int side = side_ahead(surroundings_, state_, at_this_time(), x_, function);
+      const int side = side_ahead(surroundings_, here_.state, at_this_time(), here_.x, function);
       if (side == 0) continue;
       if (!contains(landing.zeros, function)) landing.zeros.push_back(function);
       signs[user] = side;
@@ -185,7 +186,7 @@ void Run::leave_guards(Landing& landing) {
   }
   if (!any) return;
   search_.set_user_signs(signs, vanish, orders);
-  search_.enter(state_, transition_.zero_order, t_, x_.data());
+  search_.enter(here_.state, transition_.zero_order, here_.t, here_.x.data());
 }
 
 /// Whether in the cells that were entered the guards at rest keep other surfaces at zero than before: friction on a
@@ -194,9 +195,9 @@ bool Run::change_resting_with_cells() {
   if (cell_change_ == CellChange::none || holding_.guards().empty()) return false;
   RestingSurfaces resting;
   if (!find_resting(resting)) return true;
-  std::set_difference(state_.resting.begin(), state_.resting.end(), resting.surfaces.begin(), resting.surfaces.end(),
-                      std::back_inserter(freed_));
-  return resting.surfaces != state_.resting;
+  std::set_difference(here_.state.resting.begin(), here_.state.resting.end(), resting.surfaces.begin(),
+                      resting.surfaces.end(), std::back_inserter(freed_));
+  return resting.surfaces != here_.state.resting;
 }
 
 /// Surfaces that a released guard has kept at zero: the motion leaves them where it would if it had slid on them, to

@@ -1,0 +1,54 @@
+// Rates of event functions along a field.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/mode/position.hpp"
+
+namespace saltus::event_integrator {
+
+/// A Rate is dg/dt with what its rounding follows from.
+struct Rate {
+  double value = 0.0;
+  double terms = 0.0;      ///< the sum of the sizes of its terms
+  double magnitude = 0.0;  ///< the size of the terms of g
+  double slope = 0.0;      ///< sum of |d_i g|
+};
+
+/// FieldRates differentiates event functions along fields, with the selections of a position.
+class FieldRates {
+ public:
+  FieldRates(const evaluation::ModelKernel& kernel, const Position& here) : kernel_(kernel), here_(here) {}
+
+  /// The rate at the position along its slope.
+  [[nodiscard]] Rate here(int function) { return along(function, here_.slope); }
+  /// The rate at the position along another field.
+  [[nodiscard]] Rate along(int function, const std::vector<double>& field) {
+    return at(function, here_.t, here_.x, field);
+  }
+  /// d_t g + grad g . field at (t, x); 0 times infinity is 0.
+  [[nodiscard]] Rate at(int function, double t, const std::vector<double>& x, const std::vector<double>& field) {
+    row_.resize(x.size());
+    Rate rate;
+    kernel_.gradient(function, t, x.data(), here_.state.alpha.data(), row_.data(), &rate.value);
+    rate.terms = std::abs(rate.value);
+    rate.magnitude = rate.value == 0.0 ? 0.0 : std::abs(rate.value * t);
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      const double term = row_[i] == 0.0 ? 0.0 : row_[i] * field[i];
+      rate.value += term;
+      rate.magnitude += row_[i] == 0.0 ? 0.0 : std::abs(row_[i] * x[i]);
+      rate.terms += std::abs(term);
+      rate.slope += std::abs(row_[i]);
+    }
+    return rate;
+  }
+
+ private:
+  const evaluation::ModelKernel& kernel_;
+  const Position& here_;
+  std::vector<double> row_;  ///< grad g
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,89 @@
+// Rows of the trajectory: at requested times, at ends of steps, and between them.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "saltus/base/function_ref.hpp"
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/jumps/holding.hpp"
+#include "saltus/event_integrator/mode/position.hpp"
+#include "saltus/event_integrator/options.hpp"
+#include "saltus/event_integrator/record/recorder.hpp"
+#include "saltus/ode/straight_lines.hpp"
+
+namespace saltus::event_integrator {
+
+/// OutputRows knows which row is asked for next. A requested time gets its row once, before the position passes it.
+class OutputRows {
+ public:
+  OutputRows(const evaluation::ModelKernel& kernel, const IntegrationOptions& options, const Position& here,
+             ModeField& field, Holding& holding, Recorder& recorder);
+
+  [[nodiscard]] bool at_steps() const { return options_.output.rows == OutputTimes::Rows::at_steps; }
+  /// A row in the mode of the position.
+  void write(double t, const std::vector<double>& x);
+  void write_here() { write(here_.t, here_.x); }
+  /// The row at the end of a step, if one is asked for.
+  void write_end_of_step();
+  /// Whether a row is asked for before a time.
+  [[nodiscard]] bool any_before(double t) const { return next_ < times().size() && times()[next_] < t; }
+  /// Requested times in (from, end), which are passed with that: calls write(t).
+  template <class Write>
+  void each_before(double from, double end, Write write) {
+    for (; any_before(end); ++next_) {
+      if (times()[next_] > from) write(times()[next_]);
+    }
+  }
+  /// The same in (from, end].
+  template <class Write>
+  void each_until(double from, double end, Write write) {
+    each_before(from, std::nextafter(end, std::numeric_limits<double>::infinity()), write);
+  }
+  /// Rows from the position to `end` (not included) on a curve, which are put on the surfaces of the mode.
+  void write_before(double end, FunctionRef<void(double t, double* x)> curve);
+  /// Passes requested times up to the position.
+  void skip_here() {
+    each_until(here_.t, here_.t, [](double) {});
+  }
+
+  /// An event is about to be recorded here.
+  enum class Arrival { written, missing };
+  void arrive(Arrival row) { arrival_ = recorder_.rows() - (row == Arrival::written ? 1 : 0); }
+  /// The number of the row before the event.
+  [[nodiscard]] std::size_t arrival() const { return arrival_; }
+
+  [[nodiscard]] bool asks_for_lines() const { return lines_.has_value(); }
+  /// Whether straight lines may be too far from the last attempt, without looking at it closely.
+  [[nodiscard]] bool may_bend(const ode::Stepper& stepper);
+  /// Rows before t_end that keep straight lines close to the dense output of the step from the position.
+  void write_lines(double t_end, const ode::DenseStep& dense);
+
+ private:
+  /// Columns are states, inputs, outputs, selections.
+  struct Lines {
+    ode::ColumnRanges ranges;
+    ode::StraightLines points = {};
+    std::vector<double> tolerance = {}, low = {}, high = {};
+  };
+
+  [[nodiscard]] const std::vector<double>& times() const { return options_.output.times; }
+  void write_on_surfaces(double t);
+  void columns_at(double theta, const ode::DenseStep& dense, double* columns);
+
+  const evaluation::ModelKernel& kernel_;
+  const IntegrationOptions& options_;
+  const Position& here_;
+  ModeField& field_;
+  Holding& holding_;
+  Recorder& recorder_;
+  std::size_t next_ = 0;
+  std::size_t arrival_ = 0;
+  std::vector<double> x_, slope_;  ///< of a row
+  std::optional<Lines> lines_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,90 @@
+// One attempt at a step: the method, its error, its dense output, and the length of the next one.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/mode/position.hpp"
+#include "saltus/event_integrator/options.hpp"
+#include "saltus/event_integrator/run/step_memory.hpp"
+#include "saltus/event_integrator/run/step_tolerances.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/ode/step_control.hpp"
+#include "saltus/ode/stepper.hpp"
+
+namespace saltus::event_integrator {
+
+/// A StepAttempt takes steps along the field of the mode from the position, which it does not move. Discrete states
+/// take no part in errors.
+class StepAttempt {
+ public:
+  StepAttempt(const IntegrationOptions& options, const model::System& system, ModeField& field, const Position& here,
+              const StepTolerances& tolerances);
+
+  [[nodiscard]] ode::Stepper& stepper() { return stepper_; }
+  [[nodiscard]] const ode::Stepper& stepper() const { return stepper_; }
+  /// The length that is tried next.
+  [[nodiscard]] double length() const { return length_; }
+  void set_length(double h) { length_ = h; }
+  /// One attempt that ends at t_new; no dense output is made yet.
+  ode::Attempt take(double t_new);
+  /// The dense output of the last attempt, made at most once; returns whether it is finite.
+  bool make_dense() { return dense_is_last_ = dense_is_last_ || remake_dense(); }
+  /// The same for an attempt that somebody else has taken with the stepper.
+  bool remake_dense();
+  [[nodiscard]] const ode::DenseStep& dense() const { return dense_; }
+  /// The error norm of the last attempt over the continuous states.
+  [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }
+  /// The same, looked at twice where the length of the step was right for another field.
+  [[nodiscard]] double confirmed_error();
+  /// The factor of the next length behind an attempt whose error was too large.
+  [[nodiscard]] double rejected(double error) { return control_.rejected(error); }
+  void follow_method() { control_.follow(stepper_.method()); }
+
+  /// The last attempt, of length h, was accepted, and the position is at its end.
+  void accepted(double h);
+  /// What the control proposes behind it.
+  [[nodiscard]] double proposed(double h) { return h * control_.accepted(error_norm()); }
+  /// Where the explicit method first looked out of place.
+  void watch_stiffness();
+  [[nodiscard]] std::optional<double> stiff_at() const { return stiff_at_; }
+
+  /// The field has become another one.
+  void begin_mode();
+  /// The control begins anew behind an event; `repeats`: steps may be like ones before.
+  enum class Steps { may_repeat, are_new };
+  void restart_control(Steps steps);
+  /// A first step from the position, by the field of the continuous states alone.
+  [[nodiscard]] double initial_step();
+  [[nodiscard]] StepMemory& memory() { return memory_; }
+  /// The longest step since the control began.
+  [[nodiscard]] double longest() const { return longest_; }
+
+ private:
+  auto right_hand_side() {
+    return [this](double t, const double* x, double* xdot) { field_(t, x, xdot); };
+  }
+  double defect();
+  [[nodiscard]] bool leaps() const;
+
+  const IntegrationOptions& options_;
+  ModeField& field_;
+  const Position& here_;
+  const StepTolerances& tolerances_;
+  ode::Stepper stepper_;
+  ode::StepControl control_;
+  ode::StiffnessWatch stiffness_;
+  StepMemory memory_;
+  ode::DenseStep dense_;
+  bool dense_is_last_ = false;           ///< dense_ is that of the last attempt
+  std::vector<std::size_t> continuous_;  ///< states that are not discrete
+  double error_share_ = 1.0;             ///< the root of the mean square over the continuous states to that over all
+  double length_ = 0.0;
+  double longest_ = 0.0;
+  double last_ = 0.0;  ///< the last step since the control began; 0 = none
+  std::optional<double> stiff_at_;
+  std::vector<double> x_, slope_, dense_slope_;  ///< in the middle of a step
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,35 @@
+// State and selections inside a solved element.
+#pragma once
+
+#include <vector>
+
+#include "saltus/fesd_integrator/element/selection_margins.hpp"
+#include "saltus/fesd_integrator/run/context_internal.hpp"
+#include "saltus/fesd_integrator/run/position_internal.hpp"
+
+namespace saltus::fesd_integrator {
+
+/// The point inside an element that was asked for last. Its set is that of the position.
+class ElementInterior {
+ public:
+  /// Both must outlive it.
+  ElementInterior(RunContext& context, const Position& position)
+      : context_(context), position_(position), x_(context.facts.n_x) {}
+
+  /// Goes to t + theta h of an element; `selections` are those at its left end.
+  void go_to(const Element& element, const std::vector<double>& selections, double theta);
+  /// Finds selections that hold the surfaces at a state, from `guess`; those nearest to 1/2 where they are not
+  /// determined. False, and selections() are anything, where there are none.
+  [[nodiscard]] bool project(double t, const std::vector<double>& x, const std::vector<double>& guess);
+
+  [[nodiscard]] const std::vector<double>& x() const { return x_; }
+  [[nodiscard]] const std::vector<double>& selections() const { return selections_; }
+
+ private:
+  RunContext& context_;
+  const Position& position_;
+  SelectionMargins margins_;
+  std::vector<double> x_, selections_;
+};
+
+}  // namespace saltus::fesd_integrator

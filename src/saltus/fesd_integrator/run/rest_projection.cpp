@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "saltus/fesd_integrator/element/dense_system_internal.hpp"
+#include "saltus/fesd_integrator/run/rest_projection_internal.hpp"
+
+namespace saltus::fesd_integrator {
+
+RestProjection::RestProjection(const discretization::StageKernel& kernel) : kernel_(kernel) { kernel.size(values_); }
+
+std::optional<double> RestProjection::step(const ActiveSet& set, double size, std::vector<double>& x) {
+  const std::size_t n = kernel_.selections(), n_x = x.size(), count = set.sliding().size();
+  DenseSystem system;
+  system.reserve(static_cast<Eigen::Index>(count));
+  system.reset(static_cast<Eigen::Index>(count));
+  auto matrix = system.matrix();
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t l = 0; l < count; ++l) {
+      for (std::size_t i = 0; i < n_x; ++i) {
+        const double* column = values_.indicator_x.data() + i * n;
+        matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) +=
+            set.surface(k, column) * set.surface(l, column);
+      }
+    }
+    system.right()(static_cast<Eigen::Index>(k)) = -set.surface(k, values_.indicator.data());
+  }
+  if (!system.solve(1e-13 * size)) return std::nullopt;
+  double change = 0.0;
+  for (std::size_t i = 0; i < n_x; ++i) {
+    double step = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      step += set.surface(k, values_.indicator_x.data() + i * n) * system.right()(static_cast<Eigen::Index>(k));
+    }
+    x[i] += step;
+    change = std::max(change, std::abs(step));
+  }
+  return change;
+}
+
+bool RestProjection::onto_surfaces(const ActiveSet& set, const Place& place, std::vector<double>& x) {
+  const std::vector<double> middle(kernel_.selections(), 0.5);
+  constexpr int most_iterations = 20;
+  double before = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    kernel_.evaluate(place.t, x.data(), middle.data(), place.held, values_);
+    const auto change = step(set, place.size, x);
+    if (!change) return false;
+    if (*change <= 1e-15 * place.size || *change >= 0.5 * before) return *change <= 1e-9 * place.size;
+    before = *change;
+  }
+  return false;
+}
+
+RestProjection::Rate RestProjection::rate_of(std::size_t k, const ActiveSet& set, const Place& place,
+                                             const std::vector<double>& x) {
+  const std::size_t n = kernel_.selections(), n_x = x.size();
+  kernel_.evaluate(place.t, x.data(), place.selections.data(), place.held, values_);
+  Rate rate{set.surface(k, values_.indicator_t.data()), false};
+  for (std::size_t i = 0; i < n_x; ++i) {
+    const double gradient = set.surface(k, values_.indicator_x.data() + i * n);
+    rate.value += gradient * values_.f[i];
+    for (const Sliding& entry : set.sliding()) {
+      double along = values_.f_selection[static_cast<std::size_t>(entry.selection) * n_x + i];
+      if (entry.reference >= 0) along -= values_.f_selection[static_cast<std::size_t>(entry.reference) * n_x + i];
+      rate.moved = rate.moved || gradient * along != 0.0;
+    }
+  }
+  return rate;
+}
+
+/// A step along the gradient of the rate of surface k, and back onto the surfaces.
+bool RestProjection::rest_one(std::size_t k, const ActiveSet& set, const Place& place, double farthest,
+                              std::vector<double>& x) {
+  const Rate rate = rate_of(k, set, place, x);
+  if (rate.moved || rate.value == 0.0) return true;
+  std::vector<double> gradient(x.size());
+  double square = 0.0, noise = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    // Central differences with the step of least error.
+    const double step = 6e-6 * std::max(place.size, std::abs(x[i]));
+    auto above = x, below = x;
+    above[i] += step;
+    below[i] -= step;
+    gradient[i] = (rate_of(k, set, place, above).value - rate_of(k, set, place, below).value) / (2.0 * step);
+    square += gradient[i] * gradient[i];
+    noise += 1e-14 * place.size * std::abs(gradient[i]);
+  }
+  if (std::abs(rate.value) <= noise) return true;
+  if (!(square > 0.0)) return false;
+  auto moved = x;
+  double distance = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    moved[i] -= rate.value * gradient[i] / square;
+    distance = std::max(distance, std::abs(moved[i] - x[i]));
+  }
+  if (!(distance <= farthest) || !onto_surfaces(set, place, moved)) return false;
+  if (std::abs(rate_of(k, set, place, moved).value) > std::max(noise, 1e-3 * std::abs(rate.value))) return false;
+  x = std::move(moved);
+  return true;
+}
+
+bool RestProjection::to_rest(const ActiveSet& set, const Place& place, double farthest, std::vector<double>& x) {
+  if (!onto_surfaces(set, place, x)) return false;
+  Place behind = place;
+  for (std::size_t j = 0; j < behind.selections.size(); ++j) {
+    if (set.modes()[j] == 0) behind.selections[j] = 0.5;
+  }
+  // One surface after the other: as a rule there is one.
+  for (std::size_t k = 0; k < set.sliding().size(); ++k) {
+    if (!rest_one(k, set, behind, farthest, x)) return false;
+  }
+  return true;
+}
+
+}  // namespace saltus::fesd_integrator
