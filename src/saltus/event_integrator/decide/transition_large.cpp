@@ -87,13 +87,13 @@ class PartDecider {
   std::optional<switching::BoundedRoot> decide_several(const switching::Influence& feels,
                                                        const std::vector<int>& surfaces, std::vector<double>& scale) {
     std::vector<double> alpha = base_.alpha;
-    scale.assign(surfaces.size(), 0.0);
+    for (const int j : surfaces) scale[at(j)] = 0.0;
     const auto velocities = [&](const double* selections, double* g) {
       for (std::size_t k = 0; k < surfaces.size(); ++k) alpha[at(surfaces[k])] = selections[k];
       const auto values = fields_.velocities(alpha, surfaces);
       for (std::size_t k = 0; k < surfaces.size(); ++k) {
         g[k] = values[k];
-        scale[k] = std::max(scale[k], std::abs(g[k]));
+        scale[at(surfaces[k])] = std::max(scale[at(surfaces[k])], std::abs(g[k]));
       }
     };
     const auto comparison = switching::comparison_in_cube(feels, velocities);
@@ -118,6 +118,27 @@ class PartDecider {
   std::string problem_;
 };
 
+SurfaceDecision decision_of(const switching::BoundedRoot& root, std::size_t k) {
+  return {Verdict::decided,
+          root.mode[k],
+          root.alpha[k],
+          {},
+          "the only mode of surfaces that feel themselves more than the others"};
+}
+
+/// Of the surfaces of a group, by their places in it.
+switching::Influence influence_in(const evaluation::ModelKernel& kernel, const std::vector<int>& group) {
+  switching::Influence feels(group.size());
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    for (const int j : kernel.neighbours(group[i])) {
+      const auto place = std::lower_bound(group.begin(), group.end(), j);
+      if (place == group.end() || *place != j || !kernel.depends(group[i], j)) continue;
+      feels[i].push_back(static_cast<int>(place - group.begin()));
+    }
+  }
+  return feels;
+}
+
 }  // namespace
 
 /// Nothing where a group is not large, or where a part of it is not decided: `undecided_part_` says which. Parts of up
@@ -130,14 +151,7 @@ std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
     undecided_part_ = "their root has ended, or functions are nested around them";
     return std::nullopt;
   }
-  switching::Influence feels(group.size());
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    for (const int j : s_.kernel.neighbours(group[i])) {
-      const auto place = std::lower_bound(group.begin(), group.end(), j);
-      if (place == group.end() || *place != j || !s_.kernel.depends(group[i], j)) continue;
-      feels[i].push_back(static_cast<int>(place - group.begin()));
-    }
-  }
+  const auto feels = influence_in(s_.kernel, group);
   LaterPoint point = point_to_decide(s_, before_, occasion_);
   if (!point.x.empty()) point.occasion.x = point.x.data();
   const ProjectedFields fields(s_.kernel, point.occasion);
@@ -154,23 +168,16 @@ std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
     for (const int k : part) surfaces.push_back(group[at(k)]);
     if (surfaces.size() == 1) {
       const int j = surfaces.front();
-      const bool behind = parts.is_touched(part, feels, group, {});
-      const auto decision = parts.decide_one(j, behind && !feels[at(part.front())].empty(), scale_[at(j)]);
+      const bool behind = !feels[at(part.front())].empty() && parts.is_touched(part, feels, group, {});
+      const auto decision = parts.decide_one(j, behind, scale_[at(j)]);
       if (!decision) return give_up();
       decisions_.emplace_back(j, *decision);
       parts.note(j, decision->mode, decision->alpha);
       continue;
     }
-    std::vector<double> scale;
-    if (const auto root = parts.decide_several(switching::restricted_to(feels, part), surfaces, scale)) {
+    if (const auto root = parts.decide_several(switching::restricted_to(feels, part), surfaces, scale_)) {
       for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        scale_[at(surfaces[k])] = scale[k];
-        decisions_.emplace_back(surfaces[k],
-                                SurfaceDecision{Verdict::decided,
-                                                root->mode[k],
-                                                root->alpha[k],
-                                                {},
-                                                "the only mode of surfaces that feel themselves more than the others"});
+        decisions_.emplace_back(surfaces[k], decision_of(*root, k));
         parts.note(surfaces[k], root->mode[k], root->alpha[k]);
       }
       continue;

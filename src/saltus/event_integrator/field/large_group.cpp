@@ -14,33 +14,33 @@
 namespace saltus::event_integrator {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
+using EffectMatrix = Eigen::SparseMatrix<double>;
 
 /// Rows and columns of `part`, each row in its size.
-Matrix part_of(const Matrix& effects, const std::vector<int>& part) {
+EffectMatrix part_of(const EffectMatrix& effects, const std::vector<int>& part) {
   std::vector<int> place(at(effects.rows()), -1);
   for (std::size_t k = 0; k < part.size(); ++k) place[at(part[k])] = static_cast<int>(k);
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd square = Eigen::VectorXd::Zero(index(part.size()));
   for (const int column : part) {
-    for (Matrix::InnerIterator entry(effects, column); entry; ++entry) {
+    for (EffectMatrix::InnerIterator entry(effects, column); entry; ++entry) {
       if (place[at(entry.row())] < 0) continue;
       entries.emplace_back(place[at(entry.row())], place[at(column)], entry.value());
       square[place[at(entry.row())]] += entry.value() * entry.value();
     }
   }
-  Matrix result(square.size(), square.size());
+  EffectMatrix result(square.size(), square.size());
   result.setFromTriplets(entries.begin(), entries.end());
   return square.cwiseSqrt().cwiseInverse().asDiagonal() * result;
 }
 
 }  // namespace
 
-std::pair<double, double> loss_and_stability(const Matrix& effects, const std::vector<int>& part) {
-  const Matrix own = part_of(effects, part);
+std::pair<double, double> loss_and_stability(const EffectMatrix& effects, const std::vector<int>& part) {
+  const EffectMatrix own = part_of(effects, part);
   const auto m = static_cast<int>(part.size());
   double stability = switching::attraction_margin(switching::comparison_of(own));
-  Eigen::SparseLU<Matrix> lu(own);
+  Eigen::SparseLU<EffectMatrix> lu(own);
   if (lu.info() != Eigen::Success) return {0.0, stability};
   // Stable matrices of m rows have det G of the sign (-1)^m.
   const double sign = (m % 2 == 0 ? 1.0 : -1.0) * lu.signDeterminant();

@@ -13,17 +13,16 @@
 namespace saltus::switching {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
-using Entry = Matrix::InnerIterator;
+using SparseSquare = Eigen::SparseMatrix<double>;
 
 /// w of C w = 1, the rows of C being divided by their diagonals; NaN where C is singular, or a diagonal not positive.
-Eigen::VectorXd weights_of(const Matrix& comparison) {
+Eigen::VectorXd weights_of(const SparseSquare& comparison) {
   const auto m = comparison.rows();
   const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(m, std::numeric_limits<double>::quiet_NaN());
   const Eigen::VectorXd own = comparison.diagonal();
   if (!(own.minCoeff() > 0.0)) return nothing;
-  const Matrix scaled = own.cwiseInverse().asDiagonal() * comparison;
-  Eigen::SparseLU<Matrix> lu(scaled);
+  const SparseSquare scaled = own.cwiseInverse().asDiagonal() * comparison;
+  Eigen::SparseLU<SparseSquare> lu(scaled);
   if (lu.info() != Eigen::Success) return nothing;
   return lu.solve(Eigen::VectorXd::Ones(m));
 }
@@ -41,7 +40,7 @@ double margin_of(const Eigen::VectorXd& weights) {
 /// One search for the selections in the cube.
 class BoundedSearch {
  public:
-  BoundedSearch(const Influence& feels, ProjectedField g, const Matrix& comparison, std::vector<double> start)
+  BoundedSearch(const Influence& feels, ProjectedField g, const SparseSquare& comparison, std::vector<double> start)
       : feels_(feels), g_(g), comparison_(comparison), weights_(weights_of(comparison)), alpha_(std::move(start)) {
     velocity_.resize(index(alpha_.size()));
     largest_ = Eigen::VectorXd::Zero(velocity_.size());
@@ -99,7 +98,7 @@ class BoundedSearch {
     return next;
   }
   /// With the selections that stay at their bounds taken out.
-  [[nodiscard]] std::vector<double> newton_step(const Matrix& effects) const {
+  [[nodiscard]] std::vector<double> newton_step(const SparseSquare& effects) const {
     std::vector<bool> bound(alpha_.size());
     Eigen::VectorXd right = -velocity_;
     for (std::size_t j = 0; j < alpha_.size(); ++j) {
@@ -107,13 +106,13 @@ class BoundedSearch {
       bound[j] = target <= 0.0 || target >= 1.0;
       if (bound[j]) right[index(j)] = std::clamp(target, 0.0, 1.0) - alpha_[j];
     }
-    Matrix matrix = effects;
+    SparseSquare matrix = effects;
     for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
-      for (Entry entry(matrix, column); entry; ++entry) {
+      for (SparseSquare::InnerIterator entry(matrix, column); entry; ++entry) {
         if (bound[at(entry.row())]) entry.valueRef() = entry.row() == column ? 1.0 : 0.0;
       }
     }
-    Eigen::SparseLU<Matrix> lu(matrix);
+    Eigen::SparseLU<SparseSquare> lu(matrix);
     std::vector<double> next = alpha_;
     if (lu.info() != Eigen::Success) return next;
     const Eigen::VectorXd step = lu.solve(right);
@@ -136,36 +135,36 @@ class BoundedSearch {
 
   const Influence& feels_;
   ProjectedField g_;
-  const Matrix& comparison_;
+  const SparseSquare& comparison_;
   Eigen::VectorXd weights_, velocity_, largest_, own_;
   std::vector<double> alpha_;
 };
 
 }  // namespace
 
-double attraction_margin(const Matrix& comparison) { return margin_of(weights_of(comparison)); }
+double attraction_margin(const SparseSquare& comparison) { return margin_of(weights_of(comparison)); }
 
-Matrix comparison_of(const Matrix& effects) {
-  Matrix comparison = effects;
+SparseSquare comparison_of(const SparseSquare& effects) {
+  SparseSquare comparison = effects;
   for (Eigen::Index column = 0; column < comparison.outerSize(); ++column) {
-    for (Entry entry(comparison, column); entry; ++entry) {
+    for (SparseSquare::InnerIterator entry(comparison, column); entry; ++entry) {
       entry.valueRef() = entry.row() == column ? -entry.value() : -std::abs(entry.value());
     }
   }
   return comparison;
 }
 
-std::optional<Matrix> comparison_in_cube(const Influence& feels, ProjectedField g) {
+std::optional<SparseSquare> comparison_in_cube(const Influence& feels, ProjectedField g) {
   SparseEffects effects(feels);
   if (effects.colours() > most_colours) return std::nullopt;
   const auto m = feels.size();
   std::vector<double> alpha(m), velocity(m);
-  Matrix least;
+  SparseSquare least;
   for (unsigned corner = 0; corner < 1U << effects.colours(); ++corner) {
     for (std::size_t j = 0; j < m; ++j) alpha[j] = (corner >> effects.colour()[j] & 1U) != 0 ? 1.0 : 0.0;
     g(alpha.data(), velocity.data());
     effects.find(g, alpha.data(), velocity.data());
-    const Matrix here = comparison_of(effects.matrix());
+    const SparseSquare here = comparison_of(effects.matrix());
     if (corner == 0) {
       least = here;
       continue;
@@ -180,7 +179,7 @@ std::optional<Matrix> comparison_in_cube(const Influence& feels, ProjectedField 
   return least;
 }
 
-std::optional<BoundedRoot> bounded_root(const Influence& feels, ProjectedField g, const Matrix& comparison,
+std::optional<BoundedRoot> bounded_root(const Influence& feels, ProjectedField g, const SparseSquare& comparison,
                                         std::vector<double> start) {
   BoundedSearch search(feels, g, comparison, std::move(start));
   if (!search.applies()) return std::nullopt;
