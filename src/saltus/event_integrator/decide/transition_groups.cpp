@@ -134,6 +134,14 @@ bool Decider::decide(const std::vector<int>& group) {
       return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
     }
   }
+  if (const auto large = decide_large(group)) return *large;
+  if (group.size() > largest_group && s_.affine_in_alpha) {
+    return fail(
+        result::Termination::outside_class,
+        fmt::format("{} surfaces that influence each other meet at t = {}; {}; covered are parts of up to {} that "
+                    "feel each other, and larger ones in which each surface feels itself more than the others",
+                    group.size(), occasion_.t, undecided_part_, largest_group));
+  }
   if (group.size() > largest_group || (!s_.affine_in_alpha && group.size() > 1)) {
     return fail(result::Termination::outside_class,
                 fmt::format("{} surfaces that influence each other meet at t = {}: {}; covered are up to {} with every "

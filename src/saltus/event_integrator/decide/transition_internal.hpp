@@ -150,6 +150,7 @@ class Decider {
   [[nodiscard]] bool standing_fields_agree(const std::vector<int>& group,
                                            const switching::GroupDecision& decision) const;
   bool passes_kink(const std::vector<int>& group, const switching::GroupDecision& decision);
+  std::optional<bool> decide_large(const std::vector<int>& group);
   bool decide_parts(const std::vector<std::vector<int>>& parts);
   bool decide_parts(const std::vector<int>& group, const switching::CornerTable& table);
   bool passes(int surface) const;
@@ -207,8 +208,9 @@ class Decider {
   std::vector<std::pair<int, switching::SurfaceDecision>> decisions_;
   std::vector<std::string> group_reasons_;  ///< of coupled groups
   std::vector<RegionChoice> region_choices_;
-  std::vector<double> scale_;  ///< by surface: largest normal component where its group was decided
-  std::vector<int> standing_;  ///< surfaces that psi does not leave, without consequence for the field
+  std::string undecided_part_;  ///< of a large group: which and why
+  std::vector<double> scale_;   ///< by surface: largest normal component where its group was decided
+  std::vector<int> standing_;   ///< surfaces that psi does not leave, without consequence for the field
 };
 
 }  // namespace saltus::event_integrator

@@ -12,6 +12,7 @@
 #include "saltus/base/function_ref.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/field/higher_order.hpp"
+#include "saltus/event_integrator/field/large_group.hpp"
 #include "saltus/event_integrator/field/linear_motion.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/event_integrator/mode/region_ties.hpp"
@@ -148,6 +149,8 @@ class ModeField {
   void evaluate_groups(double t, const double* x);
   void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
+  void evaluate_large(double t, const double* x, LargeGroup& group);
+  void find_parts(const std::vector<std::size_t>& group);
   void find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows);
   void find_stability();
   [[nodiscard]] bool several_regions(std::size_t row) const;
@@ -191,10 +194,11 @@ class ModeField {
   Eigen::VectorXd base_residual_;
   std::vector<double> theta_;
   std::vector<std::optional<switching::SelectionNewton>> newton_;  ///< by row, for the first of a larger group
-  std::vector<double> selections_;                                 ///< of the group at hand
-  std::vector<double> speed_;                                      ///< by row: in groups of more than two
-  std::vector<double> scaled_;                                     ///< G of such a group, rows over their speeds
-  std::vector<double> condition_;                                  ///< by row: of a coupled selection
+  std::vector<LargeGroup> large_;
+  std::vector<double> selections_;  ///< of the group at hand
+  std::vector<double> speed_;       ///< by row: in groups of more than two
+  std::vector<double> scaled_;      ///< G of such a group, rows over their speeds
+  std::vector<double> condition_;   ///< by row: of a coupled selection
   /// Forms of exits that were asked for: solutions come back to their modes.
   struct ExitRow {
     const void* motion = nullptr;  ///< of the kernel

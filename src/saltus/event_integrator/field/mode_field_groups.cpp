@@ -1,6 +1,7 @@
 // Sliding on several surfaces: selections group by group, as far as they influence each other.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "saltus/event_integrator/field/mode_field.hpp"
@@ -63,6 +64,10 @@ void ModeField::find_groups() {
     group_size_[first] = group.size();
     groups_.push_back(std::move(group));
   }
+  large_.clear();
+  for (const auto& group : groups_) {
+    if (affine_in_alpha_ && kernel_.region_groups().empty() && is_large(group.size())) find_parts(group);
+  }
   for (const int j : sliding_) row_of_[at(j)] = -1;
   solve_ = !affine_in_alpha_     ? SlidingSolve::nonaffine
            : groups_.size() == m ? SlidingSolve::decoupled
@@ -70,7 +75,9 @@ void ModeField::find_groups() {
   newton_.assign(m, std::nullopt);
   selections_.resize(m);
   for (const auto& group : groups_) {
-    if (group.size() > 2 || several_regions(group[0])) newton_[group[0]].emplace(static_cast<int>(group.size()));
+    const bool is_kept = std::any_of(large_.begin(), large_.end(), [&](const auto& l) { return l.rows == group; });
+    if (!is_kept && (group.size() > 2 || several_regions(group[0])))
+      newton_[group[0]].emplace(static_cast<int>(group.size()));
   }
 }
 
@@ -225,6 +232,11 @@ void ModeField::evaluate_groups(double t, const double* x) {
       evaluate_pair(t, x, rows);
       continue;
     }
+    if (const auto large = std::find_if(large_.begin(), large_.end(), [&](const auto& l) { return l.rows == rows; });
+        large != large_.end()) {
+      evaluate_large(t, x, *large);
+      continue;
+    }
     if (rows.size() > 1) evaluate_many(t, x, rows);
   }
   weigh_references();
@@ -319,13 +331,20 @@ void ModeField::evaluate_many(double t, const double* x, const std::vector<std::
 
 /// Behind evaluate_groups(): what only the event functions need of groups of more than two.
 void ModeField::find_stability() {
+  for (const auto& large : large_) {
+    for (const auto& part : large.parts) {
+      if (part.size() < 2) continue;
+      auto& exit = exits_[large.rows[at(part.front())]];
+      std::tie(exit.loss, exit.stability) = loss_and_stability(large.newton->jacobian(), part);
+    }
+  }
   for (const auto& rows : groups_) {
     if (const auto* regions = tie_of(rows[0])) {
       auto& exit = exits_[regions->rows.front()];
       exit.stability = std::isfinite(exit.below) ? regions->tie->stability() : not_a_number;
       continue;
     }
-    if (rows.size() <= 2) continue;
+    if (rows.size() <= 2 || !newton_[rows[0]]) continue;
     const auto& newton = *newton_[rows[0]];
     const auto jacobian = newton.jacobian();
     double size = 1.0;
@@ -349,8 +368,12 @@ double ModeField::root_distance(double t, const double* x) {
   select(t, x);
   find_stability();
   double smallest = 1.0;
+  for (std::size_t row = 0; row < sliding_.size() && !large_.empty(); ++row) {
+    if (group_size_[row] > 2) smallest = std::min(smallest, std::abs(exits_[row].loss));
+  }
   for (const auto& rows : groups_) {
-    if (rows.size() < 2 || !has_loss(rows[0]) || tie_of(rows[0]) != nullptr) continue;
+    if (rows.size() < 2 || (rows.size() > 2 && !newton_[rows[0]]) || !has_loss(rows[0]) || tie_of(rows[0]) != nullptr)
+      continue;
     const double loss = exits_[rows[0]].loss;
     smallest = std::min(smallest, rows.size() == 2 ? std::sqrt(std::max(0.0, loss)) : std::abs(loss));
   }

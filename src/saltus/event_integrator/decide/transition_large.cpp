@@ -1,0 +1,200 @@
+// Many surfaces of which each feels few others: part after part, in the order of influence.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/field/large_group.hpp"
+#include "saltus/switching/sparse/attraction.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using switching::SurfaceDecision;
+using switching::Verdict;
+
+/// The point at which parts are decided: that of the event, or, where selections have reached their bounds, a little
+/// later along the sliding that ends, as no field moves away at the event itself.
+struct LaterPoint {
+  Occasion occasion;
+  std::vector<double> x;
+};
+
+LaterPoint point_to_decide(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
+  LaterPoint later{occasion, {}};
+  if (occasion.start || (occasion.exit_below.empty() && occasion.exit_above.empty())) return later;
+  ModeField field(s.kernel, s.affine_in_alpha);
+  field.enter(before);
+  later.x.resize(at(s.kernel.states()));
+  field(occasion.t, occasion.x, later.x.data());
+  const double time = 1e-4 * occasion.time_scale;
+  for (std::size_t i = 0; i < later.x.size(); ++i) later.x[i] = occasion.x[i] + time * later.x[i];
+  later.occasion.t += time;
+  later.occasion.exit_below.clear();
+  later.occasion.exit_above.clear();
+  return later;
+}
+
+/// Decides the parts of one group at one point.
+class PartDecider {
+ public:
+  PartDecider(const Surroundings& s, const ModeState& before, const ModeState& base, const Occasion& occasion,
+              const ProjectedFields& fields)
+      : s_(s), before_(before), base_(base), occasion_(occasion), fields_(fields), moved_(before.mode.size(), false) {}
+
+  [[nodiscard]] ModeState& base() { return base_; }
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+  /// Whether a part has to be decided at all.
+  [[nodiscard]] bool is_touched(const std::vector<int>& part, const switching::Influence& feels,
+                                const std::vector<int>& group, const std::vector<int>& touched) const {
+    return occasion_.start || std::any_of(part.begin(), part.end(), [&](int k) {
+             const auto& felt = feels[at(k)];
+             return contains(touched, group[at(k)]) ||
+                    std::any_of(felt.begin(), felt.end(), [&](int i) { return moved_[at(group[at(i)])]; });
+           });
+  }
+
+  void note(int surface, int mode, double alpha) {
+    const double before = std::clamp(before_.alpha[at(surface)], 0.0, 1.0);
+    // Selections are carried along to about 1e-8.
+    moved_[at(surface)] = occasion_.start || mode != before_.mode[at(surface)] || std::abs(alpha - before) > 1e-7;
+    set_surface(base_, surface, mode, alpha);
+  }
+
+  /// One surface that feels nobody later. Behind a transient of those it feels, only what has no choice is decided.
+  std::optional<SurfaceDecision> decide_one(int surface, bool behind_transient, double& scale) {
+    const auto table = fields_.table(base_, {surface});
+    scale = std::max(std::abs(table.side(0, 0).velocity), std::abs(table.side(0, 1).velocity));
+    auto decision = switching::decide_surface({table.side(0, 0), table.side(0, 1), table.arrival[0]});
+    const auto& name = s_.system.switching[at(surface)].name;
+    if (decision.verdict != Verdict::decided) {
+      problem_ = fmt::format("the fields beside '{}' are tangent to it", name);
+      return std::nullopt;
+    }
+    if (behind_transient && !decision.other_modes.empty()) {
+      problem_ = fmt::format(
+          "the fields beside '{}' point away from it once the surfaces that it feels have changed, "
+          "so that their transient would decide",
+          name);
+      return std::nullopt;
+    }
+    return decision;
+  }
+
+  /// Several that feel each other, if each of them feels itself more than the others.
+  std::optional<switching::BoundedRoot> decide_several(const switching::Influence& feels,
+                                                       const std::vector<int>& surfaces, std::vector<double>& scale) {
+    std::vector<double> alpha = base_.alpha;
+    for (const int j : surfaces) scale[at(j)] = 0.0;
+    const auto velocities = [&](const double* selections, double* g) {
+      for (std::size_t k = 0; k < surfaces.size(); ++k) alpha[at(surfaces[k])] = selections[k];
+      const auto values = fields_.velocities(alpha, surfaces);
+      for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        g[k] = values[k];
+        scale[at(surfaces[k])] = std::max(scale[at(surfaces[k])], std::abs(g[k]));
+      }
+    };
+    const auto comparison = switching::comparison_in_cube(feels, velocities);
+    if (comparison) {
+      std::vector<double> start;
+      for (const int j : surfaces) start.push_back(std::clamp(base_.alpha[at(j)], 0.0, 1.0));
+      const auto root = switching::bounded_root(feels, velocities, *comparison, start);
+      if (root && !root->is_borderline) return root;
+    }
+    problem_ = fmt::format("{} of them feel each other, more than themselves or tangent to one: {}", surfaces.size(),
+                           names(s_.system, {surfaces.begin(), surfaces.begin() + 3}) + ", ...");
+    return std::nullopt;
+  }
+
+ private:
+  const Surroundings& s_;
+  const ModeState& before_;
+  ModeState base_;
+  const Occasion& occasion_;
+  const ProjectedFields& fields_;
+  std::vector<bool> moved_;  ///< by surface: its selection is another one than before
+  std::string problem_;
+};
+
+SurfaceDecision decision_of(const switching::BoundedRoot& root, std::size_t k) {
+  return {Verdict::decided,
+          root.mode[k],
+          root.alpha[k],
+          {},
+          "the only mode of surfaces that feel themselves more than the others"};
+}
+
+/// Of the surfaces of a group, by their places in it.
+switching::Influence influence_in(const evaluation::ModelKernel& kernel, const std::vector<int>& group) {
+  switching::Influence feels(group.size());
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    for (const int j : kernel.neighbours(group[i])) {
+      const auto place = std::lower_bound(group.begin(), group.end(), j);
+      if (place == group.end() || *place != j || !kernel.depends(group[i], j)) continue;
+      feels[i].push_back(static_cast<int>(place - group.begin()));
+    }
+  }
+  return feels;
+}
+
+}  // namespace
+
+/// Nothing where a group is not large, or where a part of it is not decided: `undecided_part_` says which. Parts of up
+/// to four surfaces are decided by their tables as if they were alone.
+std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
+  undecided_part_.clear();
+  if (!is_large(group.size()) || !s_.affine_in_alpha) return std::nullopt;
+  const auto nested = nested_away_from_zero(s_.kernel, occasion_);
+  if (!nested.empty() || !occasion_.coalesced.empty() || !occasion_.destabilised.empty() || !occasion_.tied.empty()) {
+    undecided_part_ = "their root has ended, or functions are nested around them";
+    return std::nullopt;
+  }
+  const auto feels = influence_in(s_.kernel, group);
+  LaterPoint point = point_to_decide(s_, before_, occasion_);
+  if (!point.x.empty()) point.occasion.x = point.x.data();
+  const ProjectedFields fields(s_.kernel, point.occasion);
+  PartDecider parts(s_, before_, base_, point.occasion, fields);
+  const std::size_t decided_before = decisions_.size();
+  const auto give_up = [&]() -> std::optional<bool> {
+    decisions_.resize(decided_before);
+    undecided_part_ = parts.problem();
+    return std::nullopt;
+  };
+  for (const auto& part : switching::ordered_parts(feels)) {
+    if (!parts.is_touched(part, feels, group, occasion_.touched)) continue;
+    std::vector<int> surfaces;
+    for (const int k : part) surfaces.push_back(group[at(k)]);
+    if (surfaces.size() == 1) {
+      const int j = surfaces.front();
+      const bool behind = !feels[at(part.front())].empty() && parts.is_touched(part, feels, group, {});
+      const auto decision = parts.decide_one(j, behind, scale_[at(j)]);
+      if (!decision) return give_up();
+      decisions_.emplace_back(j, *decision);
+      parts.note(j, decision->mode, decision->alpha);
+      continue;
+    }
+    if (const auto root = parts.decide_several(switching::restricted_to(feels, part), surfaces, scale_)) {
+      for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        decisions_.emplace_back(surfaces[k], decision_of(*root, k));
+        parts.note(surfaces[k], root->mode[k], root->alpha[k]);
+      }
+      continue;
+    }
+    // By the tables of all corners, where these are not too many; not where that has been tried for the group anyway.
+    constexpr std::size_t largest_table = 12;
+    if (group.size() <= largest_table || surfaces.size() > largest_table) return give_up();
+    std::swap(base_, parts.base());
+    const std::size_t first = decisions_.size();
+    const bool decided = decide(surfaces);
+    std::swap(base_, parts.base());
+    if (!decided) return false;
+    for (std::size_t k = first; k < decisions_.size(); ++k) {
+      parts.note(decisions_[k].first, decisions_[k].second.mode, decisions_[k].second.alpha);
+    }
+  }
+  return true;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,97 @@
+#include "saltus/event_integrator/field/large_group.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <Eigen/SparseLU>
+
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/switching/sparse/attraction.hpp"
+#include "saltus/switching/table/matrix_stability.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using EffectMatrix = Eigen::SparseMatrix<double>;
+
+/// Rows and columns of `part`, each row in its size.
+EffectMatrix part_of(const EffectMatrix& effects, const std::vector<int>& part) {
+  std::vector<int> place(at(effects.rows()), -1);
+  for (std::size_t k = 0; k < part.size(); ++k) place[at(part[k])] = static_cast<int>(k);
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(index(part.size()));
+  for (const int column : part) {
+    for (EffectMatrix::InnerIterator entry(effects, column); entry; ++entry) {
+      if (place[at(entry.row())] < 0) continue;
+      entries.emplace_back(place[at(entry.row())], place[at(column)], entry.value());
+      square[place[at(entry.row())]] += entry.value() * entry.value();
+    }
+  }
+  EffectMatrix result(square.size(), square.size());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return square.cwiseSqrt().cwiseInverse().asDiagonal() * result;
+}
+
+}  // namespace
+
+std::pair<double, double> loss_and_stability(const EffectMatrix& effects, const std::vector<int>& part) {
+  const EffectMatrix own = part_of(effects, part);
+  const auto m = static_cast<int>(part.size());
+  double stability = switching::attraction_margin(switching::comparison_of(own));
+  Eigen::SparseLU<EffectMatrix> lu(own);
+  if (lu.info() != Eigen::Success) return {0.0, stability};
+  // Stable matrices of m rows have det G of the sign (-1)^m.
+  const double sign = (m % 2 == 0 ? 1.0 : -1.0) * lu.signDeterminant();
+  const double loss = sign * std::exp(lu.logAbsDeterminant() / m);
+  // Beyond these the other conditions cost more than they are worth.
+  constexpr int most = 24;
+  if (stability <= 0.0 && m <= most) {
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> dense(own);
+    const std::span<const double> entries(dense.data(), at(dense.size()));
+    stability = std::max(switching::fisher_fuller_margin(entries, m), switching::hurwitz_margin(entries, m));
+  }
+  return {loss, stability};
+}
+
+/// A group whose surfaces are decided by parts: events of surfaces that feel nobody later are those of single ones.
+void ModeField::find_parts(const std::vector<std::size_t>& group) {
+  switching::Influence feels(group.size());
+  std::vector<int> place(sliding_.size(), -1);
+  for (std::size_t k = 0; k < group.size(); ++k) place[group[k]] = static_cast<int>(k);
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const int i = sliding_[group[k]];
+    for (const int j : kernel_.neighbours(i)) {
+      const int row = row_of_[at(j)];
+      if (row >= 0 && kernel_.depends(i, j)) feels[k].push_back(place[at(row)]);
+    }
+    std::sort(feels[k].begin(), feels[k].end());
+  }
+  LargeGroup large{group, switching::ordered_parts(feels), std::make_unique<switching::SparseNewton>(feels)};
+  for (const auto& part : large.parts) {
+    for (const int k : part) group_size_[group[at(k)]] = 0;
+    group_size_[group[at(part.front())]] = part.size();
+  }
+  large_.push_back(std::move(large));
+}
+
+/// From the selections of the mode, all of them together: where influence is one-way G is triangular.
+void ModeField::evaluate_large(double t, const double* x, LargeGroup& large) {
+  const auto& rows = large.rows;
+  for (std::size_t k = 0; k < rows.size(); ++k) selections_[k] = start_alpha_[at(sliding_[rows[k]])];
+  const auto velocities = [&](const double* alpha, double* g) {
+    for (std::size_t k = 0; k < rows.size(); ++k) trial_[at(sliding_[rows[k]])] = alpha[k];
+    kernel_.field(t, x, trial_.data(), f_[1].data());
+    for (std::size_t k = 0; k < rows.size(); ++k) g[k] = normal_velocity(rows[k], f_[1]);
+  };
+  const bool found = large.newton->solve(velocities, selections_.data());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto j = at(sliding_[rows[k]]);
+    alpha_[j] = found ? selections_[k] : not_a_number;
+    exits_[rows[k]] = {alpha_[j], alpha_[j] - 1.0, 0.0, 0.0};
+    trial_[j] = 0.0;
+  }
+}
+
+}  // namespace saltus::event_integrator

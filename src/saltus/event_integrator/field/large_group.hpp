@@ -1,0 +1,35 @@
+// Many sliding surfaces of which each feels few others: their parts, and what ends sliding on each.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "saltus/switching/hidden/group_modes.hpp"
+#include "saltus/switching/sparse/influence.hpp"
+#include "saltus/switching/sparse/sparse_newton.hpp"
+
+namespace saltus::event_integrator {
+
+/// Whether so many surfaces that are connected by influence are decided and slid on by their parts: those whose modes
+/// are not enumerated.
+[[nodiscard]] constexpr bool is_large(std::size_t surfaces) {
+  return surfaces > static_cast<std::size_t>(switching::largest_enumerated);
+}
+
+struct LargeGroup {
+  std::vector<std::size_t> rows;        ///< of the sliding surfaces
+  std::vector<std::vector<int>> parts;  ///< places in `rows`: those that feel each other, in the order of influence
+  std::unique_ptr<switching::SparseNewton> newton;
+};
+
+/// Of several surfaces that feel each other, from the G of their group: a number that keeps its sign while their root
+/// exists (det G in the size of its rows, its root of the number of surfaces), and one that is positive while some
+/// scaling is known that makes it stable, that of the certificate first.
+[[nodiscard]] std::pair<double, double> loss_and_stability(const Eigen::SparseMatrix<double>& effects,
+                                                           const std::vector<int>& part);
+
+}  // namespace saltus::event_integrator

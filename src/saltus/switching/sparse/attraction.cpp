@@ -1,0 +1,189 @@
+#include "saltus/switching/sparse/attraction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/SparseLU>
+
+#include "saltus/base/at.hpp"
+#include "saltus/switching/table/field_accuracy.hpp"
+
+namespace saltus::switching {
+namespace {
+
+using SparseSquare = Eigen::SparseMatrix<double>;
+
+/// w of C w = 1, the rows of C being divided by their diagonals; NaN where C is singular, or a diagonal not positive.
+Eigen::VectorXd weights_of(const SparseSquare& comparison) {
+  const auto m = comparison.rows();
+  const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(m, std::numeric_limits<double>::quiet_NaN());
+  const Eigen::VectorXd own = comparison.diagonal();
+  if (!(own.minCoeff() > 0.0)) return nothing;
+  const SparseSquare scaled = own.cwiseInverse().asDiagonal() * comparison;
+  Eigen::SparseLU<SparseSquare> lu(scaled);
+  if (lu.info() != Eigen::Success) return nothing;
+  return lu.solve(Eigen::VectorXd::Ones(m));
+}
+
+double margin_of(const Eigen::VectorXd& weights) {
+  double margin = 1.0;
+  for (Eigen::Index j = 0; j < weights.size(); ++j) {
+    const double part = 1.0 / weights[j];
+    if (!std::isfinite(part)) return -1.0;
+    margin = std::min(margin, part);
+  }
+  return margin;
+}
+
+/// One search for the selections in the cube.
+class BoundedSearch {
+ public:
+  BoundedSearch(const Influence& feels, ProjectedField g, const SparseSquare& comparison, std::vector<double> start)
+      : feels_(feels), g_(g), comparison_(comparison), weights_(weights_of(comparison)), alpha_(std::move(start)) {
+    velocity_.resize(index(alpha_.size()));
+    largest_ = Eigen::VectorXd::Zero(velocity_.size());
+  }
+
+  [[nodiscard]] bool applies() const { return margin_of(weights_) > 0.0; }
+
+  std::optional<BoundedRoot> run() {
+    // Most steps are Newton's; those that contract by themselves get there from everywhere.
+    constexpr int iterations = 2000;
+    SparseEffects effects(feels_);
+    evaluate(alpha_);
+    for (int k = 0; k < iterations && velocity_.allFinite(); ++k) {
+      const double before = distance(alpha_);
+      if (before <= 4e-16) return finish();
+      effects.find(g_, alpha_.data(), velocity_.data());
+      own_ = effects.matrix().diagonal();
+      std::vector<double> next = newton_step(effects.matrix());
+      evaluate(next);
+      if (!velocity_.allFinite() || !(distance(next) < 0.5 * before)) {
+        evaluate(alpha_);
+        next = contracted();
+        evaluate(next);
+        // Rounding has the last word.
+        if (before <= 1e-13 && !(distance(next) < before)) return finish();
+      }
+      alpha_ = std::move(next);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  void evaluate(std::vector<double>& alpha) {
+    g_(alpha.data(), velocity_.data());
+    if (velocity_.allFinite()) largest_ = largest_.cwiseMax(velocity_.cwiseAbs());
+  }
+  /// Of the step that contracts, in its norm; behind evaluate() there.
+  [[nodiscard]] double distance(const std::vector<double>& alpha) const {
+    double result = 0.0;
+    for (std::size_t j = 0; j < alpha.size(); ++j) {
+      const double step = std::clamp(alpha[j] + speed(j), 0.0, 1.0) - alpha[j];
+      result = std::max(result, std::abs(step) / weights_[index(j)]);
+    }
+    return result * weights_.minCoeff();
+  }
+  /// By the largest -G_jj that was seen: no step goes beyond the balance of its surface.
+  [[nodiscard]] double speed(std::size_t j) const {
+    const auto i = index(j);
+    const double own = own_.size() > 0 ? std::max(-own_[i], comparison_.coeff(i, i)) : comparison_.coeff(i, i);
+    return velocity_[i] / own;
+  }
+  [[nodiscard]] std::vector<double> contracted() const {
+    std::vector<double> next = alpha_;
+    for (std::size_t j = 0; j < next.size(); ++j) next[j] = std::clamp(next[j] + speed(j), 0.0, 1.0);
+    return next;
+  }
+  /// With the selections that stay at their bounds taken out.
+  [[nodiscard]] std::vector<double> newton_step(const SparseSquare& effects) const {
+    std::vector<bool> bound(alpha_.size());
+    Eigen::VectorXd right = -velocity_;
+    for (std::size_t j = 0; j < alpha_.size(); ++j) {
+      const double target = alpha_[j] + speed(j);
+      bound[j] = target <= 0.0 || target >= 1.0;
+      if (bound[j]) right[index(j)] = std::clamp(target, 0.0, 1.0) - alpha_[j];
+    }
+    SparseSquare matrix = effects;
+    for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
+      for (SparseSquare::InnerIterator entry(matrix, column); entry; ++entry) {
+        if (bound[at(entry.row())]) entry.valueRef() = entry.row() == column ? 1.0 : 0.0;
+      }
+    }
+    Eigen::SparseLU<SparseSquare> lu(matrix);
+    std::vector<double> next = alpha_;
+    if (lu.info() != Eigen::Success) return next;
+    const Eigen::VectorXd step = lu.solve(right);
+    for (std::size_t j = 0; j < next.size(); ++j) next[j] = std::clamp(next[j] + step[index(j)], 0.0, 1.0);
+    return next;
+  }
+
+  [[nodiscard]] BoundedRoot finish() const {
+    BoundedRoot root{std::vector<int>(alpha_.size(), 0), alpha_, false};
+    for (std::size_t j = 0; j < alpha_.size(); ++j) {
+      const double velocity = velocity_[index(j)];
+      const double rounding = field_accuracy * std::max(largest_[index(j)], comparison_.coeff(index(j), index(j)));
+      const bool low = alpha_[j] <= field_accuracy, high = alpha_[j] >= 1.0 - field_accuracy;
+      if (low && velocity < -rounding) root.mode[j] = -1;
+      if (high && velocity > rounding) root.mode[j] = 1;
+      if (root.mode[j] == 0 && (low || high)) root.is_borderline = true;
+    }
+    return root;
+  }
+
+  const Influence& feels_;
+  ProjectedField g_;
+  const SparseSquare& comparison_;
+  Eigen::VectorXd weights_, velocity_, largest_, own_;
+  std::vector<double> alpha_;
+};
+
+}  // namespace
+
+double attraction_margin(const SparseSquare& comparison) { return margin_of(weights_of(comparison)); }
+
+SparseSquare comparison_of(const SparseSquare& effects) {
+  SparseSquare comparison = effects;
+  for (Eigen::Index column = 0; column < comparison.outerSize(); ++column) {
+    for (SparseSquare::InnerIterator entry(comparison, column); entry; ++entry) {
+      entry.valueRef() = entry.row() == column ? -entry.value() : -std::abs(entry.value());
+    }
+  }
+  return comparison;
+}
+
+std::optional<SparseSquare> comparison_in_cube(const Influence& feels, ProjectedField g) {
+  SparseEffects effects(feels);
+  if (effects.colours() > most_colours) return std::nullopt;
+  const auto m = feels.size();
+  std::vector<double> alpha(m), velocity(m);
+  SparseSquare least;
+  for (unsigned corner = 0; corner < 1U << effects.colours(); ++corner) {
+    for (std::size_t j = 0; j < m; ++j) alpha[j] = (corner >> effects.colour()[j] & 1U) != 0 ? 1.0 : 0.0;
+    g(alpha.data(), velocity.data());
+    effects.find(g, alpha.data(), velocity.data());
+    const SparseSquare here = comparison_of(effects.matrix());
+    if (corner == 0) {
+      least = here;
+      continue;
+    }
+    for (Eigen::Index k = 0; k < least.nonZeros(); ++k) {
+      least.valuePtr()[k] = std::min(least.valuePtr()[k], here.valuePtr()[k]);
+    }
+  }
+  for (Eigen::Index k = 0; k < least.nonZeros(); ++k) {
+    if (!std::isfinite(least.valuePtr()[k])) return std::nullopt;
+  }
+  return least;
+}
+
+std::optional<BoundedRoot> bounded_root(const Influence& feels, ProjectedField g, const SparseSquare& comparison,
+                                        std::vector<double> start) {
+  BoundedSearch search(feels, g, comparison, std::move(start));
+  if (!search.applies()) return std::nullopt;
+  return search.run();
+}
+
+}  // namespace saltus::switching

@@ -1,0 +1,74 @@
+#include "saltus/switching/sparse/sparse_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "saltus/base/at.hpp"
+#include "saltus/switching/table/multi_affine.hpp"
+#include "saltus/switching/table/newton_steps_internal.hpp"
+
+namespace saltus::switching {
+
+SparseEffects::SparseEffects(const Influence& feels)
+    : colour_(selection_colours(feels)), shifted_(feels.size()), here_(feels.size()) {
+  for (const int c : colour_) colours_ = std::max(colours_, c + 1);
+  const auto m = index(feels.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < feels.size(); ++i) {
+    const int row = static_cast<int>(i);
+    entries.emplace_back(row, row, 1.0);
+    for (const int j : feels[i]) entries.emplace_back(row, j, 1.0);
+  }
+  matrix_.resize(m, m);
+  matrix_.setFromTriplets(entries.begin(), entries.end());
+  matrix_.makeCompressed();
+}
+
+void SparseEffects::find(ProjectedField field, double* alpha, const double* g) {
+  std::copy(alpha, alpha + here_.size(), here_.begin());
+  for (int c = 0; c < colours_; ++c) {
+    for (std::size_t j = 0; j < here_.size(); ++j) {
+      if (colour_[j] == c) alpha[j] = difference_end(here_[j], Interpolation::multi_affine);
+    }
+    field(alpha, shifted_.data());
+    for (std::size_t j = 0; j < here_.size(); ++j) {
+      if (colour_[j] != c) continue;
+      const double width = alpha[j] - here_[j];
+      alpha[j] = here_[j];
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix_, index(j)); entry; ++entry) {
+        entry.valueRef() = (shifted_[at(entry.row())] - g[entry.row()]) / width;
+      }
+    }
+  }
+}
+
+SparseNewton::SparseNewton(const Influence& feels)
+    : effects_(feels), g_(index(feels.size())), step_(index(feels.size())) {}
+
+bool SparseNewton::solve(ProjectedField g, double* alpha) {
+  // As in SelectionNewton.
+  constexpr int iterations = 30;
+  constexpr double astray = 1e3;
+  NewtonSteps steps;
+  for (int k = 0; k < iterations; ++k) {
+    g(alpha, g_.data());
+    effects_.find(g, alpha, g_.data());
+    if (!g_.allFinite()) return false;
+    if (!analysed_) lu_.analyzePattern(effects_.matrix());
+    analysed_ = true;
+    lu_.factorize(effects_.matrix());
+    if (lu_.info() != Eigen::Success) return false;
+    step_ = lu_.solve(g_);
+    double reach = 0.0;
+    for (Eigen::Index j = 0; j < step_.size(); ++j) {
+      alpha[j] -= step_[j];
+      reach = std::max(reach, std::abs(alpha[j]));
+    }
+    if (!step_.allFinite() || !(reach < astray)) return false;
+    if (steps.end_with({step_.cwiseAbs().maxCoeff(), reach})) return true;
+  }
+  return false;
+}
+
+}  // namespace saltus::switching

@@ -1,0 +1,51 @@
+// The selections of sliding on many surfaces of which each feels few others.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
+
+#include "saltus/switching/sparse/influence.hpp"
+#include "saltus/switching/table/projected_field.hpp"
+
+namespace saltus::switching {
+
+/// G = dg/dalpha of multi-affine g with the entries that `feels` allows (the diagonal among them), by as many
+/// evaluations as there are colours of selections.
+class SparseEffects {
+ public:
+  explicit SparseEffects(const Influence& feels);
+
+  /// @param alpha  m selections; changed during the call and put back
+  /// @param g      g(alpha), m
+  void find(ProjectedField field, double* alpha, const double* g);
+  [[nodiscard]] const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
+  [[nodiscard]] int colours() const { return colours_; }
+  [[nodiscard]] const std::vector<int>& colour() const { return colour_; }
+
+ private:
+  int colours_ = 0;
+  std::vector<int> colour_;
+  std::vector<double> shifted_, here_;
+  Eigen::SparseMatrix<double> matrix_;
+};
+
+/// Newton's method for g(alpha) = 0 with a sparse G: SelectionNewton of many surfaces.
+class SparseNewton {
+ public:
+  explicit SparseNewton(const Influence& feels);
+
+  /// As SelectionNewton::solve. Cost: colours + 1 evaluations of g and a sparse factorisation per iteration.
+  bool solve(ProjectedField g, double* alpha);
+  /// G at the last point where it was formed.
+  [[nodiscard]] const Eigen::SparseMatrix<double>& jacobian() const { return effects_.matrix(); }
+
+ private:
+  SparseEffects effects_;
+  bool analysed_ = false;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
+  Eigen::VectorXd g_, step_;
+};
+
+}  // namespace saltus::switching
