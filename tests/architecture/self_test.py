@@ -179,6 +179,39 @@ class SelfTest(unittest.TestCase):
             changes = {"src/saltus/ode/a.cpp": self.unnamed(text), "src/saltus/ode/b.cpp": self.unnamed(text)}
             self.assertEqual(self.complaints("names_of_sources", changes), [], text)
 
+    def test_rooms_include_downwards_only(self):
+        face = {"src/saltus/switching/plane/a.cpp": '#include "saltus/switching/table/b.hpp"\n'}
+        self.assertEqual(self.complaints("rooms", face), [])
+        self.assert_complains(
+            "rooms", {"src/saltus/switching/table/a.cpp": '#include "saltus/switching/plane/b.hpp"\n'}, "a.cpp:1", "plane/b.hpp")
+        self.assert_complains("rooms", {"src/saltus/switching/cellar/a.cpp": "\n"}, "room cellar", "not in the table")
+        self.assert_complains(
+            "rooms", {"src/saltus/event_integrator/mode/a.cpp": '#include "saltus/event_integrator/integrate.hpp"\n'}, "mode")
+        types = {"src/saltus/event_integrator/mode/a.cpp": '#include "saltus/event_integrator/options.hpp"\n'}
+        self.assertEqual(self.complaints("rooms", types), [])
+
+    def test_folders_with_too_many_files(self):
+        many = {f"src/saltus/io/file{i}.hpp": "" for i in range(41)}
+        self.assert_complains("files_in_folder", many, "src/saltus/io", "43 files")
+
+    def test_functions_longer_than_a_screen(self):
+        for head in ("int f(int a) {", "int Run::f(int a,\n           int b) {", "double f() const noexcept {"):
+            long = {"src/saltus/ode/a.cpp": head + "\n" + "  g();\n" * 60 + "}\n"}
+            self.assert_complains("function_length", long, "a.cpp:1", "f has")
+            short = {"src/saltus/ode/a.cpp": head + "\n" + "  g();\n" * 40 + "}\n"}
+            self.assertEqual(self.complaints("function_length", short), [])
+        inside = {"src/saltus/ode/a.hpp": "struct A {\n  int f() {\n" + "    g();\n" * 60 + "  }\n};\n"}
+        self.assert_complains("function_length", inside, "a.hpp:2", "f has 62")
+
+    def test_classes_that_hold_everything(self):
+        members = "".join(f"  std::vector<double> member{i}_{{1.0, 2.0}};  ///< a(b)\n" for i in range(25))
+        full = "class A {\n public:\n  void f(int a);\n\n private:\n" + members
+        self.assertEqual(self.complaints("data_members", {"src/saltus/ode/a.hpp": full + "};\n"}), [])
+        more = full + "  double a_ = 0.0, b_ = 1.0;\n};\n"
+        self.assert_complains("data_members", {"src/saltus/ode/a.hpp": more}, "A has 27")
+        data = more.replace("class A", "struct A").replace("  void f(int a);\n", "")
+        self.assertEqual(self.complaints("data_members", {"src/saltus/ode/a.hpp": data}), [])
+
 
 if __name__ == "__main__":
     unittest.main()

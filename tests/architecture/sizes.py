@@ -10,6 +10,7 @@ from pathlib import Path
 INCLUDE = re.compile(r'^\s*#\s*include\s*"(saltus/[^"]+)"')
 SCOPE_WORD = re.compile(r"^(namespace|class|struct|union|enum|extern|template|using|typedef|friend|static_assert)\b")
 CLASS = re.compile(r"^(\s*)(?:template\s*<.*>\s*)?(class|struct)\s+(\w+)[^;=()]*\{$")
+CONTROL_WORD = re.compile(r"^(if|for|while|switch|else|do|return|\}|:|,)\b|^[:,})]")
 DATA_MEMBER = re.compile(r"^(?!using\b|friend\b|typedef\b|static\b|enum\b|struct\b|class\b|return\b|public\b|private\b)"
                          r"(?:mutable\s+)?[A-Za-z_][\w:<>,\s\*&\.\(\)]*?[\s\*&>]\w+(?:\[\w*\])?\s*(?:=[^;]*|\{[^;]*\})?(?:,\s*\w+[^;()]*)?;")
 
@@ -38,25 +39,32 @@ def check_files_in_folder(root, table):
     return complaints
 
 
+def indent_of(line):
+    return len(line) - len(line.lstrip())
+
+
 def functions(lines):
-    """(line number, name, lines) of functions: a line that ends with "{" and begins neither a namespace nor a type."""
+    """(line number, name, lines) of functions: a signature at the margin, or in a class, that ends with "{"."""
     index = 0
     while index < len(lines):
-        line = lines[index]
-        indent = len(line) - len(line.lstrip())
-        if not line.endswith("{") or not re.search(r"\)[^;{}]*\{$", line) or SCOPE_WORD.match(line.strip()):
-            index += 1
-            continue
-        end = next((k for k in range(index + 1, len(lines))
-                    if lines[k].startswith(" " * indent + "}") and lines[k][indent : indent + 1] == "}"), None)
-        if end is None or indent > 2 or (indent == 2 and lines[index].lstrip().startswith(("if", "for", "while", "switch"))):
-            index += 1
-            continue
-        # A signature over several lines begins above.
         start = index
-        while start > 0 and len(lines[start]) - len(lines[start].lstrip()) > indent:
+        index += 1
+        if not re.search(r"\)[^;{}]*\{$", lines[start]):
+            continue
+        last = start
+        # A signature over several lines begins above.
+        while start > 0 and lines[start].count("(") < lines[start].count(")") or indent_of(lines[start]) > 2:
             start -= 1
-        name = re.search(r"([\w~:]+)\s*\(", " ".join(lines[max(0, index - 4) : index + 1]))
+            if not lines[start].strip() or start == 0:
+                break
+        first = lines[start].strip()
+        indent = indent_of(lines[start])
+        if indent > 2 or "(" not in first or SCOPE_WORD.match(first) or CONTROL_WORD.match(first):
+            continue
+        end = next((k for k in range(last + 1, len(lines)) if lines[k].startswith(" " * indent + "}")), None)
+        if end is None:
+            continue
+        name = re.search(r"([\w~:]+)\s*\(", first)
         yield start + 1, name.group(1) if name else "?", end - start + 1
         index = end + 1
 
