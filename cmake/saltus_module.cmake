@@ -1,15 +1,19 @@
-# saltus_module(NAME [HEAVY_HEADERS] [LINKS other modules…] [PUBLIC_LIBRARIES …] [PRIVATE_LIBRARIES …])
+# saltus_module(NAME [HEAVY_HEADERS] [FACE] [LINKS other modules…] [PUBLIC_LIBRARIES …] [PRIVATE_LIBRARIES …])
 # One static library saltus_NAME (outside: saltus::NAME) from src/saltus/NAME; headers not ending in _internal.hpp are
 # public and installed. HEAVY_HEADERS: they include CasADi, so the check that each header compiles alone leaves them out.
+# FACE: only the headers at the module's root are installed, those in its rooms are its own.
 # A module inside a folder of modules (adapters/ipopt) is called by its last name: saltus_ipopt, saltus::ipopt.
 function(saltus_module folder)
-  cmake_parse_arguments(arg "HEAVY_HEADERS" "" "LINKS;PUBLIC_LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "HEAVY_HEADERS;FACE" "" "LINKS;PUBLIC_LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   set(directory ${PROJECT_SOURCE_DIR}/src/saltus/${folder})
   get_filename_component(name ${folder} NAME)
   list(TRANSFORM arg_LINKS REPLACE ".*/" "")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${directory}/*.cpp)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${directory}/*.hpp)
   list(FILTER headers EXCLUDE REGEX "_internal\\.hpp$")
+  if(arg_FACE)
+    list(FILTER headers EXCLUDE REGEX "/saltus/${folder}/.*/")
+  endif()
   if(sources)
     add_library(saltus_${name} STATIC ${sources})
     set(visibility PUBLIC)

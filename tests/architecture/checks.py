@@ -98,7 +98,7 @@ def check_third_party(root, table):
 
 def cmake_modules(text):
     """Module -> linked modules, from the saltus_module(...) calls of a CMakeLists.txt."""
-    keywords = {"LINKS", "PUBLIC_LIBRARIES", "PRIVATE_LIBRARIES", "HEAVY_HEADERS"}
+    keywords = {"LINKS", "PUBLIC_LIBRARIES", "PRIVATE_LIBRARIES", "HEAVY_HEADERS", "FACE"}
     modules = {}
     for arguments in re.findall(r"^saltus_module\(([^)]*)\)", text, re.MULTILINE):
         words = re.sub(r"#.*", "", arguments).split()

@@ -190,6 +190,14 @@ class SelfTest(unittest.TestCase):
         types = {"src/saltus/event_integrator/mode/a.cpp": '#include "saltus/event_integrator/options.hpp"\n'}
         self.assertEqual(self.complaints("rooms", types), [])
 
+    def test_installed_headers_include_installed_ones(self):
+        declared = {"CMakeLists.txt": "saltus_module(switching FACE LINKS base)\n", "src/saltus/switching/plane/b.hpp": ""}
+        for name in ("saltus/switching/plane/b.hpp", "saltus/ode/steps_internal.hpp"):
+            changes = {**declared, "src/saltus/ode/a.hpp": f'#include "{name}"\n'}
+            self.assert_complains("installed_headers", changes, "a.hpp:1", name)
+            inside = {**declared, "src/saltus/ode/a.cpp": f'#include "{name}"\n'}
+            self.assertEqual(self.complaints("installed_headers", inside), [])
+
     def test_folders_with_too_many_files(self):
         many = {f"src/saltus/io/file{i}.hpp": "" for i in range(41)}
         self.assert_complains("files_in_folder", many, "src/saltus/io", "43 files")

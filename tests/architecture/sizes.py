@@ -150,7 +150,27 @@ def check_rooms(root, table):
     return complaints
 
 
+def check_installed_headers(root, table):
+    """(k) what is installed includes only what is installed: of a module with rooms the headers of its face."""
+    declared = re.findall(r"^saltus_module\((\S+)[^)]*\bFACE\b", (root / "CMakeLists.txt").read_text(encoding="utf-8"), re.MULTILINE)
+    complaints = []
+    for path in cpp_files(root):
+        parts = path.relative_to(root / "src" / "saltus").parts
+        hidden = path.suffix == ".cpp" or path.name.endswith("_internal.hpp") or (parts[0] in declared and len(parts) > 2)
+        if hidden or parts[0] == "cli":
+            continue
+        for number, line in enumerate(lines_of(path), 1):
+            match = INCLUDE.match(line)
+            target = match.group(1).split("/")[1:] if match else []
+            if len(target) > 2 and target[0] in declared:
+                complaints.append(f"{path.relative_to(root)}:{number}: {match.group(1)} is not installed")
+            elif target and target[-1].endswith("_internal.hpp"):
+                complaints.append(f"{path.relative_to(root)}:{number}: {match.group(1)} is not installed")
+    return complaints
+
+
 SIZE_CHECKS = {
+    "installed_headers": check_installed_headers,
     "files_in_folder": check_files_in_folder,
     "function_length": check_function_length,
     "data_members": check_data_members,

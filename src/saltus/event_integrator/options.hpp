@@ -9,7 +9,7 @@
 #include "saltus/event_integrator/choices.hpp"
 #include "saltus/ode/stepper.hpp"
 #include "saltus/result/progress.hpp"
-#include "saltus/switching/plane/intersection.hpp"
+#include "saltus/switching/selection_policy.hpp"
 
 namespace saltus::event_integrator {
 

@@ -32,23 +32,14 @@ Error no_sensitivities() {
           {}};
 }
 
-}  // namespace
+using fesd_integrator::IntegrationOptions;
 
-Expected<result::Result> simulate_elements(const model::System& system, const SimulateOptions& options,
-                                           std::vector<double> times, std::vector<std::pair<int, int>> forced,
-                                           result::Result frame, const Observers& observers) {
-  using fesd_integrator::IntegrationOptions;
-  const auto begin = std::chrono::steady_clock::now();
-  const bool detected = options.method == Method::fesd;
-  const ElementOptions& wanted = detected ? options.fesd : options.timestepping;
-  auto tableau = discretization::butcher_tableau(family(wanted.scheme), static_cast<int>(wanted.stages));
-  if (!tableau) return tl::unexpected(tableau.error());
-  const auto dcs = reformulation::reformulate(system, reformulation_options(wanted));
-  if (!dcs) return tl::unexpected(dcs.error());
-
+IntegrationOptions integration_options(const SimulateOptions& options, const ElementOptions& wanted,
+                                       discretization::ButcherTableau tableau) {
   IntegrationOptions integration;
-  integration.switches = detected ? IntegrationOptions::Switches::detected : IntegrationOptions::Switches::fixed;
-  integration.tableau = std::move(*tableau);
+  integration.switches =
+      options.method == Method::fesd ? IntegrationOptions::Switches::detected : IntegrationOptions::Switches::fixed;
+  integration.tableau = std::move(tableau);
   integration.from = options.from;
   integration.until = *options.until;
   integration.steps = wanted.steps;
@@ -57,14 +48,42 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   integration.step_bounds = wanted.step_bounds;
   integration.max_steps = options.max_steps;
   integration.max_events = options.max_events;
-  integration.initial_mode = std::move(forced);
   integration.native = native_code(options.native);
   integration.sensitivities = wanted.sensitivities;
+  if (std::holds_alternative<Automatic>(options.output)) integration.straight = straight_share;
+  return integration;
+}
+
+result::Result with_run(result::Result frame, fesd_integrator::Integration run) {
+  frame.status = std::move(run.status);
+  frame.final = std::move(run.final);
+  frame.events = std::move(run.events);
+  frame.trajectory = std::move(run.trajectory);
+  frame.statistics = run.statistics;
+  frame.sensitivities = std::move(run.sensitivities);
+  frame.elements = std::move(run.elements);
+  return frame;
+}
+
+}  // namespace
+
+Expected<result::Result> simulate_elements(const model::System& system, const SimulateOptions& options,
+                                           std::vector<double> times, std::vector<std::pair<int, int>> forced,
+                                           result::Result frame, const Observers& observers) {
+  const auto begin = std::chrono::steady_clock::now();
+  const bool detected = options.method == Method::fesd;
+  const ElementOptions& wanted = detected ? options.fesd : options.timestepping;
+  auto tableau = discretization::butcher_tableau(family(wanted.scheme), static_cast<int>(wanted.stages));
+  if (!tableau) return tl::unexpected(tableau.error());
+  const auto dcs = reformulation::reformulate(system, reformulation_options(wanted));
+  if (!dcs) return tl::unexpected(dcs.error());
+
   const double values = static_cast<double>(wanted.steps) * static_cast<double>(wanted.elements * wanted.stages) *
                         static_cast<double>(dcs->selection.numel());
+  IntegrationOptions integration = integration_options(options, wanted, std::move(*tableau));
+  integration.initial_mode = std::move(forced);
   if (system.freezing) integration.clock = static_cast<std::size_t>(system.freezing->clock);
   integration.record_elements = values > 0.0 && values <= most_recorded_values;
-  if (std::holds_alternative<Automatic>(options.output)) integration.straight = straight_share;
   if (is_at_times(options.output)) {
     integration.rows = IntegrationOptions::Rows::at_times;
     integration.times = std::move(times);
@@ -91,14 +110,8 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   const auto observer = step_observer(observers, {integration.from, integration.until});
   auto run = fesd_integrator::integrate(system, *dcs, integration, observer);
   if (!run) return tl::unexpected(run.error());
-  frame.status = std::move(run->status);
-  frame.final = std::move(run->final);
-  frame.events = std::move(run->events);
-  frame.trajectory = std::move(run->trajectory);
+  frame = with_run(std::move(frame), std::move(*run));
   if (!options.event_rows) leave_out_event_rows(integration.times, frame.trajectory);
-  frame.statistics = run->statistics;
-  frame.sensitivities = std::move(run->sensitivities);
-  frame.elements = std::move(run->elements);
   frame.statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return frame;
 }

@@ -25,10 +25,42 @@ ProjectedField::ProjectedField(const discretization::StageKernel& kernel)
 ProjectedField::ProjectedField(ProjectedField&&) noexcept = default;
 ProjectedField::~ProjectedField() = default;
 
+ProjectedField::Sizes ProjectedField::form_equations(const ActiveSet& set) {
+  const auto& sliding = set.sliding();
+  const std::size_t count = sliding.size(), n_x = kernel_.states(), n = kernel_.selections();
+  auto& system = work_->system;
+  system.reset(static_cast<Eigen::Index>(count));
+  auto matrix = system.matrix();
+  auto right = system.right();
+  double size = 0.0, gradients = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    double rate = set.surface(k, values_.indicator_t.data());
+    size = std::max(size, std::abs(rate));
+    for (std::size_t i = 0; i < n_x; ++i) {
+      const double gradient = set.surface(k, values_.indicator_x.data() + i * n);
+      if (gradient == 0.0) continue;
+      rate += gradient * values_.f[i];
+      gradients = std::max(gradients, std::abs(gradient));
+      size = std::max(size, std::abs(gradient * values_.f[i]));
+      for (std::size_t l = 0; l < count; ++l) {
+        const auto j = static_cast<std::size_t>(sliding[l].selection);
+        double along = values_.f_selection[j * n_x + i];
+        if (sliding[l].reference >= 0) {
+          along -= values_.f_selection[static_cast<std::size_t>(sliding[l].reference) * n_x + i];
+        }
+        matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) += gradient * along;
+      }
+    }
+    right(static_cast<Eigen::Index>(k)) = -rate;
+  }
+  for (std::size_t l = 0; l < count; ++l) in_no_equation_[l] = matrix.col(static_cast<Eigen::Index>(l)).isZero(0.0);
+  return {size, gradients};
+}
+
 bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections,
                            double rounding) {
   const auto& sliding = set.sliding();
-  const std::size_t count = sliding.size(), n_x = kernel_.states(), n = kernel_.selections();
+  const std::size_t count = sliding.size();
   double* unknown = work_->unknown.data();
   set.unknowns(selections, unknown);
   for (std::size_t k = 0; k < count; ++k) {
@@ -42,32 +74,8 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
     kernel_.evaluate(t, x, selections, held, values_);
     regular_ = true;
     if (count == 0) return true;
+    const auto [size, gradients] = form_equations(set);
     auto& system = work_->system;
-    system.reset(static_cast<Eigen::Index>(count));
-    auto matrix = system.matrix();
-    auto right = system.right();
-    double size = 0.0, gradients = 0.0;
-    for (std::size_t k = 0; k < count; ++k) {
-      double rate = set.surface(k, values_.indicator_t.data());
-      size = std::max(size, std::abs(rate));
-      for (std::size_t i = 0; i < n_x; ++i) {
-        const double gradient = set.surface(k, values_.indicator_x.data() + i * n);
-        if (gradient == 0.0) continue;
-        rate += gradient * values_.f[i];
-        gradients = std::max(gradients, std::abs(gradient));
-        size = std::max(size, std::abs(gradient * values_.f[i]));
-        for (std::size_t l = 0; l < count; ++l) {
-          const auto j = static_cast<std::size_t>(sliding[l].selection);
-          double along = values_.f_selection[j * n_x + i];
-          if (sliding[l].reference >= 0) {
-            along -= values_.f_selection[static_cast<std::size_t>(sliding[l].reference) * n_x + i];
-          }
-          matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) += gradient * along;
-        }
-      }
-      right(static_cast<Eigen::Index>(k)) = -rate;
-    }
-    for (std::size_t l = 0; l < count; ++l) in_no_equation_[l] = matrix.col(static_cast<Eigen::Index>(l)).isZero(0.0);
     const bool solved = system.solve(1e-11 * size + rounding * gradients);
     regular_ = system.is_factorised();
     if (!solved) return false;

@@ -39,6 +39,12 @@ class ProjectedField {
   void rates(std::vector<double>& rate) const;
 
  private:
+  /// Of what the equations consist: the largest term of a rate, the largest component of a gradient.
+  struct Sizes {
+    double terms = 0.0, gradients = 0.0;
+  };
+  Sizes form_equations(const ActiveSet& set);
+
   const discretization::StageKernel& kernel_;
   discretization::StageValues values_;
   bool regular_ = true;

@@ -39,6 +39,7 @@ struct ElementTangent::System {
   Index end = 0;
   std::vector<MatrixXd> basis;  ///< of the stages: changes of all selections from those of the unknown ones
   MatrixXd matrix, right;
+  MatrixXd first_selections;  ///< of a known first stage, else zero
 };
 
 ElementTangent::ElementTangent(const discretization::TangentKernel& kernel, discretization::ButcherTableau tableau)
@@ -126,80 +127,90 @@ void ElementTangent::add_projection(System& system, const Element& element, cons
   system.matrix.block(system.end, lengths, n_x_, count) = -along;
 }
 
+ElementTangent::System ElementTangent::begin_system(const Element& element, const Sets& sets, const double* held,
+                                                    bool projected, const Directions& go) {
+  System system;
+  Index size = 0;
+  for (Index m = 0; m < n_s_; ++m) {
+    system.place.push_back(size);
+    system.basis.push_back(is_known(m) ? MatrixXd(n_, 0) : basis(sets(m)));
+    size += n_x_ + system.basis.back().cols();
+    evaluate(element.t + element.h * tableau_.c(m), element.stage_states.data() + m * n_x_,
+             element.stage_selections.data() + m * n_, sets(m), held, values_[at(m)]);
+  }
+  system.end = size;
+  size += n_x_ + (projected ? system.basis.back().cols() : 0);
+  system.matrix = MatrixXd::Zero(size, size);
+  system.right = MatrixXd::Zero(size, go.x.cols());
+  system.first_selections = MatrixXd::Zero(n_, go.x.cols());
+  return system;
+}
+
+/// Row block `row`: unknown - x_0 - h sum_l weight_l f_l = 0.
+void ElementTangent::add_quadrature(System& system, Index row, const Eigen::VectorXd& weight, double h,
+                                    const Directions& go) {
+  system.matrix.block(row, row, n_x_, n_x_).setIdentity();
+  auto right = system.right.middleRows(row, n_x_);
+  right = go.x;
+  for (Index l = 0; l < n_s_; ++l) {
+    const double factor = h * weight(l);
+    if (factor == 0.0) continue;
+    const auto& stage = values_[at(l)];
+    const ConstMatrix by_selection(stage.f_selection.data(), n_x_, n_);
+    const Index column = system.place[at(l)];
+    const MatrixXd& changes = system.basis[at(l)];
+    system.matrix.block(row, column, n_x_, n_x_) -= factor * ConstMatrix(stage.f_x.data(), n_x_, n_x_);
+    system.matrix.block(row, column + n_x_, n_x_, changes.cols()) -= factor * by_selection * changes;
+    right += factor * field(stage, go.t + tableau_.c(l) * go.h, go.p);
+    right += weight(l) * ConstVector(stage.f.data(), n_x_) * go.h;
+    if (is_known(l)) right += factor * by_selection * system.first_selections;
+  }
+}
+
+/// Row block `row`: surfaces = 0 at the unknown state that begins at `column`.
+void ElementTangent::add_surfaces(System& system, Index row, Index column, const ActiveSet& active,
+                                  const discretization::TangentValues& at, double node, const Directions& go) const {
+  const auto count = static_cast<Index>(active.sliding().size());
+  system.matrix.block(row, column, count, n_x_) = surfaces_of(active, ConstMatrix(at.indicator_x.data(), n_, n_x_));
+  system.right.middleRows(row, count) = -surfaces_of(active, indicator(at, go.t + node * go.h, go.p));
+}
+
+bool ElementTangent::is_known(Index stage) const {
+  return tableau_.family == discretization::TableauFamily::lobatto_iiia && stage == 0;
+}
+
 MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> sets, const std::vector<double>& left,
                              const double* held, const Directions& go) {
   const bool one_set = sets.size() == 1;
   const bool is_explicit = tableau_.family == discretization::TableauFamily::explicit_rk;
   const bool projected = one_set && !sets[0].sliding().empty() && !is_explicit && !tableau_.ends_at_last_stage();
-  const auto set = [&](Index m) -> const ActiveSet& { return sets[one_set ? 0 : static_cast<std::size_t>(m)]; };
-  const auto known = [&](Index m) { return tableau_.family == discretization::TableauFamily::lobatto_iiia && m == 0; };
+  const Sets set = [&](Index m) -> const ActiveSet& { return sets[one_set ? 0 : static_cast<std::size_t>(m)]; };
   const double* last_selections = element.stage_selections.data() + (n_s_ - 1) * n_;
 
-  System system;
-  Index size = 0;
-  for (Index m = 0; m < n_s_; ++m) {
-    system.place.push_back(size);
-    system.basis.push_back(known(m) ? MatrixXd(n_, 0) : basis(set(m)));
-    size += n_x_ + system.basis.back().cols();
-    evaluate(element.t + element.h * tableau_.c(m), element.stage_states.data() + m * n_x_,
-             element.stage_selections.data() + m * n_, set(m), held, values_[at(m)]);
-  }
-  system.end = size;
-  const Index lengths = size + n_x_;
-  size = lengths + (projected ? system.basis.back().cols() : 0);
-  system.matrix = MatrixXd::Zero(size, size);
-  system.right = MatrixXd::Zero(size, go.x.cols());
+  System system = begin_system(element, set, held, projected, go);
   evaluate(element.t + element.h, element.end.data(), last_selections, set(n_s_ - 1), held, right_);
   // Known selections of the first stage are those of the projected field at the left end.
-  MatrixXd first_selections = MatrixXd::Zero(n_, go.x.cols());
-  if (known(0)) {
+  if (is_known(0)) {
     evaluate(element.t, element.x.data(), left.data(), set(0), held, left_);
-    first_selections = projected_selections(set(0), left_, go);
+    system.first_selections = projected_selections(set(0), left_, go);
   }
-
-  // Row block `row`: unknown - x_0 - h sum_l weight_l f_l = 0.
-  const auto add_quadrature = [&](Index row, const auto& weight) {
-    system.matrix.block(row, row, n_x_, n_x_).setIdentity();
-    auto right = system.right.middleRows(row, n_x_);
-    right = go.x;
-    for (Index l = 0; l < n_s_; ++l) {
-      const double factor = element.h * weight(l);
-      if (factor == 0.0) continue;
-      const auto& stage = values_[at(l)];
-      const ConstMatrix by_selection(stage.f_selection.data(), n_x_, n_);
-      const Index column = system.place[at(l)];
-      const MatrixXd& changes = system.basis[at(l)];
-      system.matrix.block(row, column, n_x_, n_x_) -= factor * ConstMatrix(stage.f_x.data(), n_x_, n_x_);
-      system.matrix.block(row, column + n_x_, n_x_, changes.cols()) -= factor * by_selection * changes;
-      right += factor * field(stage, go.t + tableau_.c(l) * go.h, go.p);
-      right += weight(l) * ConstVector(stage.f.data(), n_x_) * go.h;
-      if (known(l)) right += factor * by_selection * first_selections;
-    }
-  };
-  // Row block `row`: surfaces = 0 at the unknown state that begins at `column`.
-  const auto add_surfaces = [&](Index row, Index column, const ActiveSet& active,
-                                const discretization::TangentValues& at, double node) {
-    const auto count = static_cast<Index>(active.sliding().size());
-    system.matrix.block(row, column, count, n_x_) = surfaces_of(active, ConstMatrix(at.indicator_x.data(), n_, n_x_));
-    system.right.middleRows(row, count) = -surfaces_of(active, indicator(at, go.t + node * go.h, go.p));
-  };
   for (Index m = 0; m < n_s_; ++m) {
     const Index row = system.place[at(m)];
-    add_quadrature(row, [&](Index l) { return tableau_.A(m, l); });
+    add_quadrature(system, row, tableau_.A.row(m).transpose(), element.h, go);
     if (system.basis[at(m)].cols() == 0) continue;
     // Half-explicit methods: one stage later, behind the last one at the end.
     const Index point = is_explicit && one_set ? m + 1 : m;
     if (point == n_s_) {
-      add_surfaces(row + n_x_, system.end, set(m), right_, 1.0);
+      add_surfaces(system, row + n_x_, system.end, set(m), right_, 1.0, go);
     } else {
       const auto i = static_cast<std::size_t>(point);
-      add_surfaces(row + n_x_, system.place[i], set(m), values_[i], tableau_.c(point));
+      add_surfaces(system, row + n_x_, system.place[i], set(m), values_[i], tableau_.c(point), go);
     }
   }
-  add_quadrature(system.end, [&](Index l) { return tableau_.b(l); });
+  add_quadrature(system, system.end, tableau_.b, element.h, go);
   if (projected) {
     add_projection(system, element, sets[0], held, go);
-    add_surfaces(lengths, system.end, sets[0], right_, 1.0);
+    add_surfaces(system, system.end + n_x_, system.end, sets[0], right_, 1.0, go);
   }
   return solve(system.matrix, system.right).middleRows(system.end, n_x_);
 }

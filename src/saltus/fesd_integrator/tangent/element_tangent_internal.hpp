@@ -1,6 +1,7 @@
 // How the end of a solved element moves with its left end, its length and the parameters.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,13 @@ class ElementTangent {
   using Matrix = Eigen::MatrixXd;
 
   struct System;
+  using Sets = std::function<const ActiveSet&(Eigen::Index)>;  ///< of the stages
+  System begin_system(const Element& element, const Sets& sets, const double* held, bool projected,
+                      const Directions& go);
+  void add_quadrature(System& system, Eigen::Index row, const Eigen::VectorXd& weight, double h, const Directions& go);
+  void add_surfaces(System& system, Eigen::Index row, Eigen::Index column, const ActiveSet& active,
+                    const discretization::TangentValues& at, double node, const Directions& go) const;
+  [[nodiscard]] bool is_known(Eigen::Index stage) const;
   void add_projection(System& system, const Element& element, const ActiveSet& set, const double* held,
                       const Directions& go);
   void evaluate(double t, const double* x, const double* selections, const ActiveSet& set, const double* held,

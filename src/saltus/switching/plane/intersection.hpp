@@ -22,16 +22,9 @@
 
 #include "saltus/switching/plane/admissible_modes.hpp"
 #include "saltus/switching/plane/plane_table.hpp"
+#include "saltus/switching/selection_policy.hpp"
 
 namespace saltus::switching {
-
-/// Where several continuations are limits of regularised solutions, which one.
-enum class SelectionPolicy {
-  active_dominant,   ///< weight on the surface that was slid on: kappa_active / kappa_passive -> infinity
-  passive_dominant,  ///< weight on the surface that is reached
-  scaled,            ///< the given kappa: `by_scaling` says where the hidden dynamics has to be asked
-  report,            ///< like active_dominant
-};
 
 /// The leaves of the trees; docs/switching-trees.md draws them.
 enum class Leaf {

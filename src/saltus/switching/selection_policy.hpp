@@ -1,0 +1,14 @@
+// Which solution is taken where regularised ones have several limits.
+#pragma once
+
+namespace saltus::switching {
+
+/// Where several continuations are limits of regularised solutions, which one.
+enum class SelectionPolicy {
+  active_dominant,   ///< weight on the surface that was slid on: kappa_active / kappa_passive -> infinity
+  passive_dominant,  ///< weight on the surface that is reached
+  scaled,            ///< the given kappa: `by_scaling` says where the hidden dynamics has to be asked
+  report,            ///< like active_dominant
+};
+
+}  // namespace saltus::switching
