@@ -87,6 +87,24 @@ class Cite(tool.ToolTest):
         self.assertIn(re.search(r"(?m)^version: (.*)$", cff).group(1), text)
         self.assertEqual(text.count("{"), text.count("}"))
 
+    def keys(self, *arguments):
+        text, _ = self.run_tool("cite", *arguments, code=0)
+        self.assertEqual(text.count("{"), text.count("}"))
+        return re.findall(r"(?m)^@\w+\{\s*([\w]+),", text)
+
+    def test_names_the_papers_of_what_a_model_is_run_with(self):
+        self.assertEqual(self.keys(), ["saltus", "guglielmi2022", "nurkanovic2024"])
+        self.assertEqual(self.keys("stick-slip"), ["saltus", "guglielmi2022", "hairer1993", "filippov1988"])
+        optimal = self.keys("turbo-car")
+        for key in ("nurkanovic2024", "scholtes2001", "waechter2006"):
+            self.assertIn(key, optimal)
+        bibliography = (tool.SOURCE / "docs/references.bib").read_text(encoding="utf-8")
+        for key in optimal[1:]:
+            self.assertIn(f"{{{key},", bibliography)
+        self.run_tool("simulate", "stick-slip", "--integrator", "radau5", "--out", "r.json", "--quiet", code=0)
+        self.assertIn("hairer1996", self.keys("r.json"))
+        self.assertIn("did you mean", self.run_tool("cite", "stick-slipp", code=2)[1])
+
 
 if __name__ == "__main__":
     tool.main()

@@ -18,6 +18,7 @@ import sys
 
 import catalogue_problems
 import classic_problems
+import contact_problems
 import controlled_problems
 import intersection_problems
 import higher_order_problems
@@ -148,7 +149,7 @@ def main():
         intersection_problems.compare_with_literature(problem, report_on(problem, entries))
     for problem in region_problems.problems():
         report_on(problem, entries)
-    for problem in [*higher_order_problems.problems(), *controlled_problems.problems()]:
+    for problem in [*higher_order_problems.problems(), *controlled_problems.problems(), *contact_problems.problems()]:
         report_on(problem, entries)
     text = dump(entries)
     json.loads(text)

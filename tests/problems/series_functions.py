@@ -13,13 +13,19 @@ def exp(x):
     return result
 
 
-def sin(x):
-    if not isinstance(x, Series):
-        return mpmath.sin(x)
+def sin_and_cos(x):
     sine, cosine = Series([mpmath.sin(x[0])]), Series([mpmath.cos(x[0])])
     sine.rule = lambda k: sum((i * x[i] * cosine[k - i] for i in range(1, k + 1)), mpf(0)) / k
     cosine.rule = lambda k: -sum((i * x[i] * sine[k - i] for i in range(1, k + 1)), mpf(0)) / k
-    return sine
+    return sine, cosine
+
+
+def sin(x):
+    return sin_and_cos(x)[0] if isinstance(x, Series) else mpmath.sin(x)
+
+
+def cos(x):
+    return sin_and_cos(x)[1] if isinstance(x, Series) else mpmath.cos(x)
 
 
 def sqrt(x):

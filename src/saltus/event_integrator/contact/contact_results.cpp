@@ -56,9 +56,11 @@ class Shown {
     event.name.reset();
     bool hit = false, closes = false, opens = false, sticks = false;
     for (std::size_t i = 0; i < before.size(); ++i) {
+      const auto& contact = contacts_.contacts[i];
       const bool pushed = impulse[i][0] != 0.0 || impulse[i][1] != 0.0;
-      if (before[i] == after[i] && !pushed) continue;
-      event.surfaces.push_back(contacts_.contacts[i].name);
+      const bool turns = contact.has_friction && event.x[at(contact.slip)] != event.x_after[at(contact.slip)];
+      if (before[i] == after[i] && !pushed && !turns) continue;
+      event.surfaces.push_back(contact.name);
       hit = hit || pushed;
       closes = closes || before[i] == result::ContactMode::open;
       opens = opens || after[i] == result::ContactMode::open;
