@@ -36,6 +36,9 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       steps_(options, system, field_, here_, tolerances_),
       cells_(kernel),
       search_(kernel, field_, options.method, tolerances_.step()),
+      zeros_(surroundings_, here_, field_, search_),
+      nested_(kernel, here_, search_, tolerances_, zeros_),
+      switches_(surroundings_, here_, options.until - options.from, tolerances_),
       locator_(options.method, kernel.states(), steps_.stepper(), field_, search_, tolerances_.step()),
       single_surface_(surroundings_),
       surface_pair_(surroundings_),
@@ -45,24 +48,15 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       jumps_(kernel, system, options.from),
       contacts_(kernel, system),
       holding_(kernel, system),
-      shortest_switch_lap_(3 * system.switching.size(), 0.0),
       last_guard_(system.jumps.size(), {{-1, -1}, -1}),
       last_rate_(system.jumps.size(), 0.0),
       shortest_lap_(system.jumps.size(), 0.0),
       recorder_(kernel, system),
       rows_(kernel, options, here_, field_, holding_, recorder_),
       free_slope_(here_.x.size()),
-      families_(surroundings_),
-      evaluations_before_(kernel.field_evaluations()),
-      series_(options.until - options.from) {
+      choices_(surroundings_, options, here_, recorder_),
+      evaluations_before_(kernel.field_evaluations()) {
   holding_.keep(&contacts_);
-  for (int j = 0; j < kernel.switching_functions(); ++j) {
-    if (kernel.root_is_continued(j)) {
-      continued_roots_.push_back(j);
-    } else if (kernel.has_root(j)) {
-      ending_roots_.push_back(j);
-    }
-  }
   ordinary_ = way == Way::short_where_ordinary && has_ordinary_switches();
 }
 
@@ -82,10 +76,10 @@ void Run::fail(Termination termination, std::string message) {
 
 bool Run::enter(const Transition& transition) {
   here_.state = transition.state;
-  no_surface_at_.reset();
+  zeros_.forget();
   set_references(kernel_, here_.state);
   tolerances_.begin_mode(kernel_, options_.layers, here_);
-  watch_nested_roots();
+  if (nested_.begin_mode()) tolerances_.lift(StepTolerances::Reason::zeros);
   field_.enter(here_.state);
   steps_.begin_mode();
   field_.project(here_.t, here_.x.data());
@@ -157,7 +151,7 @@ bool Run::begin() {
     fail(start.transition.termination, start.transition.message);
     return false;
   }
-  choose(start.transition);
+  choices_.choose(start.transition, progress());
   here_.state = start.transition.state;
   landing.transition = start.transition;
   if (!enter(start.transition) || !settle_at_start(landing)) {
@@ -184,12 +178,12 @@ bool Run::begin() {
   here_.time_scale = here_.h;
   const auto& orders = start.transition.zero_order;
   if (rooted_ < 0 && std::any_of(orders.begin(), orders.end(), [](int order) { return order > 1; })) {
-    rooted_ = root_here();
+    rooted_ = zeros_.root_here();
     if (rooted_ >= 0 && !take_side_of_root()) return false;
   }
   here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
   rows_.skip_here();
-  if (recorder_.events() > 0) watch_for_families();
+  if (recorder_.events() > 0) choices_.watch(field_);
   return true;
 }
 
@@ -223,10 +217,10 @@ CompactIntegration Run::to_end() {
   }
   result_.status.time_reached = here_.t;
   result_.statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
-  families_.close(here_.t);
+  choices_.families().close(here_.t);
   result_.recording = recorder_.take();
-  result_.recording.families = families_.take();
-  begin_at_choice();
+  result_.recording.families = choices_.families().take();
+  result_.chosen = choices_.begin_at_choice(result_.recording, result_.statistics);
   return std::move(result_);
 }
 

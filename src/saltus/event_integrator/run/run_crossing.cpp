@@ -25,12 +25,13 @@ bool Run::has_ordinary_switches() const {
 /// Whether one listed surface is reached in a region or while sliding on one, or left by the solution that slides on it
 /// alone, behind the last switch.
 bool Run::is_ordinary(const Located& located) const {
-  if (!ordinary_ || located.functions.size() != 1 || here_.state.higher || !families_.idle()) return false;
+  if (!ordinary_ || located.functions.size() != 1 || here_.state.higher || !choices_.families().idle()) return false;
   const auto& function = search_.functions()[located.functions.front()];
   const bool slides = here_.state.sliding.size() == 1 && field_.solve() == SlidingSolve::decoupled;
   const bool surface = function.kind == FunctionKind::surface && (search_.crosses() || slides);
   const bool exit = (function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above) && slides;
-  return (surface || exit) && recorder_.lists(function.index) && located.t > here_.t && located.t != series_.last();
+  return (surface || exit) && recorder_.lists(function.index) && located.t > here_.t &&
+         located.t != switches_.series().last();
 }
 
 /// Goes on behind an ordinary switch; otherwise nothing has happened.
@@ -103,18 +104,19 @@ bool Run::pass(const Located& located, int surface) {
   search_.enter(here_.state, transition_.zero_order, here_.t, here_.x.data());
   if (across) {
     recorder_.row(here_.t, here_.x, here_.state, field_.alpha());
-    series_.note(here_.t, j, before_.mode[j]);
+    switches_.series().note(here_.t, j, before_.mode[j]);
     here_.h = steps_.memory().change(here_.state.mode, j, here_.t, here_.h);
   } else {
     row(here_.t, here_.x);
-    static_cast<void>(series_.repeats(here_.t, before_.mode, here_.state.mode));  // this is the first one at t
+    static_cast<void>(
+        switches_.series().repeats(here_.t, before_.mode, here_.state.mode));  // this is the first one at t
     here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
   }
   end_switch();
   if (too_many_events()) return true;
-  note_tightening_switch();
+  note_switch();
   accumulate_switches();
-  if (running_) watch_for_families();
+  if (running_) choices_.watch(field_);
   return true;
 }
 
@@ -215,13 +217,13 @@ void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
   const bool slides = change.after == 0 || change.slid != nullptr;
   recorder_.row_behind_last_event(here_.x, slides ? field_.alpha() : here_.state.alpha,
                                   change.slid != nullptr ? at(change.slid->surface) : j);
-  series_.note(here_.t, j, change.before);
+  switches_.series().note(here_.t, j, change.before);
   here_.h = steps_.memory().change(here_.state.mode, j, here_.t, here_.h);
   end_switch();
   if (too_many_events()) return;
-  note_tightening_switch(change);
+  switches_.note(change);
   accumulate_switches();
-  if (change.slid != nullptr && running_) watch_for_families();
+  if (change.slid != nullptr && running_) choices_.watch(field_);
 }
 
 /// The functions of the mode behind.

@@ -43,7 +43,7 @@ bool Run::too_many_events() {
     return true;
   }
   // Jumps have their own limits.
-  if (jumped_ || !series_.too_dense(here_.t)) return false;
+  if (jumped_ || !switches_.series().too_dense(here_.t)) return false;
   if (!follow_dense_laps()) accumulates();
   return true;
 }
@@ -131,14 +131,14 @@ bool Run::change_mode(const Located& located) {
 bool Run::go_on() {
   Transition& transition = transition_;
   if (transition.termination != Termination::completed) {
-    drowned_ = drowned_here();
-    if (drowned_) return false;
+    unresolved_ = unresolved_here();
+    if (unresolved_) return false;
     if (auto lost = lost_selections(surroundings_, before_, here_.t, here_.x.data())) {
       fail(Termination::outside_class, std::move(*lost));
       return false;
     }
     // Where switches accumulate the fields may have no limit: that is the reason then.
-    const bool at_limit = transition.termination != Termination::outside_class && series_.shrinks(here_.t);
+    const bool at_limit = transition.termination != Termination::outside_class && switches_.series().shrinks(here_.t);
     if (at_limit) {
       accumulates();
       return false;
@@ -146,13 +146,13 @@ bool Run::go_on() {
     fail(transition.termination, std::move(transition.message));
     return false;
   }
-  choose(transition);
-  if (series_.repeats(here_.t, before_.mode, transition.state.mode)) {
+  choices_.choose(transition, progress());
+  if (switches_.series().repeats(here_.t, before_.mode, transition.state.mode)) {
     accumulates();
     return false;
   }
   if (!enter(transition) || !find_undefined_cells()) return false;
-  if (!recorder_.switched(here_.t, here_.x, before_, transition) && chooses_here(transition)) {
+  if (!recorder_.switched(here_.t, here_.x, before_, transition) && choices_.chooses(transition)) {
     // To stay on a root that has lost its stability, or to change to the other one: the branch begins like a run in a
     // forced mode.
     recorder_.started(here_.t, here_.x, transition, here_.state.sliding);
@@ -194,7 +194,7 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
 
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
-  no_surface_at_.reset();
+  zeros_.forget();
   if (is_ordinary(located) && switch_shortly(located)) return running_ ? Step::taken : Step::failed;
   const bool ended_here = located.t == here_.t && recorder_.ends_at(here_.t) && here_.t != last_event_time_;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
@@ -205,7 +205,7 @@ Run::Step Run::handle(const Located& located) {
   static_cast<void>(holding_.project(here_.t, here_.state.alpha, here_.x));
   settle_on_roots(located);
   // A step may be as long as the mode.
-  if (families_.watches() && here_.t > t_begin) look_for_families(t_begin);
+  if (choices_.families().watches() && here_.t > t_begin) choices_.look(t_begin, steps_);
   // A step that ended exactly here has written the row before the event.
   const Arrival arrival = arrive(ended_here ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
   flip_user_functions(located);
@@ -263,13 +263,13 @@ Run::Step Run::depart(const Arrival& arrival) {
   if (event) last_event_time_ = here_.t;
   if (running_ && !too_many_events()) {
     if (event) {
-      note_tightening_switch();
+      note_switch();
       accumulate_switches();
     }
     accumulate_jumps();
-    if (drowned_) go_on_from_drowned();
+    if (unresolved_) go_on_from_unresolved();
   }
-  if (recorder_.events() > arrival.events && running_) watch_for_families();
+  if (recorder_.events() > arrival.events && running_) choices_.watch(field_);
   return running_ ? Step::taken : Step::failed;
 }
 

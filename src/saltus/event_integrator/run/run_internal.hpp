@@ -28,7 +28,11 @@
 #include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
+#include "saltus/event_integrator/run/accumulation/switch_accumulation.hpp"
+#include "saltus/event_integrator/run/approach/nested_zero_approach.hpp"
+#include "saltus/event_integrator/run/approach/zero_approach.hpp"
 #include "saltus/event_integrator/run/compact_integration.hpp"
+#include "saltus/event_integrator/run/followed_choices.hpp"
 #include "saltus/event_integrator/run/output_rows.hpp"
 #include "saltus/event_integrator/run/step_attempt.hpp"
 #include "saltus/event_integrator/run/step_tolerances.hpp"
@@ -65,12 +69,6 @@ class Run {
     long events = 0;  ///< recorded before it
     OutputRows::Arrival row = OutputRows::Arrival::missing;
   };
-  /// Limits of switches that follow each other at once.
-  struct LimitsInARow {
-    int count = 0;
-    double last = 0.0;       ///< time of the last one
-    double first_lap = 0.0;  ///< of the sequence before the first one
-  };
   /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
   struct Landing {
     ReusedList<ExecutedJump> executed;
@@ -83,28 +81,14 @@ class Run {
     Transition transition;
   };
 
-  /// A function g inside ones that are slid on, which have a root of it: where |g / g'| was last seen to have halved.
-  struct Nearing {
-    int function = 0;
-    std::vector<int> around;
-    double t = 0.0;
-    double ratio = infinity;
-    double end = std::numeric_limits<double>::quiet_NaN();  ///< where g is 0, by what was seen until then
-  };
-
   struct RestingGuards {
     std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
   };
 
   bool begin();
   Step attempt();
-  [[nodiscard]] std::optional<Located> surface_within_rounding();
-  [[nodiscard]] std::optional<Located> rooted_surface_ahead(double until);
-  [[nodiscard]] bool is_repelled(const Located& located);
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
-  [[nodiscard]] std::vector<double> all_functions(double t, const double* x);
-  void find_functions(double t, const double* x, std::vector<double>& values);
   [[nodiscard]] std::string undefined_function_beyond();
   Step accept(double t_new);
   Step handle(const Located& located);
@@ -124,24 +108,18 @@ class Run {
   Arrival arrive(OutputRows::Arrival row);
   Step depart(const Arrival& arrival);
   [[nodiscard]] bool selections_jumped() const;
-  void choose(Transition& transition);
-  void choose_phase(Transition& transition);
-  void note_choice(long decision);
-  void begin_at_choice();
   Step leave_later();
-  void watch_for_families();
-  void look_for_families(double t_begin);
-  [[nodiscard]] double next_departure() const {
-    const double time = next_choice().departure();
-    return time > here_.t ? time : infinity;
+  /// Where the next step must end at the latest: times of jumps are hit exactly, like the end.
+  [[nodiscard]] double next_stop() const {
+    return std::min({options_.until, jumps_.next_time(), choices_.next_departure()});
   }
-  /// The next one of the choices that a run was asked for; one that never comes if there is none.
-  [[nodiscard]] Choice next_choice() const {
-    return next_choice_ < options_.choices.size() ? options_.choices[next_choice_] : Choice{-1};
+  [[nodiscard]] FollowedChoices::Progress progress() const {
+    auto statistics = result_.statistics;
+    statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
+    return {rows_.arrival(), statistics};
   }
-  /// Whether this is the alternative that the run was asked to go on with last.
-  [[nodiscard]] bool chooses_here(const Transition& transition) const {
-    return next_choice_ > 0 && transition.decision == chosen_ && !transition.alternatives.empty();
+  [[nodiscard]] SwitchAccumulation::Roots roots_of_cycles() const {
+    return zeros_.any_ending() ? SwitchAccumulation::Roots::ending : SwitchAccumulation::Roots::none;
   }
   bool change_mode(const Located& located);
   const ModeState& slid_on_freed(Occasion& occasion);
@@ -154,34 +132,22 @@ class Run {
   bool enter(const Transition& transition);
   void begin_spiral();
   void leave_root();
-  [[nodiscard]] int root_here();
   /// Where x and f are both 0 the step that was proposed says nothing.
   [[nodiscard]] double root_step() const { return std::max(1e-2 * here_.time_scale, 1e-8 * span()); }
   bool take_side_of_root();
   void settle_on_roots(const Located& located);
-  void watch_nested_roots();
-  void tighten_beside_nested_roots(double& atol, double& rtol);
-  [[nodiscard]] std::optional<Located> nested_roots_ahead();
-  [[nodiscard]] std::optional<double> end_of_nearing(Nearing& nearing);
-  [[nodiscard]] std::optional<Located> at_nested_roots(double end, const std::vector<std::size_t>& reached);
   Step arrive_at_nested_roots(const Located& located);
   void leave_nested_root();
   void note_time_scale(double h);
-  [[nodiscard]] bool keep_their_signs(const std::vector<double>& before, int surface, double t, const double* x);
-  void note_tightening_switch();
-  void note_tightening_switch(const SurfaceSwitch& change);
-  void note_switch_rates();
-  void follow_shrinking();
-  void end_shrinking();
+  void note_switch();
   void limit_beside_coalescence();
-  void tighten_beside_roots(double h);
+  void limit_beside_zeros(double h);
   void accumulate_switches();
-  [[nodiscard]] std::optional<SeriesLimit> drowned_here() const;
-  void go_on_from_drowned();
-  bool hold_what_drowns();
+  [[nodiscard]] std::optional<SeriesLimit> unresolved_here() const;
+  void go_on_from_unresolved();
+  bool hold_unresolved();
   bool follow_dense_laps();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
-  bool limits_repeat(double t);
   void pass_to(double t, std::vector<double> x);
   void go_on_from_limit();
   std::vector<std::size_t> fire_user_events(const std::vector<double>& x_before, const ModeState& before,
@@ -245,7 +211,7 @@ class Run {
   void row(double t, const std::vector<double>& x) { rows_.write(t, x); }
   /// For the steps of the mode behind an event. While switches tighten no step is like one before.
   void restart_control() {
-    steps_.restart_control(switch_laps_.empty() ? StepAttempt::Steps::may_repeat : StepAttempt::Steps::are_new);
+    steps_.restart_control(switches_.empty() ? StepAttempt::Steps::may_repeat : StepAttempt::Steps::are_new);
   }
   [[nodiscard]] double span() const { return options_.until - options_.from; }
   [[nodiscard]] std::string where() const;
@@ -259,20 +225,13 @@ class Run {
   FieldRates rates_;
   StepTolerances tolerances_;
   StepAttempt steps_;
-  double closed_lap_ = 0.0;            ///< the last one that they closed
-  std::vector<int> continued_roots_;   ///< surfaces whose regions' fields go on beyond them, less a root
-  std::vector<int> ending_roots_;      ///< those whose regions' fields do not
-  std::vector<Nearing> nearing_;       ///< of the mode
-  double nearing_since_ = 0.0;         ///< its begin
-  std::vector<double> nearing_slope_;  ///< a step before
-  double nearing_step_ = 0.0;          ///< that step
-  std::vector<double> rooted_values_;  ///< of event functions
-  double first_lap_ = 0.0;             ///< duration of the first one that was closed
-  LimitsInARow limits_in_a_row_;
-  std::optional<SeriesLimit> drowned_;  ///< the limit that the switch in hand is
+  std::optional<SeriesLimit> unresolved_;  ///< the limit that the current switch is
   Cells cells_;
   CellChange cell_change_ = CellChange::none;  ///< at the event being handled
   EventSearch search_;
+  ZeroApproach zeros_;
+  NestedZeroApproach nested_;
+  SwitchAccumulation switches_;
   Locator locator_;
   SingleSurface single_surface_;
   SurfacePair surface_pair_;
@@ -295,12 +254,9 @@ class Run {
   Contacts contacts_;
   Holding holding_;
   EventSeries jump_series_;
-  EventSeries switch_laps_;                  ///< of switches, by surface and mode behind, while they tighten
-  std::vector<int> switch_labels_;           ///< of the switch in hand
-  std::vector<double> shortest_switch_lap_;  ///< by the same: shorter laps drown in the rounding of psi
-  std::vector<HeldGuard> last_guard_;        ///< by jump: the guard that was at zero when it was executed last
-  std::vector<double> last_rate_;            ///< by jump: |dg/dt| then
-  std::vector<double> shortest_lap_;         ///< by jump: shorter ones drown in the rounding of the guard
+  std::vector<HeldGuard> last_guard_;  ///< by jump: the guard that was at zero when it was executed last
+  std::vector<double> last_rate_;      ///< by jump: |dg/dt| then
+  std::vector<double> shortest_lap_;   ///< by jump: shorter ones drown in the rounding of the guard
   Recorder recorder_;
 
   OutputRows rows_;
@@ -314,22 +270,11 @@ class Run {
   Transition transition_;
   std::optional<SpiralStart> spiral_start_;  ///< of the mode just entered: time and state jump over the first lap
   int rooted_ = -1;                          ///< of the mode just entered: the surface that it leaves along a root
-  std::vector<std::size_t> all_searched_;    ///< the numbers of all functions that are searched
-  std::vector<double> values_here_;          ///< of these
-  std::optional<double>
-      no_surface_at_;  ///< where surface_within_rounding() has found none, and nothing else has happened
-  double root_tried_at_ = -infinity;
-  bool undefined_ahead_ = false;  ///< of the last attempts one was undefined
-  bool jumped_ = false;           ///< at the event in hand
-  Families families_;
-  long decisions_ = 0;  ///< with alternatives, or of spirals, so far
-  long chosen_ = -1;    ///< the one at which the last choice was made
-  std::size_t next_choice_ = 0;
-  std::size_t choice_row_ = 0;
-  result::Statistics before_choice_;
+  bool undefined_ahead_ = false;             ///< of the last attempts one was undefined
+  bool jumped_ = false;                      ///< at the event in hand
+  FollowedChoices choices_;
   double last_event_time_ = -infinity;
   long evaluations_before_;  ///< the kernel may have been used before
-  SwitchSeries series_;
   CompactIntegration result_;
   bool running_ = true;
 };

@@ -156,7 +156,7 @@ bool Run::decide_behind_jumps(Landing& landing) {
     fail(landing.transition.termination, landing.transition.message);
     return false;
   }
-  choose(landing.transition);
+  choices_.choose(landing.transition, progress());
   return enter(landing.transition);
 }
 
