@@ -40,24 +40,19 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       nested_(kernel, here_, search_, tolerances_, zeros_),
       switches_(surroundings_, here_, options.until - options.from, tolerances_),
       locator_(options.method, kernel.states(), steps_.stepper(), field_, search_, tolerances_.step()),
-      single_surface_(surroundings_),
-      surface_pair_(surroundings_),
-      field_memory_(kernel),
-      slope_beyond_(at(kernel.states())),
+      fast_(surroundings_),
       user_events_(kernel, system),
       jumps_(kernel, system, options.from),
       contacts_(kernel, system),
       holding_(kernel, system),
-      last_guard_(system.jumps.size(), {{-1, -1}, -1}),
-      last_rate_(system.jumps.size(), 0.0),
-      shortest_lap_(system.jumps.size(), 0.0),
+      cascade_(surroundings_, here_, field_, search_, jumps_, contacts_, holding_),
+      jump_accumulation_(surroundings_, here_),
       recorder_(kernel, system),
       rows_(kernel, options, here_, field_, holding_, recorder_),
-      free_slope_(here_.x.size()),
       choices_(surroundings_, options, here_, recorder_),
       evaluations_before_(kernel.field_evaluations()) {
   holding_.keep(&contacts_);
-  ordinary_ = way == Way::short_where_ordinary && has_ordinary_switches();
+  fast_.applies = way == Way::short_where_ordinary && has_ordinary_switches();
 }
 
 std::string Run::where() const {
@@ -98,14 +93,14 @@ bool Run::enter(const Transition& transition) {
     return false;
   }
   search_.enter(here_.state, transition.zero_order, here_.t, here_.x.data());
-  spiral_start_ = transition.beyond_spiral;
-  rooted_ = transition.rooted;
+  begun_.spiral = transition.beyond_spiral;
+  begun_.rooted = transition.rooted;
   return true;
 }
 
 /// Over the first lap of a spiral that leaves an intersection, which is too small to be seen.
 void Run::begin_spiral() {
-  const SpiralStart start = *std::exchange(spiral_start_, std::nullopt);
+  const SpiralStart start = *std::exchange(begun_.spiral, std::nullopt);
   const double t_new = std::min(here_.t + start.duration, options_.until);
   rows_.each_until(here_.t, t_new, [&](double t) { rows_.write(t, start.x); });
   here_.t = t_new;
@@ -127,8 +122,8 @@ bool Run::begin() {
   }
   if (!cells_.empty())
     cells_.locate(here_.t, here_.x.data(), std::vector<double>(at(kernel_.switching_functions()), 0.5));
-  Landing& landing = landing_here();
-  if (!begin_jumps(landing)) {
+  cascade_.begin();
+  if (!begin_jumps()) {
     recorder_.row(here_.t, here_.x, here_.state, here_.state.alpha);
     return false;
   }
@@ -153,8 +148,8 @@ bool Run::begin() {
   }
   choices_.choose(start.transition, progress());
   here_.state = start.transition.state;
-  landing.transition = start.transition;
-  if (!enter(start.transition) || !settle_at_start(landing)) {
+  cascade_.transition() = start.transition;
+  if (!enter(start.transition) || !settle_at_start()) {
     recorder_.row(here_.t, here_.x, here_.state, here_.state.alpha);
     return false;
   }
@@ -165,21 +160,21 @@ bool Run::begin() {
   }
   auto transition = start.transition;
   transition.state = here_.state;
-  if (!landing.executed.empty()) {
-    recorder_.jumped(here_.t, landing.executed.items(), nullptr, landing.transition);
-    if (!landing.resting.empty()) {
-      recorder_.accumulated(here_.t, landing.resting, {here_.x, here_.x, here_.state, here_.state}, resting_reason);
+  if (!cascade_.executed().empty()) {
+    recorder_.jumped(here_.t, cascade_.executed().items(), nullptr, cascade_.transition());
+    if (!cascade_.resting().empty()) {
+      recorder_.accumulated(here_.t, cascade_.resting(), {here_.x, here_.x, here_.state, here_.state}, resting_reason);
     }
-    last_event_time_ = here_.t;
+    event_.last_time = here_.t;
   } else if (!listed.empty() && recorder_.started(here_.t, here_.x, transition, listed))
     row(here_.t, here_.x);
   static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));
   start_step();
   here_.time_scale = here_.h;
   const auto& orders = start.transition.zero_order;
-  if (rooted_ < 0 && std::any_of(orders.begin(), orders.end(), [](int order) { return order > 1; })) {
-    rooted_ = zeros_.root_here();
-    if (rooted_ >= 0 && !take_side_of_root()) return false;
+  if (begun_.rooted < 0 && std::any_of(orders.begin(), orders.end(), [](int order) { return order > 1; })) {
+    begun_.rooted = zeros_.root_here();
+    if (begun_.rooted >= 0 && !take_side_of_root()) return false;
   }
   here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
   rows_.skip_here();
@@ -196,8 +191,8 @@ CompactIntegration Run::to_end() {
                                                        model::vanishing_norm(surroundings_.system, here_.t, here_.x)));
         break;
       }
-      if (spiral_start_) begin_spiral();
-      if (rooted_ >= 0) leave_root();
+      if (begun_.spiral) begin_spiral();
+      if (begun_.rooted >= 0) leave_root();
       if (!running_ || here_.t >= options_.until) break;
       undefined_ahead_ = false;
       const double h = std::max(here_.h, 2.0 * here_.smallest_step());

@@ -17,27 +17,27 @@ Run::Step Run::leave_later() {
   if (family == nullptr) return Step::taken;
   const Arrival arrival =
       arrive(recorder_.ends_at(here_.t) ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
-  Occasion& occasion = occasion_;
+  Occasion& occasion = event_.occasion;
   occasion = Occasion{};
   occasion.t = here_.t;
   occasion.x = here_.x.data();
   occasion.time_scale = here_.time_scale;
   occasion.at_zero = here_.state.sliding;
   for (const auto& given : family->given) occasion.touched.push_back(given.surface);
-  auto left = decide_with(surroundings_, before_, occasion, family->given);
+  auto left = decide_with(surroundings_, event_.before, occasion, family->given);
   if (!left) return Step::taken;
   left->alternatives.emplace_back();
-  left->alternatives.back().state = before_;
+  left->alternatives.back().state = event_.before;
   for (const auto& other : choices_.families().open()) {
     if (&other == family) continue;
-    if (auto also = decide_with(surroundings_, before_, occasion, other.given)) {
+    if (auto also = decide_with(surroundings_, event_.before, occasion, other.given)) {
       left->alternatives.push_back(std::move(*also));
     }
   }
   left->unique = false;
   left->reason = "followed as a branch: leaves at one of the times at which it may" +
                  (left->reason.empty() ? "" : "; " + left->reason);
-  transition_ = std::move(*left);
+  event_.transition = std::move(*left);
   choices_.depart(progress());
   static_cast<void>(go_on());
   return depart(arrival);

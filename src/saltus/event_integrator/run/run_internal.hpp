@@ -33,6 +33,8 @@
 #include "saltus/event_integrator/run/approach/zero_approach.hpp"
 #include "saltus/event_integrator/run/compact_integration.hpp"
 #include "saltus/event_integrator/run/followed_choices.hpp"
+#include "saltus/event_integrator/run/jumps/jump_accumulation.hpp"
+#include "saltus/event_integrator/run/jumps/jump_cascade.hpp"
 #include "saltus/event_integrator/run/output_rows.hpp"
 #include "saltus/event_integrator/run/step_attempt.hpp"
 #include "saltus/event_integrator/run/step_tolerances.hpp"
@@ -44,7 +46,7 @@
 
 namespace saltus::event_integrator {
 
-/// Of an accumulation that is one at once.
+/// The reason of a jump with restitution 0: the limit of its sequence is reached at once.
 inline constexpr const char* resting_reason =
     "the jump leaves its guard at 0 without a velocity: the limit of its sequence at once";
 
@@ -69,22 +71,6 @@ class Run {
     long events = 0;  ///< recorded before it
     OutputRows::Arrival row = OutputRows::Arrival::missing;
   };
-  /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
-  struct Landing {
-    ReusedList<ExecutedJump> executed;
-    std::vector<int> zeros;           ///< event functions that are at zero here whatever is left of their value
-    std::vector<double> zero_values;  ///< what is left
-    std::vector<Rate> rates;          ///< by event function: largest |dg/dt| of guards of jumps at this time
-    std::vector<std::optional<Motion>> motions;  ///< by event function: found since the mode here was decided
-    std::vector<HeldGuard> held_before;
-    std::vector<int> resting;  ///< jumps whose guards stay at zero from here on
-    Transition transition;
-  };
-
-  struct RestingGuards {
-    std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
-  };
-
   bool begin();
   Step attempt();
   Step undefined_step();
@@ -154,37 +140,21 @@ class Run {
                                             const std::vector<std::size_t>& before_jumps = {});
   void flip_user_functions(const Located& located);
 
-  bool begin_jumps(Landing& landing);
-  bool settle_at_start(Landing& landing);
+  bool begin_jumps();
+  bool settle_at_start();
   Step jump_in_time();
-  bool jump(const ModeState& before, const std::vector<double>& x_before, Landing& landing);
-  bool settle_jumps(Landing& landing);
-  bool execute_jump(Landing& landing);
-  bool begin_contacts(Landing& landing);
+  bool jump(const ModeState& before, const std::vector<double>& x_before);
+  bool settle_jumps();
+  bool execute_jump();
+  bool begin_contacts();
   bool move_contacts();
   void settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before);
-  bool decide_behind_jumps(Landing& landing);
-  bool hold_resting(Landing& landing);
-  bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
-  bool free_passing(Landing& landing);
-  bool change_nothing(const std::vector<int>& jumps, Landing& landing);
+  bool decide_behind_jumps();
+  bool hold_resting();
+  bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose);
+  bool free_passing();
+  bool change_nothing(const std::vector<int>& jumps);
   bool find_resting(RestingSurfaces& resting);
-  std::vector<int> surfaces_keeping(int function);
-  RestingGuards pressed_guards(Landing& landing);
-  std::vector<HeldGuard> guards_kept_by_sliding(Landing& landing, const RestingGuards& others);
-  void give_directions(Landing& landing);
-  void leave_guards(Landing& landing);
-  [[nodiscard]] Landing& landing_here();
-  [[nodiscard]] Landing& landing_at(const Located& located);
-  void find_values();
-  void note_guards(Landing& landing);
-  void note_series(const Landing& landing);
-  void drop_zeros(Landing& landing);
-  void read_user_signs(const Landing& landing);
-  [[nodiscard]] double size_at(int function);
-  [[nodiscard]] Motion motion_of(int function, Landing& landing);
-  [[nodiscard]] Occasion at_this_time() const;
-  [[nodiscard]] Motion find_motion(int function, const Landing& landing);
   bool release(const Located& located);
   void accumulate_jumps();
   void follow_limit(const SeriesLimit& limit);
@@ -216,6 +186,40 @@ class Run {
   [[nodiscard]] double span() const { return options_.until - options_.from; }
   [[nodiscard]] std::string where() const;
 
+  /// The event that is handled now, or was last.
+  struct CurrentEvent {
+    ModeState before;  ///< the mode before it
+    ModeState slid;    ///< that mode with what a released guard has kept at zero slid on
+    std::vector<double> x_before;
+    std::vector<long> cells_before;
+    CellChange cell_change = CellChange::none;
+    bool jumped = false;
+    std::vector<int> freed;  ///< surfaces that a guard has kept at zero, which it has released
+    Occasion occasion;
+    Transition transition;
+    std::optional<SeriesLimit> unresolved;  ///< the limit that its switch is
+    double last_time = -infinity;           ///< of the last one that was recorded
+  };
+  /// How the solution leaves the point where its mode has just begun.
+  struct ModeBegin {
+    std::optional<SpiralStart> spiral;  ///< time and state jump over the first cycle
+    int rooted = -1;                    ///< the surface that it leaves along a root
+  };
+  /// What decides and enters ordinary switches without detours.
+  struct FastSwitch {
+    explicit FastSwitch(const Surroundings& surroundings)
+        : single(surroundings),
+          pair(surroundings),
+          fields(surroundings.kernel),
+          slope_beyond(at(surroundings.kernel.states())) {}
+    SingleSurface single;
+    SurfacePair pair;
+    bool applies = false;  ///< the model and the options have nothing that a switch of one surface might concern
+    FieldMemory fields;
+    std::vector<int> zero_order;       ///< n_psi
+    std::vector<double> slope_beyond;  ///< of the region on the other side of a surface
+  };
+
   const evaluation::ModelKernel& kernel_;
   const IntegrationOptions& options_;
   const StepObserver& observer_;
@@ -225,55 +229,25 @@ class Run {
   FieldRates rates_;
   StepTolerances tolerances_;
   StepAttempt steps_;
-  std::optional<SeriesLimit> unresolved_;  ///< the limit that the current switch is
   Cells cells_;
-  CellChange cell_change_ = CellChange::none;  ///< at the event being handled
   EventSearch search_;
   ZeroApproach zeros_;
   NestedZeroApproach nested_;
   SwitchAccumulation switches_;
   Locator locator_;
-  SingleSurface single_surface_;
-  SurfacePair surface_pair_;
-  bool ordinary_ = false;  ///< the model and the options have nothing that a switch of one surface might concern
-  FieldMemory field_memory_;
-  std::vector<int> zero_order_;       ///< n_psi
-  std::vector<double> slope_beyond_;  ///< of the region on the other side of a surface
+  FastSwitch fast_;
   UserEvents user_events_;
   Jumps jumps_;
-  Landing landing_;  ///< of the event in hand: its storage is used again
-  /// All functions of the kernel at one point, while jumps are executed.
-  struct FunctionValues {
-    std::vector<double> value, magnitude, slope;
-  };
-  FunctionValues values_;
-  std::vector<int> user_signs_;   ///< under construction, as are
-  std::vector<bool> user_zeros_;  ///< these
-  std::vector<int> executed_;     ///< jumps, in their order
-  std::vector<int> freed_;        ///< surfaces that a guard has kept at zero, which was released by the event in hand
   Contacts contacts_;
   Holding holding_;
-  EventSeries jump_series_;
-  std::vector<HeldGuard> last_guard_;  ///< by jump: the guard that was at zero when it was executed last
-  std::vector<double> last_rate_;      ///< by jump: |dg/dt| then
-  std::vector<double> shortest_lap_;   ///< by jump: shorter ones drown in the rounding of the guard
+  JumpCascade cascade_;
+  JumpAccumulation jump_accumulation_;
   Recorder recorder_;
-
   OutputRows rows_;
-  std::vector<double> free_slope_;  ///< of a field that is asked for at the position
-
-  ModeState before_;  ///< of the event being handled, as are the next four
-  ModeState slid_;    ///< before_ with what a released guard has kept at zero slid on
-  std::vector<double> x_before_;
-  std::vector<long> cells_before_;
-  Occasion occasion_;
-  Transition transition_;
-  std::optional<SpiralStart> spiral_start_;  ///< of the mode just entered: time and state jump over the first lap
-  int rooted_ = -1;                          ///< of the mode just entered: the surface that it leaves along a root
-  bool undefined_ahead_ = false;             ///< of the last attempts one was undefined
-  bool jumped_ = false;                      ///< at the event in hand
+  CurrentEvent event_;
+  ModeBegin begun_;
+  bool undefined_ahead_ = false;  ///< one of the last attempts was undefined
   FollowedChoices choices_;
-  double last_event_time_ = -infinity;
   long evaluations_before_;  ///< the kernel may have been used before
   CompactIntegration result_;
   bool running_ = true;

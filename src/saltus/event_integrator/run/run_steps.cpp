@@ -87,9 +87,9 @@ std::string Run::undefined_function_beyond() {
 
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
-  rooted_ = zeros_.root_here_once();
+  begun_.rooted = zeros_.root_here_once();
   const double before = here_.t;
-  if (rooted_ >= 0) leave_root();
+  if (begun_.rooted >= 0) leave_root();
   if (here_.t > before) return running_ ? Step::taken : Step::failed;
   if (const auto located = zeros_.beside_undefined()) return handle(*located);
   if (stopped_by_singularity()) return Step::failed;

@@ -69,11 +69,12 @@ std::optional<double> Run::shrinking_exponent(long n) const {
 /// Whether no selection of a surface moves psi at once: d psi/dt is the same on both sides (relative degree 2 or more).
 bool Run::has_one_rate(int surface) {
   std::vector<double> alpha = here_.state.alpha;
+  std::vector<double> slope(here_.x.size());
   Rate sides[2];
   for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
     alpha[at(surface)] = static_cast<double>(side);
-    kernel_.field(here_.t, here_.x.data(), alpha.data(), free_slope_.data());
-    sides[side] = rates_.along(surface, free_slope_);
+    kernel_.field(here_.t, here_.x.data(), alpha.data(), slope.data());
+    sides[side] = rates_.along(surface, slope);
   }
   constexpr double rounding = 1e-12;
   return std::abs(sides[1].value - sides[0].value) <= rounding * std::max(sides[0].terms, sides[1].terms);

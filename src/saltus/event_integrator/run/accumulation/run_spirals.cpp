@@ -84,9 +84,9 @@ void put_onto_nested(const evaluation::ModelKernel& kernel, const ModeState& sta
 
 /// Notes the current switch.
 void Run::note_switch() {
-  if (before_.mode == here_.state.mode) return;
-  if (jumped_) return switches_.clear();
-  switches_.note(before_);
+  if (event_.before.mode == here_.state.mode) return;
+  if (event_.jumped) return switches_.clear();
+  switches_.note(event_.before);
 }
 
 /// Behind a switch that was noted: if those up to here have a limit that nothing else precedes, the run goes on from
@@ -107,18 +107,18 @@ void Run::accumulate_switches() {
 /// The current switch cannot be decided, in a cycle beside a root that is not resolved, nor are the rates of the fields
 /// there: cycles have their limit where they are. nullopt where it is none of such cycles.
 std::optional<SeriesLimit> Run::unresolved_here() const {
-  if (occasion_.touched.size() != 1) return std::nullopt;
-  const int surface = occasion_.touched.front();
+  if (event_.occasion.touched.size() != 1) return std::nullopt;
+  const int surface = event_.occasion.touched.front();
   if (!zeros_.ends_at(surface)) return std::nullopt;
-  return switches_.unresolved(surface, before_.mode[at(surface)], here_.t - last_event_time_);
+  return switches_.unresolved(surface, event_.before.mode[at(surface)], here_.t - event_.last_time);
 }
 
 /// Goes on from the limit that an undecided switch has turned out to be.
 void Run::go_on_from_unresolved() {
-  const SeriesLimit limit = *std::exchange(unresolved_, std::nullopt);
+  const SeriesLimit limit = *std::exchange(event_.unresolved, std::nullopt);
   switches_.clear();
   switches_.limit_tolerances(roots_of_cycles());
-  if (!follow_spiral(limit, Behind::any)) fail(transition_.termination, std::move(transition_.message));
+  if (!follow_spiral(limit, Behind::any)) fail(event_.transition.termination, std::move(event_.transition.message));
 }
 
 /// Events cannot be told apart here: surfaces that are zero together, as far as the tolerances tell, may be held so,
@@ -185,7 +185,7 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   for (const int label : limit.events) surfaces.push_back(surface_of(label));
   recorder_.spiralled(here_.t, surfaces, {x_last, here_.x, before, here_.state}, transition, why);
   row(here_.t, here_.x);
-  last_event_time_ = here_.t;
+  event_.last_time = here_.t;
   restart_control();
   static_cast<void>(steps_.memory().change(here_.state.mode, here_.t, here_.h));
   go_on_from_limit();

@@ -18,7 +18,8 @@ Run::Step Run::arrive_at_nested_roots(const Located& located) {
     }
   });
   // Selections are 0/0 at the end: those of the last step are theirs to what changes over this way.
-  field_(here_.t, here_.x.data(), free_slope_.data());
+  std::vector<double> slope(here_.x.size());
+  field_(here_.t, here_.x.data(), slope.data());
   if (is_finite(field_.alpha())) here_.state.alpha = field_.alpha();
   // The last steps may have been short because of rounding.
   here_.time_scale = std::max({here_.time_scale, located.t - here_.t, 1e-3 * (here_.t - nested_.since())});

@@ -46,29 +46,30 @@ void Run::settle_on_roots(const Located& located) {
 /// laps that shrink, and say it.
 void Run::note_time_scale(double h) {
   const bool is_cut = undefined_ahead_ && zeros_.any_continued();
-  here_.time_scale = is_cut ? std::max(h, std::min(here_.time_scale, here_.t - last_event_time_)) : h;
+  here_.time_scale = is_cut ? std::max(h, std::min(here_.time_scale, here_.t - event_.last_time)) : h;
 }
 
 /// A state at rest on a kink is on either side of it; the root says into which one it goes. False where the run ends.
 bool Run::take_side_of_root() {
-  const auto j = at(rooted_);
+  const auto j = at(begun_.rooted);
   if (surroundings_.system.switching[j].role != model::SwitchingRole::kink) return true;
   const auto leads_away = [&](const ModeState& state) {
-    return RootedExit(kernel_, surroundings_.affine_in_alpha, state, rooted_).leads_away(here_.t, here_.x, root_step());
+    return RootedExit(kernel_, surroundings_.affine_in_alpha, state, begun_.rooted)
+        .leads_away(here_.t, here_.x, root_step());
   };
   Transition other;
   other.state = here_.state;
-  set_surface(other.state, rooted_, -here_.state.mode[j], here_.state.mode[j] > 0 ? 0.0 : 1.0);
+  set_surface(other.state, begun_.rooted, -here_.state.mode[j], here_.state.mode[j] > 0 ? 0.0 : 1.0);
   set_corner_alpha(other.state);
   other.zero_order.assign(here_.state.mode.size(), 0);
   other.zero_order[j] = 2;
-  other.rooted = rooted_;
+  other.rooted = begun_.rooted;
   if (leads_away(here_.state) || !leads_away(other.state)) return true;
   return enter(other);
 }
 
 void Run::leave_root() {
-  const int surface = std::exchange(rooted_, -1);
+  const int surface = std::exchange(begun_.rooted, -1);
   if (!kernel_.has_root(surface)) return leave_nested_root();
   RootedExit exit(kernel_, surroundings_.affine_in_alpha, here_.state, surface);
   const double begin = here_.t;
