@@ -9,7 +9,7 @@
 #include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/options.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
-#include "saltus/event_integrator/run/step_attempt.hpp"
+#include "saltus/event_integrator/steps/step_attempt.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::event_integrator {

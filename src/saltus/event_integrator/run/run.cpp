@@ -5,11 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/mode/undefined.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
-#include "saltus/event_integrator/run/thin_layers.hpp"
+#include "saltus/event_integrator/steps/thin_layers.hpp"
 #include "saltus/model/vanishing_norm.hpp"
 
 namespace saltus::event_integrator {
@@ -23,15 +22,12 @@ bool is_affine(const model::System& system) {
 
 }  // namespace
 
-Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-         const StepObserver& observer, Way way)
+Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options, Way way)
     : kernel_(kernel),
       options_(options),
-      observer_(observer),
       surroundings_{kernel, system, is_affine(system), options.selection, options.scaling},
       field_(kernel, surroundings_.affine_in_alpha),
       here_(options.from, system.initial_state),
-      rates_(kernel, here_),
       tolerances_(options.tolerances),
       steps_(options, system, field_, here_, tolerances_),
       cells_(kernel),
@@ -50,7 +46,7 @@ Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, con
       recorder_(kernel, system),
       rows_(kernel, options, here_, field_, holding_, recorder_),
       choices_(surroundings_, options, here_, recorder_),
-      evaluations_before_(kernel.field_evaluations()) {
+      outcome_{.evaluations_before = kernel.field_evaluations()} {
   holding_.keep(&contacts_);
   fast_.applies = way == Way::short_where_ordinary && has_ordinary_switches();
 }
@@ -64,9 +60,9 @@ std::string Run::where() const {
 }
 
 void Run::fail(Termination termination, std::string message) {
-  result_.status.termination = termination;
-  result_.status.message = std::move(message);
-  running_ = false;
+  outcome_.result.status.termination = termination;
+  outcome_.result.status.message = std::move(message);
+  outcome_.running = false;
 }
 
 bool Run::enter(const Transition& transition) {
@@ -93,14 +89,14 @@ bool Run::enter(const Transition& transition) {
     return false;
   }
   search_.enter(here_.state, transition.zero_order, here_.t, here_.x.data());
-  begun_.spiral = transition.beyond_spiral;
-  begun_.rooted = transition.rooted;
+  event_.spiral = transition.beyond_spiral;
+  event_.rooted = transition.rooted;
   return true;
 }
 
 /// Over the first lap of a spiral that leaves an intersection, which is too small to be seen.
 void Run::begin_spiral() {
-  const SpiralStart start = *std::exchange(begun_.spiral, std::nullopt);
+  const SpiralStart start = *std::exchange(event_.spiral, std::nullopt);
   const double t_new = std::min(here_.t + start.duration, options_.until);
   rows_.each_until(here_.t, t_new, [&](double t) { rows_.write(t, start.x); });
   here_.t = t_new;
@@ -111,6 +107,25 @@ void Run::begin_spiral() {
   beyond.zero_order[at(start.surface)] = 1;
   if (!enter(beyond)) return;
   if (rows_.at_steps()) row(here_.t, here_.x);
+}
+
+/// The start is an event where jumps are due, or something listed is at zero.
+void Run::record_start(const Start& start) {
+  row(here_.t, here_.x);
+  auto listed = start.at_zero;
+  for (const auto& [surface, mode] : options_.initial_mode) {
+    if (std::find(listed.begin(), listed.end(), surface) == listed.end()) listed.push_back(surface);
+  }
+  auto transition = start.transition;
+  transition.state = here_.state;
+  if (!cascade_.executed().empty()) {
+    recorder_.jumped(here_.t, cascade_.executed().items(), nullptr, cascade_.transition());
+    if (!cascade_.resting().empty()) {
+      recorder_.accumulated(here_.t, cascade_.resting(), {here_.x, here_.x, here_.state, here_.state}, resting_reason);
+    }
+    event_.last_time = here_.t;
+  } else if (!listed.empty() && recorder_.started(here_.t, here_.x, transition, listed))
+    row(here_.t, here_.x);
 }
 
 bool Run::begin() {
@@ -153,28 +168,14 @@ bool Run::begin() {
     recorder_.row(here_.t, here_.x, here_.state, here_.state.alpha);
     return false;
   }
-  row(here_.t, here_.x);
-  auto listed = start.at_zero;
-  for (const auto& [surface, mode] : options_.initial_mode) {
-    if (std::find(listed.begin(), listed.end(), surface) == listed.end()) listed.push_back(surface);
-  }
-  auto transition = start.transition;
-  transition.state = here_.state;
-  if (!cascade_.executed().empty()) {
-    recorder_.jumped(here_.t, cascade_.executed().items(), nullptr, cascade_.transition());
-    if (!cascade_.resting().empty()) {
-      recorder_.accumulated(here_.t, cascade_.resting(), {here_.x, here_.x, here_.state, here_.state}, resting_reason);
-    }
-    event_.last_time = here_.t;
-  } else if (!listed.empty() && recorder_.started(here_.t, here_.x, transition, listed))
-    row(here_.t, here_.x);
+  record_start(start);
   static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));
   start_step();
   here_.time_scale = here_.h;
   const auto& orders = start.transition.zero_order;
-  if (begun_.rooted < 0 && std::any_of(orders.begin(), orders.end(), [](int order) { return order > 1; })) {
-    begun_.rooted = zeros_.root_here();
-    if (begun_.rooted >= 0 && !take_side_of_root()) return false;
+  if (event_.rooted < 0 && std::any_of(orders.begin(), orders.end(), [](int order) { return order > 1; })) {
+    event_.rooted = zeros_.root_here();
+    if (event_.rooted >= 0 && !take_side_of_root()) return false;
   }
   here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
   rows_.skip_here();
@@ -182,41 +183,41 @@ bool Run::begin() {
   return true;
 }
 
-CompactIntegration Run::to_end() {
+CompactIntegration Run::to_end(const StepObserver& observer) {
   if (begin()) {
-    while (running_ && here_.t < options_.until) {
+    while (outcome_.running && here_.t < options_.until) {
       contacts_.forget_impulses(here_.x);
-      if (result_.statistics.steps + result_.statistics.rejected >= options_.max_steps) {
+      if (outcome_.result.statistics.steps + outcome_.result.statistics.rejected >= options_.max_steps) {
         fail(Termination::iteration_limit, fmt::format("max_steps = {} reached at {}{}", options_.max_steps, where(),
                                                        model::vanishing_norm(surroundings_.system, here_.t, here_.x)));
         break;
       }
-      if (begun_.spiral) begin_spiral();
-      if (begun_.rooted >= 0) leave_root();
-      if (!running_ || here_.t >= options_.until) break;
-      undefined_ahead_ = false;
+      if (event_.spiral) begin_spiral();
+      if (event_.rooted >= 0) leave_root();
+      if (!outcome_.running || here_.t >= options_.until) break;
       const double h = std::max(here_.h, 2.0 * here_.smallest_step());
-      steps_.set_length(options_.max_step ? std::min(h, *options_.max_step) : h);
-      while (running_ && attempt() == Step::shortened) {
+      steps_.begin(options_.max_step ? std::min(h, *options_.max_step) : h);
+      while (outcome_.running && attempt() == Step::shortened) {
       }
-      if (running_ && observer_ && observer_({here_.t, result_.statistics.steps, recorder_.events()}) == Continue::no) {
+      if (outcome_.running && observer &&
+          observer({here_.t, outcome_.result.statistics.steps, recorder_.events()}) == Continue::no) {
         fail(Termination::stopped_by_user, fmt::format("stopped at {}", where()));
       }
     }
   }
   if (!recorder_.ends_at(here_.t)) row(here_.t, here_.x);
   if (const auto stiff_at = steps_.stiff_at()) {
-    result_.status.message +=
+    outcome_.result.status.message +=
         fmt::format("{}the model looks stiff from t = {:.6g} on: integrator = \"radau5\" may need far fewer steps",
-                    result_.status.message.empty() ? "" : "; ", *stiff_at);
+                    outcome_.result.status.message.empty() ? "" : "; ", *stiff_at);
   }
-  result_.status.time_reached = here_.t;
-  result_.statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
+  outcome_.result.status.time_reached = here_.t;
+  outcome_.result.statistics.rhs_evaluations = kernel_.field_evaluations() - outcome_.evaluations_before;
   choices_.families().close(here_.t);
-  result_.recording = recorder_.take();
-  result_.recording.families = choices_.families().take();
-  result_.chosen = choices_.begin_at_choice(result_.recording, result_.statistics);
-  return std::move(result_);
+  outcome_.result.recording = recorder_.take();
+  outcome_.result.recording.families = choices_.families().take();
+  outcome_.result.chosen = choices_.begin_at_choice(outcome_.result.recording, outcome_.result.statistics);
+  return std::move(outcome_.result);
 }
 
 }  // namespace saltus::event_integrator

@@ -47,7 +47,7 @@ void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x
     row(here_.t, here_.x);
     event_.last_time = here_.t;
   };
-  if (!running_) return accumulated();
+  if (!outcome_.running) return accumulated();
   cascade_.drop_zeros();
   cascade_.read_user_signs();
   if (!decide_behind_jumps()) return accumulated();

@@ -118,7 +118,7 @@ bool Run::pass(const Located& located, int surface) {
   if (too_many_events()) return true;
   note_switch();
   accumulate_switches();
-  if (running_) choices_.watch(field_);
+  if (outcome_.running) choices_.watch(field_);
   return true;
 }
 
@@ -227,7 +227,7 @@ void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
   if (too_many_events()) return;
   switches_.note(change);
   accumulate_switches();
-  if (change.slid != nullptr && running_) choices_.watch(field_);
+  if (change.slid != nullptr && outcome_.running) choices_.watch(field_);
 }
 
 /// The functions of the mode behind.

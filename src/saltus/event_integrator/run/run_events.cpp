@@ -8,6 +8,7 @@
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
+#include "saltus/event_integrator/sequences/contracting_cycles.hpp"
 
 namespace saltus::event_integrator {
 
@@ -25,7 +26,7 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
   });
   for (const std::size_t event : fired) {
     recorder_.user(here_.t, {x_before, here_.x, before, here_.state}, static_cast<int>(event));
-    if (user_events_.stops(event) && running_) {
+    if (user_events_.stops(event) && outcome_.running) {
       fail(Termination::stopped_by_event,
            fmt::format("stopped by the event '{}'", surroundings_.system.events[event].name));
     }
@@ -35,7 +36,7 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
 
 bool Run::too_many_events() {
   if (recorder_.events() >= options_.max_events) {
-    const std::string laps = shrinking_laps();
+    const std::string laps = ContractingCycles(surroundings_, here_, recorder_).describe();
     const std::string advice = "see in the table of events what switches ever faster";
     fail(Termination::iteration_limit,
          fmt::format("max_events = {} reached at {}; raise simulate.max_events if they are meant, or {}",
@@ -58,9 +59,24 @@ void Run::accumulates() {
           here_.t));
 }
 
+/// Whether a nested function reaches 0 on one side only of a surface that is slid on; that ends the run.
+bool Run::jumps_while_sliding(int surface) {
+  if (continuous_across(kernel_, corners_inside(kernel_, here_.state, surface), surface, here_.t, here_.x,
+                        here_.time_scale)) {
+    return false;
+  }
+  const auto name = [&](int j) { return surroundings_.system.switching[at(j)].name; };
+  fail(Termination::outside_class,
+       fmt::format("'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
+                   "it at t = {:.17g}: rewrite the nested term with named switching functions",
+                   name(surface), name(sliding_inside(kernel_, here_.state, surface).front()), here_.t));
+  return true;
+}
+
 bool Run::change_mode(const Located& located) {
   event_.cell_change = leave_cells(located);
-  if (event_.cell_change == CellChange::jump || change_resting_with_cells()) return running_ && jump_with_cells();
+  if (event_.cell_change == CellChange::jump || change_resting_with_cells())
+    return outcome_.running && jump_with_cells();
   Occasion& occasion = event_.occasion;
   occasion.t = here_.t;
   occasion.x = here_.x.data();
@@ -84,18 +100,7 @@ bool Run::change_mode(const Located& located) {
       occasion.time_scale = std::max(occasion.time_scale, steps_.longest());
     }
     if (function.kind == FunctionKind::instability) occasion.destabilised.push_back(function.index);
-    const bool nested = function.kind == FunctionKind::nested;
-    if (nested && !continuous_across(kernel_, corners_inside(kernel_, here_.state, function.index), function.index,
-                                     here_.t, here_.x, here_.time_scale)) {
-      fail(Termination::outside_class,
-           fmt::format(
-               "'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
-               "it at t = {:.17g}: rewrite the nested term with named switching functions",
-               surroundings_.system.switching[at(function.index)].name,
-               surroundings_.system.switching[at(sliding_inside(kernel_, here_.state, function.index).front())].name,
-               here_.t));
-      return false;
-    }
+    if (function.kind == FunctionKind::nested && jumps_while_sliding(function.index)) return false;
     occasion.at_zero.push_back(function.index);
     occasion.touched.push_back(function.index);
   }
@@ -195,7 +200,7 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
   zeros_.forget();
-  if (is_ordinary(located) && switch_shortly(located)) return running_ ? Step::taken : Step::failed;
+  if (is_ordinary(located) && switch_shortly(located)) return outcome_.running ? Step::taken : Step::failed;
   const bool ended_here = located.t == here_.t && recorder_.ends_at(here_.t) && here_.t != event_.last_time;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
   if (located.t > here_.t) search_.forget_user_zeros();
@@ -224,10 +229,10 @@ Run::Step Run::handle(const Located& located) {
     same.zero_order.assign(here_.state.mode.size(), 0);
     static_cast<void>(enter(same));
   }
-  if (running_ && !jumps_.none() && here_.state.mode != event_.before.mode)
+  if (outcome_.running && !jumps_.none() && here_.state.mode != event_.before.mode)
     cascade_.leave_guards(event_.transition.zero_order);
-  if (running_) fire_user_events(here_.x, event_.before);
-  if (running_ && !jumps_.none()) {
+  if (outcome_.running) fire_user_events(here_.x, event_.before);
+  if (outcome_.running && !jumps_.none()) {
     // Conditions may depend on selections, too.
     jumps_.update(jump_point());
     if (!jumps_have_problem() && jumps_.due(here_.t)) {
@@ -248,7 +253,7 @@ bool Run::selections_jumped() const {
 
 Run::Step Run::depart(const Arrival& arrival) {
   const bool event = recorder_.events() > arrival.events;
-  if (event || !running_) {
+  if (event || !outcome_.running) {
     if (arrival.row == OutputRows::Arrival::missing) rows_at_event(arrival);
     if (event) row(here_.t, here_.x);
   } else if (rows_.at_steps()) {
@@ -260,11 +265,11 @@ Run::Step Run::depart(const Arrival& arrival) {
   // A requested time at a restart that is no event still gets its row.
   rows_.each_until(-infinity, here_.t, [&](double t) {
     const bool wanted =
-        (t == here_.t || event_.cell_change != CellChange::none) && !event && !rows_.at_steps() && running_;
+        (t == here_.t || event_.cell_change != CellChange::none) && !event && !rows_.at_steps() && outcome_.running;
     if (wanted) row(t, here_.x);
   });
   if (event) event_.last_time = here_.t;
-  if (running_ && !too_many_events()) {
+  if (outcome_.running && !too_many_events()) {
     if (event) {
       note_switch();
       accumulate_switches();
@@ -272,8 +277,8 @@ Run::Step Run::depart(const Arrival& arrival) {
     accumulate_jumps();
     if (event_.unresolved) go_on_from_unresolved();
   }
-  if (recorder_.events() > arrival.events && running_) choices_.watch(field_);
-  return running_ ? Step::taken : Step::failed;
+  if (recorder_.events() > arrival.events && outcome_.running) choices_.watch(field_);
+  return outcome_.running ? Step::taken : Step::failed;
 }
 
 }  // namespace saltus::event_integrator

@@ -13,11 +13,15 @@
 
 #include "saltus/event_integrator/accumulate/accumulation.hpp"
 #include "saltus/event_integrator/accumulate/switch_series.hpp"
+#include "saltus/event_integrator/approach/nested_zero_approach.hpp"
+#include "saltus/event_integrator/approach/zero_approach.hpp"
 #include "saltus/event_integrator/branches/families.hpp"
+#include "saltus/event_integrator/cascade/jump_cascade.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/decide/fast/single_surface.hpp"
 #include "saltus/event_integrator/decide/fast/surface_pair.hpp"
 #include "saltus/event_integrator/decide/projected_fields.hpp"
+#include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/decide/transition.hpp"
 #include "saltus/event_integrator/field/field_memory.hpp"
 #include "saltus/event_integrator/field/mode_field.hpp"
@@ -28,20 +32,17 @@
 #include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
-#include "saltus/event_integrator/run/accumulation/switch_accumulation.hpp"
-#include "saltus/event_integrator/run/approach/nested_zero_approach.hpp"
-#include "saltus/event_integrator/run/approach/zero_approach.hpp"
 #include "saltus/event_integrator/run/compact_integration.hpp"
 #include "saltus/event_integrator/run/followed_choices.hpp"
-#include "saltus/event_integrator/run/jumps/jump_accumulation.hpp"
-#include "saltus/event_integrator/run/jumps/jump_cascade.hpp"
 #include "saltus/event_integrator/run/output_rows.hpp"
-#include "saltus/event_integrator/run/step_attempt.hpp"
-#include "saltus/event_integrator/run/step_tolerances.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
 #include "saltus/event_integrator/search/event_search.hpp"
 #include "saltus/event_integrator/search/locate.hpp"
 #include "saltus/event_integrator/search/user_events.hpp"
+#include "saltus/event_integrator/sequences/jump_accumulation.hpp"
+#include "saltus/event_integrator/sequences/switch_accumulation.hpp"
+#include "saltus/event_integrator/steps/step_attempt.hpp"
+#include "saltus/event_integrator/steps/step_tolerances.hpp"
 #include "saltus/ode/step_control.hpp"
 
 namespace saltus::event_integrator {
@@ -58,9 +59,10 @@ class Run {
   enum class Way { short_where_ordinary, general };
 
   Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-      const StepObserver& observer, Way way = Way::short_where_ordinary);
+      Way way = Way::short_where_ordinary);
 
-  CompactIntegration to_end();
+  /// Runs to the end, or until the observer, which is called behind every step, asks to stop.
+  CompactIntegration to_end(const StepObserver& observer);
 
  private:
   enum class Step { taken, shortened, failed };
@@ -72,7 +74,13 @@ class Run {
     OutputRows::Arrival row = OutputRows::Arrival::missing;
   };
   bool begin();
+  void record_start(const Start& start);
   Step attempt();
+  Step beside_undefined(double t_new);
+  Step reject(double error);
+  [[nodiscard]] std::optional<Step> first_event(double t_new);
+  /// A shorter attempt; where time does not resolve that, what is there.
+  Step shorten_to(double factor) { return shorten(factor) ? Step::shortened : undefined_step(); }
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
   [[nodiscard]] std::string undefined_function_beyond();
@@ -100,13 +108,14 @@ class Run {
     return std::min({options_.until, jumps_.next_time(), choices_.next_departure()});
   }
   [[nodiscard]] FollowedChoices::Progress progress() const {
-    auto statistics = result_.statistics;
-    statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
+    auto statistics = outcome_.result.statistics;
+    statistics.rhs_evaluations = kernel_.field_evaluations() - outcome_.evaluations_before;
     return {rows_.arrival(), statistics};
   }
   [[nodiscard]] SwitchAccumulation::Roots roots_of_cycles() const {
     return zeros_.any_ending() ? SwitchAccumulation::Roots::ending : SwitchAccumulation::Roots::none;
   }
+  bool jumps_while_sliding(int surface);
   bool change_mode(const Located& located);
   const ModeState& slid_on_freed(Occasion& occasion);
   CellChange leave_cells(const Located& located);
@@ -163,12 +172,6 @@ class Run {
   bool jumps_have_problem();
   void start_step();
   bool too_many_events();
-  [[nodiscard]] double mean_interval(long first, long count) const;
-  [[nodiscard]] double last_interval(long count) const;
-  [[nodiscard]] long resolved_events(double farthest, double rounding) const;
-  [[nodiscard]] std::optional<double> shrinking_exponent(long n) const;
-  [[nodiscard]] bool has_one_rate(int surface);
-  [[nodiscard]] std::string shrinking_laps();
   void accumulates();
   bool stopped_by_two_fold();
   bool stopped_by_singularity();
@@ -198,12 +201,15 @@ class Run {
     Occasion occasion;
     Transition transition;
     std::optional<SeriesLimit> unresolved;  ///< the limit that its switch is
+    std::optional<SpiralStart> spiral;      ///< of the mode that it begins: time and state jump over the first cycle
+    int rooted = -1;                        ///< of that mode: the surface that it leaves along a root
     double last_time = -infinity;           ///< of the last one that was recorded
   };
-  /// How the solution leaves the point where its mode has just begun.
-  struct ModeBegin {
-    std::optional<SpiralStart> spiral;  ///< time and state jump over the first cycle
-    int rooted = -1;                    ///< the surface that it leaves along a root
+  /// What has come of the run so far.
+  struct Outcome {
+    CompactIntegration result = {};
+    long evaluations_before = 0;  ///< the kernel may have been used before
+    bool running = true;
   };
   /// What decides and enters ordinary switches without detours.
   struct FastSwitch {
@@ -222,11 +228,9 @@ class Run {
 
   const evaluation::ModelKernel& kernel_;
   const IntegrationOptions& options_;
-  const StepObserver& observer_;
   Surroundings surroundings_;
   ModeField field_;
   Position here_;
-  FieldRates rates_;
   StepTolerances tolerances_;
   StepAttempt steps_;
   Cells cells_;
@@ -245,12 +249,8 @@ class Run {
   Recorder recorder_;
   OutputRows rows_;
   CurrentEvent event_;
-  ModeBegin begun_;
-  bool undefined_ahead_ = false;  ///< one of the last attempts was undefined
   FollowedChoices choices_;
-  long evaluations_before_;  ///< the kernel may have been used before
-  CompactIntegration result_;
-  bool running_ = true;
+  Outcome outcome_;
 };
 
 }  // namespace saltus::event_integrator

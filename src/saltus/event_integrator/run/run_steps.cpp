@@ -35,7 +35,7 @@ void Run::rows_by_steps(double t_new) {
 }
 
 bool Run::shorten(double factor) {
-  ++result_.statistics.rejected;
+  ++outcome_.result.statistics.rejected;
   here_.h = steps_.length() * factor;
   steps_.set_length(here_.h);
   return here_.h > here_.smallest_step();
@@ -87,10 +87,10 @@ std::string Run::undefined_function_beyond() {
 
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
-  begun_.rooted = zeros_.root_here_once();
+  event_.rooted = zeros_.root_here_once();
   const double before = here_.t;
-  if (begun_.rooted >= 0) leave_root();
-  if (here_.t > before) return running_ ? Step::taken : Step::failed;
+  if (event_.rooted >= 0) leave_root();
+  if (here_.t > before) return outcome_.running ? Step::taken : Step::failed;
   if (const auto located = zeros_.beside_undefined()) return handle(*located);
   if (stopped_by_singularity()) return Step::failed;
   const std::string states = undefined_beyond();
@@ -102,7 +102,7 @@ Run::Step Run::undefined_step() {
     return Step::failed;
   }
   if (states.empty()) {
-    if (hold_unresolved()) return running_ ? Step::taken : Step::failed;
+    if (hold_unresolved()) return outcome_.running ? Step::taken : Step::failed;
     fail(Termination::step_size_too_small,
          fmt::format(
              "events cannot be told apart beyond {}, however short the step: a switching function or guard is no "
@@ -120,7 +120,7 @@ Run::Step Run::undefined_step() {
 }
 
 Run::Step Run::accept(double t_new) {
-  ++result_.statistics.steps;
+  ++outcome_.result.statistics.steps;
   rows_until(t_new);
   const double h = t_new - here_.t;
   nested_.accepted(h);
@@ -164,62 +164,65 @@ Run::Step Run::accept(double t_new) {
   return Step::taken;
 }
 
+/// An attempt has met points where the right-hand side is undefined: what is there, or a shorter attempt.
+Run::Step Run::beside_undefined(double t_new) {
+  steps_.note_undefined();
+  if (zeros_.any_ending()) {
+    if (const auto located = zeros_.ahead(t_new)) return handle(*located);
+  }
+  // Not on the way of a long step, which has others to look at.
+  if (t_new - here_.t <= 1e3 * here_.smallest_step()) {
+    if (const auto located = zeros_.within_rounding()) return handle(*located);
+  }
+  return shorten_to(0.25);
+}
+
+Run::Step Run::reject(double error) {
+  const double h = steps_.stepper().length();
+  if (shorten(steps_.rejected(error))) return Step::shortened;
+  if (stopped_by_singularity()) return Step::failed;
+  fail(Termination::step_size_too_small,
+       fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
+                   "there, or rtol is below what doubles carry",
+                   where(), h));
+  return Step::failed;
+}
+
+/// The first event of the last attempt, which ends at t_new; nullopt if there is none.
+std::optional<Run::Step> Run::first_event(double t_new) {
+  // Events must not depend on the rows: where nothing can vanish there is no search, with and without a dense output.
+  const bool may_vanish = search_.may_vanish(steps_.stepper());
+  if (!may_vanish && !rows_.any_before(t_new)) return std::nullopt;
+  zeros_.forget();  // the search finds the roundings of functions anew
+  if (!steps_.make_dense()) {
+    if (may_vanish) return shorten_to(0.5);
+    rows_by_steps(t_new);
+  }
+  if (!may_vanish) return std::nullopt;
+  Hit hit;
+  const auto outcome = search_.search(steps_.dense(), hit);
+  if (outcome == SearchOutcome::none) return std::nullopt;
+  if (outcome == SearchOutcome::unresolved) return shorten_to(0.5);
+  note_time_scale(t_new - here_.t);
+  const Located* located = locator_.locate({here_.t, here_.x.data(), here_.slope.data()}, steps_.dense(), hit);
+  if (!located || zeros_.is_repelled(*located)) return shorten_to(0.5);
+  ++outcome_.result.statistics.steps;
+  if (rows_.asks_for_lines()) rows_.write_lines(located->t, steps_.dense());
+  // A requested time that is a break but for its rounding belongs to the cell behind it.
+  rows_until(reaches_cell_end(*located) ? located->t - 4.0 * rounding_unit * std::abs(located->t) : located->t);
+  return handle(*located);
+}
+
+/// One attempt at a step: undefined, too inaccurate, up to an event, or accepted.
 Run::Step Run::attempt() {
-  // Times of jumps are hit exactly, like the end.
   const double limit = next_stop();
   const bool to_the_limit = here_.t + steps_.length() * (1.0 + 4.0 * rounding_unit) >= limit;
   const double t_new = to_the_limit ? limit : here_.t + steps_.length();
-  const double h = t_new - here_.t;
-  limit_beside_zeros(h);
-  if (steps_.take(t_new) == ode::Attempt::undefined) {
-    undefined_ahead_ = true;
-    if (zeros_.any_ending()) {
-      if (const auto located = zeros_.ahead(t_new)) return handle(*located);
-    }
-    // Not on the way of a long step, which has others to look at.
-    if (h <= 1e3 * here_.smallest_step()) {
-      if (const auto located = zeros_.within_rounding()) return handle(*located);
-    }
-    return shorten(0.25) ? Step::shortened : undefined_step();
-  }
+  limit_beside_zeros(t_new - here_.t);
+  if (steps_.take(t_new) == ode::Attempt::undefined) return beside_undefined(t_new);
   steps_.follow_method();
-  if (const double error = steps_.confirmed_error(); !(error <= 1.0)) {
-    if (shorten(steps_.rejected(error))) return Step::shortened;
-    if (stopped_by_singularity()) return Step::failed;
-    fail(Termination::step_size_too_small,
-         fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
-                     "there, or rtol is below what doubles carry",
-                     where(), h));
-    return Step::failed;
-  }
-  const bool rows_inside = rows_.any_before(t_new);
-  // Events must not depend on the rows: where nothing can vanish there is no search, with and without a dense output.
-  const bool may_vanish = search_.may_vanish(steps_.stepper());
-  if (may_vanish || rows_inside) {
-    zeros_.forget();  // the search finds the roundings of functions anew
-    if (!steps_.make_dense()) {
-      if (may_vanish) return shorten(0.5) ? Step::shortened : undefined_step();
-      rows_by_steps(t_new);
-    }
-    Hit hit;
-    switch (may_vanish ? search_.search(steps_.dense(), hit) : SearchOutcome::none) {
-      case SearchOutcome::none:
-        break;
-      case SearchOutcome::unresolved:
-        return shorten(0.5) ? Step::shortened : undefined_step();
-      case SearchOutcome::hit: {
-        const StepStart start{here_.t, here_.x.data(), here_.slope.data()};
-        note_time_scale(h);
-        const Located* located = locator_.locate(start, steps_.dense(), hit);
-        if (!located || zeros_.is_repelled(*located)) return shorten(0.5) ? Step::shortened : undefined_step();
-        ++result_.statistics.steps;
-        // A requested time that is a break but for its rounding belongs to the cell behind it.
-        if (rows_.asks_for_lines()) rows_.write_lines(located->t, steps_.dense());
-        rows_until(reaches_cell_end(*located) ? located->t - 4.0 * rounding_unit * std::abs(located->t) : located->t);
-        return handle(*located);
-      }
-    }
-  }
+  if (const double error = steps_.confirmed_error(); !(error <= 1.0)) return reject(error);
+  if (const auto step = first_event(t_new)) return *step;
   if (rows_.asks_for_lines() && rows_.may_bend(steps_.stepper()) && steps_.make_dense()) {
     rows_.write_lines(t_new, steps_.dense());
   }

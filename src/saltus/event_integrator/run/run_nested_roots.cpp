@@ -47,7 +47,7 @@ void Run::leave_nested_root() {
       static_cast<void>(accept(t_new));
       return;
     }
-    ++result_.statistics.rejected;
+    ++outcome_.result.statistics.rejected;
   }
 }
 

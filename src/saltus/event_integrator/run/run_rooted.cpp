@@ -45,31 +45,31 @@ void Run::settle_on_roots(const Located& located) {
 /// go down to the resolution of t. Without surfaces that are slid on beside roots (super-twisting) they are those of
 /// laps that shrink, and say it.
 void Run::note_time_scale(double h) {
-  const bool is_cut = undefined_ahead_ && zeros_.any_continued();
+  const bool is_cut = steps_.was_undefined() && zeros_.any_continued();
   here_.time_scale = is_cut ? std::max(h, std::min(here_.time_scale, here_.t - event_.last_time)) : h;
 }
 
 /// A state at rest on a kink is on either side of it; the root says into which one it goes. False where the run ends.
 bool Run::take_side_of_root() {
-  const auto j = at(begun_.rooted);
+  const auto j = at(event_.rooted);
   if (surroundings_.system.switching[j].role != model::SwitchingRole::kink) return true;
   const auto leads_away = [&](const ModeState& state) {
-    return RootedExit(kernel_, surroundings_.affine_in_alpha, state, begun_.rooted)
+    return RootedExit(kernel_, surroundings_.affine_in_alpha, state, event_.rooted)
         .leads_away(here_.t, here_.x, root_step());
   };
   Transition other;
   other.state = here_.state;
-  set_surface(other.state, begun_.rooted, -here_.state.mode[j], here_.state.mode[j] > 0 ? 0.0 : 1.0);
+  set_surface(other.state, event_.rooted, -here_.state.mode[j], here_.state.mode[j] > 0 ? 0.0 : 1.0);
   set_corner_alpha(other.state);
   other.zero_order.assign(here_.state.mode.size(), 0);
   other.zero_order[j] = 2;
-  other.rooted = begun_.rooted;
+  other.rooted = event_.rooted;
   if (leads_away(here_.state) || !leads_away(other.state)) return true;
   return enter(other);
 }
 
 void Run::leave_root() {
-  const int surface = std::exchange(begun_.rooted, -1);
+  const int surface = std::exchange(event_.rooted, -1);
   if (!kernel_.has_root(surface)) return leave_nested_root();
   RootedExit exit(kernel_, surroundings_.affine_in_alpha, here_.state, surface);
   const double begin = here_.t;
@@ -85,7 +85,7 @@ void Run::leave_root() {
     const auto x_new = exit.step(here_.t, here_.x, t_new - here_.t, tolerances_.step());
     // What else happens is located by ordinary steps.
     if (!x_new || !zeros_.keep_their_signs(surface, t_new, x_new->data())) {
-      ++result_.statistics.rejected;
+      ++outcome_.result.statistics.rejected;
       h *= 0.25;
       continue;
     }
@@ -93,7 +93,7 @@ void Run::leave_root() {
       row(t, exit.step(here_.t, here_.x, t - here_.t, tolerances_.step()).value_or(*x_new));
     });
     ++taken;
-    ++result_.statistics.steps;
+    ++outcome_.result.statistics.steps;
     here_.t = t_new;
     here_.x = *x_new;
     rows_.write_end_of_step();

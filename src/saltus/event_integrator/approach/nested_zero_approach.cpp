@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/run/approach/nested_zero_approach.hpp"
+#include "saltus/event_integrator/approach/nested_zero_approach.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/run/jumps/jump_accumulation.hpp"
+#include "saltus/event_integrator/sequences/jump_accumulation.hpp"
 
 namespace saltus::event_integrator {
 

@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/run/approach/zero_approach.hpp"
+#include "saltus/event_integrator/approach/zero_approach.hpp"
 
 #include <algorithm>
 #include <numeric>

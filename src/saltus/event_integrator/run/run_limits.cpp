@@ -51,6 +51,7 @@ bool Run::release(const Located& located) {
 /// Whether jumps change nothing at their limit, and their conditions come true there by what they do not set: the
 /// conditions then hold behind it, and nothing fires again. Their guards are at zero in the cascade.
 bool Run::change_nothing(const std::vector<int>& jumps) {
+  FieldRates rates(kernel_, here_);
   std::vector<double> slope(here_.x.size());
   kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
   std::vector<bool> vanish = search_.user_zeros();
@@ -66,7 +67,7 @@ bool Run::change_nothing(const std::vector<int>& jumps) {
     bool comes_true = false;
     for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
-      const Rate rate = rates_.along(function, slope);
+      const Rate rate = rates.along(function, slope);
       const double resolved = tolerances_.step().atol * rate.slope + tolerances_.step().rtol * rate.magnitude;
       if (jumps_.is_discrete_guard(function) || !(std::abs(cascade_.zero_value(function)) <= resolved)) continue;
       comes_true = jumps_.trigger_sign(jump, g, jump_point(), 0) * rate.value > 0.0;
@@ -123,13 +124,13 @@ void Run::follow_limit(const SeriesLimit& limit) {
                      "determined",
                      jump_names(limit.events), here_.t));
   }
-  if (running_ && !ends && hold(std::move(guards), {}) &&
+  if (outcome_.running && !ends && hold(std::move(guards), {}) &&
       !(holding_.largest_rate(here_.t, here_.state.alpha, here_.x) <= 1e-3 * rate)) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but their guards cannot be at rest at 0 together",
                      jump_names(jumps), here_.t));
   }
-  if (!running_ || !free_passing() || !decide_behind_jumps()) return accumulated();
+  if (!outcome_.running || !free_passing() || !decide_behind_jumps()) return accumulated();
   cascade_.give_directions();
   if (ends) jumps_.accept(limit.events, jump_point());
   accumulated();

@@ -141,6 +141,7 @@ bool Run::follow_dense_laps() {
 
 /// Returns whether the run has gone on, or has ended for another reason.
 bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
+  FieldRates rates(kernel_, here_);
   ModeState on = here_.state;
   on.higher.reset();
   put_on(kernel_, limit, here_.time_scale, on);
@@ -149,7 +150,7 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   std::vector<double> lap_change(at(kernel_.event_functions()));
   for (const int j : on.sliding) {
     for (const int i : kernel_.inner(j)) {
-      lap_change[at(i)] = limit.lap * std::abs(rates_.here(i).value);
+      lap_change[at(i)] = limit.lap * std::abs(rates.here(i).value);
     }
   }
   if (put_on_inner(kernel_, limit, lap_change, on)) {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "saltus/event_integrator/approach/zero_approach.hpp"
 #include "saltus/event_integrator/mode/field_rates.hpp"
-#include "saltus/event_integrator/run/approach/zero_approach.hpp"
-#include "saltus/event_integrator/run/step_tolerances.hpp"
+#include "saltus/event_integrator/steps/step_tolerances.hpp"
 
 namespace saltus::event_integrator {
 

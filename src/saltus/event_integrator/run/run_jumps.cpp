@@ -25,7 +25,7 @@ std::string Run::jump_names(const std::vector<int>& jumps) const {
 }
 
 bool Run::jumps_have_problem() {
-  if (!jumps_.problem().empty() && running_) fail(Termination::evaluation_failed, jumps_.problem());
+  if (!jumps_.problem().empty() && outcome_.running) fail(Termination::evaluation_failed, jumps_.problem());
   return !jumps_.problem().empty();
 }
 
@@ -84,12 +84,12 @@ bool Run::decide_behind_jumps() {
 /// Executes everything that is due at here_.t, with all that follows at once; the mode behind is in force then.
 bool Run::settle_jumps() {
   do {
-    while (running_ && jumps_.due(here_.t)) {
+    while (outcome_.running && jumps_.due(here_.t)) {
       if (!execute_jump()) return false;
     }
     if (!decide_behind_jumps()) return false;
     if (hold_resting() && !decide_behind_jumps()) return false;
-    if (!running_) return false;
+    if (!outcome_.running) return false;
     cascade_.give_directions();
     jumps_.update(jump_point());
     if (jumps_have_problem()) return false;
@@ -102,9 +102,9 @@ bool Run::settle_jumps() {
 bool Run::jump(const ModeState& before, const std::vector<double>& x_before) {
   event_.jumped = true;
   const auto fired = fire_user_events(here_.x, before);
-  const Termination stopped = result_.status.termination;
-  const std::string message = result_.status.message;
-  running_ = true;  // an event that stops the run lets the jumps of its time happen
+  const Termination stopped = outcome_.result.status.termination;
+  const std::string message = outcome_.result.status.message;
+  outcome_.running = true;  // an event that stops the run lets the jumps of its time happen
   cascade_.note_guards();
   if (!cascade_.held_before().empty()) {
     holding_.release_all();
@@ -125,7 +125,7 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before) {
   start_step();
   static_cast<void>(steps_.memory().change(here_.state.mode, here_.t,
                                            here_.h));  // the mode lasts from here; its step is that of a start
-  return running_;
+  return outcome_.running;
 }
 
 /// A time at which jumps are due, reached by a step that ended exactly there.
@@ -160,7 +160,7 @@ bool Run::begin_jumps() {
 bool Run::settle_at_start() {
   if (jumps_.none()) return true;
   if (hold_resting() && !decide_behind_jumps()) return false;
-  if (!running_) return false;
+  if (!outcome_.running) return false;
   cascade_.give_directions();
   jumps_.update(jump_point());
   if (jumps_have_problem()) return false;

@@ -9,7 +9,7 @@
 #include "saltus/event_integrator/decide/transition.hpp"
 #include "saltus/event_integrator/mode/field_rates.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
-#include "saltus/event_integrator/run/step_tolerances.hpp"
+#include "saltus/event_integrator/steps/step_tolerances.hpp"
 
 namespace saltus::event_integrator {
 

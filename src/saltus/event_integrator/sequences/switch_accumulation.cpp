@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/run/accumulation/switch_accumulation.hpp"
+#include "saltus/event_integrator/sequences/switch_accumulation.hpp"
 
 #include <algorithm>
 #include <cmath>
