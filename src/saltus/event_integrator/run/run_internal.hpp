@@ -1,7 +1,7 @@
-// A run in progress: the state of the engine between its sources. integrate.cpp begins and ends it, run_steps.cpp takes
-// the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it, run_jumps.cpp,
-// run_limits.cpp and run_resting.cpp jumps, their accumulation, and what is at rest behind it, run_spirals.cpp and
-// run_shrinking.cpp the accumulation of switches, run_lines.cpp rows between steps.
+// A run: the composition of its parts, and the loop over steps and events. run.cpp begins and ends it, run_steps.cpp takes
+// the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it; run_jumps.cpp,
+// run_limits.cpp and run_resting.cpp jumps, their accumulation, and what is at rest behind it; run_spirals.cpp the limits
+// of switches; run_rooted.cpp and run_nested_roots.cpp the way out of zeros, and into them.
 #pragma once
 
 #include <algorithm>
@@ -51,7 +51,7 @@ namespace saltus::event_integrator {
 inline constexpr const char* resting_reason =
     "the jump leaves its guard at 0 without a velocity: the limit of its sequence at once";
 
-/// The run in progress: where it is, and the work spaces of its parts. One object per call of integrate().
+/// A Run owns its parts and its position, which only it moves. There is one object per call of integrate().
 class Run {
  public:
   /// How switches are decided and entered: the ordinary ones by the short way, or all by the one that covers
