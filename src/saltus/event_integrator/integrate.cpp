@@ -9,7 +9,7 @@ namespace saltus::event_integrator {
 
 CompactIntegration integrate_compact(const evaluation::ModelKernel& kernel, const model::System& system,
                                      const IntegrationOptions& options, const StepObserver& observer) {
-  return Run(kernel, system, options, observer).to_end();
+  return Run(kernel, system, options).to_end(observer);
 }
 
 Integration integrate(const evaluation::ModelKernel& kernel, const model::System& system,

@@ -1,5 +1,5 @@
 // The step that a piece of the solution starts with.
-#include "saltus/event_integrator/run/step_memory.hpp"
+#include "saltus/event_integrator/steps/step_memory.hpp"
 
 #include <algorithm>
 #include <cmath>

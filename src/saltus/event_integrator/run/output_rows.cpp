@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "saltus/base/at.hpp"
-#include "saltus/event_integrator/run/step_tolerances.hpp"
+#include "saltus/event_integrator/steps/step_tolerances.hpp"
 
 namespace saltus::event_integrator {
 

@@ -5,11 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/mode/undefined.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
-#include "saltus/event_integrator/run/thin_layers.hpp"
+#include "saltus/event_integrator/steps/thin_layers.hpp"
 #include "saltus/model/vanishing_norm.hpp"
 
 namespace saltus::event_integrator {
@@ -23,47 +22,33 @@ bool is_affine(const model::System& system) {
 
 }  // namespace
 
-Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-         const StepObserver& observer, Way way)
+Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options, Way way)
     : kernel_(kernel),
       options_(options),
-      observer_(observer),
       surroundings_{kernel, system, is_affine(system), options.selection, options.scaling},
       field_(kernel, surroundings_.affine_in_alpha),
       here_(options.from, system.initial_state),
-      rates_(kernel, here_),
       tolerances_(options.tolerances),
       steps_(options, system, field_, here_, tolerances_),
       cells_(kernel),
       search_(kernel, field_, options.method, tolerances_.step()),
+      zeros_(surroundings_, here_, field_, search_),
+      nested_(kernel, here_, search_, tolerances_, zeros_),
+      switches_(surroundings_, here_, options.until - options.from, tolerances_),
       locator_(options.method, kernel.states(), steps_.stepper(), field_, search_, tolerances_.step()),
-      single_surface_(surroundings_),
-      surface_pair_(surroundings_),
-      field_memory_(kernel),
-      slope_beyond_(at(kernel.states())),
+      fast_(surroundings_),
       user_events_(kernel, system),
       jumps_(kernel, system, options.from),
       contacts_(kernel, system),
       holding_(kernel, system),
-      shortest_switch_lap_(3 * system.switching.size(), 0.0),
-      last_guard_(system.jumps.size(), {{-1, -1}, -1}),
-      last_rate_(system.jumps.size(), 0.0),
-      shortest_lap_(system.jumps.size(), 0.0),
+      cascade_(surroundings_, here_, field_, search_, jumps_, contacts_, holding_),
+      jump_accumulation_(surroundings_, here_),
       recorder_(kernel, system),
       rows_(kernel, options, here_, field_, holding_, recorder_),
-      free_slope_(here_.x.size()),
-      families_(surroundings_),
-      evaluations_before_(kernel.field_evaluations()),
-      series_(options.until - options.from) {
+      choices_(surroundings_, options, here_, recorder_),
+      outcome_{.evaluations_before = kernel.field_evaluations()} {
   holding_.keep(&contacts_);
-  for (int j = 0; j < kernel.switching_functions(); ++j) {
-    if (kernel.root_is_continued(j)) {
-      continued_roots_.push_back(j);
-    } else if (kernel.has_root(j)) {
-      ending_roots_.push_back(j);
-    }
-  }
-  ordinary_ = way == Way::short_where_ordinary && has_ordinary_switches();
+  fast_.applies = way == Way::short_where_ordinary && has_ordinary_switches();
 }
 
 std::string Run::where() const {
@@ -75,17 +60,17 @@ std::string Run::where() const {
 }
 
 void Run::fail(Termination termination, std::string message) {
-  result_.status.termination = termination;
-  result_.status.message = std::move(message);
-  running_ = false;
+  outcome_.result.status.termination = termination;
+  outcome_.result.status.message = std::move(message);
+  outcome_.running = false;
 }
 
 bool Run::enter(const Transition& transition) {
   here_.state = transition.state;
-  no_surface_at_.reset();
+  zeros_.forget();
   set_references(kernel_, here_.state);
   tolerances_.begin_mode(kernel_, options_.layers, here_);
-  watch_nested_roots();
+  if (nested_.begin_mode()) tolerances_.lift(StepTolerances::Reason::zeros);
   field_.enter(here_.state);
   steps_.begin_mode();
   field_.project(here_.t, here_.x.data());
@@ -104,14 +89,14 @@ bool Run::enter(const Transition& transition) {
     return false;
   }
   search_.enter(here_.state, transition.zero_order, here_.t, here_.x.data());
-  spiral_start_ = transition.beyond_spiral;
-  rooted_ = transition.rooted;
+  event_.spiral = transition.beyond_spiral;
+  event_.rooted = transition.rooted;
   return true;
 }
 
 /// Over the first lap of a spiral that leaves an intersection, which is too small to be seen.
 void Run::begin_spiral() {
-  const SpiralStart start = *std::exchange(spiral_start_, std::nullopt);
+  const SpiralStart start = *std::exchange(event_.spiral, std::nullopt);
   const double t_new = std::min(here_.t + start.duration, options_.until);
   rows_.each_until(here_.t, t_new, [&](double t) { rows_.write(t, start.x); });
   here_.t = t_new;
@@ -124,6 +109,25 @@ void Run::begin_spiral() {
   if (rows_.at_steps()) row(here_.t, here_.x);
 }
 
+/// The start is an event where jumps are due, or something listed is at zero.
+void Run::record_start(const Start& start) {
+  row(here_.t, here_.x);
+  auto listed = start.at_zero;
+  for (const auto& [surface, mode] : options_.initial_mode) {
+    if (std::find(listed.begin(), listed.end(), surface) == listed.end()) listed.push_back(surface);
+  }
+  auto transition = start.transition;
+  transition.state = here_.state;
+  if (!cascade_.executed().empty()) {
+    recorder_.jumped(here_.t, cascade_.executed().items(), nullptr, cascade_.transition());
+    if (!cascade_.resting().empty()) {
+      recorder_.accumulated(here_.t, cascade_.resting(), {here_.x, here_.x, here_.state, here_.state}, resting_reason);
+    }
+    event_.last_time = here_.t;
+  } else if (!listed.empty() && recorder_.started(here_.t, here_.x, transition, listed))
+    row(here_.t, here_.x);
+}
+
 bool Run::begin() {
   here_.time_scale = 1e-3 * span();
   if (!is_finite(here_.x)) {
@@ -133,8 +137,8 @@ bool Run::begin() {
   }
   if (!cells_.empty())
     cells_.locate(here_.t, here_.x.data(), std::vector<double>(at(kernel_.switching_functions()), 0.5));
-  Landing& landing = landing_here();
-  if (!begin_jumps(landing)) {
+  cascade_.begin();
+  if (!begin_jumps()) {
     recorder_.row(here_.t, here_.x, here_.state, here_.state.alpha);
     return false;
   }
@@ -157,77 +161,63 @@ bool Run::begin() {
     fail(start.transition.termination, start.transition.message);
     return false;
   }
-  choose(start.transition);
+  choices_.choose(start.transition, progress());
   here_.state = start.transition.state;
-  landing.transition = start.transition;
-  if (!enter(start.transition) || !settle_at_start(landing)) {
+  cascade_.transition() = start.transition;
+  if (!enter(start.transition) || !settle_at_start()) {
     recorder_.row(here_.t, here_.x, here_.state, here_.state.alpha);
     return false;
   }
-  row(here_.t, here_.x);
-  auto listed = start.at_zero;
-  for (const auto& [surface, mode] : options_.initial_mode) {
-    if (std::find(listed.begin(), listed.end(), surface) == listed.end()) listed.push_back(surface);
-  }
-  auto transition = start.transition;
-  transition.state = here_.state;
-  if (!landing.executed.empty()) {
-    recorder_.jumped(here_.t, landing.executed.items(), nullptr, landing.transition);
-    if (!landing.resting.empty()) {
-      recorder_.accumulated(here_.t, landing.resting, {here_.x, here_.x, here_.state, here_.state}, resting_reason);
-    }
-    last_event_time_ = here_.t;
-  } else if (!listed.empty() && recorder_.started(here_.t, here_.x, transition, listed))
-    row(here_.t, here_.x);
+  record_start(start);
   static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));
   start_step();
   here_.time_scale = here_.h;
   const auto& orders = start.transition.zero_order;
-  if (rooted_ < 0 && std::any_of(orders.begin(), orders.end(), [](int order) { return order > 1; })) {
-    rooted_ = root_here();
-    if (rooted_ >= 0 && !take_side_of_root()) return false;
+  if (event_.rooted < 0 && std::any_of(orders.begin(), orders.end(), [](int order) { return order > 1; })) {
+    event_.rooted = zeros_.root_here();
+    if (event_.rooted >= 0 && !take_side_of_root()) return false;
   }
   here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
   rows_.skip_here();
-  if (recorder_.events() > 0) watch_for_families();
+  if (recorder_.events() > 0) choices_.watch(field_);
   return true;
 }
 
-CompactIntegration Run::to_end() {
+CompactIntegration Run::to_end(const StepObserver& observer) {
   if (begin()) {
-    while (running_ && here_.t < options_.until) {
+    while (outcome_.running && here_.t < options_.until) {
       contacts_.forget_impulses(here_.x);
-      if (result_.statistics.steps + result_.statistics.rejected >= options_.max_steps) {
+      if (outcome_.result.statistics.steps + outcome_.result.statistics.rejected >= options_.max_steps) {
         fail(Termination::iteration_limit, fmt::format("max_steps = {} reached at {}{}", options_.max_steps, where(),
                                                        model::vanishing_norm(surroundings_.system, here_.t, here_.x)));
         break;
       }
-      if (spiral_start_) begin_spiral();
-      if (rooted_ >= 0) leave_root();
-      if (!running_ || here_.t >= options_.until) break;
-      undefined_ahead_ = false;
+      if (event_.spiral) begin_spiral();
+      if (event_.rooted >= 0) leave_root();
+      if (!outcome_.running || here_.t >= options_.until) break;
       const double h = std::max(here_.h, 2.0 * here_.smallest_step());
-      steps_.set_length(options_.max_step ? std::min(h, *options_.max_step) : h);
-      while (running_ && attempt() == Step::shortened) {
+      steps_.begin(options_.max_step ? std::min(h, *options_.max_step) : h);
+      while (outcome_.running && attempt() == Step::shortened) {
       }
-      if (running_ && observer_ && observer_({here_.t, result_.statistics.steps, recorder_.events()}) == Continue::no) {
+      if (outcome_.running && observer &&
+          observer({here_.t, outcome_.result.statistics.steps, recorder_.events()}) == Continue::no) {
         fail(Termination::stopped_by_user, fmt::format("stopped at {}", where()));
       }
     }
   }
   if (!recorder_.ends_at(here_.t)) row(here_.t, here_.x);
   if (const auto stiff_at = steps_.stiff_at()) {
-    result_.status.message +=
+    outcome_.result.status.message +=
         fmt::format("{}the model looks stiff from t = {:.6g} on: integrator = \"radau5\" may need far fewer steps",
-                    result_.status.message.empty() ? "" : "; ", *stiff_at);
+                    outcome_.result.status.message.empty() ? "" : "; ", *stiff_at);
   }
-  result_.status.time_reached = here_.t;
-  result_.statistics.rhs_evaluations = kernel_.field_evaluations() - evaluations_before_;
-  families_.close(here_.t);
-  result_.recording = recorder_.take();
-  result_.recording.families = families_.take();
-  begin_at_choice();
-  return std::move(result_);
+  outcome_.result.status.time_reached = here_.t;
+  outcome_.result.statistics.rhs_evaluations = kernel_.field_evaluations() - outcome_.evaluations_before;
+  choices_.families().close(here_.t);
+  outcome_.result.recording = recorder_.take();
+  outcome_.result.recording.families = choices_.families().take();
+  outcome_.result.chosen = choices_.begin_at_choice(outcome_.result.recording, outcome_.result.statistics);
+  return std::move(outcome_.result);
 }
 
 }  // namespace saltus::event_integrator

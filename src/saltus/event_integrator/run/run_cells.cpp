@@ -36,7 +36,7 @@ Located Run::breaks_here() {
 
 /// Values jump: the mode is decided as at a start, but what slides and is still at zero goes on sliding if it can.
 bool Run::jump_with_cells() {
-  const ModeState& before = before_;
+  const ModeState& before = event_.before;
   std::vector<double> values(at(kernel_.event_functions())), magnitude(values.size()), slope(values.size());
   kernel_.functions(here_.t, here_.x.data(), before.alpha.data(), values.data());
   kernel_.scales(here_.t, here_.x.data(), before.alpha.data(), magnitude.data(), slope.data());
@@ -45,14 +45,14 @@ bool Run::jump_with_cells() {
     // The projection leaves a few roundings of psi; a jump leaves something of its size.
     if (!cells_.moved_in(j) || std::abs(values[at(j)]) <= 64.0 * rounding_unit * magnitude[at(j)]) held.push_back(j);
   }
-  held.insert(held.end(), freed_.begin(), freed_.end());
+  held.insert(held.end(), event_.freed.begin(), event_.freed.end());
   RestingSurfaces resting;
   if (!find_resting(resting)) return false;
-  Transition& transition = transition_;
+  Transition& transition = event_.transition;
   transition = decide_behind_jump(surroundings_, before, here_.t, here_.x.data(), here_.time_scale, held, resting);
   if (transition.termination == Termination::completed && transition.state.mode != before.mode) {
     transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the " +
-                        (cell_change_ == CellChange::jump ? "jump of " : "kink of ") +
+                        (event_.cell_change == CellChange::jump ? "jump of " : "kink of ") +
                         cells_.moved_names(surroundings_.system);
   }
   search_.forget_user_zeros();
@@ -67,15 +67,16 @@ bool Run::find_undefined_cells() {
   for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += 8.0 * here_.smallest_step() * here_.slope[i];
   const auto change = std::max(cells_.locate_undefined(here_.t, here_.x.data(), here_.state.alpha),
                                cells_.locate_undefined(here_.t, ahead.data(), here_.state.alpha));
-  return change == CellChange::none || enter(transition_);
+  return change == CellChange::none || enter(event_.transition);
 }
 
 /// Rows at an event, or at a restart: at requested times that are this time to rounding, before and behind.
 void Run::rows_at_event(const Arrival& arrival) {
   const auto cells_behind = cells_.indices();
-  cells_.put(cells_before_);
-  rows_.each_before(-infinity, here_.t, [&](double t) { recorder_.row_before(t, x_before_, before_, arrival.events); });
-  recorder_.row_before(here_.t, x_before_, before_, arrival.events);
+  cells_.put(event_.cells_before);
+  rows_.each_before(-infinity, here_.t,
+                    [&](double t) { recorder_.row_before(t, event_.x_before, event_.before, arrival.events); });
+  recorder_.row_before(here_.t, event_.x_before, event_.before, arrival.events);
   cells_.put(cells_behind);
 }
 

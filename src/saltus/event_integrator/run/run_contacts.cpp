@@ -8,7 +8,7 @@ namespace saltus::event_integrator {
 using result::Termination;
 
 /// Modes at the start; bodies that touch and approach collide at once.
-bool Run::begin_contacts(Landing& landing) {
+bool Run::begin_contacts() {
   if (contacts_.none()) return true;
   const auto before = here_.x;
   if (auto problem = contacts_.resolve({here_.t, here_.state.alpha, here_.time_scale}, {}, here_.x)) {
@@ -16,7 +16,7 @@ bool Run::begin_contacts(Landing& landing) {
     return false;
   }
   if (const auto jump = contacts_.jump_with_impulse(here_.x)) {
-    ExecutedJump& executed = landing.executed.append();
+    ExecutedJump& executed = cascade_.executed().append();
     executed.x = before;
     executed.jump = *jump;
     executed.x_after = here_.x;
@@ -34,24 +34,24 @@ bool Run::move_contacts() {
 
 /// Behind the limit of a sequence of bounces the gaps are closed.
 void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before) {
-  jump_series_.clear();
+  jump_accumulation_.clear();
   pass_to(limit.t, limit.x);
   contacts_.copy_modes(x_last, here_.x);
   contacts_.forget_impulses(here_.x);
-  Landing& landing = landing_here();
+  cascade_.begin();
   auto problem = contacts_.settle({here_.t, here_.state.alpha, here_.time_scale}, limit.events, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   const auto accumulated = [&] {
     recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},
                           "the intervals of these impacts shrink geometrically: the gaps close in their limit");
     row(here_.t, here_.x);
-    last_event_time_ = here_.t;
+    event_.last_time = here_.t;
   };
-  if (!running_) return accumulated();
-  drop_zeros(landing);
-  read_user_signs(landing);
-  if (!decide_behind_jumps(landing)) return accumulated();
-  give_directions(landing);
+  if (!outcome_.running) return accumulated();
+  cascade_.drop_zeros();
+  cascade_.read_user_signs();
+  if (!decide_behind_jumps()) return accumulated();
+  cascade_.give_directions();
   accumulated();
   go_on_from_limit();
 }

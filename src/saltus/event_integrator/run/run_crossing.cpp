@@ -25,12 +25,14 @@ bool Run::has_ordinary_switches() const {
 /// Whether one listed surface is reached in a region or while sliding on one, or left by the solution that slides on it
 /// alone, behind the last switch.
 bool Run::is_ordinary(const Located& located) const {
-  if (!ordinary_ || located.functions.size() != 1 || here_.state.higher || !families_.idle()) return false;
+  if (!fast_.applies || located.functions.size() != 1 || here_.state.higher || !choices_.families().idle())
+    return false;
   const auto& function = search_.functions()[located.functions.front()];
   const bool slides = here_.state.sliding.size() == 1 && field_.solve() == SlidingSolve::decoupled;
   const bool surface = function.kind == FunctionKind::surface && (search_.crosses() || slides);
   const bool exit = (function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above) && slides;
-  return (surface || exit) && recorder_.lists(function.index) && located.t > here_.t && located.t != series_.last();
+  return (surface || exit) && recorder_.lists(function.index) && located.t > here_.t &&
+         located.t != switches_.series().last();
 }
 
 /// Goes on behind an ordinary switch; otherwise nothing has happened.
@@ -49,17 +51,17 @@ bool Run::meet(const Located& located, int surface) {
   const double alpha = here_.state.alpha[j];
   field_(t, x, here_.slope.data());
   here_.state.alpha[j] = 1.0 - alpha;
-  const auto& constants = field_memory_.of(here_.state.alpha, steps_.memory().mark_with(j, -mode));
+  const auto& constants = fast_.fields.of(here_.state.alpha, steps_.memory().mark_with(j, -mode));
   here_.state.alpha[j] = alpha;
-  kernel_.prepared_field(t, x, constants, slope_beyond_.data());
-  const auto decision = mode < 0 ? single_surface_.decide(here_.state, surface, t, x, here_.slope, slope_beyond_)
-                                 : single_surface_.decide(here_.state, surface, t, x, slope_beyond_, here_.slope);
+  kernel_.prepared_field(t, x, constants, fast_.slope_beyond.data());
+  const auto decision = mode < 0 ? fast_.single.decide(here_.state, surface, t, x, here_.slope, fast_.slope_beyond)
+                                 : fast_.single.decide(here_.state, surface, t, x, fast_.slope_beyond, here_.slope);
   if (!decision) return false;
   const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
   if (change.after != 0) {
     std::copy(located.x.begin(), located.x.end(), here_.x.begin());
     field_.cross(j, constants);
-    here_.slope.swap(slope_beyond_);
+    here_.slope.swap(fast_.slope_beyond);
   } else {
     field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
     if (!begin_at(located)) return false;
@@ -77,17 +79,18 @@ bool Run::pass(const Located& located, int surface) {
   if (!is_finite(here_.slope) || !std::isfinite(selection)) return false;
   here_.state.alpha[at(slid)] = selection;
   look_at_both(located, slid, surface);
-  const bool is_pair = surface_pair_.look(here_.state, occasion_, &field_);
+  const bool is_pair = fast_.pair.look(here_.state, event_.occasion, &field_);
   if (is_pair) {
-    if (const auto alpha = surface_pair_.across(here_.state, occasion_)) return pass_across(located, surface, *alpha);
+    if (const auto alpha = fast_.pair.across(here_.state, event_.occasion))
+      return pass_across(located, surface, *alpha);
   }
-  before_ = here_.state;
-  const bool decided = is_pair ? surface_pair_.conclude(before_, occasion_, transition_)
-                               : single_surface_.decide(before_, occasion_, transition_);
+  event_.before = here_.state;
+  const bool decided = is_pair ? fast_.pair.conclude(event_.before, event_.occasion, event_.transition)
+                               : fast_.single.decide(event_.before, event_.occasion, event_.transition);
   if (!decided) return false;
-  const auto& next = transition_.state;
+  const auto& next = event_.transition.state;
   // The usual way: the solution goes on sliding across it.
-  const bool across = next.mode[at(slid)] == 0 && next.mode[j] == -before_.mode[j];
+  const bool across = next.mode[at(slid)] == 0 && next.mode[j] == -event_.before.mode[j];
   if (across) {
     pass_field(surface, next.alpha[j], next.alpha[at(slid)]);
   } else {
@@ -96,25 +99,26 @@ bool Run::pass(const Located& located, int surface) {
   if (!begin_at(located)) return false;
   here_.t = located.t;
   rows_.arrive(OutputRows::Arrival::missing);
-  recorder_.switched(here_.t, here_.x, before_, transition_);
-  recorder_.row_before(here_.t, located.x, before_, recorder_.events() - 1);
+  recorder_.switched(here_.t, here_.x, event_.before, event_.transition);
+  recorder_.row_before(here_.t, located.x, event_.before, recorder_.events() - 1);
   here_.state = next;
   steps_.begin_mode();
-  search_.enter(here_.state, transition_.zero_order, here_.t, here_.x.data());
+  search_.enter(here_.state, event_.transition.zero_order, here_.t, here_.x.data());
   if (across) {
     recorder_.row(here_.t, here_.x, here_.state, field_.alpha());
-    series_.note(here_.t, j, before_.mode[j]);
+    switches_.series().note(here_.t, j, event_.before.mode[j]);
     here_.h = steps_.memory().change(here_.state.mode, j, here_.t, here_.h);
   } else {
     row(here_.t, here_.x);
-    static_cast<void>(series_.repeats(here_.t, before_.mode, here_.state.mode));  // this is the first one at t
+    static_cast<void>(
+        switches_.series().repeats(here_.t, event_.before.mode, here_.state.mode));  // this is the first one at t
     here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
   }
   end_switch();
   if (too_many_events()) return true;
-  note_tightening_switch();
+  note_switch();
   accumulate_switches();
-  if (running_) watch_for_families();
+  if (outcome_.running) choices_.watch(field_);
   return true;
 }
 
@@ -123,9 +127,9 @@ bool Run::pass(const Located& located, int surface) {
 bool Run::pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha) {
   const auto j = at(surface);
   const int slid = here_.state.sliding.front();
-  const std::size_t place = occasion_.at_zero[0] == surface ? 0 : 1;
+  const std::size_t place = event_.occasion.at_zero[0] == surface ? 0 : 1;
   const SlidAcross across{slid, here_.state.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
-                          surface_pair_.meeting(here_.state, occasion_)};
+                          fast_.pair.meeting(here_.state, event_.occasion)};
   const SurfaceSwitch change{surface,
                              here_.state.mode[j],
                              -here_.state.mode[j],
@@ -144,7 +148,7 @@ void Run::pass_field(int surface, double alpha, double selection) {
   const auto j = at(surface);
   const std::size_t mark = steps_.memory().mark_with(j, -here_.state.mode[j]);
   field_.pass(j, alpha, selection, [&](const std::vector<double>& selections) -> const evaluation::FieldConstants& {
-    return field_memory_.of(selections, mark);
+    return fast_.fields.of(selections, mark);
   });
 }
 
@@ -160,12 +164,13 @@ bool Run::begin_at(const Located& located) {
 
 /// Fills the occasion.
 void Run::look_at_both(const Located& located, int slid, int reached) {
-  occasion_.t = located.t;
-  occasion_.x = located.x.data();
-  occasion_.time_scale = here_.time_scale;
-  occasion_.at_zero = {std::min(slid, reached), std::max(slid, reached)};
-  occasion_.touched.assign(1, reached);
-  for (auto* none : {&occasion_.exit_below, &occasion_.exit_above, &occasion_.coalesced, &occasion_.destabilised}) {
+  event_.occasion.t = located.t;
+  event_.occasion.x = located.x.data();
+  event_.occasion.time_scale = here_.time_scale;
+  event_.occasion.at_zero = {std::min(slid, reached), std::max(slid, reached)};
+  event_.occasion.touched.assign(1, reached);
+  for (auto* none : {&event_.occasion.exit_below, &event_.occasion.exit_above, &event_.occasion.coalesced,
+                     &event_.occasion.destabilised}) {
     none->clear();
   }
 }
@@ -174,7 +179,7 @@ void Run::look_at_both(const Located& located, int slid, int reached) {
 void Run::end_switch() {
   restart_control();
   rows_.skip_here();
-  last_event_time_ = here_.t;
+  event_.last_time = here_.t;
 }
 
 /// The only surface that is slid on, where the field of one side has become tangent to it.
@@ -187,16 +192,17 @@ bool Run::leave(const Located& located, const EventFunction& exit) {
   const double alpha = field_.alpha()[j];
   if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return false;
   const auto side = exit.kind == FunctionKind::exit_below ? Region::below : Region::above;
-  field_.of_side(side, t, x, slope_beyond_.data());
-  const SingleSurface::Motions motions{field_.sides(), search_.exit_rate(located.functions.front(), slope_beyond_)};
+  field_.of_side(side, t, x, fast_.slope_beyond.data());
+  const SingleSurface::Motions motions{field_.sides(),
+                                       search_.exit_rate(located.functions.front(), fast_.slope_beyond)};
   const double before = std::exchange(here_.state.alpha[j], side == Region::below ? 0.0 : 1.0);
-  const auto decision = single_surface_.decide_exit(here_.state, surface, {t, x, here_.time_scale}, motions, side);
+  const auto decision = fast_.single.decide_exit(here_.state, surface, {t, x, here_.time_scale}, motions, side);
   here_.state.alpha[j] = before;
   if (!decision) return false;
   here_.x = located.x;
   here_.state.alpha[j] = alpha;
   field_.leave_to(side);
-  here_.slope.swap(slope_beyond_);
+  here_.slope.swap(fast_.slope_beyond);
   go_on_behind(located, {surface, 0, decision->mode, alpha, decision->alpha, decision->reason});
   return true;
 }
@@ -215,13 +221,13 @@ void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
   const bool slides = change.after == 0 || change.slid != nullptr;
   recorder_.row_behind_last_event(here_.x, slides ? field_.alpha() : here_.state.alpha,
                                   change.slid != nullptr ? at(change.slid->surface) : j);
-  series_.note(here_.t, j, change.before);
+  switches_.series().note(here_.t, j, change.before);
   here_.h = steps_.memory().change(here_.state.mode, j, here_.t, here_.h);
   end_switch();
   if (too_many_events()) return;
-  note_tightening_switch(change);
+  switches_.note(change);
   accumulate_switches();
-  if (change.slid != nullptr && running_) watch_for_families();
+  if (change.slid != nullptr && outcome_.running) choices_.watch(field_);
 }
 
 /// The functions of the mode behind.
@@ -231,10 +237,10 @@ void Run::begin_search(const SurfaceSwitch& change) {
   if (crosses && change.slid == nullptr) return search_.cross(j, here_.state, here_.t, here_.x.data());
   set_corner_alpha(here_.state);
   if (crosses && search_.pass(j, here_.state, here_.t, here_.x.data())) return;
-  zero_order_.assign(here_.state.mode.size(), 0);
-  zero_order_[j] = crosses ? 1 : change.after == 0 ? 0 : 2;
-  if (crosses) return search_.enter(here_.state, zero_order_, here_.t, here_.x.data());
-  search_.enter_again(here_.state, zero_order_, here_.t, here_.x.data());
+  fast_.zero_order.assign(here_.state.mode.size(), 0);
+  fast_.zero_order[j] = crosses ? 1 : change.after == 0 ? 0 : 2;
+  if (crosses) return search_.enter(here_.state, fast_.zero_order, here_.t, here_.x.data());
+  search_.enter_again(here_.state, fast_.zero_order, here_.t, here_.x.data());
 }
 
 }  // namespace saltus::event_integrator

@@ -8,6 +8,7 @@
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
+#include "saltus/event_integrator/sequences/contracting_cycles.hpp"
 
 namespace saltus::event_integrator {
 
@@ -25,7 +26,7 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
   });
   for (const std::size_t event : fired) {
     recorder_.user(here_.t, {x_before, here_.x, before, here_.state}, static_cast<int>(event));
-    if (user_events_.stops(event) && running_) {
+    if (user_events_.stops(event) && outcome_.running) {
       fail(Termination::stopped_by_event,
            fmt::format("stopped by the event '{}'", surroundings_.system.events[event].name));
     }
@@ -35,7 +36,7 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
 
 bool Run::too_many_events() {
   if (recorder_.events() >= options_.max_events) {
-    const std::string laps = shrinking_laps();
+    const std::string laps = ContractingCycles(surroundings_, here_, recorder_).describe();
     const std::string advice = "see in the table of events what switches ever faster";
     fail(Termination::iteration_limit,
          fmt::format("max_events = {} reached at {}; raise simulate.max_events if they are meant, or {}",
@@ -43,7 +44,7 @@ bool Run::too_many_events() {
     return true;
   }
   // Jumps have their own limits.
-  if (jumped_ || !series_.too_dense(here_.t)) return false;
+  if (event_.jumped || !switches_.series().too_dense(here_.t)) return false;
   if (!follow_dense_laps()) accumulates();
   return true;
 }
@@ -58,10 +59,25 @@ void Run::accumulates() {
           here_.t));
 }
 
+/// Whether a nested function reaches 0 on one side only of a surface that is slid on; that ends the run.
+bool Run::jumps_while_sliding(int surface) {
+  if (continuous_across(kernel_, corners_inside(kernel_, here_.state, surface), surface, here_.t, here_.x,
+                        here_.time_scale)) {
+    return false;
+  }
+  const auto name = [&](int j) { return surroundings_.system.switching[at(j)].name; };
+  fail(Termination::outside_class,
+       fmt::format("'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
+                   "it at t = {:.17g}: rewrite the nested term with named switching functions",
+                   name(surface), name(sliding_inside(kernel_, here_.state, surface).front()), here_.t));
+  return true;
+}
+
 bool Run::change_mode(const Located& located) {
-  cell_change_ = leave_cells(located);
-  if (cell_change_ == CellChange::jump || change_resting_with_cells()) return running_ && jump_with_cells();
-  Occasion& occasion = occasion_;
+  event_.cell_change = leave_cells(located);
+  if (event_.cell_change == CellChange::jump || change_resting_with_cells())
+    return outcome_.running && jump_with_cells();
+  Occasion& occasion = event_.occasion;
   occasion.t = here_.t;
   occasion.x = here_.x.data();
   occasion.time_scale = here_.time_scale;
@@ -84,41 +100,30 @@ bool Run::change_mode(const Located& located) {
       occasion.time_scale = std::max(occasion.time_scale, steps_.longest());
     }
     if (function.kind == FunctionKind::instability) occasion.destabilised.push_back(function.index);
-    const bool nested = function.kind == FunctionKind::nested;
-    if (nested && !continuous_across(kernel_, corners_inside(kernel_, here_.state, function.index), function.index,
-                                     here_.t, here_.x, here_.time_scale)) {
-      fail(Termination::outside_class,
-           fmt::format(
-               "'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
-               "it at t = {:.17g}: rewrite the nested term with named switching functions",
-               surroundings_.system.switching[at(function.index)].name,
-               surroundings_.system.switching[at(sliding_inside(kernel_, here_.state, function.index).front())].name,
-               here_.t));
-      return false;
-    }
+    if (function.kind == FunctionKind::nested && jumps_while_sliding(function.index)) return false;
     occasion.at_zero.push_back(function.index);
     occasion.touched.push_back(function.index);
   }
-  const ModeState& from = freed_.empty() ? before_ : slid_on_freed(occasion);
+  const ModeState& from = event_.freed.empty() ? event_.before : slid_on_freed(occasion);
   for (const int j : here_.state.sliding) {
     // Sliding goes on with the new gradient, or ends, behind a kink of its own psi.
-    if (cell_change_ != CellChange::none && cells_.moved_in(j)) occasion.touched.push_back(j);
+    if (event_.cell_change != CellChange::none && cells_.moved_in(j)) occasion.touched.push_back(j);
   }
   if (!any && occasion.touched.empty()) {
-    if (cell_change_ == CellChange::none) return true;
-    transition_ = Transition{};
-    transition_.state = here_.state;
-    transition_.zero_order = zeros_at(kernel_, here_.state, here_.t, here_.x.data());
-    return enter(transition_);
+    if (event_.cell_change == CellChange::none) return true;
+    event_.transition = Transition{};
+    event_.transition.state = here_.state;
+    event_.transition.zero_order = zeros_at(kernel_, here_.state, here_.t, here_.x.data());
+    return enter(event_.transition);
   }
   std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
   occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
   if (!kernel_.region_groups().empty()) complete_ties(kernel_, here_.state, occasion);
   note_ties(kernel_, here_.state, occasion);
-  Transition& transition = transition_;
+  Transition& transition = event_.transition;
   const bool slope_holds = cells_.empty() && jumps_.none();  // no cell was left, and no guard released, here
-  if (!single_surface_.decide(from, occasion, transition, slope_holds ? &here_.slope : nullptr) &&
-      !surface_pair_.decide(from, occasion, transition)) {
+  if (!fast_.single.decide(from, occasion, transition, slope_holds ? &here_.slope : nullptr) &&
+      !fast_.pair.decide(from, occasion, transition)) {
     transition = decide_mode(surroundings_, from, occasion);
   }
   if (transition.termination == Termination::completed) {
@@ -129,16 +134,16 @@ bool Run::change_mode(const Located& located) {
 
 /// Into the mode that was decided at this time, with its event.
 bool Run::go_on() {
-  Transition& transition = transition_;
+  Transition& transition = event_.transition;
   if (transition.termination != Termination::completed) {
-    drowned_ = drowned_here();
-    if (drowned_) return false;
-    if (auto lost = lost_selections(surroundings_, before_, here_.t, here_.x.data())) {
+    event_.unresolved = unresolved_here();
+    if (event_.unresolved) return false;
+    if (auto lost = lost_selections(surroundings_, event_.before, here_.t, here_.x.data())) {
       fail(Termination::outside_class, std::move(*lost));
       return false;
     }
     // Where switches accumulate the fields may have no limit: that is the reason then.
-    const bool at_limit = transition.termination != Termination::outside_class && series_.shrinks(here_.t);
+    const bool at_limit = transition.termination != Termination::outside_class && switches_.series().shrinks(here_.t);
     if (at_limit) {
       accumulates();
       return false;
@@ -146,13 +151,13 @@ bool Run::go_on() {
     fail(transition.termination, std::move(transition.message));
     return false;
   }
-  choose(transition);
-  if (series_.repeats(here_.t, before_.mode, transition.state.mode)) {
+  choices_.choose(transition, progress());
+  if (switches_.series().repeats(here_.t, event_.before.mode, transition.state.mode)) {
     accumulates();
     return false;
   }
   if (!enter(transition) || !find_undefined_cells()) return false;
-  if (!recorder_.switched(here_.t, here_.x, before_, transition) && chooses_here(transition)) {
+  if (!recorder_.switched(here_.t, here_.x, event_.before, transition) && choices_.chooses(transition)) {
     // To stay on a root that has lost its stability, or to change to the other one: the branch begins like a run in a
     // forced mode.
     recorder_.started(here_.t, here_.x, transition, here_.state.sliding);
@@ -183,20 +188,20 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
   field_(here_.t, here_.x.data(), here_.slope.data());
   // 0/0 in the last bit where both fields are tangent: the selections that the mode began with are as good.
   if (!here_.state.sliding.empty() && is_finite(field_.alpha())) here_.state.alpha = field_.alpha();
-  before_ = here_.state;
-  x_before_ = here_.x;
-  jumped_ = false;
-  cells_before_ = cells_.indices();
-  cell_change_ = CellChange::none;
+  event_.before = here_.state;
+  event_.x_before = here_.x;
+  event_.jumped = false;
+  event_.cells_before = cells_.indices();
+  event_.cell_change = CellChange::none;
   rows_.arrive(row);
   return {recorder_.events(), row};
 }
 
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
-  no_surface_at_.reset();
-  if (is_ordinary(located) && switch_shortly(located)) return running_ ? Step::taken : Step::failed;
-  const bool ended_here = located.t == here_.t && recorder_.ends_at(here_.t) && here_.t != last_event_time_;
+  zeros_.forget();
+  if (is_ordinary(located) && switch_shortly(located)) return outcome_.running ? Step::taken : Step::failed;
+  const bool ended_here = located.t == here_.t && recorder_.ends_at(here_.t) && here_.t != event_.last_time;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
   if (located.t > here_.t) search_.forget_user_zeros();
   const double t_begin = here_.t;
@@ -205,33 +210,34 @@ Run::Step Run::handle(const Located& located) {
   static_cast<void>(holding_.project(here_.t, here_.state.alpha, here_.x));
   settle_on_roots(located);
   // A step may be as long as the mode.
-  if (families_.watches() && here_.t > t_begin) look_for_families(t_begin);
+  if (choices_.families().watches() && here_.t > t_begin) choices_.look(t_begin, steps_);
   // A step that ended exactly here has written the row before the event.
   const Arrival arrival = arrive(ended_here ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
   flip_user_functions(located);
   jumps_.update(jump_point());
   if (jumps_have_problem()) return depart(arrival);
-  Landing& landing = landing_at(located);
+  cascade_.begin(located);
   if (jumps_.due(here_.t)) {
-    cell_change_ = leave_cells(located);
-    static_cast<void>(jump(before_, x_before_, landing));
+    event_.cell_change = leave_cells(located);
+    static_cast<void>(jump(event_.before, event_.x_before));
     return depart(arrival);
   }
   const bool released = release(located);
-  if (change_mode(located) && released && freed_.empty()) {
+  if (change_mode(located) && released && event_.freed.empty()) {
     Transition same;
     same.state = here_.state;
     same.zero_order.assign(here_.state.mode.size(), 0);
     static_cast<void>(enter(same));
   }
-  if (running_ && !jumps_.none() && here_.state.mode != before_.mode) leave_guards(landing);
-  if (running_) fire_user_events(here_.x, before_);
-  if (running_ && !jumps_.none()) {
+  if (outcome_.running && !jumps_.none() && here_.state.mode != event_.before.mode)
+    cascade_.leave_guards(event_.transition.zero_order);
+  if (outcome_.running) fire_user_events(here_.x, event_.before);
+  if (outcome_.running && !jumps_.none()) {
     // Conditions may depend on selections, too.
     jumps_.update(jump_point());
     if (!jumps_have_problem() && jumps_.due(here_.t)) {
       const ModeState before = here_.state;
-      static_cast<void>(jump(before, std::vector<double>(here_.x), landing));
+      static_cast<void>(jump(before, std::vector<double>(here_.x)));
     }
   }
   return depart(arrival);
@@ -239,38 +245,40 @@ Run::Step Run::handle(const Located& located) {
 
 /// Whether a selection is another one than before that is no kink: one of time only, which makes no event.
 bool Run::selections_jumped() const {
-  for (std::size_t j = 0; j < here_.state.mode.size() && j < before_.mode.size(); ++j) {
-    if (here_.state.mode[j] != before_.mode[j] && !surroundings_.system.switching[j].is_kink()) return true;
+  for (std::size_t j = 0; j < here_.state.mode.size() && j < event_.before.mode.size(); ++j) {
+    if (here_.state.mode[j] != event_.before.mode[j] && !surroundings_.system.switching[j].is_kink()) return true;
   }
   return false;
 }
 
 Run::Step Run::depart(const Arrival& arrival) {
   const bool event = recorder_.events() > arrival.events;
-  if (event || !running_) {
+  if (event || !outcome_.running) {
     if (arrival.row == OutputRows::Arrival::missing) rows_at_event(arrival);
     if (event) row(here_.t, here_.x);
   } else if (rows_.at_steps()) {
     // Inputs and outputs may jump here: their values before and behind.
-    if (cell_change_ == CellChange::jump || (rows_.asks_for_lines() && selections_jumped())) rows_at_event(arrival);
+    if (event_.cell_change == CellChange::jump || (rows_.asks_for_lines() && selections_jumped()))
+      rows_at_event(arrival);
     row(here_.t, here_.x);
   }
   // A requested time at a restart that is no event still gets its row.
   rows_.each_until(-infinity, here_.t, [&](double t) {
-    const bool wanted = (t == here_.t || cell_change_ != CellChange::none) && !event && !rows_.at_steps() && running_;
+    const bool wanted =
+        (t == here_.t || event_.cell_change != CellChange::none) && !event && !rows_.at_steps() && outcome_.running;
     if (wanted) row(t, here_.x);
   });
-  if (event) last_event_time_ = here_.t;
-  if (running_ && !too_many_events()) {
+  if (event) event_.last_time = here_.t;
+  if (outcome_.running && !too_many_events()) {
     if (event) {
-      note_tightening_switch();
+      note_switch();
       accumulate_switches();
     }
     accumulate_jumps();
-    if (drowned_) go_on_from_drowned();
+    if (event_.unresolved) go_on_from_unresolved();
   }
-  if (recorder_.events() > arrival.events && running_) watch_for_families();
-  return running_ ? Step::taken : Step::failed;
+  if (recorder_.events() > arrival.events && outcome_.running) choices_.watch(field_);
+  return outcome_.running ? Step::taken : Step::failed;
 }
 
 }  // namespace saltus::event_integrator

@@ -1,7 +1,7 @@
-// A run in progress: the state of the engine between its sources. integrate.cpp begins and ends it, run_steps.cpp takes
-// the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it, run_jumps.cpp,
-// run_limits.cpp and run_resting.cpp jumps, their accumulation, and what is at rest behind it, run_spirals.cpp and
-// run_shrinking.cpp the accumulation of switches, run_lines.cpp rows between steps.
+// A run: the composition of its parts, and the loop over steps and events. run.cpp begins and ends it, run_steps.cpp takes
+// the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it; run_jumps.cpp,
+// run_limits.cpp and run_resting.cpp jumps, their accumulation, and what is at rest behind it; run_spirals.cpp the limits
+// of switches; run_rooted.cpp and run_nested_roots.cpp the way out of zeros, and into them.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,15 @@
 
 #include "saltus/event_integrator/accumulate/accumulation.hpp"
 #include "saltus/event_integrator/accumulate/switch_series.hpp"
+#include "saltus/event_integrator/approach/nested_zero_approach.hpp"
+#include "saltus/event_integrator/approach/zero_approach.hpp"
 #include "saltus/event_integrator/branches/families.hpp"
+#include "saltus/event_integrator/cascade/jump_cascade.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/decide/fast/single_surface.hpp"
 #include "saltus/event_integrator/decide/fast/surface_pair.hpp"
 #include "saltus/event_integrator/decide/projected_fields.hpp"
+#include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/decide/transition.hpp"
 #include "saltus/event_integrator/field/field_memory.hpp"
 #include "saltus/event_integrator/field/mode_field.hpp"
@@ -29,22 +33,25 @@
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
 #include "saltus/event_integrator/run/compact_integration.hpp"
+#include "saltus/event_integrator/run/followed_choices.hpp"
 #include "saltus/event_integrator/run/output_rows.hpp"
-#include "saltus/event_integrator/run/step_attempt.hpp"
-#include "saltus/event_integrator/run/step_tolerances.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
 #include "saltus/event_integrator/search/event_search.hpp"
 #include "saltus/event_integrator/search/locate.hpp"
 #include "saltus/event_integrator/search/user_events.hpp"
+#include "saltus/event_integrator/sequences/jump_accumulation.hpp"
+#include "saltus/event_integrator/sequences/switch_accumulation.hpp"
+#include "saltus/event_integrator/steps/step_attempt.hpp"
+#include "saltus/event_integrator/steps/step_tolerances.hpp"
 #include "saltus/ode/step_control.hpp"
 
 namespace saltus::event_integrator {
 
-/// Of an accumulation that is one at once.
+/// The reason of a jump with restitution 0: the limit of its sequence is reached at once.
 inline constexpr const char* resting_reason =
     "the jump leaves its guard at 0 without a velocity: the limit of its sequence at once";
 
-/// The run in progress: where it is, and the work spaces of its parts. One object per call of integrate().
+/// A Run owns its parts and its position, which only it moves. There is one object per call of integrate().
 class Run {
  public:
   /// How switches are decided and entered: the ordinary ones by the short way, or all by the one that covers
@@ -52,9 +59,10 @@ class Run {
   enum class Way { short_where_ordinary, general };
 
   Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-      const StepObserver& observer, Way way = Way::short_where_ordinary);
+      Way way = Way::short_where_ordinary);
 
-  CompactIntegration to_end();
+  /// Runs to the end, or until the observer, which is called behind every step, asks to stop.
+  CompactIntegration to_end(const StepObserver& observer);
 
  private:
   enum class Step { taken, shortened, failed };
@@ -65,46 +73,16 @@ class Run {
     long events = 0;  ///< recorded before it
     OutputRows::Arrival row = OutputRows::Arrival::missing;
   };
-  /// Limits of switches that follow each other at once.
-  struct LimitsInARow {
-    int count = 0;
-    double last = 0.0;       ///< time of the last one
-    double first_lap = 0.0;  ///< of the sequence before the first one
-  };
-  /// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
-  struct Landing {
-    ReusedList<ExecutedJump> executed;
-    std::vector<int> zeros;           ///< event functions that are at zero here whatever is left of their value
-    std::vector<double> zero_values;  ///< what is left
-    std::vector<Rate> rates;          ///< by event function: largest |dg/dt| of guards of jumps at this time
-    std::vector<std::optional<Motion>> motions;  ///< by event function: found since the mode here was decided
-    std::vector<HeldGuard> held_before;
-    std::vector<int> resting;  ///< jumps whose guards stay at zero from here on
-    Transition transition;
-  };
-
-  /// A function g inside ones that are slid on, which have a root of it: where |g / g'| was last seen to have halved.
-  struct Nearing {
-    int function = 0;
-    std::vector<int> around;
-    double t = 0.0;
-    double ratio = infinity;
-    double end = std::numeric_limits<double>::quiet_NaN();  ///< where g is 0, by what was seen until then
-  };
-
-  struct RestingGuards {
-    std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
-  };
-
   bool begin();
+  void record_start(const Start& start);
   Step attempt();
-  [[nodiscard]] std::optional<Located> surface_within_rounding();
-  [[nodiscard]] std::optional<Located> rooted_surface_ahead(double until);
-  [[nodiscard]] bool is_repelled(const Located& located);
+  Step beside_undefined(double t_new);
+  Step reject(double error);
+  [[nodiscard]] std::optional<Step> first_event(double t_new);
+  /// A shorter attempt; where time does not resolve that, what is there.
+  Step shorten_to(double factor) { return shorten(factor) ? Step::shortened : undefined_step(); }
   Step undefined_step();
   [[nodiscard]] std::string undefined_beyond();
-  [[nodiscard]] std::vector<double> all_functions(double t, const double* x);
-  void find_functions(double t, const double* x, std::vector<double>& values);
   [[nodiscard]] std::string undefined_function_beyond();
   Step accept(double t_new);
   Step handle(const Located& located);
@@ -124,25 +102,20 @@ class Run {
   Arrival arrive(OutputRows::Arrival row);
   Step depart(const Arrival& arrival);
   [[nodiscard]] bool selections_jumped() const;
-  void choose(Transition& transition);
-  void choose_phase(Transition& transition);
-  void note_choice(long decision);
-  void begin_at_choice();
   Step leave_later();
-  void watch_for_families();
-  void look_for_families(double t_begin);
-  [[nodiscard]] double next_departure() const {
-    const double time = next_choice().departure();
-    return time > here_.t ? time : infinity;
+  /// Where the next step must end at the latest: times of jumps are hit exactly, like the end.
+  [[nodiscard]] double next_stop() const {
+    return std::min({options_.until, jumps_.next_time(), choices_.next_departure()});
   }
-  /// The next one of the choices that a run was asked for; one that never comes if there is none.
-  [[nodiscard]] Choice next_choice() const {
-    return next_choice_ < options_.choices.size() ? options_.choices[next_choice_] : Choice{-1};
+  [[nodiscard]] FollowedChoices::Progress progress() const {
+    auto statistics = outcome_.result.statistics;
+    statistics.rhs_evaluations = kernel_.field_evaluations() - outcome_.evaluations_before;
+    return {rows_.arrival(), statistics};
   }
-  /// Whether this is the alternative that the run was asked to go on with last.
-  [[nodiscard]] bool chooses_here(const Transition& transition) const {
-    return next_choice_ > 0 && transition.decision == chosen_ && !transition.alternatives.empty();
+  [[nodiscard]] SwitchAccumulation::Roots roots_of_cycles() const {
+    return zeros_.any_ending() ? SwitchAccumulation::Roots::ending : SwitchAccumulation::Roots::none;
   }
+  bool jumps_while_sliding(int surface);
   bool change_mode(const Located& located);
   const ModeState& slid_on_freed(Occasion& occasion);
   CellChange leave_cells(const Located& located);
@@ -154,71 +127,43 @@ class Run {
   bool enter(const Transition& transition);
   void begin_spiral();
   void leave_root();
-  [[nodiscard]] int root_here();
   /// Where x and f are both 0 the step that was proposed says nothing.
   [[nodiscard]] double root_step() const { return std::max(1e-2 * here_.time_scale, 1e-8 * span()); }
   bool take_side_of_root();
   void settle_on_roots(const Located& located);
-  void watch_nested_roots();
-  void tighten_beside_nested_roots(double& atol, double& rtol);
-  [[nodiscard]] std::optional<Located> nested_roots_ahead();
-  [[nodiscard]] std::optional<double> end_of_nearing(Nearing& nearing);
-  [[nodiscard]] std::optional<Located> at_nested_roots(double end, const std::vector<std::size_t>& reached);
   Step arrive_at_nested_roots(const Located& located);
   void leave_nested_root();
   void note_time_scale(double h);
-  [[nodiscard]] bool keep_their_signs(const std::vector<double>& before, int surface, double t, const double* x);
-  void note_tightening_switch();
-  void note_tightening_switch(const SurfaceSwitch& change);
-  void note_switch_rates();
-  void follow_shrinking();
-  void end_shrinking();
+  void note_switch();
   void limit_beside_coalescence();
-  void tighten_beside_roots(double h);
+  void limit_beside_zeros(double h);
   void accumulate_switches();
-  [[nodiscard]] std::optional<SeriesLimit> drowned_here() const;
-  void go_on_from_drowned();
-  bool hold_what_drowns();
+  [[nodiscard]] std::optional<SeriesLimit> unresolved_here() const;
+  void go_on_from_unresolved();
+  bool hold_unresolved();
   bool follow_dense_laps();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
-  bool limits_repeat(double t);
   void pass_to(double t, std::vector<double> x);
   void go_on_from_limit();
   std::vector<std::size_t> fire_user_events(const std::vector<double>& x_before, const ModeState& before,
                                             const std::vector<std::size_t>& before_jumps = {});
   void flip_user_functions(const Located& located);
 
-  bool begin_jumps(Landing& landing);
-  bool settle_at_start(Landing& landing);
+  bool begin_jumps();
+  bool settle_at_start();
   Step jump_in_time();
-  bool jump(const ModeState& before, const std::vector<double>& x_before, Landing& landing);
-  bool settle_jumps(Landing& landing);
-  bool execute_jump(Landing& landing);
-  bool begin_contacts(Landing& landing);
+  bool jump(const ModeState& before, const std::vector<double>& x_before);
+  bool settle_jumps();
+  bool execute_jump();
+  bool begin_contacts();
   bool move_contacts();
   void settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before);
-  bool decide_behind_jumps(Landing& landing);
-  bool hold_resting(Landing& landing);
-  bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, Landing& landing);
-  bool free_passing(Landing& landing);
-  bool change_nothing(const std::vector<int>& jumps, Landing& landing);
+  bool decide_behind_jumps();
+  bool hold_resting();
+  bool hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose);
+  bool free_passing();
+  bool change_nothing(const std::vector<int>& jumps);
   bool find_resting(RestingSurfaces& resting);
-  std::vector<int> surfaces_keeping(int function);
-  RestingGuards pressed_guards(Landing& landing);
-  std::vector<HeldGuard> guards_kept_by_sliding(Landing& landing, const RestingGuards& others);
-  void give_directions(Landing& landing);
-  void leave_guards(Landing& landing);
-  [[nodiscard]] Landing& landing_here();
-  [[nodiscard]] Landing& landing_at(const Located& located);
-  void find_values();
-  void note_guards(Landing& landing);
-  void note_series(const Landing& landing);
-  void drop_zeros(Landing& landing);
-  void read_user_signs(const Landing& landing);
-  [[nodiscard]] double size_at(int function);
-  [[nodiscard]] Motion motion_of(int function, Landing& landing);
-  [[nodiscard]] Occasion at_this_time() const;
-  [[nodiscard]] Motion find_motion(int function, const Landing& landing);
   bool release(const Located& located);
   void accumulate_jumps();
   void follow_limit(const SeriesLimit& limit);
@@ -227,12 +172,6 @@ class Run {
   bool jumps_have_problem();
   void start_step();
   bool too_many_events();
-  [[nodiscard]] double mean_interval(long first, long count) const;
-  [[nodiscard]] double last_interval(long count) const;
-  [[nodiscard]] long resolved_events(double farthest, double rounding) const;
-  [[nodiscard]] std::optional<double> shrinking_exponent(long n) const;
-  [[nodiscard]] bool has_one_rate(int surface);
-  [[nodiscard]] std::string shrinking_laps();
   void accumulates();
   bool stopped_by_two_fold();
   bool stopped_by_singularity();
@@ -245,93 +184,73 @@ class Run {
   void row(double t, const std::vector<double>& x) { rows_.write(t, x); }
   /// For the steps of the mode behind an event. While switches tighten no step is like one before.
   void restart_control() {
-    steps_.restart_control(switch_laps_.empty() ? StepAttempt::Steps::may_repeat : StepAttempt::Steps::are_new);
+    steps_.restart_control(switches_.empty() ? StepAttempt::Steps::may_repeat : StepAttempt::Steps::are_new);
   }
   [[nodiscard]] double span() const { return options_.until - options_.from; }
   [[nodiscard]] std::string where() const;
 
+  /// The event that is handled now, or was last.
+  struct CurrentEvent {
+    ModeState before;  ///< the mode before it
+    ModeState slid;    ///< that mode with what a released guard has kept at zero slid on
+    std::vector<double> x_before;
+    std::vector<long> cells_before;
+    CellChange cell_change = CellChange::none;
+    bool jumped = false;
+    std::vector<int> freed;  ///< surfaces that a guard has kept at zero, which it has released
+    Occasion occasion;
+    Transition transition;
+    std::optional<SeriesLimit> unresolved;  ///< the limit that its switch is
+    std::optional<SpiralStart> spiral;      ///< of the mode that it begins: time and state jump over the first cycle
+    int rooted = -1;                        ///< of that mode: the surface that it leaves along a root
+    double last_time = -infinity;           ///< of the last one that was recorded
+  };
+  /// What has come of the run so far.
+  struct Outcome {
+    CompactIntegration result = {};
+    long evaluations_before = 0;  ///< the kernel may have been used before
+    bool running = true;
+  };
+  /// What decides and enters ordinary switches without detours.
+  struct FastSwitch {
+    explicit FastSwitch(const Surroundings& surroundings)
+        : single(surroundings),
+          pair(surroundings),
+          fields(surroundings.kernel),
+          slope_beyond(at(surroundings.kernel.states())) {}
+    SingleSurface single;
+    SurfacePair pair;
+    bool applies = false;  ///< the model and the options have nothing that a switch of one surface might concern
+    FieldMemory fields;
+    std::vector<int> zero_order;       ///< n_psi
+    std::vector<double> slope_beyond;  ///< of the region on the other side of a surface
+  };
+
   const evaluation::ModelKernel& kernel_;
   const IntegrationOptions& options_;
-  const StepObserver& observer_;
   Surroundings surroundings_;
   ModeField field_;
   Position here_;
-  FieldRates rates_;
   StepTolerances tolerances_;
   StepAttempt steps_;
-  double closed_lap_ = 0.0;            ///< the last one that they closed
-  std::vector<int> continued_roots_;   ///< surfaces whose regions' fields go on beyond them, less a root
-  std::vector<int> ending_roots_;      ///< those whose regions' fields do not
-  std::vector<Nearing> nearing_;       ///< of the mode
-  double nearing_since_ = 0.0;         ///< its begin
-  std::vector<double> nearing_slope_;  ///< a step before
-  double nearing_step_ = 0.0;          ///< that step
-  std::vector<double> rooted_values_;  ///< of event functions
-  double first_lap_ = 0.0;             ///< duration of the first one that was closed
-  LimitsInARow limits_in_a_row_;
-  std::optional<SeriesLimit> drowned_;  ///< the limit that the switch in hand is
   Cells cells_;
-  CellChange cell_change_ = CellChange::none;  ///< at the event being handled
   EventSearch search_;
+  ZeroApproach zeros_;
+  NestedZeroApproach nested_;
+  SwitchAccumulation switches_;
   Locator locator_;
-  SingleSurface single_surface_;
-  SurfacePair surface_pair_;
-  bool ordinary_ = false;  ///< the model and the options have nothing that a switch of one surface might concern
-  FieldMemory field_memory_;
-  std::vector<int> zero_order_;       ///< n_psi
-  std::vector<double> slope_beyond_;  ///< of the region on the other side of a surface
+  FastSwitch fast_;
   UserEvents user_events_;
   Jumps jumps_;
-  Landing landing_;  ///< of the event in hand: its storage is used again
-  /// All functions of the kernel at one point, while jumps are executed.
-  struct FunctionValues {
-    std::vector<double> value, magnitude, slope;
-  };
-  FunctionValues values_;
-  std::vector<int> user_signs_;   ///< under construction, as are
-  std::vector<bool> user_zeros_;  ///< these
-  std::vector<int> executed_;     ///< jumps, in their order
-  std::vector<int> freed_;        ///< surfaces that a guard has kept at zero, which was released by the event in hand
   Contacts contacts_;
   Holding holding_;
-  EventSeries jump_series_;
-  EventSeries switch_laps_;                  ///< of switches, by surface and mode behind, while they tighten
-  std::vector<int> switch_labels_;           ///< of the switch in hand
-  std::vector<double> shortest_switch_lap_;  ///< by the same: shorter laps drown in the rounding of psi
-  std::vector<HeldGuard> last_guard_;        ///< by jump: the guard that was at zero when it was executed last
-  std::vector<double> last_rate_;            ///< by jump: |dg/dt| then
-  std::vector<double> shortest_lap_;         ///< by jump: shorter ones drown in the rounding of the guard
+  JumpCascade cascade_;
+  JumpAccumulation jump_accumulation_;
   Recorder recorder_;
-
   OutputRows rows_;
-  std::vector<double> free_slope_;  ///< of a field that is asked for at the position
-
-  ModeState before_;  ///< of the event being handled, as are the next four
-  ModeState slid_;    ///< before_ with what a released guard has kept at zero slid on
-  std::vector<double> x_before_;
-  std::vector<long> cells_before_;
-  Occasion occasion_;
-  Transition transition_;
-  std::optional<SpiralStart> spiral_start_;  ///< of the mode just entered: time and state jump over the first lap
-  int rooted_ = -1;                          ///< of the mode just entered: the surface that it leaves along a root
-  std::vector<std::size_t> all_searched_;    ///< the numbers of all functions that are searched
-  std::vector<double> values_here_;          ///< of these
-  std::optional<double>
-      no_surface_at_;  ///< where surface_within_rounding() has found none, and nothing else has happened
-  double root_tried_at_ = -infinity;
-  bool undefined_ahead_ = false;  ///< of the last attempts one was undefined
-  bool jumped_ = false;           ///< at the event in hand
-  Families families_;
-  long decisions_ = 0;  ///< with alternatives, or of spirals, so far
-  long chosen_ = -1;    ///< the one at which the last choice was made
-  std::size_t next_choice_ = 0;
-  std::size_t choice_row_ = 0;
-  result::Statistics before_choice_;
-  double last_event_time_ = -infinity;
-  long evaluations_before_;  ///< the kernel may have been used before
-  SwitchSeries series_;
-  CompactIntegration result_;
-  bool running_ = true;
+  CurrentEvent event_;
+  FollowedChoices choices_;
+  Outcome outcome_;
 };
 
 }  // namespace saltus::event_integrator

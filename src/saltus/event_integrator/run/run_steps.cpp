@@ -35,7 +35,7 @@ void Run::rows_by_steps(double t_new) {
 }
 
 bool Run::shorten(double factor) {
-  ++result_.statistics.rejected;
+  ++outcome_.result.statistics.rejected;
   here_.h = steps_.length() * factor;
   steps_.set_length(here_.h);
   return here_.h > here_.smallest_step();
@@ -51,7 +51,7 @@ bool Run::stopped_by_two_fold() {
 
 /// Whether the steps got short because switches accumulate here, or because of a two-fold point.
 bool Run::stopped_by_singularity() {
-  if (!series_.shrinks(here_.t)) return stopped_by_two_fold();
+  if (!switches_.series().shrinks(here_.t)) return stopped_by_two_fold();
   accumulates();
   return true;
 }
@@ -67,26 +67,13 @@ std::string Run::undefined_beyond() {
   return {};
 }
 
-/// Values of all functions that are searched.
-std::vector<double> Run::all_functions(double t, const double* x) {
-  std::vector<double> values;
-  find_functions(t, x, values);
-  return values;
-}
-
-void Run::find_functions(double t, const double* x, std::vector<double>& values) {
-  all_searched_.resize(search_.functions().size());
-  std::iota(all_searched_.begin(), all_searched_.end(), std::size_t{0});
-  search_.evaluate(t, x, all_searched_, values);
-}
-
 /// The switching function, event or jump that is undefined a little further along the right-hand side, in words; empty
 /// if none is found.
 std::string Run::undefined_function_beyond() {
   std::vector<double> x = here_.x;
   for (double h = here_.smallest_step(); h <= 1e6 * here_.smallest_step(); h *= 4.0) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = here_.x[i] + h * here_.slope[i];
-    const std::vector<double> values = all_functions(here_.t + h, x.data());
+    const auto& values = zeros_.functions(here_.t + h, x.data());
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto& function = search_.functions()[i];
       if (std::isfinite(values[i]) || is_cell_end(function.kind)) continue;
@@ -98,65 +85,13 @@ std::string Run::undefined_function_beyond() {
   return {};
 }
 
-/// A surface that the state cannot come nearer to, as its next digit is on it or behind it, although time could go on:
-/// steps that change nothing succeed there, and all others are undefined.
-std::optional<Located> Run::surface_within_rounding() {
-  auto& values = values_here_;
-  find_functions(here_.t, here_.x.data(), values);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto& function = search_.functions()[i];
-    if (function.kind != FunctionKind::surface || !(std::abs(values[i]) <= search_.noise(i))) continue;
-    const Rate rate = rates_.here(function.index);
-    constexpr double rounding = 1e-12;  // a surface that was left tangentially is none
-    if (!(function.sign * rate.value < -rounding * rate.terms)) continue;
-    Located located{here_.t, here_.x, {i}, {function.sign}};
-    move_onto(kernel_, here_.state, function.index, here_.t, located.x);
-    return located;
-  }
-  return std::nullopt;
-}
-
-/// Whether a surface that no step gets to is one that its own field leads away from: beside a root of psi a dense
-/// output dips below zero where the solution only comes near.
-bool Run::is_repelled(const Located& located) {
-  const auto& function = search_.functions()[located.functions.front()];
-  if (!located.short_of || function.kind != FunctionKind::surface) return false;
-  std::vector<double> x = located.x, slope(x.size());
-  move_onto(kernel_, here_.state, function.index, located.t, x);
-  field_(located.t, x.data(), slope.data());
-  const Rate rate = rates_.at(function.index, located.t, x, slope);
-  constexpr double rounding = 1e-12;
-  return located.signs.front() * rate.value > rounding * rate.terms;
-}
-
 /// The right-hand side is undefined however short the step: the region of this field ends here, or the model does.
 Run::Step Run::undefined_step() {
-  if (here_.t != root_tried_at_) {
-    root_tried_at_ = here_.t;
-    rooted_ = root_here();
-    const double before = here_.t;
-    if (rooted_ >= 0) leave_root();
-    if (here_.t > before) return running_ ? Step::taken : Step::failed;
-  }
-  auto& values = values_here_;
-  find_functions(here_.t, here_.x.data(), values);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto& function = search_.functions()[i];
-    const bool surface = function.kind == FunctionKind::surface;
-    if (!surface && function.kind != FunctionKind::loss) continue;
-    // The zero lies within the time that can no longer be resolved, or the selection has become double.
-    const double rate = surface ? rates_.here(function.index).value : 0.0;
-    // NOTE: the last step may have ended at 0 itself, or a rounding beyond it.
-    const bool ahead = function.sign * rate < 0.0 || (function.sign == 0 && values[i] * rate < 0.0);
-    // Of sqrt(x) + 1 the rate is infinite at x = 0, and nothing is reached.
-    const bool is_near = std::isfinite(rate) && std::abs(values[i] / rate) <= 1e3 * here_.smallest_step();
-    const bool reached = surface ? ahead && is_near : std::abs(values[i]) < 1e-3;
-    if (reached) {
-      Located located{here_.t, here_.x, {i}, {function.sign}};
-      if (surface) move_onto(kernel_, here_.state, function.index, here_.t, located.x);
-      return handle(located);
-    }
-  }
+  event_.rooted = zeros_.root_here_once();
+  const double before = here_.t;
+  if (event_.rooted >= 0) leave_root();
+  if (here_.t > before) return outcome_.running ? Step::taken : Step::failed;
+  if (const auto located = zeros_.beside_undefined()) return handle(*located);
   if (stopped_by_singularity()) return Step::failed;
   const std::string states = undefined_beyond();
   const std::string function = states.empty() ? undefined_function_beyond() : std::string();
@@ -167,7 +102,7 @@ Run::Step Run::undefined_step() {
     return Step::failed;
   }
   if (states.empty()) {
-    if (hold_what_drowns()) return running_ ? Step::taken : Step::failed;
+    if (hold_unresolved()) return outcome_.running ? Step::taken : Step::failed;
     fail(Termination::step_size_too_small,
          fmt::format(
              "events cannot be told apart beyond {}, however short the step: a switching function or guard is no "
@@ -185,13 +120,10 @@ Run::Step Run::undefined_step() {
 }
 
 Run::Step Run::accept(double t_new) {
-  ++result_.statistics.steps;
+  ++outcome_.result.statistics.steps;
   rows_until(t_new);
   const double h = t_new - here_.t;
-  if (!nearing_.empty()) {
-    nearing_slope_ = here_.slope;
-    nearing_step_ = h;
-  }
+  nested_.accepted(h);
   std::copy(steps_.stepper().x_new(), steps_.stepper().x_new() + here_.x.size(), here_.x.begin());
   here_.t = t_new;
   note_time_scale(h);
@@ -208,89 +140,89 @@ Run::Step Run::accept(double t_new) {
   // A step that was cut short at a time of a jump says nothing against the one that was proposed.
   if (here_.t < options_.until && here_.t == jumps_.next_time()) here_.h = std::max(here_.h, steps_.length());
   steps_.memory().accepted(here_.h);
-  if (tolerances_.part(StepTolerances::Reason::cycles).atol != 1.0) end_shrinking();
+  switches_.end_if_over(roots_of_cycles());
   steps_.watch_stiffness();
   if (search_.settle(here_.t, here_.x.data())) {
     // What a user function turns to from a zero at the start is its first sign, not a change of it.
     static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));
     jumps_.update(jump_point());
   }
-  if (here_.t >= options_.until && here_.t != next_choice().departure()) {
+  if (here_.t >= options_.until && here_.t != choices_.next().departure()) {
     // Values are continuous from the right at every break, at one that is the end, too.
     if (const Located breaks = breaks_here(); !breaks.functions.empty()) {
-      if (families_.watches()) look_for_families(here_.t - h);
+      if (choices_.families().watches()) choices_.look(here_.t - h, steps_);
       return handle(breaks);
     }
   }
   rows_.write_end_of_step();
-  if (families_.watches()) look_for_families(here_.t - h);
-  if (here_.t == next_choice().departure()) return leave_later();
+  if (choices_.families().watches()) choices_.look(here_.t - h, steps_);
+  if (here_.t == choices_.next().departure()) return leave_later();
   if (jumps_.next_time() <= here_.t) return jump_in_time();
-  if (!nearing_.empty() && here_.t < options_.until) {
-    if (const auto located = nested_roots_ahead()) return arrive_at_nested_roots(*located);
+  if (nested_.watches() && here_.t < options_.until) {
+    if (const auto located = nested_.ahead(next_stop())) return arrive_at_nested_roots(*located);
   }
   return Step::taken;
 }
 
-Run::Step Run::attempt() {
-  // Times of jumps are hit exactly, like the end.
-  const double limit = std::min({options_.until, jumps_.next_time(), next_departure()});
-  const bool to_the_limit = here_.t + steps_.length() * (1.0 + 4.0 * rounding_unit) >= limit;
-  const double t_new = to_the_limit ? limit : here_.t + steps_.length();
-  const double h = t_new - here_.t;
-  if (!continued_roots_.empty() || !nearing_.empty() || (!switch_laps_.empty() && !ending_roots_.empty())) {
-    tighten_beside_roots(h);
+/// An attempt has met points where the right-hand side is undefined: what is there, or a shorter attempt.
+Run::Step Run::beside_undefined(double t_new) {
+  steps_.note_undefined();
+  if (zeros_.any_ending()) {
+    if (const auto located = zeros_.ahead(t_new)) return handle(*located);
   }
-  if (steps_.take(t_new) == ode::Attempt::undefined) {
-    undefined_ahead_ = true;
-    if (!ending_roots_.empty()) {
-      if (const auto located = rooted_surface_ahead(t_new)) return handle(*located);
-    }
-    // Not on the way of a long step, which has others to look at.
-    if (h <= 1e3 * here_.smallest_step() && no_surface_at_ != here_.t) {
-      if (const auto located = surface_within_rounding()) return handle(*located);
-      no_surface_at_ = here_.t;
-    }
-    return shorten(0.25) ? Step::shortened : undefined_step();
+  // Not on the way of a long step, which has others to look at.
+  if (t_new - here_.t <= 1e3 * here_.smallest_step()) {
+    if (const auto located = zeros_.within_rounding()) return handle(*located);
   }
-  steps_.follow_method();
-  if (const double error = steps_.confirmed_error(); !(error <= 1.0)) {
-    if (shorten(steps_.rejected(error))) return Step::shortened;
-    if (stopped_by_singularity()) return Step::failed;
-    fail(Termination::step_size_too_small,
-         fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
-                     "there, or rtol is below what doubles carry",
-                     where(), h));
-    return Step::failed;
-  }
-  const bool rows_inside = rows_.any_before(t_new);
+  return shorten_to(0.25);
+}
+
+Run::Step Run::reject(double error) {
+  const double h = steps_.stepper().length();
+  if (shorten(steps_.rejected(error))) return Step::shortened;
+  if (stopped_by_singularity()) return Step::failed;
+  fail(Termination::step_size_too_small,
+       fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
+                   "there, or rtol is below what doubles carry",
+                   where(), h));
+  return Step::failed;
+}
+
+/// The first event of the last attempt, which ends at t_new; nullopt if there is none.
+std::optional<Run::Step> Run::first_event(double t_new) {
   // Events must not depend on the rows: where nothing can vanish there is no search, with and without a dense output.
   const bool may_vanish = search_.may_vanish(steps_.stepper());
-  if (may_vanish || rows_inside) {
-    no_surface_at_.reset();  // the search finds the roundings of functions anew
-    if (!steps_.make_dense()) {
-      if (may_vanish) return shorten(0.5) ? Step::shortened : undefined_step();
-      rows_by_steps(t_new);
-    }
-    Hit hit;
-    switch (may_vanish ? search_.search(steps_.dense(), hit) : SearchOutcome::none) {
-      case SearchOutcome::none:
-        break;
-      case SearchOutcome::unresolved:
-        return shorten(0.5) ? Step::shortened : undefined_step();
-      case SearchOutcome::hit: {
-        const StepStart start{here_.t, here_.x.data(), here_.slope.data()};
-        note_time_scale(h);
-        const Located* located = locator_.locate(start, steps_.dense(), hit);
-        if (!located || is_repelled(*located)) return shorten(0.5) ? Step::shortened : undefined_step();
-        ++result_.statistics.steps;
-        // A requested time that is a break but for its rounding belongs to the cell behind it.
-        if (rows_.asks_for_lines()) rows_.write_lines(located->t, steps_.dense());
-        rows_until(reaches_cell_end(*located) ? located->t - 4.0 * rounding_unit * std::abs(located->t) : located->t);
-        return handle(*located);
-      }
-    }
+  if (!may_vanish && !rows_.any_before(t_new)) return std::nullopt;
+  zeros_.forget();  // the search finds the roundings of functions anew
+  if (!steps_.make_dense()) {
+    if (may_vanish) return shorten_to(0.5);
+    rows_by_steps(t_new);
   }
+  if (!may_vanish) return std::nullopt;
+  Hit hit;
+  const auto outcome = search_.search(steps_.dense(), hit);
+  if (outcome == SearchOutcome::none) return std::nullopt;
+  if (outcome == SearchOutcome::unresolved) return shorten_to(0.5);
+  note_time_scale(t_new - here_.t);
+  const Located* located = locator_.locate({here_.t, here_.x.data(), here_.slope.data()}, steps_.dense(), hit);
+  if (!located || zeros_.is_repelled(*located)) return shorten_to(0.5);
+  ++outcome_.result.statistics.steps;
+  if (rows_.asks_for_lines()) rows_.write_lines(located->t, steps_.dense());
+  // A requested time that is a break but for its rounding belongs to the cell behind it.
+  rows_until(reaches_cell_end(*located) ? located->t - 4.0 * rounding_unit * std::abs(located->t) : located->t);
+  return handle(*located);
+}
+
+/// One attempt at a step: undefined, too inaccurate, up to an event, or accepted.
+Run::Step Run::attempt() {
+  const double limit = next_stop();
+  const bool to_the_limit = here_.t + steps_.length() * (1.0 + 4.0 * rounding_unit) >= limit;
+  const double t_new = to_the_limit ? limit : here_.t + steps_.length();
+  limit_beside_zeros(t_new - here_.t);
+  if (steps_.take(t_new) == ode::Attempt::undefined) return beside_undefined(t_new);
+  steps_.follow_method();
+  if (const double error = steps_.confirmed_error(); !(error <= 1.0)) return reject(error);
+  if (const auto step = first_event(t_new)) return *step;
   if (rows_.asks_for_lines() && rows_.may_bend(steps_.stepper()) && steps_.make_dense()) {
     rows_.write_lines(t_new, steps_.dense());
   }

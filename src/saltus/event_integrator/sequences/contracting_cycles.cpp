@@ -1,10 +1,11 @@
-// Laps of switches that shrink, but not by a ratio: what they are, for the message of a run that ends in them.
+#include "saltus/event_integrator/sequences/contracting_cycles.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "saltus/event_integrator/run/run_internal.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -24,18 +25,20 @@ std::string resolving_layer(double farthest, bool smoothed) {
 }  // namespace
 
 /// Mean distance of the events number first to first + count.
-double Run::mean_interval(long first, long count) const {
+double ContractingCycles::mean_interval(long first, long count) const {
   return (recorder_.event_time(first + count) - recorder_.event_time(first)) / static_cast<double>(count);
 }
 
 /// Mean distance of the last eighth of the first `count` events.
-double Run::last_interval(long count) const { return mean_interval(count - 1 - (count - 1) / 8, (count - 1) / 8); }
+double ContractingCycles::last_interval(long count) const {
+  return mean_interval(count - 1 - (count - 1) / 8, (count - 1) / 8);
+}
 
 /// How many of the events of the run so far are in laps of which more is resolved than what changes from one to the
 /// next. Between two zeros psi gets about as far as its rate times a quarter of their distance T, and a rounding less
 /// or more of it makes the next lap longer or shorter by as large a part; of laps like k^-p only p/k of one is missing
 /// in the next. The rate, and with it how far psi gets, goes with T: T^2.
-long Run::resolved_events(double farthest, double rounding) const {
+long ContractingCycles::resolved_events(double farthest, double rounding) const {
   long count = recorder_.events();
   const double last = last_interval(count);
   const auto part = [&](long k) { return std::pow(last_interval(k) / last, 2) * farthest; };
@@ -45,7 +48,7 @@ long Run::resolved_events(double farthest, double rounding) const {
 
 /// The exponent p if the first n events of the run follow each other like k^-p, k their number; nullopt if they do not,
 /// or are too few to tell.
-std::optional<double> Run::shrinking_exponent(long n) const {
+std::optional<double> ContractingCycles::exponent_of(long n) const {
   if (n < fewest_shrinking) return std::nullopt;
   // Means over eighths, each twice as far from the start as the one before: whole laps and others alike. Their middles
   // are (first + half an eighth), so that p follows from two of them.
@@ -67,20 +70,21 @@ std::optional<double> Run::shrinking_exponent(long n) const {
 }
 
 /// Whether no selection of a surface moves psi at once: d psi/dt is the same on both sides (relative degree 2 or more).
-bool Run::has_one_rate(int surface) {
+bool ContractingCycles::has_one_rate(int surface) {
   std::vector<double> alpha = here_.state.alpha;
+  std::vector<double> slope(here_.x.size());
   Rate sides[2];
   for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
     alpha[at(surface)] = static_cast<double>(side);
-    kernel_.field(here_.t, here_.x.data(), alpha.data(), free_slope_.data());
-    sides[side] = rates_.along(surface, free_slope_);
+    kernel_.field(here_.t, here_.x.data(), alpha.data(), slope.data());
+    sides[side] = rates_.along(surface, slope);
   }
   constexpr double rounding = 1e-12;
   return std::abs(sides[1].value - sides[0].value) <= rounding * std::max(sides[0].terms, sides[1].terms);
 }
 
 /// What max_events has ended, where that is a sequence that shrinks like a power of its number; empty elsewhere.
-std::string Run::shrinking_laps() {
+std::string ContractingCycles::describe() {
   long events = recorder_.events();
   if (events < fewest_shrinking) return {};
   constexpr long longest_lap = 8;
@@ -100,7 +104,7 @@ std::string Run::shrinking_laps() {
   if (names.empty()) return {};
   names += "'";
   events = resolved_events(farthest, rounding);
-  const auto exponent = shrinking_exponent(events);
+  const auto exponent = exponent_of(events);
   if (!exponent) return {};
   // The sum of what follows like k^-p.
   const std::string limit =

@@ -12,34 +12,9 @@ namespace saltus::event_integrator {
 
 using result::Termination;
 
-/// Notes the jumps of an event: when, where to, and which guards were at zero.
-void Run::note_series(const Landing& landing) {
-  if (landing.executed.empty()) return;
-  auto& magnitude = values_.magnitude;
-  kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), magnitude.data(), values_.slope.data());
-  executed_.clear();
-  for (const auto& executed : landing.executed.items()) executed_.push_back(executed.jump);
-  for (const int jump : executed_) {
-    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
-      const int function = kernel_.jump_guard(jump, g);
-      const bool at_zero = std::find(landing.zeros.begin(), landing.zeros.end(), function) != landing.zeros.end();
-      if (!at_zero || jumps_.is_discrete_guard(function)) continue;
-      const int inward = jumps_.trigger_sign(jump, g, jump_point(),
-                                             -search_.user_signs()[at(function - kernel_.switching_functions())]);
-      last_guard_[at(jump)] = {{jump, function}, inward};
-      const double rate = landing.rates[at(function)].value;
-      last_rate_[at(jump)] = rate;
-      // Between two zeros a time T apart a guard gets about as far as its rate times T/4: here 200 roundings.
-      shortest_lap_[at(jump)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude[at(function)] / rate : 0.0;
-    }
-  }
-  jump_series_.add(here_.t, executed_, here_.x);
-  if (!landing.resting.empty()) jump_series_.clear_laps();
-}
-
 /// Held guards on which nothing presses any more are free; returns whether there were any.
 bool Run::release(const Located& located) {
-  freed_.clear();
+  event_.freed.clear();
   if (holding_.guards().empty()) return false;
   std::vector<HeldGuard> guards = holding_.guards();
   auto signs = search_.user_signs();
@@ -68,14 +43,15 @@ bool Run::release(const Located& located) {
   RestingSurfaces resting;
   if (!here_.state.resting.empty() && find_resting(resting)) {
     std::set_difference(here_.state.resting.begin(), here_.state.resting.end(), resting.surfaces.begin(),
-                        resting.surfaces.end(), std::back_inserter(freed_));
+                        resting.surfaces.end(), std::back_inserter(event_.freed));
   }
   return true;
 }
 
 /// Whether jumps change nothing at their limit, and their conditions come true there by what they do not set: the
-/// conditions then hold behind it, and nothing fires again. Their guards are at zero in `landing`.
-bool Run::change_nothing(const std::vector<int>& jumps, Landing& landing) {
+/// conditions then hold behind it, and nothing fires again. Their guards are at zero in the cascade.
+bool Run::change_nothing(const std::vector<int>& jumps) {
+  FieldRates rates(kernel_, here_);
   std::vector<double> slope(here_.x.size());
   kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
   std::vector<bool> vanish = search_.user_zeros();
@@ -91,12 +67,12 @@ bool Run::change_nothing(const std::vector<int>& jumps, Landing& landing) {
     bool comes_true = false;
     for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
-      const Rate rate = rates_.along(function, slope);
+      const Rate rate = rates.along(function, slope);
       const double resolved = tolerances_.step().atol * rate.slope + tolerances_.step().rtol * rate.magnitude;
-      if (jumps_.is_discrete_guard(function) || !(std::abs(landing.zero_values[at(function)]) <= resolved)) continue;
+      if (jumps_.is_discrete_guard(function) || !(std::abs(cascade_.zero_value(function)) <= resolved)) continue;
       comes_true = jumps_.trigger_sign(jump, g, jump_point(), 0) * rate.value > 0.0;
       if (!comes_true) return false;
-      landing.zeros.push_back(function);
+      cascade_.add_zero(function);
       vanish[at(function - kernel_.switching_functions())] = true;
     }
     if (!comes_true) return false;
@@ -108,7 +84,7 @@ bool Run::change_nothing(const std::vector<int>& jumps, Landing& landing) {
 /// If the jumps up to here have a limit that nothing else precedes, the run goes on from there.
 void Run::accumulate_jumps() {
   if (jumps_.none()) return;
-  const auto limit = jump_series_.limit(shortest_lap_);
+  const auto limit = jump_accumulation_.limit();
   if (limit && limit->t <= std::min(options_.until, jumps_.next_time())) follow_limit(*limit);
 }
 
@@ -124,41 +100,38 @@ void Run::follow_limit(const SeriesLimit& limit) {
   std::vector<int> jumps;
   double rate = 0.0;
   for (const int jump : limit.events) {
-    if (last_guard_[at(jump)].hold.jump < 0) continue;
-    guards.push_back(last_guard_[at(jump)]);
+    const auto guard = jump_accumulation_.last_guard(jump);
+    if (!guard) continue;
+    guards.push_back(*guard);
     jumps.push_back(jump);
-    rate = std::max(rate, last_rate_[at(jump)]);
+    rate = std::max(rate, jump_accumulation_.last_rate(jump));
   }
-  if (limit.rattling) {
-    jump_series_.clear();
-  } else {
-    jump_series_.clear_laps();
-  }
+  jump_accumulation_.end(limit);
   pass_to(limit.t, limit.x);
-  Landing& landing = landing_here();
+  cascade_.begin();
   const auto accumulated = [&] {
     recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},
                           limit.rattling
                               ? "these jumps follow each other faster than their guards are resolved"
                               : "the intervals of these jumps shrink geometrically: the state is their limit");
     row(here_.t, here_.x);
-    last_event_time_ = here_.t;
+    event_.last_time = here_.t;
   };
-  const bool ends = jumps.empty() && change_nothing(limit.events, landing);
+  const bool ends = jumps.empty() && change_nothing(limit.events);
   if (jumps.empty() && !ends) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but no guard of theirs is left at 0: what follows is not "
                      "determined",
                      jump_names(limit.events), here_.t));
   }
-  if (running_ && !ends && hold(std::move(guards), {}, landing) &&
+  if (outcome_.running && !ends && hold(std::move(guards), {}) &&
       !(holding_.largest_rate(here_.t, here_.state.alpha, here_.x) <= 1e-3 * rate)) {
     fail(Termination::outside_class,
          fmt::format("the jumps {} accumulate at t = {:.17g}, but their guards cannot be at rest at 0 together",
                      jump_names(jumps), here_.t));
   }
-  if (!running_ || !free_passing(landing) || !decide_behind_jumps(landing)) return accumulated();
-  give_directions(landing);
+  if (!outcome_.running || !free_passing() || !decide_behind_jumps()) return accumulated();
+  cascade_.give_directions();
   if (ends) jumps_.accept(limit.events, jump_point());
   accumulated();
   go_on_from_limit();
@@ -181,7 +154,8 @@ void Run::go_on_from_limit() {
   start_step();
   if (jumps_have_problem() || !jumps_.due(here_.t)) return;
   const Arrival arrival = arrive(OutputRows::Arrival::written);
-  static_cast<void>(jump(before_, x_before_, landing_here()));
+  cascade_.begin();
+  static_cast<void>(jump(event_.before, event_.x_before));
   static_cast<void>(depart(arrival));
 }
 

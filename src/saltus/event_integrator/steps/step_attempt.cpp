@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/run/step_attempt.hpp"
+#include "saltus/event_integrator/steps/step_attempt.hpp"
 
 #include <algorithm>
 #include <cmath>

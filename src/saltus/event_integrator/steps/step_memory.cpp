@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/run/step_memory.hpp"
+#include "saltus/event_integrator/steps/step_memory.hpp"
 
 #include <algorithm>
 

@@ -7,8 +7,8 @@
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/options.hpp"
-#include "saltus/event_integrator/run/step_memory.hpp"
-#include "saltus/event_integrator/run/step_tolerances.hpp"
+#include "saltus/event_integrator/steps/step_memory.hpp"
+#include "saltus/event_integrator/steps/step_tolerances.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/ode/step_control.hpp"
 #include "saltus/ode/stepper.hpp"
@@ -27,6 +27,14 @@ class StepAttempt {
   /// The length that is tried next.
   [[nodiscard]] double length() const { return length_; }
   void set_length(double h) { length_ = h; }
+  /// The next step begins, of this length at most.
+  void begin(double h) {
+    length_ = h;
+    was_undefined_ = false;
+  }
+  void note_undefined() { was_undefined_ = true; }
+  /// Whether the right-hand side was undefined in an attempt at this step.
+  [[nodiscard]] bool was_undefined() const { return was_undefined_; }
   /// One attempt that ends at t_new; no dense output is made yet.
   ode::Attempt take(double t_new);
   /// The dense output of the last attempt, made at most once; returns whether it is finite.
@@ -81,6 +89,7 @@ class StepAttempt {
   std::vector<std::size_t> continuous_;  ///< states that are not discrete
   double error_share_ = 1.0;             ///< the root of the mean square over the continuous states to that over all
   double length_ = 0.0;
+  bool was_undefined_ = false;
   double longest_ = 0.0;
   double last_ = 0.0;  ///< the last step since the control began; 0 = none
   std::optional<double> stiff_at_;

@@ -18,4 +18,13 @@ void Run::limit_beside_coalescence() {
   tolerances_.limit(StepTolerances::Reason::coalescence, {share, share});
 }
 
+/// Before a step of length h: errors of functions that the field has roots of.
+void Run::limit_beside_zeros(double h) {
+  const auto cycle = switches_.cycle();
+  if (!zeros_.any_continued() && !nested_.watches() && !(cycle && zeros_.any_ending())) return;
+  ode::Tolerances parts = zeros_.bearable(h, cycle, tolerances_.mode());
+  nested_.limit(parts);
+  tolerances_.limit(StepTolerances::Reason::zeros, parts);
+}
+
 }  // namespace saltus::event_integrator

@@ -1,9 +1,9 @@
-#include "saltus/event_integrator/run/step_tolerances.hpp"
+#include "saltus/event_integrator/steps/step_tolerances.hpp"
 
 #include <algorithm>
 
 #include "saltus/base/rounding_unit.hpp"
-#include "saltus/event_integrator/run/thin_layers.hpp"
+#include "saltus/event_integrator/steps/thin_layers.hpp"
 
 namespace saltus::event_integrator {
 namespace {

@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/run/thin_layers.hpp"
+#include "saltus/event_integrator/steps/thin_layers.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,266 @@
+#include "saltus/event_integrator/cascade/jump_cascade.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saltus/event_integrator/decide/sets/find_resting_surfaces.hpp"
+#include "saltus/event_integrator/decide/start.hpp"
+
+namespace saltus::event_integrator {
+
+/// All functions of the kernel here.
+void JumpCascade::find_values() {
+  kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), values_.value.data());
+  kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), values_.magnitude.data(), values_.slope.data());
+}
+
+void JumpCascade::begin() {
+  if (jumps_.none()) return;
+  executed_.clear();
+  zeros_ = here_.state.sliding;
+  zeros_.insert(zeros_.end(), here_.state.resting.begin(), here_.state.resting.end());
+  const auto n = at(kernel_.event_functions());
+  for (auto* values : {&zero_values_, &values_.value, &values_.magnitude, &values_.slope}) values->resize(n);
+  kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), zero_values_.data());
+  largest_rates_.assign(n, {});
+  motions_.assign(n, std::nullopt);
+  held_before_ = holding_.resting();
+  resting_.clear();
+  if (kernel_.switching_functions() > 0) transition_ = {};
+}
+
+void JumpCascade::begin(const Located& located) {
+  begin();
+  if (jumps_.none()) return;
+  for (const auto function : located.functions) {
+    const auto& entry = search_.functions()[function];
+    if (entry.kind == FunctionKind::surface || entry.kind == FunctionKind::user) zeros_.push_back(entry.index);
+  }
+}
+
+void JumpCascade::note_guards() {
+  auto& slope = slope_;
+  kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
+  for (std::size_t k = 0; k < surroundings_.system.jumps.size(); ++k) {
+    const int guards = static_cast<int>(surroundings_.system.jumps[k].guards.numel());
+    for (int g = 0; g < guards; ++g) {
+      const int function = kernel_.jump_guard(static_cast<int>(k), g);
+      const Rate rate = rates_.along(function, slope);
+      if (!std::isfinite(rate.terms)) continue;
+      Rate& largest = largest_rates_[at(function)];
+      largest = {std::max(largest.value, std::abs(rate.value)), std::max(largest.terms, rate.terms)};
+    }
+  }
+}
+
+void JumpCascade::drop_zeros() {
+  if (zeros_.empty()) return;
+  find_values();
+  std::erase_if(zeros_, [&](int function) {
+    const auto f = at(function);
+    return !(std::abs(values_.value[f] - zero_values_[f]) <= 8.0 * rounding_unit * values_.magnitude[f]);
+  });
+}
+
+void JumpCascade::read_user_signs() {
+  find_values();
+  auto& signs = user_signs_ = search_.user_signs();
+  auto& vanish = user_zeros_;
+  vanish.assign(signs.size(), false);
+  for (std::size_t user = 0; user < signs.size(); ++user) {
+    const int function = kernel_.switching_functions() + static_cast<int>(user);
+    const double value = values_.value[at(function)];
+    const bool located = contains(zeros_, function);
+    vanish[user] =
+        located || holding_.holds(function) || std::abs(value) <= 8.0 * rounding_unit * values_.magnitude[at(function)];
+    if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
+    if (!vanish[user]) signs[user] = value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+  }
+  search_.set_user_signs(signs, vanish);
+}
+
+/// Of the terms of an event function here.
+double JumpCascade::size_at(int function) {
+  kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), values_.magnitude.data(), values_.slope.data());
+  return values_.magnitude[at(function)];
+}
+
+/// Where a function at zero goes along the motion of the mode. Asked again before the mode is decided anew, it is
+/// known.
+Motion JumpCascade::motion_of(int function) {
+  auto& known = motions_[at(function)];
+  if (!known) known = find_motion(function);
+  return *known;
+}
+
+Occasion JumpCascade::at_this_time() const {
+  Occasion occasion;
+  occasion.t = here_.t;
+  occasion.x = here_.x.data();
+  occasion.time_scale = here_.time_scale;
+  return occasion;
+}
+
+Motion JumpCascade::find_motion(int function) {
+  // The derivatives along fixed selections are not those of a motion that slides.
+  if (!surfaces_keeping(function).empty()) return {};
+  // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
+  // than sign_tolerance / 1000 of them.
+  constexpr double cancelled = 1e-3;
+  const Rate rate = rates_.here(function);
+  const Rate& here = largest_rates_[at(function)];
+  const double scale = std::max({here.value, std::abs(rate.value), cancelled * here.terms, cancelled * rate.terms});
+  // A rate that the second derivative turns around within the rounding of the function is none: it may as well be that
+  // of a state at rest.
+  const double bend = kernel_.lie_derivative(function, 2, here_.t, here_.x.data(), here_.state.alpha.data());
+  if (rate.value * bend < 0.0 && rate.value * rate.value <= 2.0 * std::abs(bend) * rounding_unit * size_at(function)) {
+    return {{0.0, bend > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
+  }
+  if (const auto motion = ProjectedFields::motion_by_velocity(rate.value, scale)) return *motion;
+  const Occasion occasion = at_this_time();
+  const ProjectedFields fields(kernel_, occasion);
+  return fields.motion(here_.state.alpha, function, rate.value, scale);
+}
+
+void JumpCascade::give_directions() {
+  auto& values = values_.value;
+  kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), values.data());
+  auto& signs = user_signs_ = search_.user_signs();
+  auto& vanish = user_zeros_ = search_.user_zeros();
+  std::vector<int> orders(signs.size(), 1);
+  for (std::size_t user = 0; user < signs.size(); ++user) {
+    const int function = kernel_.switching_functions() + static_cast<int>(user);
+    if (!vanish[user] || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
+    const Motion motion = motion_of(function);
+    signs[user] = static_cast<int>(motion.side.drift);
+    if (contacts_.guards(function)) {
+      // Its mode holds from here on, whatever the roundings of its derivatives say.
+      orders[user] = signs[user] < 0 ? std::clamp(motion.order, 1, 2) : 2;
+      signs[user] = -1;
+      add_zero(function);
+      zero_values_[at(function)] = values[at(function)];
+      continue;
+    }
+    // What is left of a rate that was held at 0, and of its derivative where holding ends, is rounding.
+    const int ahead = motion.order > 1 ? side_ahead(surroundings_, here_.state, at_this_time(), here_.x, function) : 0;
+    if (ahead != 0) signs[user] = ahead;
+    orders[user] = std::clamp(motion.order, 1, 2);  // as many as the search divides out
+    // A jump that leaves it here leaves it this sign.
+    add_zero(function);
+    zero_values_[at(function)] = values[at(function)];
+  }
+  search_.set_user_signs(signs, vanish, orders);
+  search_.enter(here_.state, transition_.zero_order, here_.t, here_.x.data());
+}
+
+/// The surfaces that keep a guard at zero at rest by sliding: with other selections of theirs it would leave. None if
+/// the guard is not kept so.
+std::vector<int> JumpCascade::surfaces_keeping(int function) {
+  if (here_.state.sliding.empty()) return {};
+  const auto bend = [&](const std::vector<double>& alpha) {
+    return kernel_.lie_derivative(function, 2, here_.t, here_.x.data(), alpha.data());
+  };
+  std::vector<int> surfaces;
+  double range = 0.0;
+  for (const int j : here_.state.sliding) {
+    auto alpha = here_.state.alpha;
+    alpha[at(j)] = 0.0;
+    const double below = bend(alpha);
+    alpha[at(j)] = 1.0;
+    const double change = std::abs(bend(alpha) - below);
+    range += change;
+    if (change > 0.0) surfaces.push_back(j);
+  }
+  // As for selections that move nothing.
+  return std::abs(bend(field_.alpha())) <= 1e-9 * range ? surfaces : std::vector<int>{};
+}
+
+std::vector<HeldGuard> JumpCascade::guards_kept_by_sliding(const RestingGuards& others) {
+  std::vector<HeldGuard> kept;
+  std::vector<int> surfaces;
+  if (here_.state.sliding.empty() || !holding_.guards().empty()) return kept;
+  const auto& vanish = search_.user_zeros();
+  for (int jump = 0; jump < static_cast<int>(surroundings_.system.jumps.size()); ++jump) {
+    if (contacts_.owns(jump)) continue;
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      if (!vanish[at(function - kernel_.switching_functions())] || jumps_.is_discrete_guard(function)) continue;
+      const Motion motion = motion_of(function);
+      const int inward = jumps_.trigger_sign(jump, g, jump_point(), static_cast<int>(motion.side.drift));
+      if (motion.order == 1 || inward == 0) continue;
+      const auto own = surfaces_keeping(function);
+      if (own.empty() || !holding_.can_rest({{jump, function}, inward}, here_.t, here_.state.alpha, here_.x)) continue;
+      kept.push_back({{jump, function}, inward});
+      surfaces.insert(surfaces.end(), own.begin(), own.end());
+    }
+  }
+  if (kept.empty()) return kept;
+  auto guards = others.held;
+  guards.insert(guards.end(), kept.begin(), kept.end());
+  auto x = here_.x;
+  const bool held = !holding_.hold(std::move(guards), others.loose, here_.t, here_.state.alpha, x);
+  const auto resting =
+      held ? find_resting_surfaces(surroundings_, holding_, here_.t, here_.state.alpha, x) : RestingSurfaces{};
+  holding_.release_all();
+  const bool kept_by_guards =
+      std::all_of(surfaces.begin(), surfaces.end(), [&](int j) { return contains(resting.surfaces, j); });
+  if (!resting.problem.empty() || !kept_by_guards) kept.clear();
+  return kept;
+}
+
+JumpCascade::RestingGuards JumpCascade::pressed_guards() {
+  RestingGuards guards;
+  std::vector<int> jumps;
+  for (const auto& executed : executed_.items()) {
+    if (!contains(jumps, executed.jump)) jumps.push_back(executed.jump);
+  }
+  for (const auto& guard : held_before_) {
+    if (!contains(jumps, guard.hold.jump)) jumps.push_back(guard.hold.jump);
+  }
+  const auto& vanish = search_.user_zeros();
+  for (const int jump : jumps) {
+    if (contacts_.owns(jump)) continue;
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      const bool at_zero = vanish[at(function - kernel_.switching_functions())];
+      if (!at_zero || jumps_.is_discrete_guard(function)) continue;
+      // The derivatives along fixed selections are not those of a motion that slides.
+      if (!surfaces_keeping(function).empty()) continue;
+      const Motion motion = motion_of(function);
+      const int drift = static_cast<int>(motion.side.drift);
+      const int inward = jumps_.trigger_sign(jump, g, jump_point(), drift);
+      if (motion.order < 2 || inward == 0 || drift != inward) continue;
+      const HeldGuard guard{{jump, function}, inward};
+      (holding_.can_rest(guard, here_.t, here_.state.alpha, here_.x) ? guards.held : guards.loose).push_back(guard);
+    }
+  }
+  return guards;
+}
+
+void JumpCascade::leave_guards(const std::vector<int>& zero_order) {
+  auto signs = search_.user_signs();
+  auto vanish = search_.user_zeros();
+  std::vector<int> orders(signs.size(), 1);
+  bool any = false;
+  for (int jump = 0; jump < static_cast<int>(surroundings_.system.jumps.size()); ++jump) {
+    if (contacts_.owns(jump)) continue;
+    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      const auto user = at(function - kernel_.switching_functions());
+      if (signs[user] != 0 || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
+      const int side = side_ahead(surroundings_, here_.state, at_this_time(), here_.x, function);
+      if (side == 0) continue;
+      add_zero(function);
+      signs[user] = side;
+      vanish[user] = true;
+      orders[user] = 2;  // at least: its rate was held at 0
+      any = true;
+    }
+  }
+  if (!any) return;
+  search_.set_user_signs(signs, vanish, orders);
+  search_.enter(here_.state, zero_order, here_.t, here_.x.data());
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,123 @@
+// Jumps at one time: what was executed so far, and what is known of the point that they lead to.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/event_integrator/contact/contacts.hpp"
+#include "saltus/event_integrator/decide/projected_fields.hpp"
+#include "saltus/event_integrator/decide/transition.hpp"
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/jumps/holding.hpp"
+#include "saltus/event_integrator/jumps/jumps.hpp"
+#include "saltus/event_integrator/mode/field_rates.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/event_integrator/record/recorder.hpp"
+#include "saltus/event_integrator/search/event_search.hpp"
+#include "saltus/event_integrator/search/locate.hpp"
+
+namespace saltus::event_integrator {
+
+/// A JumpCascade begins at an event and lasts while jumps follow each other at that time. It knows which event
+/// functions are at zero whatever is left of their values, and gives the guards of jumps the signs of the motion
+/// behind. Its storage is used again by the next one.
+class JumpCascade {
+ public:
+  JumpCascade(const Surroundings& surroundings, const Position& here, ModeField& field, EventSearch& search,
+              const Jumps& jumps, const Contacts& contacts, Holding& holding)
+      : surroundings_(surroundings),
+        kernel_(surroundings.kernel),
+        here_(here),
+        field_(field),
+        search_(search),
+        jumps_(jumps),
+        contacts_(contacts),
+        holding_(holding),
+        rates_(kernel_, here),
+        slope_(here.x.size()) {}
+
+  /// A cascade begins where only the surfaces of the sliding mode are at zero.
+  void begin();
+  /// A cascade begins at an event: what was located is at zero, too.
+  void begin(const Located& located);
+
+  [[nodiscard]] ReusedList<ExecutedJump>& executed() { return executed_; }
+  [[nodiscard]] const ReusedList<ExecutedJump>& executed() const { return executed_; }
+  [[nodiscard]] const std::vector<HeldGuard>& held_before() const { return held_before_; }
+  /// Jumps whose guards stay at zero from here on.
+  [[nodiscard]] std::vector<int>& resting() { return resting_; }
+  [[nodiscard]] const std::vector<int>& resting() const { return resting_; }
+  /// Into the mode behind.
+  [[nodiscard]] Transition& transition() { return transition_; }
+  [[nodiscard]] const std::vector<int>& zeros() const { return zeros_; }
+  void add_zero(int function) {
+    if (!contains(zeros_, function)) zeros_.push_back(function);
+  }
+  /// What is left of a function that is at zero.
+  [[nodiscard]] double zero_value(int function) const { return zero_values_[at(function)]; }
+  /// The largest |dg/dt| of a guard at this time.
+  [[nodiscard]] double rate(int function) const { return largest_rates_[at(function)].value; }
+
+  /// Notes how fast the guards of jumps move here.
+  void note_guards();
+  /// Zeros that a jump has moved away are none any more.
+  void drop_zeros();
+  /// Signs of all user functions at the point as it is. One that was located here and is still at zero keeps the sign
+  /// just behind this time; one that a jump has put there has none yet (0).
+  void read_user_signs();
+  /// The mode is decided anew: motions along the one before are no more.
+  void forget_motions() { motions_.assign(motions_.size(), std::nullopt); }
+  /// Functions that are at zero behind jumps get the signs to which the motion takes them.
+  void give_directions();
+  /// Guards that were kept at zero by what slid, and are left in the mode that was entered here, get the sign to which
+  /// they go, at this time and not where it is seen first.
+  /// @param zero_order  of the mode's surfaces
+  void leave_guards(const std::vector<int>& zero_order);
+
+  struct RestingGuards {
+    std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
+  };
+  /// Guards of executed jumps, and those held before, that were left at zero without a velocity and are pressed on.
+  [[nodiscard]] RestingGuards pressed_guards();
+  /// Guards at zero that what slides keeps at rest: they are held as well, so that nothing has to be asked where
+  /// sliding ends and the guard takes over. None where the guards alone do not keep all of that at zero.
+  [[nodiscard]] std::vector<HeldGuard> guards_kept_by_sliding(const RestingGuards& others);
+
+ private:
+  [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
+  [[nodiscard]] Occasion at_this_time() const;
+  void find_values();
+  [[nodiscard]] double size_at(int function);
+  [[nodiscard]] Motion motion_of(int function);
+  [[nodiscard]] Motion find_motion(int function);
+  [[nodiscard]] std::vector<int> surfaces_keeping(int function);
+
+  /// All functions of the kernel at one point.
+  struct FunctionValues {
+    std::vector<double> value, magnitude, slope;
+  };
+
+  const Surroundings& surroundings_;
+  const evaluation::ModelKernel& kernel_;
+  const Position& here_;
+  ModeField& field_;
+  EventSearch& search_;
+  const Jumps& jumps_;
+  const Contacts& contacts_;
+  Holding& holding_;
+  FieldRates rates_;
+  ReusedList<ExecutedJump> executed_;
+  std::vector<int> zeros_;           ///< event functions that are at zero here whatever is left of their value
+  std::vector<double> zero_values_;  ///< what is left
+  std::vector<Rate> largest_rates_;  ///< by event function: of guards of jumps at this time
+  std::vector<std::optional<Motion>> motions_;  ///< by event function: found since the mode here was decided
+  std::vector<HeldGuard> held_before_;
+  std::vector<int> resting_;
+  Transition transition_;
+  FunctionValues values_;
+  std::vector<double> slope_;     ///< of the field without what slides
+  std::vector<int> user_signs_;   ///< under construction, as are
+  std::vector<bool> user_zeros_;  ///< these
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,45 @@
+#include "saltus/event_integrator/sequences/jump_accumulation.hpp"
+
+namespace saltus::event_integrator {
+
+JumpAccumulation::JumpAccumulation(const Surroundings& surroundings, const Position& here)
+    : system_(surroundings.system),
+      kernel_(surroundings.kernel),
+      here_(here),
+      last_guard_(system_.jumps.size()),
+      last_rate_(system_.jumps.size(), 0.0),
+      shortest_cycle_(system_.jumps.size(), 0.0),
+      magnitude_(at(kernel_.event_functions())),
+      slope_(magnitude_.size()) {}
+
+void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps, const std::vector<int>& user_signs) {
+  if (cascade.executed().empty()) return;
+  const JumpPoint point{here_.t, here_.x, here_.state.alpha, user_signs};
+  kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), magnitude_.data(), slope_.data());
+  executed_.clear();
+  for (const auto& executed : cascade.executed().items()) executed_.push_back(executed.jump);
+  for (const int jump : executed_) {
+    for (int g = 0; g < static_cast<int>(system_.jumps[at(jump)].guards.numel()); ++g) {
+      const int function = kernel_.jump_guard(jump, g);
+      if (!contains(cascade.zeros(), function) || jumps.is_discrete_guard(function)) continue;
+      const int inward = jumps.trigger_sign(jump, g, point, -user_signs[at(function - kernel_.switching_functions())]);
+      last_guard_[at(jump)] = HeldGuard{{jump, function}, inward};
+      const double rate = cascade.rate(function);
+      last_rate_[at(jump)] = rate;
+      // Between two zeros a time T apart a guard gets about as far as its rate times T/4: here 200 roundings.
+      shortest_cycle_[at(jump)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude_[at(function)] / rate : 0.0;
+    }
+  }
+  series_.add(here_.t, executed_, here_.x);
+  if (!cascade.resting().empty()) series_.clear_laps();
+}
+
+void JumpAccumulation::end(const SeriesLimit& limit) {
+  if (limit.rattling) {
+    series_.clear();
+  } else {
+    series_.clear_laps();
+  }
+}
+
+}  // namespace saltus::event_integrator

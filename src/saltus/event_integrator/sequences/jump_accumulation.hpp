@@ -1,0 +1,42 @@
+// Jumps that accumulate: how fast their guards move, and the limit of their sequence.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/event_integrator/accumulate/accumulation.hpp"
+#include "saltus/event_integrator/cascade/jump_cascade.hpp"
+
+namespace saltus::event_integrator {
+
+/// JumpAccumulation notes the jumps of a run behind each cascade.
+class JumpAccumulation {
+ public:
+  JumpAccumulation(const Surroundings& surroundings, const Position& here);
+
+  /// Notes the jumps of a cascade: when, where to, and which guards were at zero.
+  void note(const JumpCascade& cascade, const Jumps& jumps, const std::vector<int>& user_signs);
+  [[nodiscard]] std::optional<SeriesLimit> limit() const { return series_.limit(shortest_cycle_); }
+  /// Behind a limit the sequence is over, but for what chatters.
+  void end(const SeriesLimit& limit);
+  void clear() { series_.clear(); }
+  /// How long the last cycle of a contracting sequence was.
+  [[nodiscard]] std::optional<double> last_cycle() const { return series_.last_lap(); }
+  /// The guard that was at zero when a jump was executed last; nullopt if there was none.
+  [[nodiscard]] std::optional<HeldGuard> last_guard(int jump) const { return last_guard_[at(jump)]; }
+  /// Its |dg/dt| then.
+  [[nodiscard]] double last_rate(int jump) const { return last_rate_[at(jump)]; }
+
+ private:
+  const model::System& system_;
+  const evaluation::ModelKernel& kernel_;
+  const Position& here_;
+  EventSeries series_;
+  std::vector<std::optional<HeldGuard>> last_guard_;  ///< by jump, as are these
+  std::vector<double> last_rate_;
+  std::vector<double> shortest_cycle_;  ///< shorter ones are not resolved, for the rounding of the guard
+  std::vector<int> executed_;           ///< jumps, in their order
+  std::vector<double> magnitude_, slope_;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,121 @@
+#include "saltus/event_integrator/sequences/switch_accumulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/event_integrator/mode/mode_differences_internal.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using Reason = StepTolerances::Reason;
+
+SwitchAccumulation::SwitchAccumulation(const Surroundings& surroundings, const Position& here, double span,
+                                       StepTolerances& tolerances)
+    : surroundings_(surroundings),
+      kernel_(surroundings.kernel),
+      here_(here),
+      tolerances_(tolerances),
+      rates_(kernel_, here),
+      series_(span),
+      shortest_(3 * surroundings.system.switching.size(), 0.0),
+      slope_(here.x.size()) {}
+
+void SwitchAccumulation::note(const ModeState& before) {
+  if (!series_.tightens()) return cycles_.clear();
+  bool holds = true;  // kinks do not hold a solution, and times pass
+  labels_.clear();
+  for_each_difference(before.mode, here_.state.mode, [&](std::size_t j) {
+    const auto role = surroundings_.system.switching[j].role;
+    holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
+    labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));
+  });
+  if (!holds) return cycles_.clear();
+  cycles_.add(here_.t, labels_, here_.x);
+  // A limit asks for the rates of those switches only behind which cycles have contracted twice.
+  if (cycles_.shrinks()) note_rates(before.alpha);
+}
+
+void SwitchAccumulation::note(const SurfaceSwitch& change) {
+  if (!series_.tightens()) return cycles_.clear();
+  labels_.assign(1, label_of(change.surface, change.after));
+  cycles_.add(here_.t, labels_, here_.x);
+  if (!cycles_.shrinks()) return;
+  alpha_ = here_.state.alpha;
+  alpha_[at(change.surface)] = change.alpha_before;
+  if (change.slid != nullptr) alpha_[at(change.slid->surface)] = change.slid->alpha_before;
+  note_rates(alpha_);
+}
+
+/// How short cycles of the last switch may get.
+void SwitchAccumulation::note_rates(const std::vector<double>& alpha_before) {
+  kernel_.field(here_.t, here_.x.data(), alpha_before.data(), slope_.data());
+  for (const int label : labels_) {
+    // Where sliding begins or ends psi moves on the other side only.
+    const Rate arriving = rates_.along(surface_of(label), slope_);
+    const Rate leaving = rates_.here(surface_of(label));
+    const double rate = std::max(std::abs(arriving.value), std::abs(leaving.value));
+    // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the cycle.
+    // Shallower cycles are lost in the rounding of psi, or in ten times the atol that follows the cycles. Not in rtol
+    // times the terms of psi: every switch puts psi back to 0, and over cycles far shorter than the steps that rtol
+    // allows the error of a step is far smaller than that.
+    const double unresolved =
+        std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude, 10.0 * tolerances_.step().atol * leaving.slope);
+    double& shortest = shortest_[at(label)];
+    shortest = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
+    // Where sliding ends psi leaves tangentially: its rate is rounding, and what bends it is what resolves the cycle.
+    constexpr double tangent = 1e-12;
+    if (rate > tangent * std::max(arriving.terms, leaving.terms)) continue;
+    const double bend =
+        std::abs(kernel_.lie_derivative(surface_of(label), 2, here_.t, here_.x.data(), here_.state.alpha.data()));
+    if (bend > 0.0) shortest = std::min(shortest, std::sqrt(8.0 * unresolved / bend));
+  }
+}
+
+void SwitchAccumulation::limit_tolerances(Roots roots) {
+  if (cycles_.empty()) {
+    first_ = 0.0;
+    if (tolerances_.part(Reason::cycles).atol != 1.0 || roots == Roots::ending) {
+      tolerances_.lift(Reason::cycles);
+      tolerances_.lift(Reason::zeros);
+    }
+    return;
+  }
+  const auto cycle = cycles_.closed_lap();
+  if (!cycle) return;
+  if (first_ == 0.0) first_ = *cycle;
+  closed_ = *cycle;
+  const double share = std::clamp(*cycle / first_, 1e-6, 1.0);
+  tolerances_.limit(Reason::cycles, {.rtol = 1.0, .atol = share * share});
+}
+
+void SwitchAccumulation::end_if_over(Roots roots) {
+  constexpr double many = 16.0;
+  if (tolerances_.part(Reason::cycles).atol == 1.0 || here_.t - series_.last() <= many * closed_) return;
+  cycles_.clear();
+  limit_tolerances(roots);
+}
+
+std::optional<SeriesLimit> SwitchAccumulation::dense_limit() const {
+  const auto cycle = cycles_.last_lap();
+  if (!cycle) return std::nullopt;
+  // Cycles that are not longer than this are extrapolated whatever remains.
+  return cycles_.limit(std::vector<double>(shortest_.size(), 2.0 * *cycle));
+}
+
+std::optional<SeriesLimit> SwitchAccumulation::unresolved(int surface, int mode, double duration) const {
+  const double shortest = std::max(shortest_[at(label_of(surface, -1))], shortest_[at(label_of(surface, 1))]);
+  if (empty() || !(duration <= shortest)) return std::nullopt;
+  return SeriesLimit{here_.t, here_.x, {label_of(surface, mode)}, duration, false};
+}
+
+bool SwitchAccumulation::limits_repeat(double t) {
+  constexpr int many = 8;
+  constexpr double at_once = 1e-3;
+  auto& row = limits_in_a_row_;
+  const bool follows = row.count > 0 && t - row.last <= at_once * row.first_cycle;
+  row = {follows ? row.count + 1 : 1, t, follows ? row.first_cycle : first_};
+  return row.count >= many;
+}
+
+}  // namespace saltus::event_integrator
