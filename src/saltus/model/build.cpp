@@ -4,6 +4,8 @@
 #include <cmath>
 #include <exception>
 #include <map>
+#include <string_view>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -101,14 +103,14 @@ class Build {
 
   /// A state without right-hand side, which only the assembly refuses.
   void tell_of_still_states(std::vector<Error>& found) const {
+    std::unordered_set<std::string_view> moved;
+    for (const auto& rate : description_.dynamics) moved.insert(rate.name);
+    for (const auto& mode : description_.modes) {
+      for (const auto& rate : mode.dynamics) moved.insert(rate.name);
+    }
     for (const auto& entry : description_.states) {
-      const auto moves = [&](const auto& rates) {
-        return std::any_of(rates.begin(), rates.end(), [&](const auto& rate) { return rate.name == entry.name; });
-      };
-      const auto& modes = description_.modes;
-      const bool moved = moves(description_.dynamics) ||
-                         std::any_of(modes.begin(), modes.end(), [&](const auto& m) { return moves(m.dynamics); });
-      if (!moved && !is_mechanical(entry.name)) found.push_back(no_right_hand_side(entry.name, entry.location));
+      if (!moved.contains(entry.name) && !is_mechanical(entry.name))
+        found.push_back(no_right_hand_side(entry.name, entry.location));
     }
   }
 

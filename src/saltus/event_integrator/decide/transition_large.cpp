@@ -103,8 +103,10 @@ class PartDecider {
       const auto root = switching::bounded_root(feels, velocities, *comparison, start);
       if (root && !root->is_borderline) return root;
     }
-    problem_ = fmt::format("{} of them feel each other, more than themselves or tangent to one: {}", surfaces.size(),
-                           names(s_.system, {surfaces.begin(), surfaces.begin() + 3}) + ", ...");
+    problem_ = fmt::format(
+        "{} of them feel each other, more than themselves or tangent to one: {}", surfaces.size(),
+        names(s_.system, {surfaces.begin(), surfaces.begin() + std::min<std::ptrdiff_t>(3, std::ssize(surfaces))}) +
+            ", …");
     return std::nullopt;
   }
 
@@ -119,11 +121,8 @@ class PartDecider {
 };
 
 SurfaceDecision decision_of(const switching::BoundedRoot& root, std::size_t k) {
-  return {Verdict::decided,
-          root.mode[k],
-          root.alpha[k],
-          {},
-          "the only mode of surfaces that feel themselves more than the others"};
+  return {
+      Verdict::decided, root.mode[k], root.alpha[k], {}, "the only balance of the surfaces that influence each other"};
 }
 
 /// Of the surfaces of a group, by their places in it.
@@ -137,6 +136,41 @@ switching::Influence influence_in(const evaluation::ModelKernel& kernel, const s
     }
   }
   return feels;
+}
+
+/// The surfaces that are touched and all that feel them, directly or through others: places in the group, ascending.
+std::vector<int> affected_by(const std::vector<int>& touched, const switching::Influence& feels,
+                             const std::vector<int>& group) {
+  std::vector<std::vector<int>> felt_by(feels.size());
+  for (std::size_t i = 0; i < feels.size(); ++i) {
+    for (const int j : feels[i]) felt_by[at(j)].push_back(static_cast<int>(i));
+  }
+  std::vector<bool> is_affected(feels.size(), false);
+  std::vector<int> open;
+  const auto affect = [&](int k) {
+    if (is_affected[at(k)]) return;
+    is_affected[at(k)] = true;
+    open.push_back(k);
+  };
+  for (const int j : touched) {
+    const auto place = std::lower_bound(group.begin(), group.end(), j);
+    if (place != group.end() && *place == j) affect(static_cast<int>(place - group.begin()));
+  }
+  std::vector<int> affected;
+  while (!open.empty()) {
+    const int k = open.back();
+    open.pop_back();
+    affected.push_back(k);
+    for (const int i : felt_by[at(k)]) affect(i);
+  }
+  std::sort(affected.begin(), affected.end());
+  return affected;
+}
+
+std::vector<int> members(const std::vector<int>& group, const std::vector<int>& places) {
+  std::vector<int> surfaces;
+  for (const int k : places) surfaces.push_back(group[at(k)]);
+  return surfaces;
 }
 
 }  // namespace
@@ -162,10 +196,21 @@ std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
     undecided_part_ = parts.problem();
     return std::nullopt;
   };
+  const auto decide_at_once = [&](const std::vector<int>& places) {
+    const std::vector<int> surfaces = members(group, places);
+    const auto root = parts.decide_several(switching::restricted_to(feels, places), surfaces, scale_);
+    for (std::size_t k = 0; root && k < surfaces.size(); ++k) {
+      decisions_.emplace_back(surfaces[k], decision_of(*root, k));
+      parts.note(surfaces[k], root->mode[k], root->alpha[k]);
+    }
+    return root.has_value();
+  };
+  // The certificate holds for one-way influence, too, and costs no more for many surfaces than for few.
+  const auto affected = affected_by(occasion_.start ? group : occasion_.touched, feels, group);
+  if (is_large(affected.size()) && decide_at_once(affected)) return true;
   for (const auto& part : switching::ordered_parts(feels)) {
     if (!parts.is_touched(part, feels, group, occasion_.touched)) continue;
-    std::vector<int> surfaces;
-    for (const int k : part) surfaces.push_back(group[at(k)]);
+    const std::vector<int> surfaces = members(group, part);
     if (surfaces.size() == 1) {
       const int j = surfaces.front();
       const bool behind = !feels[at(part.front())].empty() && parts.is_touched(part, feels, group, {});
@@ -175,13 +220,7 @@ std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
       parts.note(j, decision->mode, decision->alpha);
       continue;
     }
-    if (const auto root = parts.decide_several(switching::restricted_to(feels, part), surfaces, scale_)) {
-      for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        decisions_.emplace_back(surfaces[k], decision_of(*root, k));
-        parts.note(surfaces[k], root->mode[k], root->alpha[k]);
-      }
-      continue;
-    }
+    if (decide_at_once(part)) continue;
     // By the tables of all corners, where these are not too many; not where that has been tried for the group anyway.
     constexpr std::size_t largest_table = 12;
     if (group.size() <= largest_table || surfaces.size() > largest_table) return give_up();

@@ -42,7 +42,7 @@ void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& 
     const auto i = static_cast<std::size_t>(tape[node].variable);
     const VariableKind kind = tape.variables()[i].kind;
     if (kind == VariableKind::parameter || kind == VariableKind::alpha || kind == VariableKind::cell) continue;
-    const double draw = magnitude * seeded_draw(static_cast<std::uint64_t>(k), i);
+    const double draw = magnitude * seeded_draw(static_cast<std::uint64_t>(k), seed_of(tape, i));
     point[i] = k < 4 ? std::abs(draw) : draw;
   }
 }
@@ -55,13 +55,15 @@ void draw_cells(const Tape& tape, std::span<const int> cone, int k, Point& point
   for (const int node : cone) {
     if (tape[node].operation != cell_operation) continue;
     const auto i = static_cast<std::size_t>(tape[node].variable);
-    point[i] = seeded_draw(static_cast<std::uint64_t>(k) + 20000, i);
+    point[i] = seeded_draw(static_cast<std::uint64_t>(k) + 20000, seed_of(tape, i));
   }
 }
 
 }  // namespace
 
-std::optional<double> constant_value(const Tape& tape, int node) {
+std::optional<double> constant_value(const Tape& whole, int asked) {
+  const Tape tape = whole.part(std::span(&asked, 1));
+  const int node = tape.size() - 1;
   const auto cone = tape.cone(std::span(&node, 1), Links::written);
   TapeValues values;
   Point point = blank_point(tape);
@@ -79,7 +81,7 @@ std::optional<double> constant_value(const Tape& tape, int node) {
     for (const int leaf : cone) {
       if (tape[leaf].psi < 0) continue;
       const auto i = static_cast<std::size_t>(tape[leaf].variable);
-      point[i] = seeded_draw(static_cast<std::uint64_t>(k) + 1000, i) > 0.0 ? 1.0 : 0.0;
+      point[i] = seeded_draw(static_cast<std::uint64_t>(k) + 1000, seed_of(tape, i)) > 0.0 ? 1.0 : 0.0;
     }
     evaluate_with_bounds(tape, cone, point, {}, epsilon, values);
     const double value = values.value[at(node)];
@@ -93,9 +95,11 @@ std::optional<double> constant_value(const Tape& tape, int node) {
   return finite >= 8 ? first : std::nullopt;
 }
 
-SharingIndex::Samples SharingIndex::sample(const Tape& tape, int psi) {
+SharingIndex::Samples SharingIndex::sample(const Tape& whole, int number) {
+  const Tape tape = whole.part(std::span(&number, 1));
+  const int psi = tape.size() - 1;
   Samples samples;
-  samples.psi = psi;
+  samples.psi = number;
   const auto cone = tape.cone(std::span(&psi, 1), Links::through_alpha);
   TapeValues values;
   Point point = blank_point(tape);
@@ -139,7 +143,9 @@ int SharingIndex::same(const Samples& known, const Samples& asked) {
   return factor > 0.0 ? 1 : (factor < 0.0 ? -1 : 0);
 }
 
-ThresholdSamples threshold_samples(const Tape& tape, int psi) {
+ThresholdSamples threshold_samples(const Tape& whole, int number) {
+  const Tape tape = whole.part(std::span(&number, 1));
+  const int psi = tape.size() - 1;
   ThresholdSamples samples;
   const auto cone = tape.cone(std::span(&psi, 1), Links::through_alpha);
   TapeValues values;

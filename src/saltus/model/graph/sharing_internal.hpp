@@ -15,6 +15,10 @@ namespace saltus::model {
 /// A repeatable number in (-1, 1) for every (point, variable): splitmix64, so that no state is kept and results never
 /// depend on the order of declarations.
 [[nodiscard]] double seeded_draw(std::uint64_t point, std::uint64_t variable);
+/// What the draws of a variable are seeded with.
+[[nodiscard]] inline std::uint64_t seed_of(const Tape& tape, std::size_t variable) {
+  return static_cast<std::uint64_t>(tape.variables()[variable].number);
+}
 
 /// Points of the pool: 16 common finite ones are found among the first for all but contrived domains; the extreme ones
 /// after them only tell functions apart that look alike nearer by, as x - 1e20 and x - 2e20 do.

@@ -82,6 +82,7 @@ int Tape::append(TapeNode node) {
     }
     candidates.push_back(size());
   }
+  node.number = size();
   nodes_.push_back(node);
   return size() - 1;
 }
@@ -93,6 +94,7 @@ int Tape::constant(double value) {
 int Tape::variable(const Variable& variable) {
   SALTUS_ASSERT(variable.kind != VariableKind::alpha);
   variables_.push_back(variable);
+  variables_.back().number = static_cast<int>(variables_.size()) - 1;
   return append({.operation = casadi::OP_PARAMETER,
                  .variable = static_cast<int>(variables_.size()) - 1,
                  .written = kind_bit(variable.kind),
@@ -100,7 +102,8 @@ int Tape::variable(const Variable& variable) {
 }
 
 int Tape::alpha(int index, int psi) {
-  variables_.push_back({VariableKind::alpha, index, std::numeric_limits<double>::quiet_NaN()});
+  const auto number = static_cast<int>(variables_.size());
+  variables_.push_back({VariableKind::alpha, index, std::numeric_limits<double>::quiet_NaN(), number});
   return append({.operation = casadi::OP_PARAMETER,
                  .variable = static_cast<int>(variables_.size()) - 1,
                  .psi = psi,
@@ -124,7 +127,8 @@ int Tape::cell(int argument, const std::shared_ptr<const CellTable>& table, int 
   const TapeNode& operand = (*this)[argument];
   const auto index = static_cast<int>(cells_.size());
   cells_.push_back({table, column});
-  variables_.push_back({VariableKind::cell, index, std::numeric_limits<double>::quiet_NaN()});
+  const auto number = static_cast<int>(variables_.size());
+  variables_.push_back({VariableKind::cell, index, std::numeric_limits<double>::quiet_NaN(), number});
   // A constant that jumps is like a discrete state: it does not move between its jumps.
   const bool jumps = table->change == CellTable::Change::jump && (operand.reached & changing_kinds) != 0;
   return append({.operation = cell_operation,
@@ -163,6 +167,33 @@ std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
   }
   std::sort(nodes.begin(), nodes.end());
   return nodes;
+}
+
+Tape Tape::part(std::span<const int> roots) const {
+  Tape result;
+  for (const int number : cone(roots, Links::through_alpha)) {
+    TapeNode node = (*this)[number];
+    for (int* link : {&node.left, &node.right, &node.psi}) {
+      if (*link >= 0) *link = result.place_of((*this)[*link].number);
+    }
+    if (node.variable >= 0) {
+      Variable variable = variables_[at(node.variable)];
+      if (node.operation == cell_operation) {
+        result.cells_.push_back(cells_[at(variable.index)]);
+        variable.index = static_cast<int>(result.cells_.size()) - 1;
+      }
+      node.variable = static_cast<int>(result.variables_.size());
+      result.variables_.push_back(variable);
+    }
+    result.nodes_.push_back(node);
+  }
+  return result;
+}
+
+int Tape::place_of(int number) const {
+  const auto place = std::lower_bound(nodes_.begin(), nodes_.end(), number,
+                                      [](const TapeNode& node, int wanted) { return node.number < wanted; });
+  return place != nodes_.end() && place->number == number ? static_cast<int>(place - nodes_.begin()) : -1;
 }
 
 bool is_polynomial(const Tape& tape, std::span<const int> cone) {

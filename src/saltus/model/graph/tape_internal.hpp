@@ -43,6 +43,7 @@ struct Variable {
   VariableKind kind = VariableKind::time;
   int index = 0;       ///< among those of its kind; of a discrete state among all states
   double value = 0.0;  ///< of a parameter; the initial one of a state or control
+  int number = -1;     ///< what its draws are seeded with: its own, in a part that of the whole tape
 };
 
 struct TapeNode {
@@ -54,6 +55,7 @@ struct TapeNode {
   KindSet written = 0;            ///< kinds of the variables in the expression
   KindSet reached = 0;            ///< the same, with those in the switching functions of its alphas
   bool may_be_nonfinite = false;  ///< can overflow or be NaN for moderate arguments
+  int number = -1;                ///< its own; in a part that of the whole tape
 };
 
 /// A constant of the cell in which the operand `left` lies; its variable holds it (NaN: looked up at the point).
@@ -81,6 +83,12 @@ class Tape {
 
   /// All nodes the roots consist of, ascending (hence in order of evaluation). Negative roots are skipped.
   [[nodiscard]] std::vector<int> cone(std::span<const int> roots, Links links) const;
+
+  /// The nodes of a cone (through alphas) as a tape of their own, in the same order: what is asked of it costs as much
+  /// as they are, however long this one is. Nothing is to be added to it.
+  [[nodiscard]] Tape part(std::span<const int> roots) const;
+  /// In a part: where node `number` of the whole tape is, -1 if it is not in it.
+  [[nodiscard]] int place_of(int number) const;
 
  private:
   int append(TapeNode node);

@@ -39,7 +39,7 @@ Point start_point(const Tape& tape, std::span<const int> variables, int k) {
   for (const int index : variables) {
     const auto i = static_cast<std::size_t>(index);
     const Variable& variable = tape.variables()[i];
-    const double draw = magnitude * seeded_draw(static_cast<std::uint64_t>(k) + 5000, i);
+    const double draw = magnitude * seeded_draw(static_cast<std::uint64_t>(k) + 5000, seed_of(tape, i));
     const double base = variable.kind == VariableKind::time || !std::isfinite(variable.value) ? 0.0 : variable.value;
     point[i] = k % 2 == 0 ? base + draw : draw;
   }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <unordered_map>
 
 #include "saltus/base/at.hpp"
 #include "saltus/model/graph/sharing_internal.hpp"
@@ -38,7 +39,7 @@ class Profiler {
     hold_others(point);
     psi_here_ = triples(point, scale, here_, Rounding::bounded);
     for (std::size_t i = 0; i < scale.size(); ++i) {
-      if (scale[i] > 0.0) point[i] += 0.1 * scale[i] * seeded_draw(9000, i);
+      if (scale[i] > 0.0) point[i] += 0.1 * scale[i] * seeded_draw(9000, seed_of(tape_, i));
     }
     psi_nearby_ = triples(point, scale, nearby_, Rounding::ignored);
   }
@@ -142,7 +143,7 @@ class CornerSearch {
     Selections sides;
     for (const int other : others_) {
       sides[other] = entry(values_.value, other) > 0.5 ? 1.0 : 0.0;
-      at(point, other) = 0.5 + 0.25 * seeded_draw(number, static_cast<std::uint64_t>(other));
+      at(point, other) = 0.5 + 0.25 * seeded_draw(number, static_cast<std::uint64_t>(tape_[other].number));
     }
     if (!(value(point, difference) > 0.0)) return {};
     for (auto& [other, side] : sides) {
@@ -253,23 +254,32 @@ class SurfaceSearch {
   bool reached_ = false;
 };
 
-std::vector<int> containing(const std::vector<int>& targets, int alpha,
-                            const std::vector<std::vector<int>>& alphas_of_target) {
-  std::vector<int> found;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    const auto& alphas = alphas_of_target[i];
-    if (std::binary_search(alphas.begin(), alphas.end(), alpha)) found.push_back(targets[i]);
+/// Whether a difference is found in the part of the tape that the targets and the surface are.
+bool is_found(const Tape& whole, const Surface& surface, const Selections& discrete, const std::vector<int>& targets,
+              Difference difference) {
+  std::vector<int> roots = targets;
+  roots.push_back(surface.psi);
+  roots.push_back(surface.alpha);
+  const Tape tape = whole.part(roots);
+  std::vector<int> targets_here;
+  for (const int target : targets) targets_here.push_back(tape.place_of(target));
+  Selections discrete_here;
+  for (const auto& [alpha, side] : discrete) {
+    if (const int place = tape.place_of(alpha); place >= 0) discrete_here.emplace(place, side);
   }
-  return found;
+  const Surface surface_here{tape.place_of(surface.psi), tape.place_of(surface.alpha)};
+  return SurfaceSearch(tape, surface_here, discrete_here, targets_here, difference).found();
 }
 
 }  // namespace
 
 std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>& surfaces, const Selections& discrete,
                                    const std::vector<int>& targets) {
-  std::vector<std::vector<int>> alphas_of_target;
+  std::unordered_map<int, std::vector<int>> targets_of_alpha;
   for (const int target : targets) {
-    alphas_of_target.push_back(alpha_nodes(tape, std::span(&target, 1), Links::written));
+    for (const int alpha : alpha_nodes(tape, std::span(&target, 1), Links::written)) {
+      targets_of_alpha[alpha].push_back(target);
+    }
   }
   std::vector<SurfaceClass> classes;
   for (const Surface& surface : surfaces) {
@@ -280,8 +290,9 @@ std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>&
       classes.push_back({SwitchingRole::time_event, false});
       continue;
     }
-    const auto affected = containing(targets, surface.alpha, alphas_of_target);
-    const bool jumps = !affected.empty() && SurfaceSearch(tape, surface, discrete, affected, jump_of).found();
+    const auto affected = targets_of_alpha.find(surface.alpha);
+    const bool jumps =
+        affected != targets_of_alpha.end() && is_found(tape, surface, discrete, affected->second, jump_of);
     if ((reached & moving_kinds) == 0) {
       classes.push_back({SwitchingRole::discrete, jumps});
     } else {
@@ -292,8 +303,7 @@ std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>&
 }
 
 bool bends_on_surface(const Tape& tape, const Surface& surface, const Selections& discrete, int target) {
-  const std::vector<int> targets{target};
-  return SurfaceSearch(tape, surface, discrete, targets, bend_of).found();
+  return is_found(tape, surface, discrete, {target}, bend_of);
 }
 
 }  // namespace saltus::model

@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
 
 #include "saltus/model/statement/discrete_states_internal.hpp"
 
@@ -69,19 +73,18 @@ class Constants {
 
 std::vector<bool> discrete_states(const Description& description) {
   Constants constants(description);
+  std::unordered_map<std::string_view, std::vector<const expression::Node*>> rates;
+  const auto look = [&](const std::vector<NamedExpression>& entries) {
+    for (const auto& entry : entries) rates[entry.name].push_back(&*entry.expression);
+  };
+  look(description.dynamics);
+  for (const auto& mode : description.modes) look(mode.dynamics);
   std::vector<bool> result;
   for (const auto& state : description.states) {
-    bool stated = false, zero = true;
-    const auto look = [&](const std::vector<NamedExpression>& entries) {
-      for (const auto& entry : entries) {
-        if (entry.name != state.name) continue;
-        stated = true;
-        zero = zero && constants.value(*entry.expression) == 0.0;
-      }
-    };
-    look(description.dynamics);
-    for (const auto& mode : description.modes) look(mode.dynamics);
-    result.push_back(stated && zero);
+    const auto stated = rates.find(state.name);
+    result.push_back(stated != rates.end() &&
+                     std::all_of(stated->second.begin(), stated->second.end(),
+                                 [&](const expression::Node* rate) { return constants.value(*rate) == 0.0; }));
   }
   return result;
 }
