@@ -34,7 +34,7 @@ Error no_sensitivities() {
 
 using fesd_integrator::IntegrationOptions;
 
-IntegrationOptions integration_options(const SimulateOptions& options, const ElementOptions& wanted,
+IntegrationOptions options_of_elements(const SimulateOptions& options, const ElementOptions& wanted,
                                        discretization::ButcherTableau tableau) {
   IntegrationOptions integration;
   integration.switches =
@@ -80,7 +80,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
 
   const double values = static_cast<double>(wanted.steps) * static_cast<double>(wanted.elements * wanted.stages) *
                         static_cast<double>(dcs->selection.numel());
-  IntegrationOptions integration = integration_options(options, wanted, std::move(*tableau));
+  IntegrationOptions integration = options_of_elements(options, wanted, std::move(*tableau));
   integration.initial_mode = std::move(forced);
   if (system.freezing) integration.clock = static_cast<std::size_t>(system.freezing->clock);
   integration.record_elements = values > 0.0 && values <= most_recorded_values;

@@ -54,13 +54,15 @@ class StartWriter {
     const std::size_t first = row;
     const bool ends_at_stage = kernel_.tableau.ends_at_last_stage();
     row += static_cast<std::size_t>(layout.stages + (ends_at_stage ? 0 : 1));
-    const Eigen::VectorXd left = first == 0 ? Eigen::Map<const Eigen::VectorXd>(guess_.initial_state.data(), kernel_.states)
-                                            : Eigen::VectorXd(state(first - 1));
+    const Eigen::VectorXd left = first == 0
+                                     ? Eigen::Map<const Eigen::VectorXd>(guess_.initial_state.data(), kernel_.states)
+                                     : Eigen::VectorXd(state(first - 1));
     const Eigen::VectorXd end = state(row - 1);
     for (int m = 0; m < layout.stages; ++m) {
       const Eigen::VectorXd x = state(first + at(m));
       const bool integral = kernel_.options.representation == Representation::integral;
-      w_.segment(element.variable(layout.stage.at(m)), kernel_.states) = integral ? x : Eigen::VectorXd((end - left) / h);
+      w_.segment(element.variable(layout.stage.at(m)), kernel_.states) =
+          integral ? x : Eigen::VectorXd((end - left) / h);
       write_selections(element, m, t + kernel_.tableau.c[m] * h, x);
     }
     if (layout.end_state.count > 0) w_.segment(element.variable(layout.end_state.first), kernel_.states) = end;
@@ -111,7 +113,8 @@ class StartWriter {
     std::vector<double> known = guess_.parameters;
     const auto& shared = made_.interval[at(element.interval)].shared;
     for (int i = 0; i < kernel_.shared.held; ++i) {
-      known.push_back(value_at(shared[at(kernel_.shared.controls + kernel_.shared.parameters + i)], w_, made_.constants));
+      known.push_back(
+          value_at(shared[at(kernel_.shared.controls + kernel_.shared.parameters + i)], w_, made_.constants));
     }
     const auto& u = guess_.controls[at(element.interval)];
     known.insert(known.end(), u.begin(), u.end());

@@ -46,10 +46,11 @@ class StructureBuilder {
  private:
   void add_border() {
     const auto& horizon = ocp_.horizon;
-    made_->horizon = horizon.free ? variables_.variable(horizon.lower, horizon.upper, "horizon") : variables_.constant(horizon.value);
+    made_->horizon = horizon.free ? variables_.variable(horizon.lower, horizon.upper, "horizon")
+                                  : variables_.constant(horizon.value);
     for (const int i : kernel_.free_parameters) {
-      made_->parameters.push_back(
-          variables_.variable(ocp_.parameter_lower[at(i)], ocp_.parameter_upper[at(i)], ocp_.system.parameter_names[at(i)]));
+      made_->parameters.push_back(variables_.variable(ocp_.parameter_lower[at(i)], ocp_.parameter_upper[at(i)],
+                                                      ocp_.system.parameter_names[at(i)]));
     }
     largest_path_ = variables_.largest(ocp_.path);
     largest_terminal_ = variables_.largest(ocp_.terminal);
@@ -60,9 +61,10 @@ class StructureBuilder {
     const int first = variables_.next();
     const auto& system = ocp_.system;
     for (std::size_t i = 0; i < ocp_.free_states.size(); ++i) {
-      made_->start.state.push_back(ocp_.free_states[i] ? variables_.variable(system.state_lower[i], system.state_upper[i],
-                                                                  fmt::format("initial {}", system.state_names[i]))
-                                                       : variables_.constant(system.initial_state[i]));
+      made_->start.state.push_back(ocp_.free_states[i]
+                                       ? variables_.variable(system.state_lower[i], system.state_upper[i],
+                                                             fmt::format("initial {}", system.state_names[i]))
+                                       : variables_.constant(system.initial_state[i]));
     }
     const Eigen::VectorXd lambda = constant_start_lambda();
     for (std::size_t k = 0; k < kernel_.pairs.size(); ++k) {
@@ -72,8 +74,9 @@ class StructureBuilder {
                                         : variables_.variable(0.0, infinity, fmt::format("initial lambda[{}]", k)));
     }
     for (const auto& [part, count] : kernel_.simplex_parts) {
-      made_->start.own.push_back(kernel_.start_is_constant[at(part)] ? variables_.zero()
-                                                                     : variables_.variable(-infinity, infinity, "initial mu"));
+      made_->start.own.push_back(kernel_.start_is_constant[at(part)]
+                                     ? variables_.zero()
+                                     : variables_.variable(-infinity, infinity, "initial mu"));
     }
     std::vector<int> theta(at(kernel_.selections), variables_.zero());
     for (const auto& [part, count] : kernel_.simplex_parts) {
@@ -94,7 +97,8 @@ class StructureBuilder {
     known.resize(known.size() + static_cast<std::size_t>(kernel_.shared.controls), 0.0);
     const std::vector<casadi::DM> in{ocp_.from, ocp_.system.initial_state, known};
     const auto values = casadi::DM::densify(kernel_.indicator(in).front()).nonzeros();
-    Eigen::VectorXd indicator = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    Eigen::VectorXd indicator =
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
     for (const auto& [first, count] : kernel_.simplex_parts) {
       indicator.segment(first, count).array() -= indicator.segment(first, count).minCoeff();
     }
@@ -111,28 +115,31 @@ class StructureBuilder {
     const int first = variables_.next();
     const auto& system = ocp_.system;
     for (std::size_t i = 0; i < system.control_names.size(); ++i) {
-      interval.shared.push_back(
-          variables_.variable(system.control_lower[i], system.control_upper[i], fmt::format("{}[{}]", system.control_names[i], k)));
+      interval.shared.push_back(variables_.variable(system.control_lower[i], system.control_upper[i],
+                                                    fmt::format("{}[{}]", system.control_names[i], k)));
     }
     interval.shared.insert(interval.shared.end(), made_->parameters.begin(), made_->parameters.end());
     for (Eigen::Index i = 0; i < held_.cols(); ++i) interval.shared.push_back(variables_.constant(held_(k, i)));
     interval.shared.push_back(made_->horizon);
     interval.shared.push_back(ocp_.clock ? variables_.variable(ocp_.clock->speed_lower, ocp_.clock->speed_upper,
-                                                    fmt::format("speed of time[{}]", k))
+                                                               fmt::format("speed of time[{}]", k))
                                          : variables_.constant(1.0));
     for (const auto& term : ocp_.least_squares) {
-      for (Eigen::Index i = 0; i < term.samples.cols(); ++i) interval.shared.push_back(variables_.constant(term.samples(k, i)));
+      for (Eigen::Index i = 0; i < term.samples.cols(); ++i)
+        interval.shared.push_back(variables_.constant(term.samples(k, i)));
     }
     interval.elements = elements_[at(k)];
     interval.first_element = static_cast<int>(made_->element.size());
     const double mean = 1.0 / interval.elements;
     const double gamma = kernel_.options.gamma_h;
     for (int n = 0; n < interval.elements && kernel_.moves && interval.elements > 1; ++n) {
-      interval.lengths.push_back(variables_.variable((1.0 - gamma) * mean, (1.0 + gamma) * mean, fmt::format("h[{},{}]", k, n)));
+      interval.lengths.push_back(
+          variables_.variable((1.0 - gamma) * mean, (1.0 + gamma) * mean, fmt::format("h[{},{}]", k, n)));
     }
     interval.own = {first, variables_.next() - first};
     if (kernel_.depends_on_time) {
-      interval.t_left = k > 0 && ocp_.horizon.free ? -1 : variables_.constant(ocp_.from + k * ocp_.horizon.value / made_->intervals);
+      interval.t_left =
+          k > 0 && ocp_.horizon.free ? -1 : variables_.constant(ocp_.from + k * ocp_.horizon.value / made_->intervals);
       if (k > 0 && ocp_.horizon.free) {
         interval.t_left = made_->element.back().variable(kernel_.layout.end_time.first);
       }
@@ -149,8 +156,7 @@ class StructureBuilder {
     element.length = interval.lengths.empty() ? variables_.constant(1.0 / interval.elements) : interval.lengths[at(n)];
     element.left = made_->element.empty() ? made_->start.state : right_state(*made_, made_->element.back());
     if (kernel_.depends_on_time) {
-      element.left.push_back(n == 0 ? interval.t_left
-                                    : made_->element.back().variable(kernel_.layout.end_time.first));
+      element.left.push_back(n == 0 ? interval.t_left : made_->element.back().variable(kernel_.layout.end_time.first));
     }
     const auto lambda = made_->left_lambda(static_cast<int>(made_->element.size()));
     element.left.insert(element.left.end(), lambda.begin(), lambda.end());

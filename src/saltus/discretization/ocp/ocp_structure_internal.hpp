@@ -28,8 +28,8 @@ struct Placed {
   std::string what;  ///< for names of rows
   Term term = Term::none;
   const std::vector<ConstraintRow>* bounds = nullptr;  ///< null: equations
-  bool is_dormant = false;  ///< rows that only a branch problem may make equations
-  bool of_method = false;  ///< rows and pairs that steer relaxed problems only
+  bool is_dormant = false;                             ///< rows that only a branch problem may make equations
+  bool of_method = false;                              ///< rows and pairs that steer relaxed problems only
   std::vector<std::vector<int>> places;
   std::vector<Copy> copies;
   std::unique_ptr<PlacedFunction> placed{};
@@ -52,9 +52,9 @@ struct Penalty {
 /// One element: its variables but the length stand together.
 struct OcpElement {
   int interval = 0;
-  int number = 0;  ///< within the interval
-  int length = 0;  ///< place of hhat: a variable or a constant
-  int first = 0;   ///< variable of local variable 1 is `first`
+  int number = 0;         ///< within the interval
+  int length = 0;         ///< place of hhat: a variable or a constant
+  int first = 0;          ///< variable of local variable 1 is `first`
   std::vector<int> left;  ///< places of left state, left time, left lambda
   [[nodiscard]] int variable(int local) const { return first + local - 1; }
 };
@@ -67,9 +67,9 @@ struct OcpStart {
 struct OcpInterval {
   std::vector<int> shared;  ///< places, SharedSizes
   int first_element = 0, elements = 0;
-  mpcc::IndexRange own;  ///< variables shared by its elements
+  mpcc::IndexRange own;      ///< variables shared by its elements
   std::vector<int> lengths;  ///< variables hhat; empty for one element or fixed lengths
-  int t_left = 0;  ///< place of the time at its left end, if time matters
+  int t_left = 0;            ///< place of the time at its left end, if time matters
 };
 
 /// The whole problem without its functions' values.
@@ -79,7 +79,7 @@ struct OcpStructure {
   int intervals = 0;
   std::vector<OcpInterval> interval;
   std::vector<OcpElement> element;
-  int horizon = 0;  ///< place of T
+  int horizon = 0;              ///< place of T
   std::vector<int> parameters;  ///< variables of the free ones
   OcpStart start;
   std::vector<int> boundary_own;  ///< variables of step equilibration

@@ -1,7 +1,7 @@
-// A run: the composition of its parts, and the loop over steps and events. run.cpp begins and ends it, run_steps.cpp takes
-// the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it; run_jumps.cpp,
-// run_limits.cpp and run_resting.cpp jumps, their accumulation, and what is at rest behind it; run_spirals.cpp the limits
-// of switches; run_rooted.cpp and run_nested_roots.cpp the way out of zeros, and into them.
+// A run: the composition of its parts, and the loop over steps and events. run.cpp begins and ends it, run_steps.cpp
+// takes the steps, run_events.cpp handles what they meet, run_crossing.cpp what is ordinary among it; run_jumps.cpp,
+// run_limits.cpp and run_resting.cpp jumps, their accumulation, and what is at rest behind it; run_spirals.cpp the
+// limits of switches; run_rooted.cpp and run_nested_roots.cpp the way out of zeros, and into them.
 #pragma once
 
 #include <algorithm>

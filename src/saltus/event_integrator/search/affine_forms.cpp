@@ -1,12 +1,12 @@
 #include "saltus/event_integrator/search/affine_forms.hpp"
 
-#include "saltus/event_integrator/mode/small_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
+
+#include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
