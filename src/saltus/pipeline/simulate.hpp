@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "saltus/base/error.hpp"
@@ -24,6 +25,8 @@ struct StepRecord {
   long events = 0;
   long trajectory = 1;    ///< number of the one under way, from 1
   long trajectories = 1;  ///< that will be followed, as far as is known
+  /// The state at t, valid during the call; empty behind a step that was divided.
+  std::span<const double> x{};
 };
 enum class Proceed { on, stop };
 

@@ -18,8 +18,8 @@ struct ObservedRun {
 [[nodiscard]] inline result::StepObserver step_observer(const Observers& observers, const ObservedRun& run) {
   if (!observers.on_step) return {};
   return [&observers, run](const result::Progress& progress) {
-    const auto answer = observers.on_step(
-        {progress.t, run.from, run.until, progress.steps, progress.events, run.trajectory, run.trajectories});
+    const auto answer = observers.on_step({progress.t, run.from, run.until, progress.steps, progress.events,
+                                           run.trajectory, run.trajectories, progress.x});
     return answer == Proceed::on ? result::Continue::yes : result::Continue::no;
   };
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 namespace saltus::result {
 
@@ -10,6 +11,7 @@ struct Progress {
   double t = 0.0;
   long steps = 0;
   long events = 0;
+  std::span<const double> x{};  ///< the state there, valid during the call; empty after a step that was divided
 };
 
 enum class Continue { yes, no };

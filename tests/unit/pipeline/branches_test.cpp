@@ -269,6 +269,23 @@ TEST(Branches, StopWhereTheUserStops) {
   EXPECT_LT(root.branches[1].status.time_reached, 1.0);
 }
 
+TEST(Observers, SeeTheState) {
+  auto b = repeated({1, 2});
+  for (const auto method : {Method::event, Method::fesd}) {
+    SimulateOptions options = until(0.5, 1);
+    options.method = method;
+    std::vector<double> last;
+    Observers observers;
+    observers.on_step = [&](const StepRecord& step) {
+      last.assign(step.x.begin(), step.x.end());
+      return Proceed::on;
+    };
+    const Result root = run(b, options, observers);
+    EXPECT_EQ(root.status.termination, Termination::completed);
+    EXPECT_EQ(last, root.final.x);
+  }
+}
+
 TEST(Branches, ThatAreNotReachedAreNoTrajectories) {
   auto b = repeated({1, 2});
   Observers observers;

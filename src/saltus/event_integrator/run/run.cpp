@@ -59,6 +59,12 @@ std::string Run::where() const {
   return fmt::format("t = {:.17g}{}", here_.t, text.empty() ? "" : " while sliding on " + text);
 }
 
+std::span<const double> Run::shown_state() const {
+  const auto& contacts = surroundings_.system.contacts;
+  const std::span<const double> all(here_.x);
+  return contacts.empty() ? all : all.first(at(contacts.first_hidden));
+}
+
 void Run::fail(Termination termination, std::string message) {
   outcome_.result.status.termination = termination;
   outcome_.result.status.message = std::move(message);
@@ -200,7 +206,7 @@ CompactIntegration Run::to_end(const StepObserver& observer) {
       while (outcome_.running && attempt() == Step::shortened) {
       }
       if (outcome_.running && observer &&
-          observer({here_.t, outcome_.result.statistics.steps, recorder_.events()}) == Continue::no) {
+          observer({here_.t, outcome_.result.statistics.steps, recorder_.events(), shown_state()}) == Continue::no) {
         fail(Termination::stopped_by_user, fmt::format("stopped at {}", where()));
       }
     }

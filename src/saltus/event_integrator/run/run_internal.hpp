@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -188,6 +189,8 @@ class Run {
   }
   [[nodiscard]] double span() const { return options_.until - options_.from; }
   [[nodiscard]] std::string where() const;
+  /// Returns the states without those that only hold the modes of contacts.
+  [[nodiscard]] std::span<const double> shown_state() const;
 
   /// The event that is handled now, or was last.
   struct CurrentEvent {

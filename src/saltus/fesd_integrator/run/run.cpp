@@ -67,7 +67,7 @@ Integration Run::run() {
       }
       if (!stopped() && !context_.facts.held.empty()) hold_behind();
     }
-    status_.show_progress(position_.t(), recorder_.events());
+    status_.show_progress(position_.t(), recorder_.events(), position_.x());
   }
   return take_integration();
 }

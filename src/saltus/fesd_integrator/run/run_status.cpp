@@ -34,9 +34,9 @@ void RunStatus::check_events(double t, std::size_t events) {
                    options_.max_events, t));
 }
 
-void RunStatus::show_progress(double t, std::size_t events) {
+void RunStatus::show_progress(double t, std::size_t events, std::span<const double> x) {
   if (stopped() || !observer_) return;
-  const Progress progress{t, static_cast<long>(statistics_.steps), static_cast<long>(events)};
+  const Progress progress{t, static_cast<long>(statistics_.steps), static_cast<long>(events), x};
   if (observer_(progress) == Continue::no) {
     stop(t, result::Termination::stopped_by_user, fmt::format("stopped at t = {:.10g}", t));
   }

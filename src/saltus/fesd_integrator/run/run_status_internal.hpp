@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -23,7 +24,7 @@ class RunStatus {
   /// Counts a try that is divided. A run that gets no further ends, too, and tells its observer until then.
   void count_rejected(double t, std::size_t events);
   void check_events(double t, std::size_t events);
-  void show_progress(double t, std::size_t events);
+  void show_progress(double t, std::size_t events, std::span<const double> x = {});
 
   [[nodiscard]] result::Statistics& statistics() { return statistics_; }
   /// What is said of a run that gets to its end all the same; the first remark stays.
