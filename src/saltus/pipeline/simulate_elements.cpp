@@ -32,13 +32,11 @@ Error no_sensitivities() {
           {}};
 }
 
-using fesd_integrator::IntegrationOptions;
-
-IntegrationOptions options_of_elements(const SimulateOptions& options, const ElementOptions& wanted,
-                                       discretization::ButcherTableau tableau) {
-  IntegrationOptions integration;
-  integration.switches =
-      options.method == Method::fesd ? IntegrationOptions::Switches::detected : IntegrationOptions::Switches::fixed;
+fesd_integrator::IntegrationOptions options_of_elements(const SimulateOptions& options, const ElementOptions& wanted,
+                                                        discretization::ButcherTableau tableau) {
+  fesd_integrator::IntegrationOptions integration;
+  integration.switches = options.method == Method::fesd ? fesd_integrator::IntegrationOptions::Switches::detected
+                                                        : fesd_integrator::IntegrationOptions::Switches::fixed;
   integration.tableau = std::move(tableau);
   integration.from = options.from;
   integration.until = *options.until;
@@ -80,12 +78,12 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
 
   const double values = static_cast<double>(wanted.steps) * static_cast<double>(wanted.elements * wanted.stages) *
                         static_cast<double>(dcs->selection.numel());
-  IntegrationOptions integration = options_of_elements(options, wanted, std::move(*tableau));
+  fesd_integrator::IntegrationOptions integration = options_of_elements(options, wanted, std::move(*tableau));
   integration.initial_mode = std::move(forced);
   if (system.freezing) integration.clock = static_cast<std::size_t>(system.freezing->clock);
   integration.record_elements = values > 0.0 && values <= most_recorded_values;
   if (is_at_times(options.output)) {
-    integration.rows = IntegrationOptions::Rows::at_times;
+    integration.rows = fesd_integrator::IntegrationOptions::Rows::at_times;
     integration.times = std::move(times);
   }
   std::optional<adapters::IpoptSolver> ipopt;
