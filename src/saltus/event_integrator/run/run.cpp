@@ -23,7 +23,7 @@ bool is_affine(const model::System& system) {
 
 }  // namespace
 
-Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
+Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
          const StepObserver& observer, Way way)
     : kernel_(kernel),
       options_(options),

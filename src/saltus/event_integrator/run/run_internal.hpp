@@ -51,7 +51,7 @@ class Run {
   /// everything.
   enum class Way { short_where_ordinary, general };
 
-  Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
+  Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
       const StepObserver& observer, Way way = Way::short_where_ordinary);
 
   CompactIntegration to_end();
@@ -250,7 +250,7 @@ class Run {
   [[nodiscard]] double span() const { return options_.until - options_.from; }
   [[nodiscard]] std::string where() const;
 
-  const evaluation::ModelKernel& kernel_;
+  evaluation::ModelKernel& kernel_;
   const IntegrationOptions& options_;
   const StepObserver& observer_;
   Surroundings surroundings_;
