@@ -116,7 +116,7 @@ Cost cost_of(const std::vector<Interval>& intervals, const ClockCost& clock) {
 }
 
 /// No events if the run does not complete.
-Cost measure(const evaluation::ModelKernel& kernel, const model::System& system,
+Cost measure(evaluation::ModelKernel& kernel, const model::System& system,
              const event_integrator::IntegrationOptions& options, const ClockCost& clock) {
   std::vector<Interval> intervals;
   const auto begin = Clock::now();
@@ -146,7 +146,7 @@ Cost measure(const evaluation::ModelKernel& kernel, const model::System& system,
 /// along it, the step once more up to there, and the right-hand sides on both sides. No search among several
 /// functions, no decision, nothing recorded. By the library's own steps, from the end of a run; NaN where that is not
 /// possible.
-double floor_of_events(const evaluation::ModelKernel& kernel, const model::System& system,
+double floor_of_events(evaluation::ModelKernel& kernel, const model::System& system,
                        const event_integrator::IntegrationOptions& options) {
   const auto result = event_integrator::integrate_compact(kernel, system, options, {});
   const auto& recording = result.recording;

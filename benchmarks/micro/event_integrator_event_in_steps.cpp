@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "integrate_internal.hpp"
+#include "saltus/event_integrator/run/compact_integration.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -47,7 +48,7 @@ struct Measured {
 
 using Rows = OutputTimes::Rows;  ///< at steps: the default; at_times: none but at events
 
-Measured run(const evaluation::ModelKernel& kernel, const model::System& system, ode::Method method, Rows rows) {
+Measured run(evaluation::ModelKernel& kernel, const model::System& system, ode::Method method, Rows rows) {
   IntegrationOptions options;
   options.method = method;
   options.tolerances = {1e-8, 1e-10};

@@ -72,7 +72,7 @@ Integration run(const RandomRegions& system) {
   }
   const auto built = b.build();
   EXPECT_TRUE(built.has_value()) << (built ? "" : to_text(built.error()));
-  const auto kernel = evaluation::ModelKernel::compile(*built);
+  auto kernel = evaluation::ModelKernel::compile(*built);
   EXPECT_TRUE(kernel.has_value());
   IntegrationOptions options;
   options.tolerances = {1e-8, 1e-10};

@@ -50,14 +50,20 @@ std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>
   return neighbours;
 }
 
-ModelKernel::Implementation::Implementation(const model::System& system)
+KernelSymbols::KernelSymbols(const model::System& system)
     : t(system.t),
       x(system.x),
       p(system.p),
       alpha(system.alpha),
-      parameters(system.parameter_values),
-      n_psi(static_cast<int>(system.switching.size())),
-      fixed_parameters(parameters.size()) {
+      discrete(system.discrete_states),
+      n_psi(static_cast<int>(system.switching.size())) {
+  discrete.resize(at(x.numel()), false);
+}
+
+ModelKernel::Implementation::Implementation(const model::System& system) : KernelSymbols(system) {
+  parameters = system.parameter_values;
+  fixed_parameters = parameters.size();
+  motion = &free;
   input = SX::densify(system.input);
   const auto with_inputs = [&](const SX& expression) {
     return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, input);
@@ -73,8 +79,6 @@ ModelKernel::Implementation::Implementation(const model::System& system)
     if (event.guards.numel() > 0) rows.push_back(SX::vec(event.guards));
   }
   first_jump_guard = static_cast<int>(SX::vertcat(rows).numel());
-  discrete = system.discrete_states;
-  discrete.resize(at(x.numel()), false);
   for (const auto& jump : system.jumps) {
     rows.push_back(SX::vec(jump.guards));
     for (casadi_int i = 0; i < jump.guards.numel(); ++i) {

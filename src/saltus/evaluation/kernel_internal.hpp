@@ -43,29 +43,22 @@ struct Motion {
 
 [[nodiscard]] std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends);
 
-struct ModelKernel::Implementation {
+/// The model's symbols and expressions; they never change.
+struct KernelSymbols {
+  explicit KernelSymbols(const model::System& system);
+
   casadi::SX t, x, p, alpha;  ///< p: parameters, then constants, upper and lower ends of cells
   casadi::SX phi, outputs, input;
-  std::vector<double> parameters;  ///< values of p
-  std::vector<bool> discrete;      ///< n_x
+  std::vector<bool> discrete;  ///< n_x
   int n_psi = 0;
+};
 
-  RegionConstants regions;
-  CellFunctions cells;
+/// What the expressions say without values; found once, that of limited roots when it is first asked for.
+struct KernelStructure {
   std::vector<std::vector<bool>> on_cells;  ///< by event function
-
-  ModelFunction functions, scales, output_function, input_function;
-  std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
-  JumpFunctions jumps;
-  ModelFunction contact_function;  ///< null without contacts
   std::vector<bool> affine, time_only;
   std::vector<bool> rooted, continued_roots;  ///< n_psi
-  AffineRowFunctions affine_rows;
-  FieldConstants constants;  ///< work space of field()
   std::vector<std::vector<int>> inner;
-  std::vector<ModelFunction> gradients;  ///< d phi_j / d (x, t), compiled when first asked for
-  /// Of functions that are affine and do not hold selections they are constants: these rows, once known.
-  std::optional<AffineRows> constant_gradients;
   SymbolPlaces places;
   /// Of the free motion, once it was asked for.
   std::optional<std::optional<ode::JacobianPattern>> pattern;
@@ -74,15 +67,36 @@ struct ModelKernel::Implementation {
   std::map<int, int> rootless_numbers;          ///< of these, by event function
   std::size_t fixed_parameters = 0;             ///< the first of `parameters`: changed by set_parameters() only
   bool by_values = false;                       ///< expressions may depend on their values
-  Motion free;
-  std::vector<HeldGuard> jump_guards;  ///< by event function, from first_jump_guard on
+  std::vector<HeldGuard> jump_guards;           ///< by event function, from first_jump_guard on
   int first_jump_guard = 0;
-  std::map<std::vector<int>, Motion> held;  ///< by event functions; compiled when first held
-  Motion* motion = &free;
-  FieldUse field_use;  ///< its motion is `motion`
+};
 
-  NativeFunctions native;  ///< the functions that every step needs
+/// The functions that were made of the expressions; some when they are first called.
+struct KernelFunctions {
+  ModelFunction functions, scales, output_function, input_function;
+  std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
+  JumpFunctions jumps;
+  ModelFunction contact_function;  ///< null without contacts
+  AffineRowFunctions affine_rows;
+  std::vector<ModelFunction> gradients;  ///< d phi_j / d (x, t)
+  Motion free;
+  std::map<std::vector<int>, Motion> held;  ///< by event functions
+  NativeFunctions native;                   ///< the functions that every step needs
+};
 
+/// Where a run is beside t, x and alpha, and its work space: the part of a kernel that its user changes.
+struct KernelContext {
+  std::vector<double> parameters;  ///< values of p
+  RegionConstants regions;         ///< their references
+  CellFunctions cells;             ///< in which each argument is
+  FieldConstants constants;        ///< work space of field()
+  /// Of functions that are affine and do not hold selections gradients are constants: these rows, once known.
+  std::optional<AffineRows> constant_gradients;
+  Motion* motion = nullptr;  ///< the free one, or a held one
+  FieldUse field_use;        ///< its motion is `motion`
+};
+
+struct ModelKernel::Implementation : KernelSymbols, KernelStructure, KernelFunctions, KernelContext {
   explicit Implementation(const model::System& system);
   /// Of an event function or, by a negative number, one with limited roots.
   casadi::SX phi_row(int j) const { return j < 0 ? rootless[at(-1 - j)] : casadi::SX(phi(j)); }

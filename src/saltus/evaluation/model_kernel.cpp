@@ -105,7 +105,7 @@ void ModelKernel::contacts(double t, const double* x, const double* alpha, Conta
 const std::vector<RegionRange>& ModelKernel::region_groups() const { return implementation_->regions.groups(); }
 int ModelKernel::reference(std::size_t group) const { return implementation_->regions.reference(group); }
 
-void ModelKernel::set_reference(std::size_t group, int function) const {
+void ModelKernel::set_reference(std::size_t group, int function) {
   auto& self = *implementation_;
   if (!self.regions.set_reference(group, function, self.parameters)) return;
   self.constant_gradients.reset();
@@ -116,7 +116,7 @@ int ModelKernel::cell_function(int cell) const { return event_functions() - 2 * 
 const model::CellTable& ModelKernel::cell_table(int cell) const { return implementation_->cells.table(cell); }
 long ModelKernel::cell(int cell) const { return implementation_->cells.index(cell); }
 
-void ModelKernel::set_cell(int cell, long target) const {
+void ModelKernel::set_cell(int cell, long target) {
   auto& self = *implementation_;
   self.cells.move(cell, target, self.parameters);
   self.constant_gradients.reset();

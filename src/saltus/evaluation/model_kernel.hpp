@@ -91,8 +91,11 @@ struct FieldConstants {
 /// (set_cell), and all functions are those of these cells, also where the argument has left them.
 ///
 /// All functions take t (model time), x (n_x), alpha (n_psi, in [0, 1]) and write to the caller's memory; values that
-/// are not finite mark points where the model is undefined. Controls are replaced by their inputs u(t). Not thread
-/// safe: one kernel per thread (the interpreter's work space is inside).
+/// are not finite mark points where the model is undefined. Controls are replaced by their inputs u(t).
+///
+/// A kernel is compiled functions and the context of one run: parameters, cells, references of regions, what is held.
+/// Who changes the context has a kernel that is not const. Not thread safe: one kernel per thread (the interpreter's
+/// work space is inside).
 class ModelKernel {
  public:
   /// Compiles the functions that every run needs; derivatives of single functions are compiled when first asked for.
@@ -213,8 +216,8 @@ class ModelKernel {
   [[nodiscard]] int cell_function(int cell) const;
   [[nodiscard]] const model::CellTable& cell_table(int cell) const;
   [[nodiscard]] long cell(int cell) const;
-  /// Moves one argument to another cell. Part of where a run is, like t and x; const, as the kernel is its work space.
-  void set_cell(int cell, long index) const;
+  /// Moves one argument to another cell. Part of where a run is, like t and x.
+  void set_cell(int cell, long index);
   [[nodiscard]] double cell_argument(int cell, double t, const double* x, const double* alpha) const;
   /// Whether phi_j holds constants of this cell.
   [[nodiscard]] bool depends_on_cell(int function, int cell) const;
@@ -224,7 +227,7 @@ class ModelKernel {
   /// The region whose indicator the others of its group are measured against; -1 before it is first set.
   [[nodiscard]] int reference(std::size_t group) const;
   /// Part of where a run is, like cells. f does not depend on it if the weights of all regions are in alpha.
-  void set_reference(std::size_t group, int function) const;
+  void set_reference(std::size_t group, int function);
 
   [[nodiscard]] long field_evaluations() const;
   /// Which motion is in force, free or held: the same address, the same motion.

@@ -7,12 +7,12 @@
 
 namespace saltus::event_integrator {
 
-CompactIntegration integrate_compact(const evaluation::ModelKernel& kernel, const model::System& system,
+CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const model::System& system,
                                      const IntegrationOptions& options, const StepObserver& observer) {
   return Run(kernel, system, options).to_end(observer);
 }
 
-Integration integrate(const evaluation::ModelKernel& kernel, const model::System& system,
+Integration integrate(evaluation::ModelKernel& kernel, const model::System& system,
                       const IntegrationOptions& options, const StepObserver& observer) {
   CompactIntegration run = integrate_compact(kernel, system, options, observer);
   auto& recording = run.recording;

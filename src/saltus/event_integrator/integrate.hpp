@@ -33,7 +33,7 @@ struct Integration {
 /// @return everything computed up to the termination; never throws for numerical reasons. Independent of the output
 ///         times bit for bit.
 /// Cost: evaluations of f (m + 1 or m + 2 per evaluation while sliding on m surfaces), 9 of the event functions a step.
-[[nodiscard]] Integration integrate(const evaluation::ModelKernel& kernel, const model::System& system,
+[[nodiscard]] Integration integrate(evaluation::ModelKernel& kernel, const model::System& system,
                                     const IntegrationOptions& options, const StepObserver& observer = {});
 
 }  // namespace saltus::event_integrator

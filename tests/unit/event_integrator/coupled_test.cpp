@@ -145,7 +145,7 @@ TEST(Coupled, OfThreeSurfacesStabilityIsThatOfTheScalingTheSlidingBeganWithToo) 
   builder.dynamics("z", -(e * u + f * v + g * w));
   const auto system = builder.build();
   ASSERT_TRUE(system.has_value());
-  const auto kernel = evaluation::ModelKernel::compile(*system);
+  auto kernel = evaluation::ModelKernel::compile(*system);
   ASSERT_TRUE(kernel.has_value());
   ModeState state;
   state.mode = {0, 0, 0};

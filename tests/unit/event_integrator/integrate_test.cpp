@@ -158,7 +158,7 @@ TEST(Integrate, RowsDoNotChangeStepsThatHaveNoDenseOutput) {
   const std::size_t k = steps.size() / 2;
   const double h = steps[k + 1] - steps[k];
   const auto system = decay(steps[k] + 7.0 / 9.0 * h, 1e-3 * h);
-  const auto kernel = evaluation::ModelKernel::compile(system);
+  auto kernel = evaluation::ModelKernel::compile(system);
   ASSERT_TRUE(kernel.has_value());
   IntegrationOptions options;
   options.method = ode::Method::dop853;

@@ -36,7 +36,7 @@ struct Regions {
   evaluation::FieldConstants below, above;
 };
 
-Regions regions_of(const evaluation::ModelKernel& kernel) {
+Regions regions_of(evaluation::ModelKernel& kernel) {
   Regions regions;
   const double zero = 0.0, one = 1.0;
   kernel.prepare_field(&zero, regions.below);
@@ -45,7 +45,7 @@ Regions regions_of(const evaluation::ModelKernel& kernel) {
 }
 
 /// f- + s (f+ - f-) with J f + rate = 0.
-std::vector<double> sliding_field(const evaluation::ModelKernel& kernel, const Regions& regions,
+std::vector<double> sliding_field(evaluation::ModelKernel& kernel, const Regions& regions,
                                   const std::vector<double>& normal, double rate, double t,
                                   const std::vector<double>& x) {
   std::vector<double> below(x.size()), above(x.size());
@@ -66,7 +66,7 @@ TEST(LinearMotion, OfARegionIsThatOfItsSelections) {
   testing::add_surface(s, "x", s.x(0));
   const SX alpha = s.alpha(0);
   testing::set_field(s, {(1 + 2 * alpha) * s.x(1) - 3 * s.x(0) + s.t, 5 - alpha * s.x(1)}, {0, 0});
-  const auto kernel = compiled(s);
+  auto kernel = compiled(s);
   const auto regions = regions_of(kernel);
   LinearMotion motion;
   const auto* below = motion.of_region(kernel, regions.below);
@@ -90,7 +90,7 @@ TEST(LinearMotion, OfNonlinearFieldsThereIsNone) {
     testing::add_surface(s, "x", s.x(0));
     const SX x = s.x(0);
     testing::set_field(s, {s.x(1) + s.alpha(0), squared ? x * x : sin(s.t)}, {0, 0});
-    const auto kernel = compiled(s);
+    auto kernel = compiled(s);
     LinearMotion motion;
     EXPECT_EQ(motion.of_region(kernel, regions_of(kernel).below), nullptr);
   }
@@ -106,7 +106,7 @@ TEST(LinearMotion, OnAnObliqueSurfaceThatMovesItsColumnsAreDifferencesOfTheField
                      {-s.x(0) + 2 * s.x(1) - 3 * alpha + 0.5 * s.t, s.x(0) - s.x(2) + alpha,
                       0.7 * s.x(1) - 0.2 * s.x(2) + 1 - 2 * alpha},
                      {0, 0, 0});
-  const auto kernel = compiled(s);
+  auto kernel = compiled(s);
   const auto regions = regions_of(kernel);
   LinearMotion motion;
   const auto* field = motion.on_surface(kernel, regions.below, regions.above, {normal.data(), -1});
@@ -128,7 +128,7 @@ TEST(LinearMotion, OnAnObliqueSurfaceThatMovesItsColumnsAreDifferencesOfTheField
 
 TEST(LinearMotion, ACoordinateThatIsHeldHasNoMotionAtAll) {
   const auto s = testing::relay();
-  const auto kernel = compiled(s);
+  auto kernel = compiled(s);
   const auto regions = regions_of(kernel);
   LinearMotion motion;
   const std::vector<double> normal{1, 0, 0};
@@ -144,7 +144,7 @@ TEST(LinearMotion, FieldsWithoutAPushHaveNone) {
   auto s = testing::blank(2, 1);
   testing::add_surface(s, "x", s.x(0));
   testing::set_field(s, {s.x(1), -s.x(0) + s.alpha(0)}, {0, 0});
-  const auto kernel = compiled(s);
+  auto kernel = compiled(s);
   const auto regions = regions_of(kernel);
   const std::vector<double> normal{1, 0};
   LinearMotion motion;
@@ -155,7 +155,7 @@ TEST(LinearMotion, FieldsWithoutAPushHaveNone) {
 TEST(LinearMotion, RunsOfAffineModesTakeSeriesThroughSlidingToo) {
   const auto evaluations = [](ode::Method method) {
     const auto system = testing::relay();
-    const auto kernel = compiled(system);
+    auto kernel = compiled(system);
     IntegrationOptions options;
     options.method = method;
     options.tolerances = {1e-8, 1e-10};

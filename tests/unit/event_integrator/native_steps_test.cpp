@@ -144,7 +144,7 @@ TEST_F(NativeStepsTest, ALargeFieldGoesWithoutThem) {
   for (int i = 0; i < 13; ++i) b.dynamics("x" + std::to_string(i), -x[static_cast<std::size_t>(i)]);
   const auto system = b.build();
   ASSERT_TRUE(system.has_value());
-  const auto kernel = evaluation::ModelKernel::compile(*system, NativeCode::on);
+  auto kernel = evaluation::ModelKernel::compile(*system, NativeCode::on);
   ASSERT_TRUE(kernel.has_value()) << kernel.error().message;
   evaluation::FieldConstants constants;
   kernel->prepare_field(nullptr, constants);

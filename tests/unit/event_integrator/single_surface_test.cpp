@@ -60,7 +60,7 @@ TEST(SingleSurface, DecidesCrossingsAndEntriesLikeTheGeneralDecision) {
   int left = 0;
   for (int k = 0; k < 60; ++k) {
     const auto system = random_fields(random, false);
-    const auto kernel = evaluation::ModelKernel::compile(system);
+    auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
     const Surroundings surroundings{*kernel, system, true, {}, {}};
     SingleSurface single(surroundings);
@@ -88,7 +88,7 @@ TEST(SingleSurface, DecidesExitsLikeTheGeneralDecision) {
   int exits = 0;
   for (int k = 0; k < 60; ++k) {
     const auto system = random_fields(random, true);
-    const auto kernel = evaluation::ModelKernel::compile(system);
+    auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
     const Surroundings surroundings{*kernel, system, true, {}, {}};
     SingleSurface single(surroundings);
@@ -123,7 +123,7 @@ TEST(SingleSurface, DecidesBesideAnotherSurfaceOnWhichTheSolutionSlides) {
     testing::add_surface(s, "other", s.x(4));
     const SX f = inside(three.f);
     testing::set_field(s, {f(0), f(1), f(2), s.x(0) + s.alpha(1), 0.6 - 2 * s.alpha(1) + 0.7 + s.x(3)}, origin);
-    const auto kernel = evaluation::ModelKernel::compile(s);
+    auto kernel = evaluation::ModelKernel::compile(s);
     ASSERT_TRUE(kernel.has_value());
     const Surroundings surroundings{*kernel, s, true, {}, {}};
     SingleSurface single(surroundings);
@@ -146,7 +146,7 @@ TEST(SingleSurface, LeavesWhatIsNotSimpleToTheGeneralDecision) {
   testing::add_surface(s, "inner", s.x(0));
   testing::add_surface(s, "outer", s.x(1) + s.alpha(0));
   testing::set_field(s, {SX(1), SX(1), s.alpha(1)}, {0, 0, 0});
-  const auto kernel = evaluation::ModelKernel::compile(s);
+  auto kernel = evaluation::ModelKernel::compile(s);
   ASSERT_TRUE(kernel.has_value());
   const Surroundings surroundings{*kernel, s, true, {}, {}};
   SingleSurface single(surroundings);

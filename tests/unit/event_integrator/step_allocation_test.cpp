@@ -20,7 +20,7 @@ struct Count {
 };
 
 Count count(const model::System& system, ode::Method method, double until) {
-  const auto kernel = evaluation::ModelKernel::compile(system);
+  auto kernel = evaluation::ModelKernel::compile(system);
   EXPECT_TRUE(kernel.has_value());
   IntegrationOptions options;
   options.method = method;

@@ -69,7 +69,7 @@ TEST(SurfacePair, DecidesLikeTheGeneralDecision) {
   int entered = 0, crossed = 0, left = 0, both = 0, other = 0;
   for (int k = 0; k < 100; ++k) {
     const auto system = random_meeting(random);
-    const auto kernel = evaluation::ModelKernel::compile(system);
+    auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
     const Surroundings surroundings{*kernel, system, true, {}, {}};
     SurfacePair pair(surroundings);
@@ -101,7 +101,7 @@ TEST(SurfacePair, SlidesAcrossWithTheSelectionsOfTheGeneralDecision) {
   std::vector<double> slope(origin.size());
   for (int k = 0; k < 800; ++k) {
     const auto system = random_meeting(random);
-    const auto kernel = evaluation::ModelKernel::compile(system);
+    auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
     const Surroundings surroundings{*kernel, system, true, {}, {}};
     SurfacePair pair(surroundings);
@@ -142,7 +142,7 @@ TEST(SurfacePair, LeavesWhatIsNotSimpleToTheGeneralDecision) {
     int decided = 0;
     for (int k = 0; k < 20; ++k) {
       const auto system = random_meeting(same);
-      const auto kernel = evaluation::ModelKernel::compile(system);
+      auto kernel = evaluation::ModelKernel::compile(system);
       const Surroundings surroundings{*kernel, system, true, {}, {}};
       SurfacePair pair(surroundings);
       Transition transition;

@@ -59,7 +59,7 @@ std::optional<std::string> at_origin(const std::function<SX(model::Builder&, con
   builder.dynamics("v", rate(builder, x, v));
   const auto system = builder.build();
   EXPECT_TRUE(system.has_value());
-  const auto kernel = evaluation::ModelKernel::compile(*system);
+  auto kernel = evaluation::ModelKernel::compile(*system);
   EXPECT_TRUE(kernel.has_value());
   const Surroundings surroundings{*kernel, *system, true, switching::SelectionPolicy::active_dominant, {}};
   return without_limit(surroundings, 0.0, {0.0, 0.0}, std::vector<double>(system->switching.size(), 0.5), 1e-10);

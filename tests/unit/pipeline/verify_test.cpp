@@ -270,7 +270,7 @@ Builder rubbed() {
 }
 
 event_integrator::Integration simulated(const model::System& system) {
-  const auto kernel = evaluation::ModelKernel::compile(system);
+  auto kernel = evaluation::ModelKernel::compile(system);
   EXPECT_TRUE(kernel.has_value());
   event_integrator::IntegrationOptions options;
   options.until = 4.0;

@@ -76,7 +76,7 @@ struct Transition {
 
 /// What the switching needs to know of the system besides its functions.
 struct Surroundings {
-  const evaluation::ModelKernel& kernel;
+  evaluation::ModelKernel& kernel;
   const model::System& system;
   bool affine_in_alpha = true;
   switching::SelectionPolicy policy = switching::SelectionPolicy::active_dominant;

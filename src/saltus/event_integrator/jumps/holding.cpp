@@ -12,7 +12,7 @@
 
 namespace saltus::event_integrator {
 
-Holding::Holding(const evaluation::ModelKernel& kernel, const model::System& system)
+Holding::Holding(evaluation::ModelKernel& kernel, const model::System& system)
     : kernel_(kernel), system_(system), values_(at(kernel.event_functions())), row_(at(kernel.states())) {}
 
 Holding::~Holding() { release_all(); }
@@ -32,8 +32,7 @@ void Holding::release_all() {
   if (guards_.empty() && followers_.empty()) return;
   guards_.clear();
   followers_.clear();
-  // The kernel's functions are the model's own ones; what they hold is a state of the run, which is its only user.
-  static_cast<void>(const_cast<evaluation::ModelKernel&>(kernel_).hold({}));
+  static_cast<void>(kernel_.hold({}));
 }
 
 double Holding::second_derivative(const HeldGuard& guard, double t, const std::vector<double>& alpha,
@@ -115,12 +114,11 @@ std::vector<evaluation::Hold> Holding::holds() const {
 
 std::vector<double> Holding::free_field(double t, const std::vector<double>& alpha,
                                         const std::vector<double>& x) const {
-  auto& kernel = const_cast<evaluation::ModelKernel&>(kernel_);
   std::vector<double> f(x.size());
-  static_cast<void>(kernel.hold({}));
-  kernel.field(t, x.data(), alpha.data(), f.data());
+  static_cast<void>(kernel_.hold({}));
+  kernel_.field(t, x.data(), alpha.data(), f.data());
   // Known to the kernel already: this does not fail.
-  static_cast<void>(kernel.hold(holds()));
+  static_cast<void>(kernel_.hold(holds()));
   return f;
 }
 
@@ -131,7 +129,7 @@ std::optional<std::string> Holding::set(double t, const std::vector<double>& alp
   residual_.resize(m);
   normal_.resize(m, m);
   if (auto problem = moves_what_is_compared(t, alpha, x)) return problem;
-  auto done = const_cast<evaluation::ModelKernel&>(kernel_).hold(holds());
+  auto done = kernel_.hold(holds());
   if (!done) return done.error().message;
   static_cast<void>(project(t, alpha, x));
   return std::nullopt;

@@ -27,7 +27,7 @@ struct HeldGuard {
 /// counts impacts beside the one that reflects) an independent part is held by the kernel; the others follow.
 class Holding {
  public:
-  Holding(const evaluation::ModelKernel& kernel, const model::System& system);
+  Holding(evaluation::ModelKernel& kernel, const model::System& system);
   Holding(const Holding&) = delete;
   Holding& operator=(const Holding&) = delete;
   ~Holding();  ///< the kernel is as it was
@@ -72,7 +72,7 @@ class Holding {
   bool find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x);
   bool correct(std::vector<double>& x);
 
-  const evaluation::ModelKernel& kernel_;
+  evaluation::ModelKernel& kernel_;
   const model::System& system_;
   Contacts* contacts_ = nullptr;
   std::vector<HeldGuard> guards_, followers_;

@@ -18,7 +18,7 @@ int reference_of(const ModeState& state, const RegionRange& group) {
   return -1;
 }
 
-void set_references(const ModelKernel& kernel, const ModeState& state) {
+void set_references(ModelKernel& kernel, const ModeState& state) {
   const auto& groups = kernel.region_groups();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (const int reference = reference_of(state, groups[g]); reference >= 0) kernel.set_reference(g, reference);
@@ -72,7 +72,7 @@ bool same_group(const ModelKernel& kernel, int i, int j) {
   return std::any_of(groups.begin(), groups.end(), [&](const auto& group) { return group.holds(i) && group.holds(j); });
 }
 
-ReferenceScope::ReferenceScope(const ModelKernel& kernel, const ModeState& state) : kernel_(kernel) {
+ReferenceScope::ReferenceScope(ModelKernel& kernel, const ModeState& state) : kernel_(kernel) {
   for (std::size_t g = 0; g < kernel.region_groups().size(); ++g) before_.push_back(kernel.reference(g));
   set_references(kernel, state);
 }

@@ -15,7 +15,7 @@ namespace saltus::event_integrator {
 [[nodiscard]] int reference_of(const ModeState& state, const evaluation::RegionRange& group);
 
 /// Measures the regions of all groups against their references in this mode.
-void set_references(const evaluation::ModelKernel& kernel, const ModeState& state);
+void set_references(evaluation::ModelKernel& kernel, const ModeState& state);
 
 /// A region and its weight theta.
 struct ActiveRegion {
@@ -37,13 +37,13 @@ void complete_weights(const evaluation::ModelKernel& kernel, ModeState& state);
 /// Measures against the references of a mode, and again against those from before at its end.
 class ReferenceScope {
  public:
-  ReferenceScope(const evaluation::ModelKernel& kernel, const ModeState& state);
+  ReferenceScope(evaluation::ModelKernel& kernel, const ModeState& state);
   ~ReferenceScope();
   ReferenceScope(const ReferenceScope&) = delete;
   ReferenceScope& operator=(const ReferenceScope&) = delete;
 
  private:
-  const evaluation::ModelKernel& kernel_;
+  evaluation::ModelKernel& kernel_;
   std::vector<int> before_;
 };
 

@@ -19,7 +19,7 @@ struct CompactIntegration {
 
 /// What integrate() does before it expands events and rows, which costs O(n_psi) for each of them: an event here costs
 /// what it changes.
-[[nodiscard]] CompactIntegration integrate_compact(const evaluation::ModelKernel& kernel, const model::System& system,
+[[nodiscard]] CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const model::System& system,
                                                    const IntegrationOptions& options,
                                                    const StepObserver& observer = {});
 

@@ -22,7 +22,7 @@ bool is_affine(const model::System& system) {
 
 }  // namespace
 
-Run::Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options, Way way)
+Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options, Way way)
     : kernel_(kernel),
       options_(options),
       surroundings_{kernel, system, is_affine(system), options.selection, options.scaling},

@@ -59,7 +59,7 @@ class Run {
   /// everything.
   enum class Way { short_where_ordinary, general };
 
-  Run(const evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
+  Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
       Way way = Way::short_where_ordinary);
 
   /// Runs to the end, or until the observer, which is called behind every step, asks to stop.
@@ -229,7 +229,7 @@ class Run {
     std::vector<double> slope_beyond;  ///< of the region on the other side of a surface
   };
 
-  const evaluation::ModelKernel& kernel_;
+  evaluation::ModelKernel& kernel_;
   const IntegrationOptions& options_;
   Surroundings surroundings_;
   ModeField field_;

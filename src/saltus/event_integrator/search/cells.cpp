@@ -7,7 +7,7 @@
 
 namespace saltus::event_integrator {
 
-Cells::Cells(const evaluation::ModelKernel& kernel)
+Cells::Cells(evaluation::ModelKernel& kernel)
     : kernel_(kernel), index_(at(kernel.cells()), 0), moved_(index_.size(), false), undefined_(index_.size(), false) {
   if (index_.empty()) return;
   magnitude_.resize(at(kernel.event_functions()));

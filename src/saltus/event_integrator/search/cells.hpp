@@ -19,7 +19,7 @@ enum class CellChange {
 /// an event function says so, never because a rounded value lies on the other side of a break.
 class Cells {
  public:
-  explicit Cells(const evaluation::ModelKernel& kernel);
+  explicit Cells(evaluation::ModelKernel& kernel);
 
   [[nodiscard]] bool empty() const { return index_.empty(); }
 
@@ -50,7 +50,7 @@ class Cells {
   CellChange place(int cell, double t, const double* x, const std::vector<double>& alpha);
   CellChange move(int cell, long target);
 
-  const evaluation::ModelKernel& kernel_;
+  evaluation::ModelKernel& kernel_;
   std::vector<long> index_;
   std::vector<bool> moved_;
   std::vector<bool> undefined_;

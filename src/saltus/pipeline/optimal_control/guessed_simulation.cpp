@@ -82,7 +82,7 @@ Expected<GuessedSimulation> simulate_guess(const model::System& system, PointVal
   model::System controlled = system;
   controlled.events.clear();  // they would stop it
   controlled = model::with_controls(std::move(controlled), starts, controls);
-  const auto kernel = evaluation::ModelKernel::compile(controlled);
+  auto kernel = evaluation::ModelKernel::compile(controlled);
   if (!kernel) return tl::unexpected(kernel.error());
   const Integration run = event_integrator::integrate(*kernel, controlled, guess_options(starts.front(), until, times));
 
