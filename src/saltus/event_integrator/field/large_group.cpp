@@ -55,6 +55,26 @@ std::pair<double, double> loss_and_stability(const EffectMatrix& effects, const 
   return {loss, stability};
 }
 
+/// Groups that Newton's method solves are taken together where one of them is large, or where they are many: each
+/// evaluation of the field is for all of them.
+void ModeField::find_large_groups() {
+  large_.reset();
+  if (!affine_in_alpha_ || !kernel_.region_groups().empty()) return;
+  constexpr std::size_t many = 4;
+  std::vector<std::size_t> rows;
+  std::size_t count = 0;
+  bool any_large = false;
+  for (const auto& group : groups_) {
+    if (group.size() < 3) continue;
+    rows.insert(rows.end(), group.begin(), group.end());
+    any_large = any_large || is_large(group.size());
+    ++count;
+  }
+  if (!any_large && count < many) return;
+  std::sort(rows.begin(), rows.end());
+  find_parts(rows);
+}
+
 /// A group whose surfaces are decided by parts: events of surfaces that feel nobody later are those of single ones.
 void ModeField::find_parts(const std::vector<std::size_t>& group) {
   switching::Influence feels(group.size());
@@ -73,7 +93,7 @@ void ModeField::find_parts(const std::vector<std::size_t>& group) {
     for (const int k : part) group_size_[group[at(k)]] = 0;
     group_size_[group[at(part.front())]] = part.size();
   }
-  large_.push_back(std::move(large));
+  large_ = std::move(large);
 }
 
 /// From the selections of the mode, all of them together: where influence is one-way G is triangular.

@@ -1,6 +1,7 @@
 // The vector field of a mode: the region's own, or the sliding field with its selections.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -150,7 +151,11 @@ class ModeField {
   void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_large(double t, const double* x, LargeGroup& group);
+  void find_large_groups();
   void find_parts(const std::vector<std::size_t>& group);
+  [[nodiscard]] bool is_in_large(std::size_t row) const {
+    return large_ && std::binary_search(large_->rows.begin(), large_->rows.end(), row);
+  }
   void find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows);
   void find_stability();
   [[nodiscard]] bool several_regions(std::size_t row) const;
@@ -194,7 +199,7 @@ class ModeField {
   Eigen::VectorXd base_residual_;
   std::vector<double> theta_;
   std::vector<std::optional<switching::SelectionNewton>> newton_;  ///< by row, for the first of a larger group
-  std::vector<LargeGroup> large_;
+  std::optional<LargeGroup> large_;
   std::vector<double> selections_;  ///< of the group at hand
   std::vector<double> speed_;       ///< by row: in groups of more than two
   std::vector<double> scaled_;      ///< G of such a group, rows over their speeds

@@ -64,10 +64,7 @@ void ModeField::find_groups() {
     group_size_[first] = group.size();
     groups_.push_back(std::move(group));
   }
-  large_.clear();
-  for (const auto& group : groups_) {
-    if (affine_in_alpha_ && kernel_.region_groups().empty() && is_large(group.size())) find_parts(group);
-  }
+  find_large_groups();
   for (const int j : sliding_) row_of_[at(j)] = -1;
   solve_ = !affine_in_alpha_     ? SlidingSolve::nonaffine
            : groups_.size() == m ? SlidingSolve::decoupled
@@ -75,8 +72,7 @@ void ModeField::find_groups() {
   newton_.assign(m, std::nullopt);
   selections_.resize(m);
   for (const auto& group : groups_) {
-    const bool is_kept = std::any_of(large_.begin(), large_.end(), [&](const auto& l) { return l.rows == group; });
-    if (!is_kept && (group.size() > 2 || several_regions(group[0])))
+    if (!is_in_large(group[0]) && (group.size() > 2 || several_regions(group[0])))
       newton_[group[0]].emplace(static_cast<int>(group.size()));
   }
 }
@@ -232,13 +228,9 @@ void ModeField::evaluate_groups(double t, const double* x) {
       evaluate_pair(t, x, rows);
       continue;
     }
-    if (const auto large = std::find_if(large_.begin(), large_.end(), [&](const auto& l) { return l.rows == rows; });
-        large != large_.end()) {
-      evaluate_large(t, x, *large);
-      continue;
-    }
-    if (rows.size() > 1) evaluate_many(t, x, rows);
+    if (rows.size() > 1 && !is_in_large(rows[0])) evaluate_many(t, x, rows);
   }
+  if (large_) evaluate_large(t, x, *large_);
   weigh_references();
   kernel_.field(t, x, alpha_.data(), f_[0].data());
 }
@@ -331,12 +323,11 @@ void ModeField::evaluate_many(double t, const double* x, const std::vector<std::
 
 /// Behind evaluate_groups(): what only the event functions need of groups of more than two.
 void ModeField::find_stability() {
-  for (const auto& large : large_) {
-    for (const auto& part : large.parts) {
-      if (part.size() < 2) continue;
-      auto& exit = exits_[large.rows[at(part.front())]];
-      std::tie(exit.loss, exit.stability) = loss_and_stability(large.newton->jacobian(), part);
-    }
+  for (std::size_t k = 0; large_ && k < large_->parts.size(); ++k) {
+    const auto& part = large_->parts[k];
+    if (part.size() < 2) continue;
+    auto& exit = exits_[large_->rows[at(part.front())]];
+    std::tie(exit.loss, exit.stability) = loss_and_stability(large_->newton->jacobian(), part);
   }
   for (const auto& rows : groups_) {
     if (const auto* regions = tie_of(rows[0])) {
@@ -368,8 +359,8 @@ double ModeField::root_distance(double t, const double* x) {
   select(t, x);
   find_stability();
   double smallest = 1.0;
-  for (std::size_t row = 0; row < sliding_.size() && !large_.empty(); ++row) {
-    if (group_size_[row] > 2) smallest = std::min(smallest, std::abs(exits_[row].loss));
+  for (std::size_t row = 0; row < sliding_.size() && large_; ++row) {
+    if (is_in_large(row) && group_size_[row] > 1) smallest = std::min(smallest, std::abs(exits_[row].loss));
   }
   for (const auto& rows : groups_) {
     if (rows.size() < 2 || (rows.size() > 2 && !newton_[rows[0]]) || !has_loss(rows[0]) || tie_of(rows[0]) != nullptr)
