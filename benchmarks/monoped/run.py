@@ -1,6 +1,10 @@
-"""The monoped of examples/contacts for several numbers of intervals: one row of figures per run.
+"""The monoped of examples/contacts: one row of figures per run.
 
-python3 benchmarks/monoped/run.py SALTUS [--intervals 30 40 …] [--start rest|reference] [--terminal-weight 1|T/N] [--rho 0.01|0.1] [--seconds 600]
+python3 benchmarks/monoped/run.py SALTUS [--intervals 30 40 …] [--start rest|reference|RESULT.json] [--terminal-weight 1|T/N] [--rho 0.01|0.1]
+    [--seconds 600] [--stages KEY=VALUE,… KEY=VALUE,… …]
+
+Every stage begins at the result of the one before (the first one as --start says) and changes what it names, for itself and those behind it:
+goal (metres), friction, a_n, stabilisation, form (step|stewart), sigma (the first one), factor, ground (lowest foot, metres), or key.of.optimize.
 """
 
 import argparse
@@ -12,67 +16,104 @@ import tempfile
 import reference
 
 MODEL = pathlib.Path(__file__).parents[2] / "examples/contacts/monoped.toml"
-COLUMNS = ["N", "status", "objective", "iterations", "seconds", "ms per iteration", "primal", "complementarity",
+COLUMNS = ["N", "stage", "status", "objective", "iterations", "seconds", "ms per iteration", "primal", "complementarity",
            "stationarity", "lowest foot [m]", "defect", "q_x(T)"]
 
 
-def model_text(arguments, intervals, table):
-    horizon = 3.0
-    text = MODEL.read_text(encoding="utf-8").replace("monoped.csv", str(table))
-    text = text.replace("control_intervals = 30", f"control_intervals = {intervals}")
-    text = text.replace("weight = [0.01, 0.01]", f"weight = [{arguments.rho}, {arguments.rho}]")
+def replaced(text, old, new):
+    assert old in text, old
+    return text.replace(old, new)
+
+
+def model_text(arguments, intervals, stage, table):
+    horizon, goal = 3.0, float(stage.get("goal", 3.0))
+    text = replaced(MODEL.read_text(encoding="utf-8"), "monoped.csv", str(table))
+    text = replaced(text, "control_intervals = 30", f"control_intervals = {intervals}")
+    text = replaced(text, "weight = [0.01, 0.01]", f"weight = [{arguments.rho}, {arguments.rho}]")
+    text = replaced(text, '"q_x - 3"', f'"q_x - {goal}"')
+    text = replaced(text, "friction = 0.8", f"friction = {stage.get('friction', 0.8)}")
+    text = replaced(text, "foot_z >= -1e-3", f"foot_z >= {stage.get('ground', -1e-3)}")
+    text = replaced(text, "a_n = 200", f"a_n = {stage.get('a_n', 200)}\nstabilisation = {stage.get('stabilisation', 0)}")
     if arguments.terminal_weight == "T/N":
         scale = horizon / intervals
         weights = [1000 * scale] * 4 + [10 * scale] * 4
-        text = text.replace("weight = [1000, 1000, 1000, 1000, 10, 10, 10, 10]", f"weight = {weights}")
+        text = replaced(text, "weight = [1000, 1000, 1000, 1000, 10, 10, 10, 10]", f"weight = {weights}")
     if arguments.start == "reference":
-        guess = {"q_x": '"t"', "q_z": '"0.4 + 0.1*(1 - cos(4*pi*t/3))"', "phi_h": 0, "phi_k": 0, "v_x": 1, "v_z": 0,
-                 "w_h": 0, "w_k": 0}
+        guess = {"q_x": f'"{goal}/3*t"', "q_z": '"0.4 + 0.1*(1 - cos(4*pi*t/3))"', "phi_h": 0, "phi_k": 0, "v_x": goal / 3,
+                 "v_z": 0, "w_h": 0, "w_k": 0}
     else:
         guess = {"q_x": 0, "q_z": 0.4, "phi_h": 0, "phi_k": 0, "v_x": 0, "v_z": 0, "w_h": 0, "w_k": 0}
     stated = "[optimize.initial_guess]\n" + "".join(f"{name} = {value}\n" for name, value in guess.items())
-    return text.replace("[optimize.mpcc]", stated + "[optimize.mpcc]")
+    return replaced(text, "[optimize.mpcc]", stated + "[optimize.mpcc]")
 
 
-def row_of(intervals, result):
+def settings(arguments, stage):
+    keys = {"optimize.native": "on", "optimize.mpcc.iteration_limit": arguments.iterations}
+    names = {"form": "optimize.reformulation", "sigma": "optimize.mpcc.sigma_initial", "factor": "optimize.mpcc.sigma_factor"}
+    for key, value in stage.items():
+        if key in names or key.startswith("optimize."):
+            keys[names.get(key, key)] = value
+    return [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]
+
+
+def row_of(intervals, name, result):
     certificate, statistics = result["certificate"], result["statistics"]
     iterations = max(statistics["iterations"], 1)
     foot = [row[0] for row in result["trajectory"]["outputs"]]
     verification = result.get("verification") or {}
-    return [intervals, result["status"]["termination"], result["objective"], statistics["iterations"],
+    return [intervals, name, result["status"]["termination"], result["objective"], statistics["iterations"],
             statistics["wall_seconds"], 1e3 * statistics["wall_seconds"] / iterations,
             certificate["primal_infeasibility"], certificate["complementarity_residual"], certificate["stationarity"],
             min(foot), verification.get("interval_defect"), result["final"]["x"][0]]
 
 
-def run(arguments, intervals, folder):
-    table, model, out = folder / "reference.csv", folder / "monoped.toml", folder / "result.json"
-    table.write_text(reference.table(intervals), encoding="utf-8")
-    model.write_text(model_text(arguments, intervals, table), encoding="utf-8")
+def run(arguments, intervals, stage, name, files):
+    """files: of the table, the model, the result, and the result to begin at or None."""
+    table, model, out, begin = files
+    table.write_text(reference.table(intervals, float(stage.get("goal", 3.0))), encoding="utf-8")
+    model.write_text(model_text(arguments, intervals, stage, table), encoding="utf-8")
     out.unlink(missing_ok=True)
+    start = ["--start", begin] if begin else []
     subprocess.run([arguments.saltus, "optimize", model, "--quiet", "--out", out, "--time-limit", str(arguments.seconds),
-                    "--set", "optimize.native=on", "--set", f"optimize.mpcc.iteration_limit={arguments.iterations}"],
-                   check=False)
-    return row_of(intervals, json.loads(out.read_text(encoding="utf-8")))
+                    *start, *settings(arguments, stage)], check=False)
+    return row_of(intervals, name, json.loads(out.read_text(encoding="utf-8")))
+
+
+def stages_of(arguments):
+    """Names and settings; what a stage names holds for those behind it."""
+    stage = {}
+    for name in arguments.stages:
+        stage = {**stage, **dict(part.split("=", 1) for part in name.split(",") if part)}
+        yield name, stage
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("saltus")
     parser.add_argument("--intervals", type=int, nargs="+", default=[30, 40, 50, 60, 70, 80, 90])
-    parser.add_argument("--start", choices=["rest", "reference"], default="rest")
+    parser.add_argument("--start", default="rest", help="rest, reference, or a stored result")
+    parser.add_argument("--stages", nargs="+", default=[""])
     parser.add_argument("--terminal-weight", choices=["1", "T/N"], default="1")
     parser.add_argument("--rho", type=float, default=0.01)
     parser.add_argument("--seconds", type=float, default=600)
     parser.add_argument("--iterations", type=int, default=30000)
+    parser.add_argument("--keep", help="folder for models and results")
     arguments = parser.parse_args()
     print("| " + " | ".join(COLUMNS) + " |")
     print("|---" * len(COLUMNS) + "|", flush=True)
-    with tempfile.TemporaryDirectory(prefix="monoped-") as folder:
+    with tempfile.TemporaryDirectory(prefix="monoped-") as scratch:
+        folder = pathlib.Path(arguments.keep or scratch)
+        folder.mkdir(parents=True, exist_ok=True)
         for intervals in arguments.intervals:
-            row = run(arguments, intervals, pathlib.Path(folder))
-            cells = [f"{x:.3g}" if isinstance(x, float) else str(x) for x in row]
-            print("| " + " | ".join(cells) + " |", flush=True)
+            before = None if arguments.start in ("rest", "reference") else pathlib.Path(arguments.start).resolve()
+            for number, (name, stage) in enumerate(stages_of(arguments)):
+                stem = f"{intervals}-{number}"
+                out = (folder / f"{stem}.json").resolve()
+                row = run(arguments, intervals, stage, name,
+                          ((folder / f"{stem}.csv").resolve(), folder / f"{stem}.toml", out, before))
+                cells = [f"{x:.3g}" if isinstance(x, float) else str(x) for x in row]
+                print("| " + " | ".join(cells) + " |", flush=True)
+                before = out
 
 
 if __name__ == "__main__":
