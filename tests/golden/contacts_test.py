@@ -2,6 +2,7 @@
 
 import json
 import math
+import pathlib
 
 import tool
 
@@ -115,6 +116,14 @@ class Contacts(tool.ToolTest):
         energy = [outputs[4] for outputs in rows["outputs"]]
         self.assertTrue(all(b <= a + 1e-9 for a, b in zip(energy, energy[1:])))
         self.run_tool("report", "r.json", "--out", "r.html", code=0)
+
+    def test_a_slip_that_turns_around_is_told(self):
+        """Times of a Taylor series of degree 40 that shares nothing with the engine."""
+        rod = (pathlib.Path(__file__).parents[2] / "models/falling-rod.toml").read_text(encoding="utf-8")
+        events = self.result(rod, "--rtol", "1e-11", "--atol", "1e-13")["events"]
+        self.assertEqual([event["kind"] for event in events], ["impact", "slip", "impact"])
+        for event, t in zip(events, (0.382512420645, 0.46016542057, 0.484412978857)):
+            self.assertAlmostEqual(event["t"], t, delta=1e-9)
 
     def test_coriolis_terms_keep_the_energy(self):
         result = self.result(PENDULUM)

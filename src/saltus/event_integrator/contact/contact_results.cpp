@@ -48,6 +48,13 @@ class Shown {
                        [&](const auto& contact) { return contact.name == name; });
   }
 
+  /// Whether a slip goes on in the other direction.
+  [[nodiscard]] static bool turns(const model::Contact& contact, const std::vector<double>& x,
+                                  const std::vector<double>& after) {
+    return x[at(contact.slip)] != 0.0 && after[at(contact.slip)] != 0.0 &&
+           x[at(contact.share)] * after[at(contact.share)] < 0.0;
+  }
+
   /// An event of contacts, from the modes on both sides and the impulses; false if there is nothing to tell.
   bool tell(result::Event& event) const {
     const auto before = modes(event.x), after = modes(event.x_after);
@@ -56,11 +63,9 @@ class Shown {
     event.name.reset();
     bool hit = false, closes = false, opens = false, sticks = false;
     for (std::size_t i = 0; i < before.size(); ++i) {
-      const auto& contact = contacts_.contacts[i];
       const bool pushed = impulse[i][0] != 0.0 || impulse[i][1] != 0.0;
-      const bool turns = contact.has_friction && event.x[at(contact.slip)] != event.x_after[at(contact.slip)];
-      if (before[i] == after[i] && !pushed && !turns) continue;
-      event.surfaces.push_back(contact.name);
+      if (before[i] == after[i] && !pushed && !turns(contacts_.contacts[i], event.x, event.x_after)) continue;
+      event.surfaces.push_back(contacts_.contacts[i].name);
       hit = hit || pushed;
       closes = closes || before[i] == result::ContactMode::open;
       opens = opens || after[i] == result::ContactMode::open;
