@@ -145,7 +145,7 @@ class TimeFreezing(tool.ToolTest):
                 self.assertAlmostEqual(a, b, delta=1e-9)
 
     def test_hysteresis_of_a_car_is_optimised(self):
-        text = (tool.SOURCE / "models/turbo-hysteresis.toml").read_text(encoding="utf-8")
+        text = (tool.SOURCE / "examples/contacts/turbo-hysteresis.toml").read_text(encoding="utf-8")
         self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
         result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
         self.assertAlmostEqual(result["objective"], 10.2292578, delta=1e-5)
