@@ -2,6 +2,7 @@
 // nothing with the event engine but the model.
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
