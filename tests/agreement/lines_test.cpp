@@ -26,6 +26,7 @@ std::vector<Named> columns_of(const result::Result& result) {
   std::vector<Named> columns;
   const auto add = [&](const std::vector<std::string>& names, auto member) {
     for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].starts_with("impulse(")) continue;  // is there at one instant only
       columns.push_back(
           {names[i], [member, i](const Trajectory& rows, std::size_t row) { return (rows.*member)[row][i]; }});
     }

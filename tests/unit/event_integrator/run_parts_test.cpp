@@ -31,7 +31,7 @@ struct Scene {
 
   const model::System system;
   const IntegrationOptions options;
-  const evaluation::ModelKernel kernel;
+  evaluation::ModelKernel kernel;
   const Surroundings surroundings{kernel, system, true, {}, {}};
   ModeField field{kernel, true};
   Position here{options.from, system.initial_state};
@@ -54,7 +54,7 @@ TEST(StepTolerances, AreTheProductOfTheirParts) {
 }
 
 TEST(StepTolerances, AModeHasNoRootOfTheOneBefore) {
-  const Scene scene(testing::sign_system(0.5, -1.0, -0.25));
+  Scene scene(testing::sign_system(0.5, -1.0, -0.25));
   StepTolerances tolerances({.rtol = 1e-6, .atol = 1e-8});
   tolerances.limit(Reason::coalescence, {.rtol = 0.5, .atol = 0.5});
   tolerances.limit(Reason::cycles, {.rtol = 1.0, .atol = 0.25});

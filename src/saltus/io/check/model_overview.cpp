@@ -26,6 +26,21 @@ std::vector<OverviewEquation> equations_of(const std::vector<model::NamedExpress
   return equations;
 }
 
+/// q' = v, and for the velocities the forces beside M v'.
+void add_motion(const model::MechanicsDescription& mechanics, std::vector<OverviewEquation>& equations) {
+  for (std::size_t i = 0; i < mechanics.positions.size() && i < mechanics.velocities.size(); ++i) {
+    equations.push_back({mechanics.positions[i].name, mechanics.velocities[i].name, {}});
+  }
+  for (const auto& velocity : mechanics.velocities) {
+    const auto stated = std::find_if(mechanics.force.begin(), mechanics.force.end(),
+                                     [&](const auto& force) { return force.velocity == velocity.name; });
+    const auto force = stated == mechanics.force.end() ? "0" : to_spaced_text(*stated->force);
+    const char* potential = mechanics.potential ? " - grad potential" : "";
+    equations.push_back(
+        {velocity.name, fmt::format("(M^-1 F)[{}], F[{}] = {}{}", velocity.name, velocity.name, force, potential), {}});
+  }
+}
+
 std::string remark_of(const model::System& system, std::size_t state) {
   if (!system.discrete_states[state]) return "";
   for (const auto& jump : system.jumps) {
@@ -159,6 +174,7 @@ ModelOverview overview_of(const model::Description& description, const model::Sy
   overview.description = system.description;
   take_quantities(system, captions, overview);
   overview.equations = equations_of(description.dynamics);
+  if (description.mechanics) add_motion(*description.mechanics, overview.equations);
   overview.modes = modes_of(description);
   overview.definitions = equations_of(description.definitions);
   overview.outputs = equations_of(description.outputs, captions);
