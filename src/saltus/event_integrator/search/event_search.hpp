@@ -153,6 +153,10 @@ class EventSearch {
   void keep();
   void start_at(double t);
   [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
+  void enter_surfaces(const ModeState& state, const std::vector<int>& zero_order);
+  void enter_exits(const ModeState& state, double t, const double* x);
+  void enter_users();
+  void size_work();
   void enter_nested(const ModeState& state, const std::vector<int>& zero_order);
   void load_rows();
   void set_forms(const double* x);

@@ -192,23 +192,20 @@ void EventSearch::read_values(double t, const double* x, const std::vector<std::
   for (const std::size_t i : which) point_[i] = value(i, x);
 }
 
-void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
-  start_at(t);
-  if (flip(state, zero_order, t, x)) return;
-  if (has_same_functions(state)) return renew(zero_order, t, x);
-  state_ = state;
-  functions_.clear();
-  const int n_psi = kernel_.switching_functions();
-  load_rows();
+/// Surfaces outside the mode, but those that keep their values beside what is held.
+void EventSearch::enter_surfaces(const ModeState& state, const std::vector<int>& zero_order) {
   const auto constant =
       kernel_.region_groups().empty() ? std::vector<bool>() : constant_beside_held(kernel_, state, rows_);
-  for (int j = 0; j < n_psi; ++j) {
+  for (int j = 0; j < kernel_.switching_functions(); ++j) {
     if (!constant.empty() && constant[at(j)]) continue;
     if (state.mode[at(j)] == 0 || (nesting_[at(j)] && !sliding_inside(kernel_, state, j).empty())) continue;
     of_surface_[at(j)] = functions_.size();
     functions_.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
   }
-  enter_nested(state, zero_order);
+}
+
+/// What ends sliding: exits, and selections that cease to exist.
+void EventSearch::enter_exits(const ModeState& state, double t, const double* x) {
   first_exit_ = functions_.size();
   exits_.resize(state.sliding.size());
   if (!state.sliding.empty()) field_.exits(t, x, exits_.data());
@@ -227,11 +224,16 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
       functions_.push_back({FunctionKind::instability, state.sliding[row], r, 1});
     }
   }
+}
+
+/// User functions, and the releases of those that are held.
+void EventSearch::enter_users() {
   const auto is_held = [&](int u) {
     const auto is_it = [u](const HeldGuard& guard) { return guard.hold.function == u; };
     return std::any_of(held_.begin(), held_.end(), is_it) || std::any_of(followers_.begin(), followers_.end(), is_it);
   };
   users_ = functions_.size();
+  const int n_psi = kernel_.switching_functions();
   const int user_end = n_psi + static_cast<int>(user_sign_.size());
   for (int u = n_psi; u < user_end; ++u) {
     if (!is_held(u)) functions_.push_back({FunctionKind::user, u, 0, 0});
@@ -241,14 +243,32 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   for (std::size_t row = 0; row < held_.size(); ++row) {
     functions_.push_back({FunctionKind::release, held_[row].hold.function, static_cast<int>(row), held_[row].inward});
   }
-  enter_cells();
-  set_forms(x);
+}
+
+/// Room for the values of all functions.
+void EventSearch::size_work() {
   noise_.assign(functions_.size(), 0.0);
   accuracy_.assign(functions_.size(), 0.0);
   point_.resize(functions_.size());
   samples_.resize(functions_.size() * ode::event_nodes);
   for (auto* list : {&suspects_, &sampled_, &candidates_, &special_, &curved_, &inspected_})
     list->reserve(functions_.size());
+}
+
+void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
+  start_at(t);
+  if (flip(state, zero_order, t, x)) return;
+  if (has_same_functions(state)) return renew(zero_order, t, x);
+  state_ = state;
+  functions_.clear();
+  load_rows();
+  enter_surfaces(state, zero_order);
+  enter_nested(state, zero_order);
+  enter_exits(state, t, x);
+  enter_users();
+  enter_cells();
+  set_forms(x);
+  size_work();
   inspected_.clear();
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const auto kind = functions_[i].kind;
