@@ -205,12 +205,72 @@ bool signs_say_it_all(const Surroundings& s, const Occasion& occasion) {
   return true;
 }
 
+using GivenModes = std::vector<std::pair<int, int>>;
+
+bool is_of_region(const Surroundings& s, int j) {
+  return s.system.switching[at(j)].role == model::SwitchingRole::region;
+}
+
+/// Why modes that are given contradict the signs at the start; nothing where they do not.
+std::optional<std::string> contradiction(const Surroundings& s, const ModeState& state, const std::vector<int>& at_zero,
+                                         const GivenModes& forced) {
+  for (const auto& [surface, mode] : forced) {
+    if (is_of_region(s, surface)) continue;
+    const bool is_zero = std::find(at_zero.begin(), at_zero.end(), surface) != at_zero.end();
+    if (is_zero || mode == state.mode[at(surface)]) continue;
+    return fmt::format("initial_mode {} = {} contradicts the sign of the switching function at the start",
+                       s.system.switching[at(surface)].name, mode);
+  }
+  return std::nullopt;
+}
+
+/// Whether a transition has the given modes of surfaces, and modes of regions are not given.
+bool is_as_given(const Transition& transition, const std::vector<GivenMode>& given, const GivenModes& forced) {
+  return transition.termination == result::Termination::completed && !transition.beyond_spiral &&
+         given.size() == forced.size() && std::all_of(given.begin(), given.end(), [&](const GivenMode& surface) {
+           return transition.state.mode[at(surface.surface)] == surface.mode;
+         });
+}
+
+/// A continuation with the given modes, other than the one that was decided without them; nullopt if there is none.
+std::optional<Transition> continue_as_given(const Surroundings& s, const Point& point,
+                                            const std::vector<GivenMode>& given, const GivenModes& forced,
+                                            const Transition& decided) {
+  auto chosen = given.empty() ? std::nullopt : decide_with(s, point.state, point.occasion, given);
+  if (!chosen) {
+    // Selections of three and more surfaces are looked for from the middle, where there may be no way to a root.
+    const auto fits = [&](const Transition& transition) { return is_as_given(transition, given, forced); };
+    const auto found = std::find_if(decided.alternatives.begin(), decided.alternatives.end(), fits);
+    if (found != decided.alternatives.end()) chosen = *found;
+  }
+  return given.size() < forced.size() ? with_given_modes(s.kernel, forced, chosen, decided) : chosen;
+}
+
+/// What was decided without the given modes becomes an alternative to what they lead to.
+void note_what_was_decided(const Transition& decided, Transition& chosen) {
+  if (decided.termination != result::Termination::completed) return;
+  const bool differs = decided.state.mode != chosen.state.mode;
+  chosen.unique = differs ? std::optional<bool>(false) : decided.unique;
+  if (differs) {
+    chosen.alternatives.push_back(decided);
+    chosen.alternatives.back().alternatives.clear();
+  }
+  for (const auto& other : decided.alternatives) {
+    if (other.state.mode != chosen.state.mode) chosen.alternatives.push_back(other);
+  }
+}
+
+void note_given(Transition& transition) {
+  transition.reason = "initial_mode" + (transition.reason.empty() ? "" : "; " + transition.reason);
+}
+
 }  // namespace
 
 Start decide_start(const Surroundings& s, double t, const double* x, double time_scale,
                    const std::vector<std::pair<int, int>>& forced) {
   Start start;
-  const auto [occasion, state] = read_point(s, t, x, time_scale, {});
+  const Point point = read_point(s, t, x, time_scale, {});
+  const auto& [occasion, state] = point;
   start.at_zero = occasion.at_zero;
   for (const int j : occasion.tied) {
     if (std::find(start.at_zero.begin(), start.at_zero.end(), j) == start.at_zero.end()) start.at_zero.push_back(j);
@@ -220,57 +280,25 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   other_continuations(s, state, occasion, start.transition);
   if (forced.empty()) return start;
 
-  const auto decided = start.transition;
-  const auto is_region = [&](int j) { return s.system.switching[at(j)].role == model::SwitchingRole::region; };
-  for (const auto& [surface, mode] : forced) {
-    if (is_region(surface)) continue;
-    const bool at_zero = std::find(start.at_zero.begin(), start.at_zero.end(), surface) != start.at_zero.end();
-    if (!at_zero && mode != state.mode[at(surface)]) {
-      start.transition.termination = result::Termination::no_admissible_mode;
-      start.transition.message =
-          fmt::format("initial_mode {} = {} contradicts the sign of the switching function at the start",
-                      s.system.switching[at(surface)].name, mode);
-      return start;
-    }
-  }
+  const auto refuse = [&start](std::string message) {
+    start.transition.termination = result::Termination::no_admissible_mode;
+    start.transition.message = std::move(message);
+    return start;
+  };
+  if (auto problem = contradiction(s, state, start.at_zero, forced)) return refuse(std::move(*problem));
   std::vector<GivenMode> given;
   for (const auto& [surface, mode] : forced) {
-    if (!is_region(surface)) given.push_back({surface, mode});
+    if (!is_of_region(s, surface)) given.push_back({surface, mode});
   }
-  const auto is_given = [&](const Transition& transition) {
-    return transition.termination == result::Termination::completed && !transition.beyond_spiral &&
-           given.size() == forced.size() && std::all_of(given.begin(), given.end(), [&](const GivenMode& surface) {
-             return transition.state.mode[at(surface.surface)] == surface.mode;
-           });
-  };
-  if (is_given(decided)) {
-    start.transition.reason = "initial_mode" + (decided.reason.empty() ? "" : "; " + decided.reason);
+  if (is_as_given(start.transition, given, forced)) {
+    note_given(start.transition);
     return start;
   }
-  auto chosen = given.empty() ? std::nullopt : decide_with(s, state, occasion, given);
-  if (!chosen) {
-    // Selections of three and more surfaces are looked for from the middle, where there may be no way to a root.
-    const auto found = std::find_if(decided.alternatives.begin(), decided.alternatives.end(), is_given);
-    if (found != decided.alternatives.end()) chosen = *found;
-  }
-  if (given.size() < forced.size()) chosen = with_given_modes(s.kernel, forced, chosen, decided);
-  if (!chosen) {
-    start.transition.termination = result::Termination::no_admissible_mode;
-    start.transition.message = "initial_mode does not continue the solution: its field does not move to where it says";
-    return start;
-  }
-  chosen->reason = "initial_mode" + (chosen->reason.empty() ? "" : "; " + chosen->reason);
+  auto chosen = continue_as_given(s, point, given, forced, start.transition);
+  if (!chosen) return refuse("initial_mode does not continue the solution: its field does not move to where it says");
+  note_given(*chosen);
+  note_what_was_decided(start.transition, *chosen);
   start.transition = std::move(*chosen);
-  if (decided.termination != result::Termination::completed) return start;
-  start.transition.unique =
-      decided.state.mode == start.transition.state.mode ? decided.unique : std::optional<bool>(false);
-  if (decided.state.mode != start.transition.state.mode) {
-    start.transition.alternatives.push_back(decided);
-    start.transition.alternatives.back().alternatives.clear();
-  }
-  for (const auto& other : decided.alternatives) {
-    if (other.state.mode != start.transition.state.mode) start.transition.alternatives.push_back(other);
-  }
   return start;
 }
 

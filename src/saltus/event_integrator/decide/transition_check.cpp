@@ -65,16 +65,9 @@ bool Decider::set_corners() {
   return true;
 }
 
-/// The new mode must move to where it says: signs along its own field, selections inside [0, 1].
-bool Decider::check() {
-  auto& state = transition_.state;
-  if (transition_.beyond_spiral) {  // no field leads away from the intersection by itself
-    transition_.beside = transition_.beyond_spiral->x;
-    return true;
-  }
-  ModeField field(s_.kernel, s_.affine_in_alpha);
-  field.enter(state);
-  std::vector<double> xdot(at(s_.kernel.states()));
+/// The field of the new mode here, in xdot, and the point beside it.
+bool Decider::check_field(ModeField& field, std::vector<double>& xdot) {
+  const auto& state = transition_.state;
   field(occasion_.t, occasion_.x, xdot.data());
   // Regions whose indicators depend on each other follow those that do not.
   const auto held = field.independent();
@@ -93,6 +86,12 @@ bool Decider::check() {
                                                                       names(s_.system, state.sliding), occasion_.t));
     }
   }
+  return true;
+}
+
+/// Selections of the new mode are those of its field, inside [0, 1].
+bool Decider::take_selections(const ModeField& field) {
+  auto& state = transition_.state;
   for (const int j : state.sliding) {
     const double selection = field.alpha()[at(j)];
     // 1e-9: an exit located to rounding leaves the selection at its bound only to the conditioning of the quotient.
@@ -117,53 +116,76 @@ bool Decider::check() {
     }
   }
   complete_weights(s_.kernel, state);
+  return true;
+}
+
+/// Where the new field moves psi_j from zero.
+Motion Decider::motion_from(int j, ModeField& field, const std::vector<double>& xdot) {
+  const auto& state = transition_.state;
+  double velocity = fields_.velocities(state.alpha, {j}).front();
+  const auto& tangent = state.mode[at(j)] > 0 ? occasion_.exit_above : occasion_.exit_below;
+  if (contains(tangent, j) && keeps_selections()) velocity = 0.0;
+  // The fields of all regions that meet: those on both sides of this surface may be tangent to it together.
+  const double scale =
+      std::max({scale_[at(j)], std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
+                std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front())});
+  Motion motion = fields_.motion(state.alpha, j, velocity, scale);
+  const bool follows_selections =
+      std::any_of(state.sliding.begin(), state.sliding.end(), [&](int i) { return s_.kernel.depends(j, i); });
+  if (follows_selections && std::abs(velocity) <= sign_tolerance * scale) {
+    // A tangency along sliding whose selections change: no derivative with selections held speaks for it.
+    const double ahead = velocity_ahead(field, xdot, j);
+    motion = {};
+    if (std::abs(ahead) > velocity_rounding * scale) {
+      motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
+    }
+  }
+  return motion;
+}
+
+/// A function at zero moves to the side that the new mode says.
+bool Decider::check_side(int j, ModeField& field, const std::vector<double>& xdot) {
+  const int mode = transition_.state.mode[at(j)];
+  if (mode == 0) return true;
+  if (contains(standing_, j)) {
+    transition_.zero_order[at(j)] = 2;
+    return true;
+  }
+  const Motion motion = motion_from(j, field, xdot);
+  const bool is_kink = s_.system.switching[at(j)].role == model::SwitchingRole::kink;
+  if (is_kink && motion.side.drift == switching::Drift::stays) {
+    // A state at rest there: both sides are the same.
+    transition_.zero_order[at(j)] = 2;
+    return true;
+  }
+  // Along a root psi goes where its regular derivatives say, if these say anything, but like another power of t.
+  const bool stays = motion.side.drift == switching::Drift::stays;
+  const bool tangent_root = s_.kernel.has_root(j) && motion.order != 1 && static_cast<int>(motion.side.drift) == mode;
+  if ((stays || tangent_root) && leaves_by_root(j)) {
+    transition_.zero_order[at(j)] = 2;
+    return true;
+  }
+  if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode, motion);
+  transition_.zero_order[at(j)] = std::min(motion.order, 2);
+  return true;
+}
+
+/// The new mode must move to where it says: signs along its own field, selections inside [0, 1].
+bool Decider::check() {
+  if (transition_.beyond_spiral) {  // no field leads away from the intersection by itself
+    transition_.beside = transition_.beyond_spiral->x;
+    return true;
+  }
+  ModeField field(s_.kernel, s_.affine_in_alpha);
+  field.enter(transition_.state);
+  std::vector<double> xdot(at(s_.kernel.states()));
+  if (!check_field(field, xdot) || !take_selections(field)) return false;
   // Regions are measured against the reference of the new mode: the one before may be at zero, too.
   std::vector<int> at_zero = occasion_.at_zero;
   for (const int j : occasion_.tied) {
     if (!contains(at_zero, j)) at_zero.push_back(j);
   }
-  for (const int j : at_zero) {
-    const int mode = state.mode[at(j)];
-    if (mode == 0) continue;
-    if (contains(standing_, j)) {
-      transition_.zero_order[at(j)] = 2;
-      continue;
-    }
-    double velocity = fields_.velocities(state.alpha, {j}).front();
-    const auto& tangent = mode > 0 ? occasion_.exit_above : occasion_.exit_below;
-    if (contains(tangent, j) && keeps_selections()) velocity = 0.0;
-    // The fields of all regions that meet: those on both sides of this surface may be tangent to it together.
-    const double scale =
-        std::max({scale_[at(j)], std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
-                  std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front())});
-    Motion motion = fields_.motion(state.alpha, j, velocity, scale);
-    const bool follows_selections =
-        std::any_of(state.sliding.begin(), state.sliding.end(), [&](int i) { return s_.kernel.depends(j, i); });
-    if (follows_selections && std::abs(velocity) <= sign_tolerance * scale) {
-      // A tangency along sliding whose selections change: no derivative with selections held speaks for it.
-      const double ahead = velocity_ahead(field, xdot, j);
-      motion = {};
-      if (std::abs(ahead) > velocity_rounding * scale) {
-        motion = {{ahead, ahead > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
-      }
-    }
-    const bool is_kink = s_.system.switching[at(j)].role == model::SwitchingRole::kink;
-    if (is_kink && motion.side.drift == switching::Drift::stays) {
-      // A state at rest there: both sides are the same.
-      transition_.zero_order[at(j)] = 2;
-      continue;
-    }
-    // Along a root psi goes where its regular derivatives say, if these say anything, but like another power of t.
-    const bool stays = motion.side.drift == switching::Drift::stays;
-    const bool tangent_root = s_.kernel.has_root(j) && motion.order != 1 && static_cast<int>(motion.side.drift) == mode;
-    if ((stays || tangent_root) && leaves_by_root(j)) {
-      transition_.zero_order[at(j)] = 2;
-      continue;
-    }
-    if (static_cast<int>(motion.side.drift) != mode) return fail_at_tangency(j, mode, motion);
-    transition_.zero_order[at(j)] = std::min(motion.order, 2);
-  }
-  return true;
+  return std::all_of(at_zero.begin(), at_zero.end(), [&](int j) { return check_side(j, field, xdot); });
 }
 
 bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
@@ -175,7 +197,6 @@ bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
                   names(s_.system, surfaces), occasion_.t));
 }
 
-/// The field of the new mode does not move psi_j to where the mode says: why not.
 /// Whether the new field has an infinite derivative on a surface, which it leaves all the same: no derivative says so.
 bool Decider::leaves_by_root(int j) {
   if (transition_.rooted >= 0 || s_.system.switching[at(j)].role != model::SwitchingRole::listed) return false;
@@ -186,6 +207,7 @@ bool Decider::leaves_by_root(int j) {
   return true;
 }
 
+/// The field of the new mode does not move psi_j to where the mode says: why not.
 bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
   const auto& state = transition_.state;
   const auto& function = s_.system.switching[at(j)];

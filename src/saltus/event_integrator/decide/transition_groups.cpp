@@ -115,14 +115,17 @@ bool Decider::standing_fields_agree(const std::vector<int>& group, const switchi
   return fields_.fields_agree(point, standing);
 }
 
-bool Decider::decide(const std::vector<int>& group) {
-  if (group.size() > 1) {
-    for (const int j : group) {
-      const auto is_other = [&](int i) { return i != j && same_group(s_.kernel, i, j); };
-      if (std::any_of(group.begin(), group.end(), is_other)) return decide_regions(group);
-    }
-  }
-  for (const int j : group) {
+/// Whether the group holds several regions of one group by `indicator`.
+bool Decider::regions_meet(const std::vector<int>& group) const {
+  if (group.size() < 2) return false;
+  return std::any_of(group.begin(), group.end(), [&](int j) {
+    return std::any_of(group.begin(), group.end(), [&](int i) { return i != j && same_group(s_.kernel, i, j); });
+  });
+}
+
+/// A surface of the group that is left where both its fields are tangent to it, or -1.
+int Decider::lost_at_exit(const std::vector<int>& group) const {
+  const auto found = std::find_if(group.begin(), group.end(), [&](int j) {
     const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
     // An exit is located where one field is tangent: its selection is at its bound to rounding over the other field,
     // unless that vanishes, too. Ten times less or more makes no difference: it is 1e-9 or of the order of one. Between
@@ -130,9 +133,15 @@ bool Decider::decide(const std::vector<int>& group) {
     constexpr double lost = 1e-6;
     constexpr double doubtful = 1e-9;
     const double beyond = at_exit ? std::max(-before_.alpha[at(j)], before_.alpha[at(j)] - 1.0) : 0.0;
-    if (!(beyond <= lost) || (beyond > doubtful && fields_.nearly_two_fold(before_.alpha, j))) {
-      return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
-    }
+    return !(beyond <= lost) || (beyond > doubtful && fields_.nearly_two_fold(before_.alpha, j));
+  });
+  return found == group.end() ? -1 : *found;
+}
+
+bool Decider::decide(const std::vector<int>& group) {
+  if (regions_meet(group)) return decide_regions(group);
+  if (const int j = lost_at_exit(group); j >= 0) {
+    return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
   }
   if (const auto large = decide_large(group)) return *large;
   if (group.size() > largest_group && s_.affine_in_alpha) {
@@ -160,25 +169,23 @@ bool Decider::decide(const std::vector<int>& group) {
   }
   const auto decision = ask(group, table);
   if (passes_kink(group, decision)) return true;
-  const auto culprit = [&] { return s_.system.switching[at(group[at(std::max(decision.culprit, 0))])].name; };
-  switch (decision.verdict) {
-    case Verdict::decided:
-      break;
-    case Verdict::stands:
-      // Nothing depends on the selection: any side continues the same solution.
-      if (!standing_fields_agree(group, decision)) {
-        return fail(result::Termination::outside_class,
-                    fmt::format("'{}' does not leave 0 at t = {} under either field, which differ there (boundary "
-                                "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
-                                culprit(), occasion_.t));
-      }
-      break;
-    case Verdict::two_fold:
-      return fail(
-          result::Termination::outside_class,
-          undetermined_at(fields_, s_.system, base_.alpha, group[at(std::max(decision.culprit, 0))], occasion_.t));
-    case Verdict::coupled:
-      return decide_coupled(group, table);
+  if (decision.verdict == Verdict::coupled) return decide_coupled(group, table);
+  return take_separate(group, decision);
+}
+
+/// What was decided about surfaces each of which feels only itself.
+bool Decider::take_separate(const std::vector<int>& group, const switching::GroupDecision& decision) {
+  const int culprit = group[at(std::max(decision.culprit, 0))];
+  if (decision.verdict == Verdict::two_fold) {
+    return fail(result::Termination::outside_class,
+                undetermined_at(fields_, s_.system, base_.alpha, culprit, occasion_.t));
+  }
+  // Where a surface stands nothing depends on the selection: any side continues the same solution.
+  if (decision.verdict == Verdict::stands && !standing_fields_agree(group, decision)) {
+    return fail(result::Termination::outside_class,
+                fmt::format("'{}' does not leave 0 at t = {} under either field, which differ there (boundary "
+                            "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
+                            s_.system.switching[at(culprit)].name, occasion_.t));
   }
   for (std::size_t k = 0; k < group.size(); ++k) {
     SurfaceDecision surface = decision.surfaces[k];

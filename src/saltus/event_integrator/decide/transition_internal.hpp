@@ -147,6 +147,9 @@ class Decider {
 
  private:
   bool decide(const std::vector<int>& group);
+  [[nodiscard]] bool regions_meet(const std::vector<int>& group) const;
+  [[nodiscard]] int lost_at_exit(const std::vector<int>& group) const;
+  bool take_separate(const std::vector<int>& group, const switching::GroupDecision& decision);
   [[nodiscard]] bool standing_fields_agree(const std::vector<int>& group,
                                            const switching::GroupDecision& decision) const;
   bool passes_kink(const std::vector<int>& group, const switching::GroupDecision& decision);
@@ -156,6 +159,11 @@ class Decider {
   bool passes(int surface) const;
   void cross_beside(int surface);
   bool decide_regions(const std::vector<int>& group);
+  bool decide_regions_with(const std::vector<int>& others, const evaluation::RegionRange& range,
+                           const std::vector<int>& regions, const std::vector<int>& group);
+  bool decide_regions_alone(const MeetingRegions& meeting, const evaluation::RegionRange& range);
+  [[nodiscard]] std::size_t preferred_set(const MeetingRegions& meeting,
+                                          const std::vector<switching::RegionSet>& sets) const;
   bool decide_regions_on(int surface, const evaluation::RegionRange& range, std::vector<int> candidates);
   void apply_regions();
   void follow_other_regions();
@@ -193,6 +201,10 @@ class Decider {
   bool read_nested_anew();
   bool set_corners();
   bool check();
+  bool check_field(ModeField& field, std::vector<double>& xdot);
+  bool take_selections(const ModeField& field);
+  [[nodiscard]] Motion motion_from(int surface, ModeField& field, const std::vector<double>& xdot);
+  bool check_side(int surface, ModeField& field, const std::vector<double>& xdot);
   bool fail_where_surfaces_touch(const std::vector<int>& surfaces);
   bool leaves_by_root(int j);
   bool fail_at_tangency(int surface, int mode, const Motion& motion);

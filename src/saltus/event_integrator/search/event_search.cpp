@@ -85,122 +85,95 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
       field_(field),
       five_nodes_suffice_(ode::dense_degree(method) <= 4),
       tolerances_(tolerances),
-      forms_(at(kernel.states())) {
+      mode_(at(kernel.states())) {
   for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
   any_nesting_ = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
   const auto n_phi = at(kernel.event_functions());
-  for (auto* vector : {&phi_, &magnitude_, &slope_}) vector->resize(n_phi);
-  for (auto* vector : {&x_, &low_, &high_, &wide_low_, &wide_high_}) vector->resize(at(kernel.states()));
-  of_surface_.resize(at(kernel.switching_functions()));
+  for (auto* vector : {&values_.phi, &values_.magnitude, &values_.slope}) vector->resize(n_phi);
+  x_.resize(at(kernel.states()));
+  range_.resize(at(kernel.states()));
+  mode_.of_surface.resize(at(kernel.switching_functions()));
   entered_.assign(at(kernel.cells()), -1);
-  user_sign_.assign(n_phi - at(kernel.switching_functions()) - 2 * entered_.size(), 0);
-  user_vanishes_.assign(user_sign_.size(), false);
+  user_.sign.assign(n_phi - at(kernel.switching_functions()) - 2 * entered_.size(), 0);
+  user_.vanishes.assign(user_.sign.size(), false);
 }
 
 void EventSearch::find_pressure(double t, const double* x) {
-  if (held_.empty()) return;
-  kernel_.hold_pressure(t, x, field_.alpha().data(), pressure_.data());
-}
-
-EventSearch::Parts EventSearch::parts_of(const std::vector<std::size_t>& which) const {
-  Parts parts;
-  for (const std::size_t i : which) {
-    if (is_threshold(i)) continue;
-    switch (functions_[i].kind) {
-      case FunctionKind::surface:
-      case FunctionKind::user:
-      case FunctionKind::cell_upper:
-      case FunctionKind::cell_lower:
-        parts.phi = true;
-        break;
-      case FunctionKind::nested:
-        parts.nested = true;
-        break;
-      case FunctionKind::exit_below:
-      case FunctionKind::exit_above:
-      case FunctionKind::loss:
-      case FunctionKind::instability:
-        parts.exits = true;
-        break;
-      case FunctionKind::release:
-        parts.pressure = true;
-        break;
-    }
-  }
-  return parts;
+  if (held_.guards.empty()) return;
+  kernel_.hold_pressure(t, x, field_.alpha().data(), held_.pressure.data());
 }
 
 /// Rounding and tolerance levels of some functions for the step that starts at (t, x).
-void EventSearch::rescale(double t, const double* x, const std::vector<std::size_t>& which, const Parts& parts) {
-  if (parts.phi || parts.nested) kernel_.scales(t, x, state_.alpha.data(), magnitude_.data(), slope_.data());
-  if (parts.exits) field_.exits(t, x, exits_.data());
+void EventSearch::rescale(double t, const double* x, const std::vector<std::size_t>& which,
+                          const FunctionParts& parts) {
+  if (parts.phi || parts.nested)
+    kernel_.scales(t, x, mode_.state.alpha.data(), values_.magnitude.data(), values_.slope.data());
+  if (parts.exits) field_.exits(t, x, mode_.exits.data());
   if (parts.pressure) find_pressure(t, x);
   for (const std::size_t i : which) set_noise(i, x);
 }
 
 void EventSearch::set_noise(std::size_t i, const double* x) {
-  const auto& function = functions_[i];
+  const auto& function = mode_.functions[i];
   if (uses_phi(function)) {
-    const bool by_form = is_threshold(i);
+    const bool by_form = mode_.is_threshold(i);
     const auto j = at(function.index);
-    const double magnitude = by_form ? std::abs(forms_.factor(i) * x[forms_.state(i)]) : magnitude_[j];
-    const double slope = by_form ? std::abs(forms_.factor(i)) : slope_[j];
+    const double magnitude = by_form ? std::abs(mode_.forms.factor(i) * x[mode_.forms.state(i)]) : values_.magnitude[j];
+    const double slope = by_form ? std::abs(mode_.forms.factor(i)) : values_.slope[j];
     // A handful of roundings of terms as large as the magnitude.
-    noise_[i] = 8.0 * rounding_unit * magnitude;
-    accuracy_[i] = 0.1 * (tolerances_.atol * slope + tolerances_.rtol * magnitude);
-  } else if (function.kind == FunctionKind::release) {
-    const double size = std::abs(pressure_[at(function.row)]);
-    noise_[i] = 32.0 * rounding_unit * size;
-    accuracy_[i] = 0.1 * tolerances_.rtol * size;
-  } else {
-    const auto& exit = exits_[at(function.row)];
-    const bool coupled = field_.solve() == SlidingSolve::coupled;
-    const bool is_side = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
-    // Loss and stability of coupled surfaces are relative to their terms.
-    const double size = is_side ? std::abs(exit.below) + std::abs(exit.above) : coupled ? 1.0 : std::abs(exit.loss);
-    noise_[i] = 32.0 * rounding_unit * size;
-    // Near a two-fold point both fields vanish, but not the terms they are the sum of.
-    const bool by_sides = coupled || field_.solve() == SlidingSolve::higher_order;
-    if (field_.solve() == SlidingSolve::decoupled || (by_sides && is_side)) {
-      noise_[i] = std::max(noise_[i], 8.0 * rounding_unit * field_.normal_terms(at(function.row)));
-    }
-    accuracy_[i] = 0.1 * tolerances_.rtol * size;
+    levels_.set(i, 8.0 * rounding_unit * magnitude, 0.1 * (tolerances_.atol * slope + tolerances_.rtol * magnitude));
+    return;
   }
-  if (!std::isfinite(noise_[i])) noise_[i] = 0.0;
-  accuracy_[i] = std::isfinite(accuracy_[i]) ? std::max(accuracy_[i], noise_[i]) : 0.0;
+  if (function.kind == FunctionKind::release) {
+    const double size = std::abs(held_.pressure[at(function.row)]);
+    levels_.set(i, 32.0 * rounding_unit * size, 0.1 * tolerances_.rtol * size);
+    return;
+  }
+  const auto& exit = mode_.exits[at(function.row)];
+  const bool coupled = field_.solve() == SlidingSolve::coupled;
+  const bool is_side = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
+  // Loss and stability of coupled surfaces are relative to their terms.
+  const double size = is_side ? std::abs(exit.below) + std::abs(exit.above) : coupled ? 1.0 : std::abs(exit.loss);
+  double noise = 32.0 * rounding_unit * size;
+  // Near a two-fold point both fields vanish, but not the terms they are the sum of.
+  const bool by_sides = coupled || field_.solve() == SlidingSolve::higher_order;
+  if (field_.solve() == SlidingSolve::decoupled || (by_sides && is_side)) {
+    noise = std::max(noise, 8.0 * rounding_unit * field_.normal_terms(at(function.row)));
+  }
+  levels_.set(i, noise, 0.1 * tolerances_.rtol * size);
 }
 
-void EventSearch::evaluate_parts(double t, const double* x, const Parts& parts) {
-  if (parts.phi) kernel_.functions(t, x, state_.alpha.data(), phi_.data());
+void EventSearch::evaluate_parts(double t, const double* x, const FunctionParts& parts) {
+  if (parts.phi) kernel_.functions(t, x, mode_.state.alpha.data(), values_.phi.data());
   if (parts.nested) {
-    for (auto& corner : corners_) kernel_.functions(t, x, corner.alpha.data(), corner.phi.data());
+    for (auto& corner : values_.corners) kernel_.functions(t, x, corner.alpha.data(), corner.phi.data());
   }
-  if (parts.exits) field_.exits(t, x, exits_.data());
+  if (parts.exits) field_.exits(t, x, mode_.exits.data());
   if (parts.pressure) find_pressure(t, x);
 }
 
 /// Value of function i at the point that evaluate_parts was last called with.
 double EventSearch::value(std::size_t i, const double* x) const {
-  const auto& function = functions_[i];
-  if (is_threshold(i)) return forms_.threshold_value(i, x) - function.offset;
+  const auto& function = mode_.functions[i];
+  if (mode_.is_threshold(i)) return mode_.forms.threshold_value(i, x) - function.offset;
   switch (function.kind) {
     case FunctionKind::surface:
     case FunctionKind::user:
     case FunctionKind::cell_upper:
     case FunctionKind::cell_lower:
-      return phi_[at(function.index)] - function.offset;
+      return values_.phi[at(function.index)] - function.offset;
     case FunctionKind::nested:
-      return corners_[at(function.row)].phi[at(function.index)] - function.offset;
+      return values_.corners[at(function.row)].phi[at(function.index)] - function.offset;
     case FunctionKind::exit_below:
-      return exits_[at(function.row)].below - function.offset;
+      return mode_.exits[at(function.row)].below - function.offset;
     case FunctionKind::exit_above:
-      return exits_[at(function.row)].above - function.offset;
+      return mode_.exits[at(function.row)].above - function.offset;
     case FunctionKind::loss:
-      return exits_[at(function.row)].loss - function.offset;
+      return mode_.exits[at(function.row)].loss - function.offset;
     case FunctionKind::instability:
-      return exits_[at(function.row)].stability - function.offset;
+      return mode_.exits[at(function.row)].stability - function.offset;
     case FunctionKind::release:
-      return pressure_[at(function.row)] - function.offset;
+      return held_.pressure[at(function.row)] - function.offset;
   }
   __builtin_unreachable();
 }
@@ -209,11 +182,11 @@ void EventSearch::evaluate(double t, const double* x, const std::vector<std::siz
                            std::vector<double>& values) {
   values.resize(which.size());
   std::size_t known = 0;
-  for (; known < which.size() && is_threshold(which[known]); ++known) {  // at the usual event all of them
-    values[known] = forms_.threshold_value(which[known], x) - functions_[which[known]].offset;
+  for (; known < which.size() && mode_.is_threshold(which[known]); ++known) {  // at the usual event all of them
+    values[known] = mode_.forms.threshold_value(which[known], x) - mode_.functions[which[known]].offset;
   }
   if (known == which.size()) return;
-  evaluate_parts(t, x, parts_of(which));
+  evaluate_parts(t, x, mode_.parts_of(which));
   for (std::size_t k = known; k < which.size(); ++k) values[k] = value(which[k], x);
 }
 
@@ -224,10 +197,11 @@ void EventSearch::sample(const ode::DenseStep& step, double from, double to, con
     const double theta = node_theta(from, to, node);
     const double t = step.t + theta * step.h;
     step.evaluate(theta, x_.data());
-    evaluate_parts(t, x_.data(), curved_parts_);
-    double* samples = samples_.data() + node * functions_.size();
+    evaluate_parts(t, x_.data(), mode_.curved_parts);
+    double* samples = samples_.data() + node * mode_.functions.size();
     for (const std::size_t i : which) {
-      samples[i] = forms_.has(i) ? forms_.value(i, t, x_.data()) - functions_[i].offset : value(i, x_.data());
+      samples[i] =
+          mode_.forms.has(i) ? mode_.forms.value(i, t, x_.data()) - mode_.functions[i].offset : value(i, x_.data());
     }
   }
 }
@@ -239,44 +213,39 @@ double EventSearch::node_theta(double from, double to, std::size_t node) const {
 /// Whether the samples at every second node show that a curved function stays far from zero.
 bool EventSearch::is_far(std::size_t i) const {
   // NOTE: a dense output of degree 7 dips between five nodes (the relay loses events at loose tolerances).
-  if (!prefilter_[i] || functions_[i].sign == 0 || functions_[i].zero_order != 0) return false;
-  const auto value = [&](std::size_t node) { return samples_[node * functions_.size() + i]; };
-  return stays_far({value(0), value(2), value(4), value(6), value(8)}, functions_[i].sign);
+  if (!mode_.prefilter[i] || mode_.functions[i].sign == 0 || mode_.functions[i].zero_order != 0) return false;
+  const auto value = [&](std::size_t node) { return samples_[node * mode_.functions.size() + i]; };
+  return stays_far({value(0), value(2), value(4), value(6), value(8)}, mode_.functions[i].sign);
 }
 
 /// Whether what is special about the start of the step are zeros only that are left at once.
 bool EventSearch::specials_leave(const ode::Stepper& stepper) {
   if (special_.empty()) return true;
-  if (!stepper.mean_slopes(low_.data(), high_.data())) return false;
-  const StepBounds slopes{0.0, 0.0, low_.data(), high_.data()};
+  if (!stepper.mean_slopes(range_.low.data(), range_.high.data())) return false;
+  const StepBounds slopes{0.0, 0.0, range_.low.data(), range_.high.data()};
   return std::all_of(special_.begin(), special_.end(), [&](std::size_t i) {
-    return functions_[i].sign != 0 && forms_.has(i) && forms_.leaves(i, functions_[i].sign, slopes);
+    return mode_.functions[i].sign != 0 && mode_.forms.has(i) && mode_.forms.leaves(i, mode_.functions[i].sign, slopes);
   });
 }
 
 bool EventSearch::may_vanish(const ode::Stepper& stepper) {
-  bounds_known_ = false;
-  if (functions_.empty()) return false;
-  if (!curved_.empty() || !specials_leave(stepper)) return true;
-  if (!stepper.bounds(low_.data(), high_.data())) return true;
-  bounds_ = {stepper.start_time(), stepper.start_time() + stepper.length(), low_.data(), high_.data()};
-  // What DenseStep::bounds says, bit for bit; of dop853 they are others.
-  bounds_known_ = stepper.method() == ode::Method::taylor || stepper.method() == ode::Method::dopri5;
-  return forms_.may_vanish(bounds_);
+  range_.known = false;
+  if (mode_.functions.empty()) return false;
+  if (!mode_.curved.empty() || !specials_leave(stepper)) return true;
+  return !range_.read(stepper) || mode_.forms.may_vanish(range_.bounds);
 }
 
 /// The functions that the exact search has to look at.
 void EventSearch::find_suspects(const ode::DenseStep& step) {
   suspects_.clear();
-  bounds_ = {step.t, step.t + step.h, low_.data(), high_.data()};
-  if (!bounds_known_) step.bounds(low_.data(), high_.data());
-  forms_.append_suspects(bounds_, suspects_);
+  range_.read(step);
+  mode_.forms.append_suspects(range_.bounds, suspects_);
   for (const std::size_t i : special_) {
-    if (forms_.has(i)) suspects_.push_back(i);
+    if (mode_.forms.has(i)) suspects_.push_back(i);
   }
-  if (!curved_.empty()) {
-    if (five_nodes_suffice_) sample(step, 0.0, 1.0, curved_, {0, 2});
-    for (const std::size_t i : curved_) {
+  if (!mode_.curved.empty()) {
+    if (five_nodes_suffice_) sample(step, 0.0, 1.0, mode_.curved, {0, 2});
+    for (const std::size_t i : mode_.curved) {
       if (!is_far(i)) suspects_.push_back(i);
     }
   }
@@ -286,35 +255,27 @@ void EventSearch::find_suspects(const ode::DenseStep& step) {
 /// The functions that the location of a hit has to look at: it retakes the step, whose end differs from the dense
 /// output by the tolerance; bounds as wide again as the step moves, or a thousand tolerances, are on the safe side.
 void EventSearch::find_candidates() {
-  for (std::size_t i = 0; i < low_.size(); ++i) {
-    const double size = std::max(std::abs(low_[i]), std::abs(high_[i]));
-    const double room = high_[i] - low_[i] + 1e3 * (tolerances_.atol + tolerances_.rtol * size);
-    wide_low_[i] = low_[i] - room;
-    wide_high_[i] = high_[i] + room;
-  }
-  const double length = bounds_.end - bounds_.begin;
-  const StepBounds wide{bounds_.begin - length, bounds_.end + length, wide_low_.data(), wide_high_.data()};
   candidates_.clear();
-  if (!curved_.empty()) candidates_ = curved_;
-  forms_.append_suspects(wide, candidates_);
+  if (!mode_.curved.empty()) candidates_ = mode_.curved;
+  mode_.forms.append_suspects(range_.widened(tolerances_), candidates_);
   for (const std::size_t i : special_) {
-    if (forms_.has(i)) candidates_.push_back(i);
+    if (mode_.forms.has(i)) candidates_.push_back(i);
   }
   if (candidates_.size() > 1) std::sort(candidates_.begin(), candidates_.end());
 }
 
 SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
-  if (functions_.empty()) return SearchOutcome::none;
+  if (mode_.functions.empty()) return SearchOutcome::none;
   find_suspects(step);
   if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
-  if (suspects_.size() == 1 && is_threshold(suspects_.front())) {  // the usual event
+  if (suspects_.size() == 1 && mode_.is_threshold(suspects_.front())) {  // the usual event
     set_noise(suspects_.front(), x_.data());
   } else {
     rescale(step.t, x_.data(), suspects_);
     sampled_.clear();
     for (const std::size_t i : suspects_) {
-      if (!forms_.has(i)) sampled_.push_back(i);
+      if (!mode_.forms.has(i)) sampled_.push_back(i);
     }
     // Those between the ones that find_suspects has sampled.
     const Nodes rest = five_nodes_suffice_ ? Nodes{1, 2} : Nodes{0, 1};
@@ -322,7 +283,7 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
   }
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
   if (outcome == SearchOutcome::hit) {
-    if (suspects_.size() == functions_.size()) {  // all of them, whatever the bounds
+    if (suspects_.size() == mode_.functions.size()) {  // all of them, whatever the bounds
       candidates_ = suspects_;
       return outcome;
     }
@@ -343,7 +304,7 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
     const double theta = from + (to - from) * local;
     step.evaluate(theta, x_.data());
     const double t = step.t + theta * step.h;
-    evaluate_parts(t, x_.data(), curved_parts_);
+    evaluate_parts(t, x_.data(), mode_.curved_parts);
     if (!(std::abs(value(i, x_.data()) - ode::evaluate(coefficients, local)) <= accuracy)) return true;
   }
   return false;
@@ -351,18 +312,18 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
 
 /// The first sign change of an affine function along the whole step, from the polynomials of the states.
 EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::size_t i) const {
-  const auto& function = functions_[i];
+  const auto& function = mode_.functions[i];
   // The form has other roundings than the function, whose own terms may be smaller.
-  const double rounding = std::max(noise_[i], 8.0 * rounding_unit * forms_.terms(i, bounds_));
+  const double rounding = std::max(levels_.noise[i], 8.0 * rounding_unit * mode_.forms.terms(i, range_.bounds));
   if (function.sign != 0) {
-    auto along = forms_.nested_along(i, step);
+    auto along = mode_.forms.nested_along(i, step);
     along.c[0] -= function.offset;
     along.end -= function.offset;
     const auto zero = ode::plain_zero(along, function.sign, function.zero_order, rounding);
     if (zero.kind == ode::PlainZero::Kind::none) return {};
     if (zero.kind == ode::PlainZero::Kind::one) return {true, Hit{i, zero.theta, zero.slope / step.h, function.sign}};
   }
-  auto coefficients = forms_.along(i, step);
+  auto coefficients = mode_.forms.along(i, step);
   if (function.offset != 0.0) {
     for (double& b : coefficients) b -= function.offset;
   }
@@ -384,26 +345,26 @@ EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::si
 
 /// The first sign change of one function between two nodes' ends, from the samples or, along the whole step, its form.
 EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, double to, std::size_t i) {
-  if (step.is_series() && forms_.has(i)) return find_in_series(step, from, to, i);
-  if (forms_.has(i) && from == 0.0 && to == 1.0) return find_along(step, i);
-  const auto& function = functions_[i];
+  if (step.is_series() && mode_.forms.has(i)) return find_in_series(step, from, to, i);
+  if (mode_.forms.has(i) && from == 0.0 && to == 1.0) return find_along(step, i);
+  const auto& function = mode_.functions[i];
   std::array<double, ode::event_nodes> values;
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * functions_.size() + i];
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * mode_.functions.size() + i];
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
     return not_finite(function, values.front());
   }
   const auto coefficients = ode::to_bernstein(values);
-  const int sign = function.sign == 0 ? sign_behind_zero(values, noise_[i]) : function.sign;
+  const int sign = function.sign == 0 ? sign_behind_zero(values, levels_.noise[i]) : function.sign;
   if (sign == 0) return {};
   double size = 0.0;
   for (const double b : coefficients) size = std::max(size, std::abs(b));
-  if (!forms_.has(i)) {
+  if (!mode_.forms.has(i)) {
     const bool is_exit = !uses_phi(function);
     // Where the interpolant stays away from zero it need not be better than that distance; functions of time only, or
     // with a vanishing gradient, have no other measure than their own size.
     double margin = std::numeric_limits<double>::max();
     for (const double b : coefficients) margin = std::min(margin, sign * b);
-    const double wanted = std::max({accuracy_[i], 0.125 * margin, 0.1 * tolerances_.rtol * size});
+    const double wanted = std::max({levels_.accuracy[i], 0.125 * margin, 0.1 * tolerances_.rtol * size});
     const double tail = chebyshev_tail(values);
     const bool known_zero = from == 0.0 && (function.zero_order > 0 || function.offset != 0.0);
     const bool passes = tail > wanted && is_exit && !known_zero && passes_once(coefficients, sign, tail, size);
@@ -411,8 +372,8 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
       return {false, {}};
     }
   }
-  double noise = std::max(noise_[i], 8.0 * rounding_unit * size);
-  if (forms_.has(i)) noise = std::max(noise, 8.0 * rounding_unit * forms_.terms(i, bounds_));
+  double noise = std::max(levels_.noise[i], 8.0 * rounding_unit * size);
+  if (mode_.forms.has(i)) noise = std::max(noise, 8.0 * rounding_unit * mode_.forms.terms(i, range_.bounds));
   const auto change = ode::first_sign_change(coefficients, sign, from == 0.0 ? function.zero_order : 0, noise);
   if (!change) return {};
   const double local = 0.5 * (change->lower + change->upper);

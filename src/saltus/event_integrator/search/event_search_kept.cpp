@@ -6,49 +6,33 @@
 
 namespace saltus::event_integrator {
 
-void EventSearch::exchange(Kept& kept) {
-  std::swap(state_.mode, kept.state.mode);
-  std::swap(state_.alpha, kept.state.alpha);
-  std::swap(state_.sliding, kept.state.sliding);
-  functions_.swap(kept.functions);
-  exits_.swap(kept.exits);
-  forms_.swap(kept.forms);
-  curved_.swap(kept.curved);
-  of_surface_.swap(kept.of_surface);
-  std::swap(curved_parts_, kept.curved_parts);
-  std::swap(first_exit_, kept.first_exit);
-  std::swap(users_, kept.users);
-  std::swap(users_end_, kept.users_end);
-  std::swap(flips_, kept.flips);
-  prefilter_.swap(kept.prefilter);
+ModeFunctions* KeptModes::find(const std::vector<int>& sliding) {
+  const auto known =
+      std::find_if(modes_.begin(), modes_.end(), [&](const auto& mode) { return mode.state.sliding == sliding; });
+  return known == modes_.end() ? nullptr : &*known;
 }
 
-/// A copy of the functions of this mode.
-void EventSearch::keep() {
+void KeptModes::keep(const ModeFunctions& mode) {
   constexpr std::size_t many = 8;
-  Kept kept{state_,        functions_,  exits_, forms_,     curved_, of_surface_,
-            curved_parts_, first_exit_, users_, users_end_, flips_,  prefilter_};
-  if (kept_.size() < many) {
-    kept_.push_back(std::move(kept));
+  if (modes_.size() < many) {
+    modes_.push_back(mode);
   } else {
-    kept_[next_kept_] = std::move(kept);
-    next_kept_ = (next_kept_ + 1) % many;
+    modes_[next_] = mode;
+    next_ = (next_ + 1) % many;
   }
 }
 
 void EventSearch::enter_again(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
-  if (state.sliding != state_.sliding && flips_ && !state_.higher) {
-    forget_specials();
+  if (state.sliding != mode_.state.sliding && mode_.flips && !mode_.state.higher) {
+    mode_.forget_zeros(special_);
     special_.clear();
-    const auto known =
-        std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.state.sliding == state.sliding; });
-    if (known == kept_.end()) {
-      keep();
-    } else {
-      exchange(*known);
-      const std::size_t count = functions_.size();
-      for (auto* values : {&noise_, &accuracy_, &point_}) values->resize(std::max(values->size(), count));
+    if (auto* known = kept_.find(state.sliding)) {
+      std::swap(mode_, *known);
+      const std::size_t count = mode_.functions.size();
+      for (auto* values : {&levels_.noise, &levels_.accuracy, &point_}) values->resize(std::max(values->size(), count));
       samples_.resize(std::max(samples_.size(), count * ode::event_nodes));
+    } else {
+      kept_.keep(mode_);
     }
   }
   enter(state, zero_order, t, x);

@@ -10,23 +10,23 @@ namespace saltus::event_integrator {
 
 /// Sets up the nested functions of a mode, in each of their regions.
 void EventSearch::enter_nested(const ModeState& state, const std::vector<int>& zero_order) {
-  corners_.clear();
+  values_.corners.clear();
   if (!any_nesting_ || state.sliding.empty()) return;
   const bool single = state.sliding.size() == 1;
   const auto add = [&](std::vector<double> alpha) {
-    corners_.push_back({std::move(alpha), std::vector<double>(at(kernel_.event_functions())), {}});
+    values_.corners.push_back({std::move(alpha), std::vector<double>(at(kernel_.event_functions())), {}});
   };
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     if (state.mode[at(j)] == 0 || !nesting_[at(j)] || sliding_inside(kernel_, state, j).empty()) continue;
-    const bool known = single && !corners_.empty();
-    const std::size_t first = known ? 0 : corners_.size();
+    const bool known = single && !values_.corners.empty();
+    const std::size_t first = known ? 0 : values_.corners.size();
     if (!known) {
       for (auto& alpha : corners_inside(kernel_, state, j)) add(std::move(alpha));
     }
-    for (std::size_t corner = first; corner < corners_.size(); ++corner) {
+    for (std::size_t corner = first; corner < values_.corners.size(); ++corner) {
       // Of several surfaces all regions have the sign of the mode, or there is no such mode.
-      const int sign = !single ? state.mode[at(j)] : corners_[corner].alpha[at(j)] > 0.5 ? 1 : -1;
-      functions_.push_back({FunctionKind::nested, j, static_cast<int>(corner), sign, zero_order[at(j)]});
+      const int sign = !single ? state.mode[at(j)] : values_.corners[corner].alpha[at(j)] > 0.5 ? 1 : -1;
+      mode_.functions.push_back({FunctionKind::nested, j, static_cast<int>(corner), sign, zero_order[at(j)]});
     }
   }
 }

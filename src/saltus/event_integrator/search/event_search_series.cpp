@@ -9,8 +9,8 @@ namespace saltus::event_integrator {
 /// Needs no samples: the polynomial is cut where the search does.
 EventSearch::Finding EventSearch::find_in_series(const ode::DenseStep& step, double from, double to,
                                                  std::size_t i) const {
-  const auto& function = functions_[i];
-  auto along = forms_.along_series(i, step);
+  const auto& function = mode_.functions[i];
+  auto along = mode_.forms.along_series(i, step);
   along.subtract(function.offset);
   const auto is_number = [](double b) { return std::isfinite(b); };
   if (!std::all_of(along.coefficients.begin(), along.coefficients.end(), is_number)) {
@@ -19,7 +19,7 @@ EventSearch::Finding EventSearch::find_in_series(const ode::DenseStep& step, dou
   const bool whole = from == 0.0 && to == 1.0;
   const auto coefficients = whole ? along.coefficients : ode::part_of(along.coefficients, from, to);
   // The function's own roundings, and those of its polynomial.
-  const double noise = std::max(noise_[i], along.rounding);
+  const double noise = std::max(levels_.noise[i], along.rounding);
   const int sign = function.sign != 0 ? function.sign : sign_behind_zero(coefficients, noise);
   if (sign == 0) return {};
   const int zero_order = from == 0.0 ? function.zero_order : 0;

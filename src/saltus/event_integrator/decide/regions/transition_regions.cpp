@@ -106,6 +106,20 @@ void Decider::cross_beside(int surface) {
   take({surface}, {-mode}, {mode > 0 ? 0.0 : 1.0});
 }
 
+namespace {
+
+/// Of so many regions all sets are looked at.
+constexpr std::size_t most_meeting = 12;
+
+std::vector<int> with_reference(const ModeState& before, const evaluation::RegionRange& range,
+                                const std::vector<int>& regions) {
+  std::vector<int> all{reference_of(before, range)};
+  all.insert(all.end(), regions.begin(), regions.end());
+  return all;
+}
+
+}  // namespace
+
 bool Decider::decide_regions(const std::vector<int>& group) {
   const auto& groups = s_.kernel.region_groups();
   const auto range = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
@@ -116,36 +130,38 @@ bool Decider::decide_regions(const std::vector<int>& group) {
   const auto passed = std::stable_partition(others.begin(), others.end(), [&](int j) { return !passes(j); });
   for (auto j = passed; j != others.end(); ++j) cross_beside(*j);
   others.erase(passed, others.end());
-  constexpr std::size_t most = 12;
-  if (!others.empty() || regions.size() >= most || !s_.affine_in_alpha) {
-    const auto is_felt = [&, nested = nested_away_from_zero(s_.kernel, occasion_)](int j) {
-      return std::any_of(regions.begin(), regions.end(), [&](int i) { return feels(s_.kernel, nested, i, j); });
-    };
-    if (!others.empty() && std::none_of(others.begin(), others.end(), is_felt)) {
-      auto parts = groups_of(s_.kernel, occasion_, others);
-      parts.insert(parts.begin(), regions);
-      return decide_parts(parts);
-    }
-    const bool on_one = others.size() == 1 && regions.size() < most && s_.affine_in_alpha &&
-                        s_.system.switching[at(others[0])].role == model::SwitchingRole::listed;
-    if (on_one) {
-      std::vector<int> candidates{reference_of(before_, *range)};
-      candidates.insert(candidates.end(), regions.begin(), regions.end());
-      return decide_regions_on(others[0], *range, std::move(candidates));
-    }
-    return fail(
-        result::Termination::outside_class,
-        fmt::format("at t = {} three or more regions by `indicator` meet on several other surfaces that influence "
-                    "them ({}), or more than {} regions meet: that decision is not available; perturb a "
-                    "parameter",
-                    occasion_.t, names(s_.system, group), most));
+  const bool too_many = regions.size() >= most_meeting || !s_.affine_in_alpha;
+  if (!others.empty() || too_many) return decide_regions_with(others, *range, regions, group);
+  return decide_regions_alone(meeting_of(with_reference(before_, *range, regions)), *range);
+}
+
+/// Regions that meet on other surfaces, too, or more than can be decided.
+bool Decider::decide_regions_with(const std::vector<int>& others, const evaluation::RegionRange& range,
+                                  const std::vector<int>& regions, const std::vector<int>& group) {
+  const auto is_felt = [&, nested = nested_away_from_zero(s_.kernel, occasion_)](int j) {
+    return std::any_of(regions.begin(), regions.end(), [&](int i) { return feels(s_.kernel, nested, i, j); });
+  };
+  if (!others.empty() && std::none_of(others.begin(), others.end(), is_felt)) {
+    auto parts = groups_of(s_.kernel, occasion_, others);
+    parts.insert(parts.begin(), regions);
+    return decide_parts(parts);
   }
-  std::vector<int> meeting_regions{reference_of(before_, *range)};
-  meeting_regions.insert(meeting_regions.end(), regions.begin(), regions.end());
-  const auto meeting = meeting_of(std::move(meeting_regions));
+  const bool on_one = others.size() == 1 && regions.size() < most_meeting && s_.affine_in_alpha &&
+                      s_.system.switching[at(others[0])].role == model::SwitchingRole::listed;
+  if (on_one) return decide_regions_on(others[0], range, with_reference(before_, range, regions));
+  return fail(
+      result::Termination::outside_class,
+      fmt::format("at t = {} three or more regions by `indicator` meet on several other surfaces that influence "
+                  "them ({}), or more than {} regions meet: that decision is not available; perturb a "
+                  "parameter",
+                  occasion_.t, names(s_.system, group), most_meeting));
+}
+
+/// Regions that meet, and no other surface: one of the sets that continue the solution.
+bool Decider::decide_regions_alone(const MeetingRegions& meeting, const evaluation::RegionRange& range) {
   const auto& candidates = meeting.candidates;
   const auto sets = sets_that_go_on(meeting);
-  if (sets.empty() && spiral_out(meeting, *range)) return true;
+  if (sets.empty() && spiral_out(meeting, range)) return true;
   if (sets.empty() && meeting.basis && switching::can_be_held(tie_at(meeting, occasion_.t, occasion_.x))) {
     return fail(result::Termination::outside_class,
                 fmt::format("the regions {} meet at t = {}: some weights keep their indicators equal, but those that "
@@ -157,18 +173,8 @@ bool Decider::decide_regions(const std::vector<int>& group) {
                 fmt::format("the regions {} meet at t = {}, and no set of them continues the solution",
                             names(s_.system, candidates), occasion_.t));
   }
-  std::vector<int> before;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const auto j = candidates[k];
-    if (!occasion_.start && before_.mode[at(j)] == 0) before.push_back(static_cast<int>(k));
-  }
-  // Sets whose weights are not determined by linear equations have several of them: no jump to others where one ends.
-  std::vector<double> weights;
-  for (const int j : candidates) {
-    if (meeting.basis && !occasion_.start) weights.push_back(before_.alpha[at(j)]);
-  }
-  const auto best = switching::preferred_region_set(sets, before, weights);
-  RegionChoice choice{*range, {active_of(candidates, sets[best])}, {}};
+  const auto best = preferred_set(meeting, sets);
+  RegionChoice choice{range, {active_of(candidates, sets[best])}, {}};
   std::vector<int> active;
   for (const auto& region : choice.sets.front()) active.push_back(region.region);
   const bool one_way = !meeting.basis || moves_in_one_way(meeting, sets[best]);
@@ -182,6 +188,22 @@ bool Decider::decide_regions(const std::vector<int>& group) {
   group_reasons_.push_back(choice.reason);
   region_choices_.push_back(std::move(choice));
   return true;
+}
+
+/// The position of the set that goes on with the most of what was before.
+std::size_t Decider::preferred_set(const MeetingRegions& meeting, const std::vector<switching::RegionSet>& sets) const {
+  const auto& candidates = meeting.candidates;
+  std::vector<int> before;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const auto j = candidates[k];
+    if (!occasion_.start && before_.mode[at(j)] == 0) before.push_back(static_cast<int>(k));
+  }
+  // Sets whose weights are not determined by linear equations have several of them: no jump to others where one ends.
+  std::vector<double> weights;
+  for (const int j : candidates) {
+    if (meeting.basis && !occasion_.start) weights.push_back(before_.alpha[at(j)]);
+  }
+  return switching::preferred_region_set(sets, before, weights);
 }
 
 void Decider::apply_regions() {

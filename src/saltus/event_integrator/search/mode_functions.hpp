@@ -1,0 +1,90 @@
+// The event functions of a mode: what they are, with which sign, and in which form.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "saltus/event_integrator/field/mode_field.hpp"
+#include "saltus/event_integrator/mode/mode_state.hpp"
+#include "saltus/event_integrator/search/affine_forms.hpp"
+
+namespace saltus::event_integrator {
+
+enum class FunctionKind {
+  surface,      ///< psi_j of a surface that is not in the mode
+  nested,       ///< psi_j nested around sliding surfaces, in one of the regions that meet there
+  exit_below,   ///< the lower field of a sliding surface stops arriving: alpha = 0
+  exit_above,   ///< … the upper one: alpha = 1
+  loss,         ///< the sliding selection ceases to exist: its root and another one coalesce
+  instability,  ///< the sliding selections of coupled surfaces lose their stability, (4.12) of [guglielmi2022]
+  user,         ///< expression or guard of [[events]], guard of [[jumps]]
+  release,      ///< what presses a held guard of [[jumps]]
+  cell_upper,   ///< argument of floor, a table or a sampled input less the upper end of its cell
+  cell_lower,   ///< … less the lower end
+};
+
+struct EventFunction {
+  FunctionKind kind = FunctionKind::surface;
+  int index = 0;  ///< event function of the kernel; the surface for exits
+  int row = 0;   ///< exits: position in the sliding set; releases: in the list of held guards; ends of cells: the cell;
+                 ///< nested functions: their region
+  int sign = 1;  ///< while the mode lasts; 0 = not known yet (user functions that start at zero)
+  int zero_order = 0;   ///< of the zero at the start of the next step (left behind by an event), 0 = none
+  double offset = 0.0;  ///< value left at that zero by rounding; subtracted until the function has moved away
+
+  /// Whether a value, less the offset, is far enough from that zero not to be mistaken for it.
+  [[nodiscard]] bool has_left(double value) const { return sign * value > 2.0 * std::abs(offset); }
+};
+
+/// What values of some functions are made of: event functions of the kernel, in the regions of nested ones, exits,
+/// and what presses held guards. The others are thresholds.
+struct FunctionParts {
+  bool phi = false;
+  bool nested = false;
+  bool exits = false;
+  bool pressure = false;
+};
+
+/// The functions of one mode; a later one with the same sliding set can use them.
+struct ModeFunctions {
+  explicit ModeFunctions(std::size_t states) : forms(states) {}
+
+  ModeState state;
+  std::vector<EventFunction> functions;
+  std::vector<ExitValues> exits;
+  AffineForms forms;
+  std::vector<std::size_t> curved;  ///< functions without an affine form
+  FunctionParts curved_parts;
+  std::vector<std::size_t> of_surface;  ///< n_psi: function of a surface outside the mode
+  std::size_t first_exit = 0;           ///< where the exits of sliding surfaces begin in `functions`
+  std::size_t users = 0;                ///< the user functions among them, and their end
+  std::size_t users_end = 0;
+  bool flips = false;           ///< surfaces and plain exits only: crossings change little
+  std::vector<bool> prefilter;  ///< five samples may show that the function stays away from zero
+
+  /// Whether a form of one state stands for function i wherever it is evaluated.
+  [[nodiscard]] bool is_threshold(std::size_t i) const {
+    const auto kind = functions[i].kind;
+    return (kind == FunctionKind::surface || kind == FunctionKind::user) && forms.is_threshold(i);
+  }
+  [[nodiscard]] FunctionParts parts_of(const std::vector<std::size_t>& which) const;
+  [[nodiscard]] std::size_t exit_function(std::size_t row) const { return first_exit + 2 * row; }
+  void forget_zeros(const std::vector<std::size_t>& special);
+  void turn(std::size_t surface, const ModeState& next, int zero_order);
+};
+
+/// The last modes, with different sliding sets.
+class KeptModes {
+ public:
+  /// The one with this sliding set; nullptr where it is not kept.
+  [[nodiscard]] ModeFunctions* find(const std::vector<int>& sliding);
+  /// A copy of a mode, in place of the oldest where there are many.
+  void keep(const ModeFunctions& mode);
+
+ private:
+  std::vector<ModeFunctions> modes_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,74 @@
+// What the event search knows about its functions beside the mode: values, levels, signs of user functions, bounds of
+// the states.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/jumps/holding.hpp"
+#include "saltus/event_integrator/search/affine_forms.hpp"
+#include "saltus/ode/stepper.hpp"
+
+namespace saltus::event_integrator {
+
+/// Signs of user functions, kept over changes of mode.
+struct UserSigns {
+  std::vector<int> sign;           ///< 0 where not known yet
+  std::vector<bool> vanishes;      ///< at the start of the next step
+  std::vector<int> order;          ///< of those zeros; all 1 if it is empty
+  std::optional<double> zeros_at;  ///< time of that start; nullopt: that of the next mode
+
+  void forget_zeros() { vanishes.assign(vanishes.size(), false); }
+  void put_at_zero(std::size_t user, int side);
+  int read(std::size_t user, double value, double noise);
+};
+
+/// Guards of jumps that are held, and what presses them.
+struct HeldGuards {
+  std::vector<HeldGuard> guards, followers;
+  std::vector<double> pressure;
+
+  [[nodiscard]] bool nothing() const { return guards.empty() && followers.empty(); }
+  [[nodiscard]] bool holds(int function) const;
+};
+
+/// One of the regions that meet at the sliding surfaces inside nested functions.
+struct NestedCorner {
+  std::vector<double> alpha;  ///< its selections
+  std::vector<double> phi;
+  evaluation::AffineRows rows;
+};
+
+/// Values and scales of all functions of the kernel, and their values in the regions of nested ones.
+struct KernelValues {
+  std::vector<double> phi, magnitude, slope;
+  std::vector<NestedCorner> corners;  ///< of the mode
+};
+
+/// By function: its rounding, and what the tolerances leave of it, which is at least that.
+struct FunctionLevels {
+  std::vector<double> noise, accuracy;
+
+  void reset(std::size_t functions);
+  /// Levels that are not finite are 0.
+  void set(std::size_t function, double rounding, double wanted);
+};
+
+/// Bounds of the states over a step.
+struct StepRange {
+  std::vector<double> low, high;
+  std::vector<double> wide_low, wide_high;  ///< around it
+  StepBounds bounds;
+  bool known = false;  ///< `bounds` are those of the dense output, before that is made
+
+  void resize(std::size_t states);
+  /// Of the last attempt; false where there are none.
+  [[nodiscard]] bool read(const ode::Stepper& stepper);
+  void read(const ode::DenseStep& step);
+  /// As wide again as the step moves, or a thousand tolerances; valid until the next call.
+  [[nodiscard]] StepBounds widened(const ode::Tolerances& tolerances);
+};
+
+}  // namespace saltus::event_integrator
