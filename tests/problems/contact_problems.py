@@ -58,6 +58,7 @@ class ContactProblem:
         if self.at_start:
             after = x[: len(x) // 2] + self.impact(x, self.at_start, pushed=self.at_start[0])
             events.append(self.event(t, "impact", self.at_start, x, after))
+            events[-1]["mode_before"] = None  # as of a start
             x = after
         for phase, following in with_following(self.phases()):
             t, x, found = self.advance(phase, t, x, until, degree)
@@ -404,30 +405,6 @@ def hopper():
                           lambda: iter([Phase({"foot": "closed"})]))
 
 
-def between(name, i, j, sum_of_radii):
-    """Two discs with the positions 2i, 2i + 1 and 2j, 2j + 1."""
-    def row(q):
-        result = [mpf(0)] * len(q)
-        for k in (0, 1):
-            d = (q[2 * i + k] - q[2 * j + k]) * 2
-            result[2 * i + k], result[2 * j + k] = d, -d
-        return result
-
-    def square(a):
-        return a * a
-
-    return Contact(name, lambda q: square(q[2 * i] - q[2 * j]) + square(q[2 * i + 1] - q[2 * j + 1]) - square(sum_of_radii()), row,
-                   lambda q, v: (square(v[2 * i] - v[2 * j]) + square(v[2 * i + 1] - v[2 * j + 1])) * 2)
-
-
-def disc_exchange():
-    discs = between("discs", 0, 1, number("0.5"))
-    force = lambda q, v: [10 - 2 * v[0], -2 * v[1], -2 * v[2], -2 * v[3]]
-    return ContactProblem("disc-exchange", number("2"), lambda: [-2, 0, -1, mpf("0.1"), 4, 0, 0, 0], lambda: [2, 2, 1, 1], force,
-                          [discs], lambda: iter([Phase({}, ("gap", "discs")), Phase({"discs": "closed"}, ("force", "discs")),
-                                                 Phase({})]))
-
-
 def problems():
     yield from elastic_balls()
     yield spring_balls()
@@ -439,4 +416,3 @@ def problems():
     yield ball_in_box()
     yield landing_ball()
     yield hopper()
-    yield disc_exchange()
