@@ -270,7 +270,10 @@ TEST(Branches, StopWhereTheUserStops) {
 }
 
 TEST(Observers, SeeTheState) {
-  auto b = repeated({1, 2});
+  Builder b("friction");
+  const SX x = b.state("x", {0}), v = b.state("v", {1});
+  b.dynamics("x", v);
+  b.dynamics("v", -x - 0.5 * b.sign(v));
   for (const auto method : {Method::event, Method::fesd}) {
     SimulateOptions options = until(0.5, 1);
     options.method = method;
