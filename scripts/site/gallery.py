@@ -71,6 +71,19 @@ def equations(data):
         lines.append(f"when {jump.get('when', jump.get('every', jump.get('at')))}: {sets}")
     for relay in data.get("hysteresis", []):
         lines.append(f"{relay['name']}: on at {relay['input']} = {relay['on']}, off at {relay['off']}")
+    return lines + bodies(data)
+
+
+def bodies(data):
+    """Mass matrix, forces and contacts as lines of text."""
+    mechanics = data.get("mechanics", {})
+    lines = [f"M = {mechanics['mass']}"] if "mass" in mechanics else []
+    if "potential" in mechanics:
+        lines.append(f"potential {mechanics['potential']}")
+    lines += [f"force on {name}: {value}" for name, value in mechanics.get("force", {}).items()]
+    for contact in data.get("contacts", []):
+        more = "".join(f", {key} {contact[key]}" for key in ("friction", "restitution") if key in contact)
+        lines.append(f"contact {contact['name']}: {contact['gap']} >= 0{more}")
     return lines
 
 
