@@ -35,12 +35,13 @@ def card(r: Result) -> str:
 
 def model_card(model: Model) -> str:
     """Equations in LaTeX, which a notebook typesets, initial values and parameters."""
+    equations = model.equations(latex=True)
     rows = "".join(
         f"<tr><td style='text-align:right'>${left}$</td><td style='text-align:left'>$= {html.escape(right)}$</td>"
         f"<td style='text-align:left;opacity:0.7'>{html.escape(where)}</td></tr>"
-        for left, right, where in model.equations(latex=True)[:MOST_EQUATIONS]
+        for left, right, where in equations[:MOST_EQUATIONS]
     )
-    more = len(model.equations()) - MOST_EQUATIONS
+    more = len(equations) - MOST_EQUATIONS
     rest = f"<div>and {more} more equations</div>" if more > 0 else ""
     described = f" &nbsp; {html.escape(model.description)}" if model.description else ""
     return (

@@ -56,35 +56,9 @@ def words(expression):
     return "".join(c if c.isalnum() or c == "_" else " " for c in expression).split()
 
 
-def equations(data):
+def equations(model):
     """The equations as lines of text."""
-    lines = [f"{name}' = {value}" for name, value in data.get("dynamics", {}).items()]
-    for mode in data.get("modes", []):
-        when = mode.get("when") or f"smallest: {mode.get('indicator')}"
-        lines += [f"{when}:"] + [f"    {name}' = {value}" for name, value in mode.get("dynamics", {}).items()]
-    for name, value in data.get("definitions", {}).items():
-        lines.append(f"{name} = {value}")
-    for name, value in data.get("switching", {}).items():
-        lines.append(f"surface {name}: {value} = 0")
-    for jump in data.get("jumps", []):
-        sets = ", ".join(f"{name} := {value}" for name, value in jump.get("set", {}).items())
-        lines.append(f"when {jump.get('when', jump.get('every', jump.get('at')))}: {sets}")
-    for relay in data.get("hysteresis", []):
-        lines.append(f"{relay['name']}: on at {relay['input']} = {relay['on']}, off at {relay['off']}")
-    return lines + bodies(data)
-
-
-def bodies(data):
-    """Mass matrix, forces and contacts as lines of text."""
-    mechanics = data.get("mechanics", {})
-    lines = [f"M = {mechanics['mass']}"] if "mass" in mechanics else []
-    if "potential" in mechanics:
-        lines.append(f"potential {mechanics['potential']}")
-    lines += [f"force on {name}: {value}" for name, value in mechanics.get("force", {}).items()]
-    for contact in data.get("contacts", []):
-        more = "".join(f", {key} {contact[key]}" for key in ("friction", "restitution") if key in contact)
-        lines.append(f"contact {contact['name']}: {contact['gap']} >= 0{more}")
-    return lines
+    return [f"{left} = {right}" + (f"   ({where})" if where else "") for left, right, where in model.equations()]
 
 
 def run(name):
@@ -109,11 +83,11 @@ def picture(result, path):
     pyplot.close(figure)
 
 
-def page(name, model, data, result, tags, seconds):
+def page(name, model, result, tags, seconds):
     text = Path(model.path).read_text()
     command = "optimize" if result.optimization else "simulate"
     rows = [f"# {name}", "", model.description.capitalize() + ".", "", f"![states of {name} over time]({name}.svg)", "",
-            f"*{' · '.join(tags)}*", "", "```text", *equations(data), "```", "",
+            f"*{' · '.join(tags)}*", "", "```text", *equations(model), "```", "",
             f"`saltus {command} {name}` ends with `{result.status}` at t = {result.status.time_reached:.6g}, "
             f"{len(result.events)} events. It took {seconds:.2g} s here.", "", "## The file", "", "```toml", text.rstrip(), "```", ""]
     return "\n".join(rows)
@@ -141,7 +115,7 @@ def main(folder):
         for name, (model, data, result, seconds) in zip(names, pool.map(run, names)):
             picture(result, folder / f"{name}.svg")
             tags = tags_of(Path(model.path).read_text(), data, result)
-            (folder / f"{name}.md").write_text(page(name, model, data, result, tags, seconds))
+            (folder / f"{name}.md").write_text(page(name, model, result, tags, seconds))
             cards.append((name, model.description, tags))
             for tag in tags:
                 counts[tag] = counts.get(tag, 0) + 1

@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 from sizes import SIZE_CHECKS
+from sources import lines_of
 
 ALWAYS_ALLOWED = {"base", "linalg"}
 SOURCE_SUFFIXES = {".cpp", ".hpp", ".h", ".py", ".sh", ".cmake", ".js", ".css"}
@@ -29,10 +30,6 @@ def all_files(root):
 
 def source_files(root):
     return [path for path in all_files(root) if path.suffix in SOURCE_SUFFIXES or path.name == "CMakeLists.txt"]
-
-
-def lines_of(path):
-    return path.read_text(encoding="utf-8", errors="replace").splitlines()
 
 
 def module_of(path, root):

@@ -5,7 +5,8 @@ The sources are formatted by clang-format, so what begins a scope is known from 
 """
 
 import re
-from pathlib import Path
+
+from sources import lines_of
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"(saltus/[^"]+)"')
 SCOPE_WORD = re.compile(r"^(namespace|class|struct|union|enum|extern|template|using|typedef|friend|static_assert)\b")
@@ -17,10 +18,6 @@ DATA_MEMBER = re.compile(r"^(?!using\b|friend\b|typedef\b|static\b|enum\b|struct
 
 def cpp_files(root):
     return sorted(path for path in (root / "src" / "saltus").rglob("*") if path.suffix in (".cpp", ".hpp"))
-
-
-def lines_of(path):
-    return path.read_text(encoding="utf-8", errors="replace").splitlines()
 
 
 def check_files_in_folder(root, table):

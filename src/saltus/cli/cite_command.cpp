@@ -40,15 +40,15 @@ std::string entry_of(std::string_view key) {
   return std::string(all.substr(begin, end + 2 - begin)) + "\n";
 }
 
-std::vector<Citation> cite_integrator(pipeline::Integrator integrator) {
+Citation cite_integrator(pipeline::Integrator integrator) {
   switch (integrator) {
     case pipeline::Integrator::dopri5:
     case pipeline::Integrator::dop853:
-      return {{"hairer1993", "the integrators dopri5 and dop853"}};
+      return {"hairer1993", "the integrators dopri5 and dop853"};
     case pipeline::Integrator::radau5:
-      return {{"hairer1996", "the integrator radau5"}};
+      return {"hairer1996", "the integrator radau5"};
     case pipeline::Integrator::taylor:
-      return {{"jorba2005", "the integrator taylor"}};
+      return {"jorba2005", "the integrator taylor"};
   }
   __builtin_unreachable();
 }
@@ -60,7 +60,7 @@ std::vector<Citation> citations_of(const ModelInput& input, const model::System&
   const bool by_elements = options.method == pipeline::Method::fesd || options.method == pipeline::Method::timestepping;
   if (options.method == pipeline::Method::event) {
     list.push_back({"guglielmi2022", "the event-driven method"});
-    for (const auto& more : cite_integrator(options.event.integrator)) list.push_back(more);
+    list.push_back(cite_integrator(options.event.integrator));
   }
   if (!system.switching.empty()) list.push_back({"filippov1988", "solutions at discontinuities"});
   if (by_elements || input.file.optimize) list.push_back({"nurkanovic2024", "finite elements with switch detection"});

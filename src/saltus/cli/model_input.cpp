@@ -101,20 +101,29 @@ std::vector<std::string> options_without_effect(const io::ModelFile& file) {
   return warnings;
 }
 
-void complete_record(const ModelInput& input, result::Result& result) {
+namespace {
+
+void complete_record_of(const ModelInput& input, const std::vector<result::StatedEquation>& equations,
+                        result::Result& result) {
   result.command_line = input.call;
   result.model.sha256 = input.file.sha256;
   result.model.file = input.file.description.file;
   result.model.text = input.file.text;
   result.model.settings = input.settings;
   result.model.captions = input.file.captions;
-  constexpr std::size_t equations_shown = 200;
-  result.model.equations = io::stated_equations(input.file.description, equations_shown);
+  result.model.equations = equations;
   if (!result.left_at) result.model.files = input.file.files;
   for (const auto& value : input.file.description.inputs) {
     result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));
   }
-  for (auto& branch : result.branches) complete_record(input, branch);
+  for (auto& branch : result.branches) complete_record_of(input, equations, branch);
+}
+
+}  // namespace
+
+void complete_record(const ModelInput& input, result::Result& result) {
+  constexpr std::size_t equations_shown = 200;
+  complete_record_of(input, io::stated_equations(input.file.description, equations_shown), result);
 }
 
 std::string command_line(const std::vector<std::string>& arguments) {

@@ -1,7 +1,9 @@
 #include "saltus/cli/text/reformulation_text.hpp"
 
 #include <algorithm>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -56,54 +58,63 @@ std::string groups_text(const Sizes& sizes) {
   return text;
 }
 
-}  // namespace
+struct FormSizes {
+  std::string_view title;
+  Expected<Sizes> sizes;
+};
 
-std::string reformulation_text(const model::System& stated) {
-  const auto& system = of_elements(stated);
-  std::string text = "\ncomplementarity systems (numbers of one stage, Table 4 of Nurkanović et al. 2024)\n";
-  std::string table, reasons;
+/// Every form of a system with its sizes, or why it has none; empty where nothing switches with the state. Lifting is
+/// a form of its own where it adds variables.
+std::vector<FormSizes> sizes_by_form(const model::System& system) {
+  std::vector<FormSizes> forms;
   for (const Row& row : rows) {
-    const auto sizes = reformulation::sizes_of(system, row.options);
-    if (!sizes) {
-      const std::string reason = fmt::format("{}; {}", sizes.error().message, sizes.error().remedy);
-      // Without any form there is one reason for all.
-      if (table.empty()) return text + fmt::format("  none: {}\n", reason);
-      reasons += fmt::format("  {}: none: {}\n", row.title, reason);
-      continue;
-    }
-    if (sizes->groups.empty()) return text + "  none: nothing switches with the state\n";
-    if (&row == &rows[1] && sizes->total.beta == 0) continue;
-    table += line(row.title, sizes->total) + groups_text(*sizes);
+    auto sizes = reformulation::sizes_of(of_elements(system), row.options);
+    if (sizes && sizes->groups.empty()) return {};
+    if (sizes && &row == &rows[1] && sizes->total.beta == 0) continue;
+    forms.push_back({row.title, std::move(sizes)});
   }
-  text += fmt::format("  {:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "form", "n_alpha", "n_theta", "n_beta", "n_alg",
-                      "n_comp", "n_eq");
-  return text + table + reasons;
+  return forms;
 }
 
-std::vector<io::OverviewForm> complementarity_forms(const model::System& stated) {
-  const auto& system = of_elements(stated);
-  if (system.switching.size() > most_reformulated) {
+std::string reason_of(const Error& error) { return fmt::format("{}; {}", error.message, error.remedy); }
+
+}  // namespace
+
+std::string reformulation_text(const model::System& system) {
+  const std::string text = "\ncomplementarity systems (numbers of one stage, Table 4 of Nurkanović et al. 2024)\n";
+  const auto forms = sizes_by_form(system);
+  if (forms.empty()) return text + "  none: nothing switches with the state\n";
+  // Without the first form there is one reason for all.
+  if (!forms.front().sizes) return text + fmt::format("  none: {}\n", reason_of(forms.front().sizes.error()));
+  std::string table, reasons;
+  for (const auto& [title, sizes] : forms) {
+    if (sizes) {
+      table += line(title, sizes->total) + groups_text(*sizes);
+    } else {
+      reasons += fmt::format("  {}: none: {}\n", title, reason_of(sizes.error()));
+    }
+  }
+  return text +
+         fmt::format("  {:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "form", "n_alpha", "n_theta", "n_beta", "n_alg",
+                     "n_comp", "n_eq") +
+         table + reasons;
+}
+
+std::vector<io::OverviewForm> complementarity_forms(const model::System& system) {
+  if (of_elements(system).switching.size() > most_reformulated) {
     return {{.name = "all", .reason = fmt::format("not made: more than {} switching functions", most_reformulated)}};
   }
   std::vector<io::OverviewForm> forms;
-  for (const Row& row : rows) {
-    io::OverviewForm form{.name = std::string(row.title)};
-    const auto sizes = reformulation::sizes_of(system, row.options);
-    if (!sizes) {
-      form.reason = fmt::format("{}; {}", sizes.error().message, sizes.error().remedy);
-    } else if (sizes->groups.empty()) {
-      return {};
-    } else {
-      const auto& total = sizes->total;
-      if (&row == &rows[1] && total.beta == 0) continue;
-      form.alpha = total.alpha;
-      form.theta = total.theta;
-      form.beta = total.beta;
-      form.algebraic = total.algebraic;
-      form.complementarities = total.complementarities;
-      form.equations = total.equations;
-    }
-    forms.push_back(std::move(form));
+  for (const auto& [title, sizes] : sizes_by_form(system)) {
+    const Counts total = sizes ? sizes->total : Counts{};
+    forms.push_back({.name = std::string(title),
+                     .reason = sizes ? "" : reason_of(sizes.error()),
+                     .alpha = total.alpha,
+                     .theta = total.theta,
+                     .beta = total.beta,
+                     .algebraic = total.algebraic,
+                     .complementarities = total.complementarities,
+                     .equations = total.equations});
   }
   return forms;
 }
