@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
+#include "saltus/expression/parser.hpp"
 #include "saltus/model/statement/discrete_states_internal.hpp"
 
 namespace saltus::model {
@@ -19,14 +20,22 @@ using expression::UnaryOperator;
 /// Values of expressions of numbers.
 class Constants {
  public:
-  explicit Constants(const Description& description) : description_(description) {}
+  explicit Constants(const Description& description) {
+    for (const auto& entry : description.definitions) expressions_.emplace(entry.name, &*entry.expression);
+  }
 
   /// Nothing for anything but numbers.
   [[nodiscard]] std::optional<double> value(const Node& node) {
+    for (const auto& name : expression::names_in(node)) work_out(name);
+    return of_known(node);
+  }
+
+ private:
+  [[nodiscard]] std::optional<double> of_known(const Node& node) const {
     if (const auto* number = std::get_if<expression::Number>(&node.value)) return number->value;
-    if (const auto* name = std::get_if<expression::Name>(&node.value)) return definition(name->name);
+    if (const auto* name = std::get_if<expression::Name>(&node.value)) return definitions_.at(name->name);
     if (const auto* unary = std::get_if<expression::Unary>(&node.value)) {
-      const auto operand = value(*unary->operand);
+      const auto operand = of_known(*unary->operand);
       if (!operand || unary->op == UnaryOperator::logical_not) return std::nullopt;
       return unary->op == UnaryOperator::minus ? -*operand : *operand;
     }
@@ -34,20 +43,31 @@ class Constants {
     return binary == nullptr ? std::nullopt : joined(*binary);
   }
 
- private:
-  [[nodiscard]] std::optional<double> definition(const std::string& name) {
-    // Nothing while it is being worked out: a cycle, which is refused elsewhere.
-    const auto [it, fresh] = definitions_.emplace(name, std::nullopt);
-    if (!fresh) return it->second;
-    for (const auto& entry : description_.definitions) {
-      if (entry.name == name) definitions_[name] = value(*entry.expression);
+  /// Works out what the definition needs before it, on a stack of its own: chains may be longer than the call stack.
+  void work_out(const std::string& name) {
+    std::vector<std::string> open = {name};
+    while (!open.empty()) {
+      const std::string current = open.back();
+      const auto stated = expressions_.find(current);
+      const bool has_expression = stated != expressions_.end();
+      // Nothing while it is being worked out: a cycle, which is refused elsewhere.
+      const auto [known, fresh] = definitions_.emplace(current, std::nullopt);
+      if (fresh && has_expression) {
+        for (const auto& need : expression::names_in(*stated->second)) {
+          if (!definitions_.contains(need)) open.push_back(need);
+        }
+        continue;
+      }
+      open.pop_back();
+      if (has_expression && worked_out_.insert(current).second) {
+        definitions_[current] = of_known(*stated->second);
+      }
     }
-    return definitions_[name];
   }
 
-  [[nodiscard]] std::optional<double> joined(const expression::Binary& binary) {
-    const auto left = value(*binary.left);
-    const auto right = left ? value(*binary.right) : std::nullopt;
+  [[nodiscard]] std::optional<double> joined(const expression::Binary& binary) const {
+    const auto left = of_known(*binary.left);
+    const auto right = left ? of_known(*binary.right) : std::nullopt;
     if (!right) return std::nullopt;
     switch (binary.op) {
       case BinaryOperator::add:
@@ -65,8 +85,9 @@ class Constants {
     }
   }
 
-  const Description& description_;
-  std::map<std::string, std::optional<double>> definitions_;
+  std::unordered_map<std::string_view, const expression::Node*> expressions_;
+  std::unordered_map<std::string, std::optional<double>> definitions_;
+  std::unordered_set<std::string> worked_out_;
 };
 
 }  // namespace
