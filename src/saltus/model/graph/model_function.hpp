@@ -1,35 +1,32 @@
-// A CasADi function with its work space, interpreted or as native code: call with raw pointers, no allocation per call.
+// A compiled function with its work space, interpreted or as native code: call with raw pointers, no allocation per call.
 #pragma once
 
 #include <array>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <casadi/core/function.hpp>
 #include <casadi/core/sx.hpp>
 
+#include "saltus/model/graph/program.hpp"
+
 namespace saltus::model {
 
+/// One of several copies with work space of their own; what they run is shared, and any thread may run one. Making,
+/// copying and dropping take the symbolic lock of the caller.
 class ModelFunction {
  public:
   ModelFunction() = default;
   ModelFunction(const std::string& name, const std::vector<casadi::SX>& in, std::vector<casadi::SX> out) {
     for (auto& expression : out) expression = casadi::SX::densify(expression);
     function_ = casadi::Function(name, in, out);
-    memory_ = static_cast<int>(function_.checkout());
+    program_ = Program::of(function_);
+    operations_ = static_cast<long>(function_.n_instructions());
     arguments_.resize(function_.sz_arg());
     results_.resize(function_.sz_res());
     integers_.resize(function_.sz_iw());
     work_.resize(function_.sz_w());
-  }
-  ModelFunction(ModelFunction&& other) noexcept { swap(other); }
-  ModelFunction& operator=(ModelFunction&& other) noexcept {
-    swap(other);
-    return *this;
-  }
-  ModelFunction(const ModelFunction&) = delete;
-  ModelFunction& operator=(const ModelFunction&) = delete;
-  ~ModelFunction() {
-    if (!function_.is_null()) function_.release(memory_);
   }
 
   template <std::size_t n_in, std::size_t n_out>
@@ -38,9 +35,11 @@ class ModelFunction {
     for (std::size_t i = 0; i < n_out; ++i) results_[i] = out[i];
     if (native_ != nullptr) {
       native_(arguments_.data(), results_.data(), integers_.data(), work_.data(), 0);
-      return;
+    } else if (program_) {
+      (*program_)(arguments_.data(), results_.data(), work_.data());
+    } else {
+      function_(arguments_.data(), results_.data(), integers_.data(), work_.data());
     }
-    function_(arguments_.data(), results_.data(), integers_.data(), work_.data(), memory_);
   }
 
   /// Signature of the functions that CasADi's code generator writes.
@@ -48,23 +47,14 @@ class ModelFunction {
   void use_native(Native native) { native_ = native; }
   [[nodiscard]] const casadi::Function& function() const { return function_; }
   /// Elementary operations of one interpreted evaluation.
-  [[nodiscard]] long operations() const { return static_cast<long>(function_.n_instructions()); }
+  [[nodiscard]] long operations() const { return operations_; }
 
   [[nodiscard]] bool is_null() const { return function_.is_null(); }
 
  private:
-  void swap(ModelFunction& other) noexcept {
-    std::swap(function_, other.function_);
-    std::swap(memory_, other.memory_);
-    std::swap(native_, other.native_);
-    std::swap(arguments_, other.arguments_);
-    std::swap(results_, other.results_);
-    std::swap(integers_, other.integers_);
-    std::swap(work_, other.work_);
-  }
-
   casadi::Function function_;
-  int memory_ = 0;
+  std::shared_ptr<const Program> program_;  ///< null where the function calls others
+  long operations_ = 0;
   Native native_ = nullptr;
   std::vector<const double*> arguments_;
   std::vector<double*> results_;

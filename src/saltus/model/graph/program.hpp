@@ -1,0 +1,36 @@
+// The operations of a function of scalars as data that never changes: any number of threads runs it at a time.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <casadi/core/function.hpp>
+
+namespace saltus::model {
+
+/// What CasADi's interpreter does with a function of SX, operation by operation and bit by bit, without its counts of
+/// references and memory objects, which are not for several threads.
+class Program {
+ public:
+  /// Null where the function calls others. Under the symbolic lock.
+  [[nodiscard]] static std::shared_ptr<const Program> of(const casadi::Function& function);
+
+  /// As of CasADi: null arguments are zeros, null results are left out; `work` has room for sz_w() numbers.
+  void operator()(const double* const* arguments, double* const* results, double* work) const;
+
+ private:
+  struct Operands {
+    int first, second;
+  };
+  struct Instruction {
+    int operation;
+    int target;
+    union {
+      Operands operands;
+      double constant;
+    };
+  };
+  std::vector<Instruction> instructions_;
+};
+
+}  // namespace saltus::model
