@@ -63,8 +63,8 @@ void Simulator::set_initial_state(const std::vector<double>& x) { parts_->system
 
 void Simulator::set_until(double t) { parts_->options.until = t; }
 
-result::Result Simulator::run(const pipeline::SimulateOptions& options) const {
-  return value_or_throw(pipeline::simulate(parts_->system, options));
+result::Result Simulator::run(const pipeline::SimulateOptions& options, pipeline::KernelStore* kernels) const {
+  return value_or_throw(pipeline::simulate(parts_->system, options, {}, kernels));
 }
 
 pipeline::SimulateOptions with(pipeline::SimulateOptions options, const Accuracy& accuracy) {

@@ -12,6 +12,10 @@
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/result/result.hpp"
 
+namespace saltus::pipeline {
+class KernelStore;
+}
+
 namespace saltus::problems {
 
 /// Errors of any stage are thrown as std::runtime_error with their text: in these tests every model is meant to be
@@ -33,7 +37,9 @@ class Simulator {
   [[nodiscard]] const pipeline::SimulateOptions& options() const;
   void set_initial_state(const std::vector<double>& x);
   void set_until(double t);
-  [[nodiscard]] result::Result run(const pipeline::SimulateOptions& options) const;
+  /// @param kernels  from runs before, of any thread; may be null
+  [[nodiscard]] result::Result run(const pipeline::SimulateOptions& options,
+                                   pipeline::KernelStore* kernels = nullptr) const;
 
  private:
   struct Parts;

@@ -60,10 +60,10 @@ KernelSymbols::KernelSymbols(const model::System& system)
   discrete.resize(at(x.numel()), false);
 }
 
-ModelKernel::Implementation::Implementation(const model::System& system) : KernelSymbols(system) {
+CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system) {
+  auto& [parameters, regions, cells] = start;
   parameters = system.parameter_values;
   fixed_parameters = parameters.size();
-  motion = &free;
   input = SX::densify(system.input);
   const auto with_inputs = [&](const SX& expression) {
     return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, input);
@@ -91,37 +91,43 @@ ModelKernel::Implementation::Implementation(const model::System& system) : Kerne
   places = SymbolPlaces(symbols());
   for (auto& end : cells.rows(system)) rows.push_back(std::move(end));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
-  gradients.resize(at(phi.numel()));
 
-  const RootLimits limited = limit_roots(free.f, phi(casadi::Slice(0, n_psi)), symbols(), system.parameter_values);
-  free.f = limited.f;
-  by_values = limited.by_values;
-  rooted = limited.rooted;
-  continued_roots = limited.continued;
+  const RootLimits limits = limit_roots(free.f, phi(casadi::Slice(0, n_psi)), symbols(), system.parameter_values);
+  free.f = limits.f;
+  by_values = limits.by_values;
+  rooted = limits.rooted;
+  continued_roots = limits.continued;
+  find_structure();
+  compile_functions(system);
+}
+
+void CompiledModel::compile_functions(const model::System& system) {
   const std::vector<SX> arguments{t, x, p, alpha};
   compile_field(free, "saltus_field");
-  functions = ModelFunction("saltus_functions", arguments, {phi});
-  output_function = ModelFunction("saltus_outputs", arguments, {outputs});
-  input_function = ModelFunction("saltus_inputs", arguments, {input});
+  functions.functions = ModelFunction("saltus_functions", arguments, {phi});
+  functions.output_function = ModelFunction("saltus_outputs", arguments, {outputs});
+  functions.input_function = ModelFunction("saltus_inputs", arguments, {input});
   const SX slope = SX::jacobian(phi, x);
   const SX rate = SX::jacobian(phi, t);
   const SX magnitude = SX::mtimes(fabs(slope), fabs(x)) + fabs(rate * t);
-  scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
-  find_structure();
+  functions.scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
+  functions.affine_rows = AffineRowFunctions(phi, symbols(), affine);
+  functions.gradients.resize(at(phi.numel()));
   compile_conditions(system);
-  jumps = JumpFunctions(system, arguments, input, first_jump_guard);
-  cells.compile(arguments, system, input);
+  functions.jumps = JumpFunctions(system, arguments, input, first_jump_guard);
+  start.cells.compile(arguments, system, input);
   if (const auto& touching = system.contacts; !touching.empty()) {
-    contact_function = ModelFunction("saltus_contacts", arguments,
-                                     {touching.gap, touching.velocity, touching.rows, touching.responses,
-                                      with_inputs(touching.acceleration), touching.friction, touching.restitution});
+    const SX acceleration =
+        system.u.numel() == 0 ? touching.acceleration : SX::substitute(touching.acceleration, system.u, input);
+    functions.contact_function = ModelFunction("saltus_contacts", arguments,
+                                               {touching.gap, touching.velocity, touching.rows, touching.responses,
+                                                acceleration, touching.friction, touching.restitution});
   }
 }
 
-void ModelKernel::Implementation::find_structure() {
+void CompiledModel::find_structure() {
   const int n_phi = static_cast<int>(phi.numel());
   affine = affine_entries(phi, symbols());
-  affine_rows = AffineRowFunctions(phi, symbols(), affine);
   time_only.assign(at(n_phi), true);
   inner = dependencies_of_rows(phi, alpha);
   const auto on_states = dependencies_of_rows(phi, x);
@@ -130,12 +136,12 @@ void ModelKernel::Implementation::find_structure() {
     const auto& states = on_states[at(j)];
     time_only[at(j)] = std::all_of(states.begin(), states.end(), is_discrete);
   }
-  if (cells.size() > 0) on_cells = cells.dependencies(dependencies_of_rows(phi, p));
+  if (start.cells.size() > 0) on_cells = start.cells.dependencies(dependencies_of_rows(phi, p));
   free.depends = normal_dependencies(free.f);
   free.neighbours = neighbours_in(free.depends);
 }
 
-std::vector<std::vector<bool>> ModelKernel::Implementation::normal_dependencies(const SX& f) const {
+std::vector<std::vector<bool>> CompiledModel::normal_dependencies(const SX& f) const {
   const auto on_states = dependencies_of_rows(phi, x);
   const auto field_on_alpha = dependencies_of_rows(f, alpha);
   std::vector<std::vector<bool>> depends(at(n_psi), std::vector<bool>(at(n_psi), false));
@@ -148,42 +154,67 @@ std::vector<std::vector<bool>> ModelKernel::Implementation::normal_dependencies(
   return depends;
 }
 
+const std::optional<ode::JacobianPattern>& CompiledModel::jacobian_pattern() {
+  const SymbolicLock lock;
+  if (!pattern_) {
+    FieldDependencies dependencies{dependencies_of_rows(free.f, x), dependencies_of_rows(free.f, alpha),
+                                   dependencies_of_rows(phi, x), free.neighbours};
+    pattern_ = field_pattern(dependencies);
+  }
+  return *pattern_;
+}
+
 const ode::JacobianPattern* ModelKernel::jacobian_pattern() const {
   auto& self = *implementation_;
   if (self.motion != &self.free || !self.regions.groups().empty()) return nullptr;
-  if (!self.pattern) {
-    const SymbolicLock lock;
-    FieldDependencies dependencies{dependencies_of_rows(self.free.f, self.x),
-                                   dependencies_of_rows(self.free.f, self.alpha),
-                                   dependencies_of_rows(self.phi, self.x), self.free.neighbours};
-    self.pattern = field_pattern(dependencies);
+  if (!self.free_pattern) {
+    const auto& pattern = self.compiled->jacobian_pattern();
+    self.free_pattern = pattern ? &*pattern : nullptr;
   }
-  return *self.pattern ? &**self.pattern : nullptr;
+  return *self.free_pattern;
 }
 
-void ModelKernel::Implementation::compile_field(Motion& target, const std::string& name) const {
+void CompiledModel::compile_field(CompiledMotion& target, const std::string& name) const {
   const FieldSplit split = split_field(target.f, symbols());
   target.field = ModelFunction(name, {t, x, split.symbols}, {split.varying});
   target.constants = ModelFunction(name + "_constants", {p, alpha}, {split.constants});
 }
 
-void ModelKernel::Implementation::compile_conditions(const model::System& system) {
+void CompiledModel::compile_conditions(const model::System& system) {
   for (const auto& event : system.events) {
     if (event.guards.numel() == 0) {
-      conditions.emplace_back();
+      functions.conditions.emplace_back();
       continue;
     }
     const SX value = system.u.numel() == 0 ? event.value : SX::substitute(event.value, system.u, input);
-    conditions.emplace_back("condition", std::vector<SX>{t, x, p, alpha, event.guard_alpha}, std::vector<SX>{value});
+    functions.conditions.emplace_back("condition", std::vector<SX>{t, x, p, alpha, event.guard_alpha},
+                                      std::vector<SX>{value});
   }
+}
+
+ModelKernel::Implementation::Implementation(std::shared_ptr<CompiledModel> model, NativeCode native_code)
+    : KernelFunctions(model->functions), compiled(std::move(model)), wanted(native_code) {
+  static_cast<KernelValues&>(*this) = compiled->start;
+  free = Motion(compiled->free);
+  motion = &free;
+}
+
+Expected<ModelKernel> ModelKernel::of(std::shared_ptr<CompiledModel> model, NativeCode native) {
+  const SymbolicLock lock;
+  auto implementation = std::make_unique<Implementation>(std::move(model), native);
+  if (auto started = implementation->start_native(); !started) return tl::unexpected(started.error());
+  return ModelKernel(std::move(implementation));
 }
 
 Expected<ModelKernel> ModelKernel::compile(const model::System& system, NativeCode native) {
   const SymbolicLock lock;
   try {
-    auto implementation = std::make_unique<Implementation>(system);
-    if (auto started = implementation->start_native(native); !started) return tl::unexpected(started.error());
-    return ModelKernel(std::move(implementation));
+    // The last kernel to go, in whatever thread, drops its expressions.
+    const auto drop = [](CompiledModel* model) {
+      const SymbolicLock dropping;
+      delete model;
+    };
+    return of(std::shared_ptr<CompiledModel>(new CompiledModel(system), drop), native);
   } catch (const std::exception& error) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
                                 std::string("the model's expressions cannot be compiled: ") + error.what(),

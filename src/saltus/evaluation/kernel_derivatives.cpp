@@ -10,47 +10,93 @@
 #include "saltus/evaluation/root_limits_internal.hpp"
 
 namespace saltus::evaluation {
-namespace {
-
 using casadi::SX;
 
-}  // namespace
-
-int ModelKernel::with_limited_roots(int function) const {
-  SALTUS_ASSERT(0 <= function && function < event_functions());
-  auto& self = *implementation_;
-  const auto [known, is_new] = self.rootless_numbers.try_emplace(function, 0);
+const LimitedFunction& CompiledModel::limited(int function, const std::vector<double>& fixed_values) {
+  const SymbolicLock lock;
+  const auto [known, is_new] = limited_.try_emplace({function, fixed_values});
   if (is_new) {
-    const SymbolicLock lock;
-    const std::vector<double> fixed(self.parameters.begin(),
-                                    self.parameters.begin() + static_cast<std::ptrdiff_t>(self.fixed_parameters));
-    const SX psi = self.phi(casadi::Slice(0, self.n_psi));
-    auto limited = limit_roots(self.phi_row(function), psi, self.symbols(), fixed);
-    self.rootless.push_back(std::move(limited.f));
-    self.roots_inside.push_back(std::move(limited.rooted));
-    known->second = -static_cast<int>(self.rootless.size());
+    const SX psi = phi(casadi::Slice(0, n_psi));
+    auto found = limit_roots(phi_row(function), psi, symbols(), fixed_values);
+    rootless.push_back(std::move(found.f));
+    known->second = {-static_cast<int>(rootless.size()), std::move(found.rooted)};
   }
   return known->second;
 }
 
-bool ModelKernel::has_root_inside(int function, int surface) const {
-  const auto number = at(-1 - with_limited_roots(function));
-  return implementation_->roots_inside[number][at(surface)];
-}
-
-SX ModelKernel::Implementation::lie_expression(int j, int order) {
+SX CompiledModel::lie_expression(CompiledMotion& motion, int j, int order) {
   if (order == 0) return phi_row(j);
   const auto key = std::make_pair(j, order);
-  auto& known = motion->lie_expressions;
+  auto& known = motion.lie_expressions;
   if (const auto found = known.find(key); found != known.end()) return found->second;
-  const SX previous = lie_expression(j, order - 1);
+  const SX previous = lie_expression(motion, j, order - 1);
   const auto used = places.used_by(previous);
   std::vector<SX> moved{SX(0, 1)};
-  for (const std::size_t state : used.x.place) moved.push_back(motion->f(static_cast<casadi_int>(state)));
+  for (const std::size_t state : used.x.place) moved.push_back(motion.f(static_cast<casadi_int>(state)));
   SX next = SX::mtimes(SX::jacobian(previous, used.x.symbols), SX::vertcat(moved));
   if (used.time) next += SX::jacobian(previous, t);
   known[key] = next;
   return next;
+}
+
+const ModelFunction& CompiledModel::gradient(int function) {
+  auto& known = functions.gradients[at(function)];
+  if (known.is_null()) {
+    const SX row = phi_row(function);
+    known = ModelFunction("gradient", {t, x, p, alpha}, {SX::jacobian(row, x), SX::jacobian(row, t)});
+  }
+  return known;
+}
+
+const ModelFunction& CompiledModel::lie_derivative(CompiledMotion& motion, int function, int order) {
+  auto& known = motion.lie_derivatives[{function, order}];
+  if (known.is_null()) {
+    known = ModelFunction("lie_derivative", {t, x, p, alpha}, {lie_expression(motion, function, order)});
+  }
+  return known;
+}
+
+const ModelFunction& CompiledModel::lie_gradient(CompiledMotion& motion, int function, int order) {
+  auto& known = motion.lie_gradients[{function, order}];
+  if (known.is_null()) {
+    const SX derivative = lie_expression(motion, function, order);
+    known = ModelFunction("lie_gradient", {t, x, p, alpha}, {SX::jacobian(derivative, x), SX::jacobian(derivative, t)});
+  }
+  return known;
+}
+
+const AffineRowFunction& CompiledModel::lie_row(CompiledMotion& motion, int function, int fixed_component) {
+  const auto [known, is_new] = motion.lie_rows.try_emplace({function, fixed_component});
+  if (is_new) {
+    const SX rate = lie_expression(motion, function, 1);
+    known->second = AffineRowFunction(rate, t, places.used_by(rate), fixed_component);
+  }
+  return known->second;
+}
+
+const LinearFieldFunction& CompiledModel::linear(CompiledMotion& motion) {
+  if (!motion.linear) motion.linear.emplace(motion.f, symbols());
+  return *motion.linear;
+}
+
+int ModelKernel::with_limited_roots(int function) const {
+  SALTUS_ASSERT(0 <= function && function < event_functions());
+  auto& self = *implementation_;
+  auto known = self.limited.find(function);
+  if (known == self.limited.end()) {
+    const auto fixed = static_cast<std::ptrdiff_t>(self.compiled->fixed_parameters);
+    const std::vector<double> values(self.parameters.begin(), self.parameters.begin() + fixed);
+    known = self.limited.emplace(function, self.compiled->limited(function, values)).first;
+  }
+  return known->second.number;
+}
+
+bool ModelKernel::has_root_inside(int function, int surface) const {
+  const int number = with_limited_roots(function);
+  const auto& limited = implementation_->limited;
+  const auto known =
+      std::find_if(limited.begin(), limited.end(), [&](const auto& entry) { return entry.second.number == number; });
+  return known->second.rooted[at(surface)];
 }
 
 void ModelKernel::gradient(int function, double t, const double* x, const double* alpha, double* row,
@@ -60,7 +106,7 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
   if (is_affine(function) && inner(function).empty()) {  // nothing to differentiate
     if (!self.constant_gradients) affine_rows(alpha, self.constant_gradients.emplace());
     const auto& rows = *self.constant_gradients;
-    std::fill_n(row, self.x.numel(), 0.0);
+    std::fill_n(row, states(), 0.0);
     for (std::size_t k = rows.start[at(function)]; k < rows.start[at(function) + 1]; ++k) {
       row[rows.column[k]] = rows.coefficient[k];
     }
@@ -70,9 +116,7 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
   auto& gradient = self.gradients[at(function)];
   if (gradient.is_null()) {
     const SymbolicLock lock;
-    const SX phi = self.phi_row(function);
-    gradient = ModelFunction("gradient", {self.t, self.x, self.p, self.alpha},
-                             {SX::jacobian(phi, self.x), SX::jacobian(phi, self.t)});
+    gradient = self.compiled->gradient(function);
   }
   gradient(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
 }
@@ -80,14 +124,13 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
 double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {
   SALTUS_ASSERT(function < 0 ? order >= 0 : function < event_functions() && order >= 1);
   auto& self = *implementation_;
-  auto& compiled = self.motion->lie_derivatives[{function, order}];
-  if (compiled.is_null()) {
+  auto& derivative = self.motion->lie_derivatives[{function, order}];
+  if (derivative.is_null()) {
     const SymbolicLock lock;
-    compiled =
-        ModelFunction("lie_derivative", {self.t, self.x, self.p, self.alpha}, {self.lie_expression(function, order)});
+    derivative = self.compiled->lie_derivative(*self.motion->compiled, function, order);
   }
   double value = 0.0;
-  compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{&value});
+  derivative(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{&value});
   return value;
 }
 
@@ -95,17 +138,15 @@ void ModelKernel::lie_gradient(int function, int order, double t, const double* 
                                double* rate) const {
   SALTUS_ASSERT(function < 0 ? order >= 0 : function < event_functions() && order >= 1);
   auto& self = *implementation_;
-  auto& compiled = self.motion->lie_gradients[{function, order}];
-  if (compiled.is_null()) {
+  auto& gradient = self.motion->lie_gradients[{function, order}];
+  if (gradient.is_null()) {
     const SymbolicLock lock;
-    const SX derivative = self.lie_expression(function, order);
-    compiled = ModelFunction("lie_gradient", {self.t, self.x, self.p, self.alpha},
-                             {SX::jacobian(derivative, self.x), SX::jacobian(derivative, self.t)});
+    gradient = self.compiled->lie_gradient(*self.motion->compiled, function, order);
   }
-  compiled(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
+  gradient(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
 }
 
-bool ModelKernel::is_affine(int function) const { return implementation_->affine[at(function)]; }
+bool ModelKernel::is_affine(int function) const { return implementation_->compiled->affine[at(function)]; }
 void ModelKernel::affine_rows(const double* alpha, AffineRows& rows) const {
   implementation_->affine_rows.fill(implementation_->parameters.data(), alpha, rows);
 }
@@ -115,8 +156,7 @@ bool ModelKernel::lie_row(int function, FixedState fixed, const double* alpha, A
   const auto [entry, is_new] = self.motion->lie_rows.try_emplace({function, fixed.component});
   if (is_new) {
     const SymbolicLock lock;
-    const SX motion_of_psi = self.lie_expression(function, 1);
-    entry->second = AffineRowFunction(motion_of_psi, self.t, self.places.used_by(motion_of_psi), fixed.component);
+    entry->second = self.compiled->lie_row(*self.motion->compiled, function, fixed.component);
   }
   if (!entry->second.is_affine()) return false;
   entry->second.fill(fixed, self.parameters.data(), alpha, row);
@@ -129,7 +169,7 @@ const ode::LinearField* ModelKernel::linear_field(const double* alpha, ode::Line
   if (motion.linear_always) return &*motion.linear_always;
   if (!motion.linear) {
     const SymbolicLock lock;
-    motion.linear.emplace(motion.f, self.symbols());
+    motion.linear = self.compiled->linear(*motion.compiled);
   }
   if (!motion.linear->is_affine()) return nullptr;
   const double* p = self.parameters.data();
@@ -142,15 +182,19 @@ const ode::LinearField* ModelKernel::linear_field(const double* alpha, ode::Line
   return &own;
 }
 
-bool ModelKernel::has_root(int surface) const { return implementation_->rooted[at(surface)]; }
-bool ModelKernel::root_is_continued(int surface) const { return implementation_->continued_roots[at(surface)]; }
-bool ModelKernel::is_time_only(int function) const { return implementation_->time_only[at(function)]; }
-const std::vector<int>& ModelKernel::inner(int function) const { return implementation_->inner[at(function)]; }
+bool ModelKernel::has_root(int surface) const { return implementation_->compiled->rooted[at(surface)]; }
+bool ModelKernel::root_is_continued(int surface) const {
+  return implementation_->compiled->continued_roots[at(surface)];
+}
+bool ModelKernel::is_time_only(int function) const { return implementation_->compiled->time_only[at(function)]; }
+const std::vector<int>& ModelKernel::inner(int function) const {
+  return implementation_->compiled->inner[at(function)];
+}
 const std::vector<int>& ModelKernel::neighbours(int surface) const {
-  return implementation_->motion->neighbours[at(surface)];
+  return implementation_->motion->compiled->neighbours[at(surface)];
 }
 bool ModelKernel::depends(int surface, int alpha) const {
-  return implementation_->motion->depends[at(surface)][at(alpha)];
+  return implementation_->motion->compiled->depends[at(surface)][at(alpha)];
 }
 
 }  // namespace saltus::evaluation

@@ -1,7 +1,9 @@
-// What a ModelKernel holds: the model's expressions, and the functions that were made of them.
+// What a ModelKernel holds: a compiled model, which kernels in any threads share, functions of it with work space of
+// their own, and the context of a run.
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,22 +25,34 @@ namespace saltus::evaluation {
 
 using model::ModelFunction;
 
-/// xdot = f, free or with guards held, and what follows from it.
-struct Motion {
+/// xdot = f, free or with guards held, and what follows from it. What is not there yet is made under the symbolic lock.
+struct CompiledMotion {
   casadi::SX f;
-  ModelFunction field;               ///< of t, x and the constants
-  ModelFunction constants;           ///< of p and alpha
-  DirectField direct = nullptr;      ///< the field as native code, once there is some
-  std::optional<NativeSteps> steps;  ///< likewise, where the field is small
-  ModelFunction pressure;            ///< of the holds; null without
+  ModelFunction field;      ///< of t, x and the constants
+  ModelFunction constants;  ///< of p and alpha
+  ModelFunction pressure;   ///< of the holds; null without
   std::vector<std::vector<bool>> depends;
   std::vector<std::vector<int>> neighbours;  ///< of every switching function, those that influence it or the reverse
-  std::map<std::pair<int, int>, ModelFunction> lie_derivatives;
-  std::map<std::pair<int, int>, ModelFunction> lie_gradients;
   std::map<std::pair<int, int>, casadi::SX> lie_expressions;
+  std::map<std::pair<int, int>, ModelFunction> lie_derivatives, lie_gradients;
   std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
-  std::optional<LinearFieldFunction> linear;                  ///< once it was asked for
-  std::optional<ode::LinearField> linear_always;              ///< if it is the same in all modes
+  std::optional<LinearFieldFunction> linear;
+};
+
+/// A motion of one kernel: the functions that it has called, with its own work space.
+struct Motion {
+  Motion() = default;
+  explicit Motion(CompiledMotion& motion)
+      : compiled(&motion), field(motion.field), constants(motion.constants), pressure(motion.pressure) {}
+
+  CompiledMotion* compiled = nullptr;  ///< of the kernel's compiled model
+  ModelFunction field, constants, pressure;
+  DirectField direct = nullptr;      ///< the field as native code, once there is some
+  std::optional<NativeSteps> steps;  ///< likewise, where the field is small
+  std::map<std::pair<int, int>, ModelFunction> lie_derivatives, lie_gradients;
+  std::map<std::pair<int, int>, AffineRowFunction> lie_rows;
+  std::optional<LinearFieldFunction> linear;
+  std::optional<ode::LinearField> linear_always;  ///< if it is the same in all modes
 };
 
 [[nodiscard]] std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends);
@@ -53,68 +67,106 @@ struct KernelSymbols {
   int n_psi = 0;
 };
 
-/// What the expressions say without values; found once, that of limited roots when it is first asked for.
+/// What the expressions say without values; found once.
 struct KernelStructure {
   std::vector<std::vector<bool>> on_cells;  ///< by event function
   std::vector<bool> affine, time_only;
   std::vector<bool> rooted, continued_roots;  ///< n_psi
   std::vector<std::vector<int>> inner;
   SymbolPlaces places;
-  /// Of the free motion, once it was asked for.
-  std::optional<std::optional<ode::JacobianPattern>> pattern;
-  std::vector<casadi::SX> rootless;             ///< event functions with limited roots
-  std::vector<std::vector<bool>> roots_inside;  ///< of these, by switching function
-  std::map<int, int> rootless_numbers;          ///< of these, by event function
-  std::size_t fixed_parameters = 0;             ///< the first of `parameters`: changed by set_parameters() only
-  bool by_values = false;                       ///< expressions may depend on their values
-  std::vector<HeldGuard> jump_guards;           ///< by event function, from first_jump_guard on
+  std::size_t fixed_parameters = 0;    ///< the first of `parameters`: changed by set_parameters() only
+  bool by_values = false;              ///< expressions may depend on their values
+  std::vector<HeldGuard> jump_guards;  ///< by event function, from first_jump_guard on
   int first_jump_guard = 0;
 };
 
-/// The functions that were made of the expressions; some when they are first called.
+/// The functions that were made of the expressions.
 struct KernelFunctions {
   ModelFunction functions, scales, output_function, input_function;
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
   JumpFunctions jumps;
   ModelFunction contact_function;  ///< null without contacts
   AffineRowFunctions affine_rows;
-  std::vector<ModelFunction> gradients;  ///< d phi_j / d (x, t)
-  Motion free;
-  std::map<std::vector<int>, Motion> held;  ///< by event functions
-  NativeFunctions native;                   ///< the functions that every step needs
+  std::vector<ModelFunction> gradients;  ///< d phi_j / d (x, t); null before they are first asked for
 };
 
-/// Where a run is beside t, x and alpha, and its work space: the part of a kernel that its user changes.
-struct KernelContext {
+/// An event function without its roots of what is 0 on a surface.
+struct LimitedFunction {
+  int number = 0;            ///< its negative one
+  std::vector<bool> rooted;  ///< by switching function
+};
+
+/// Where a run begins beside t, x and alpha.
+struct KernelValues {
   std::vector<double> parameters;  ///< values of p
   RegionConstants regions;         ///< their references
   CellFunctions cells;             ///< in which each argument is
-  FieldConstants constants;        ///< work space of field()
-  /// Of functions that are affine and do not hold selections gradients are constants: these rows, once known.
-  std::optional<AffineRows> constant_gradients;
-  Motion* motion = nullptr;  ///< the free one, or a held one
-  FieldUse field_use;        ///< its motion is `motion`
 };
 
-struct ModelKernel::Implementation : KernelSymbols, KernelStructure, KernelFunctions, KernelContext {
-  explicit Implementation(const model::System& system);
+/// A model as compiled functions, for kernels in any threads. Nothing of it changes but what is made when it is first
+/// asked for, by its functions that are not const: under the symbolic lock.
+struct CompiledModel : KernelSymbols, KernelStructure {
+  explicit CompiledModel(const model::System& system);
+
   /// Of an event function or, by a negative number, one with limited roots.
-  casadi::SX phi_row(int j) const { return j < 0 ? rootless[at(-1 - j)] : casadi::SX(phi(j)); }
-  ModelSymbols symbols() const { return {t, x, p, alpha}; }
-  casadi::SX lie_expression(int j, int order);
-  void compile_field(Motion& target, const std::string& name) const;
+  [[nodiscard]] casadi::SX phi_row(int j) const { return j < 0 ? rootless[at(-1 - j)] : casadi::SX(phi(j)); }
+  [[nodiscard]] ModelSymbols symbols() const { return {t, x, p, alpha}; }
+
+  [[nodiscard]] const ModelFunction& gradient(int function);
+  [[nodiscard]] const ModelFunction& lie_derivative(CompiledMotion& motion, int function, int order);
+  [[nodiscard]] const ModelFunction& lie_gradient(CompiledMotion& motion, int function, int order);
+  [[nodiscard]] const AffineRowFunction& lie_row(CompiledMotion& motion, int function, int fixed_component);
+  [[nodiscard]] const LinearFieldFunction& linear(CompiledMotion& motion);
+  [[nodiscard]] const LimitedFunction& limited(int function, const std::vector<double>& fixed_values);
+  [[nodiscard]] const std::optional<ode::JacobianPattern>& jacobian_pattern();
+  [[nodiscard]] Expected<CompiledMotion*> held(const std::vector<int>& guards);
+
+  KernelFunctions functions;
+  KernelValues start;
+  CompiledMotion free;
+
+ private:
+  casadi::SX lie_expression(CompiledMotion& motion, int j, int order);
+  void compile_field(CompiledMotion& target, const std::string& name) const;
+  void compile_functions(const model::System& system);
   void find_structure();
   [[nodiscard]] std::vector<std::vector<bool>> normal_dependencies(const casadi::SX& f) const;
-  [[nodiscard]] Expected<Motion> compile_held(const std::vector<int>& functions) const;
   void compile_conditions(const model::System& system);
 
-  [[nodiscard]] Expected<void> start_native(NativeCode wanted);
+  std::map<std::vector<int>, CompiledMotion> held_;  ///< by event functions
+  /// Of the free motion, once it was asked for.
+  std::optional<std::optional<ode::JacobianPattern>> pattern_;
+  std::vector<casadi::SX> rootless;  ///< event functions with limited roots
+  std::map<std::pair<int, std::vector<double>>, LimitedFunction> limited_;
+};
+
+/// What the user of a kernel changes, and its work space.
+struct KernelContext : KernelValues {
+  FieldConstants constants;  ///< work space of field()
+  /// Of functions that are affine and do not hold selections gradients are constants: these rows, once known.
+  std::optional<AffineRows> constant_gradients;
+  std::map<int, LimitedFunction> limited;                   ///< by event function
+  std::optional<const ode::JacobianPattern*> free_pattern;  ///< null where a dense matrix is as good
+  Motion free;
+  std::map<std::vector<int>, Motion> held;  ///< by event functions
+  Motion* motion = nullptr;                 ///< the free one, or a held one
+  FieldUse field_use;                       ///< its motion is `motion`
+};
+
+struct ModelKernel::Implementation : KernelFunctions, KernelContext {
+  explicit Implementation(std::shared_ptr<CompiledModel> model, NativeCode native_code);
+
+  [[nodiscard]] Expected<void> start_native();
   void take_native_field();
   [[nodiscard]] bool has_small_field() const;
   /// An interpreted call is about to be made.
   void count(const ModelFunction& function) {
     if (native.count(function)) take_native_field();
   }
+
+  std::shared_ptr<CompiledModel> compiled;
+  NativeCode wanted;
+  NativeFunctions native;  ///< the functions that every step needs
 };
 
 }  // namespace saltus::evaluation

@@ -19,7 +19,7 @@ void ModelKernel::prepare_field(const double* alpha, FieldConstants& constants) 
   auto& self = *implementation_;
   auto& function = self.motion->constants;
   constants.values.resize(at(function.function().numel_out(0)));
-  constants.alpha.assign(alpha, alpha + self.n_psi);
+  constants.alpha.assign(alpha, alpha + self.compiled->n_psi);
   constants.motion = self.field_use.motion = self.motion;
   constants.direct = self.motion->direct;
   constants.steps = self.motion->steps ? &*self.motion->steps : nullptr;
@@ -39,21 +39,23 @@ void ModelKernel::prepared_field_anyhow(double t, const double* x, const FieldCo
   self.motion->field(std::array<const double*, 3>{&t, x, constants.values.data()}, std::array<double*, 1>{xdot});
 }
 
-Expected<Motion> ModelKernel::Implementation::compile_held(const std::vector<int>& functions_held) const {
-  std::vector<HeldGuard> guards;
-  for (const int function : functions_held) {
+Expected<CompiledMotion*> CompiledModel::held(const std::vector<int>& guards) {
+  const SymbolicLock lock;
+  if (const auto known = held_.find(guards); known != held_.end()) return &known->second;
+  std::vector<HeldGuard> stated;
+  for (const int function : guards) {
     SALTUS_ASSERT(first_jump_guard <= function && function < static_cast<int>(phi.numel()));
-    guards.push_back(jump_guards[at(function - first_jump_guard)]);
+    stated.push_back(jump_guards[at(function - first_jump_guard)]);
   }
-  auto expressions = held_motion(t, x, free.f, guards);
+  auto expressions = held_motion(t, x, free.f, stated);
   if (!expressions) return tl::unexpected(expressions.error());
-  Motion result;
+  CompiledMotion& result = held_[guards];
   result.f = expressions->f;
   compile_field(result, "held_field");
   result.pressure = ModelFunction("hold_pressure", {t, x, p, alpha}, {expressions->pressure});
   result.depends = normal_dependencies(result.f);
   result.neighbours = neighbours_in(result.depends);
-  return result;
+  return &result;
 }
 
 Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
@@ -62,14 +64,14 @@ Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
     self.field_use.motion = self.motion = &self.free;
     return {};
   }
-  std::vector<int> functions;
-  for (const auto& hold : holds) functions.push_back(hold.function);
-  auto known = self.held.find(functions);
+  std::vector<int> guards;
+  for (const auto& hold : holds) guards.push_back(hold.function);
+  auto known = self.held.find(guards);
   if (known == self.held.end()) {
     const SymbolicLock lock;
-    auto motion = self.compile_held(functions);
+    const auto motion = self.compiled->held(guards);
     if (!motion) return tl::unexpected(motion.error());
-    known = self.held.emplace(functions, std::move(*motion)).first;
+    known = self.held.emplace(guards, **motion).first;
   }
   self.field_use.motion = self.motion = &known->second;
   return {};
@@ -77,8 +79,8 @@ Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
 
 bool ModelKernel::set_parameters(const std::vector<double>& values) {
   auto& self = *implementation_;
-  SALTUS_ASSERT(values.size() == self.fixed_parameters);
-  if (self.by_values || !self.rootless.empty() || !self.regions.groups().empty()) return false;
+  SALTUS_ASSERT(values.size() == self.compiled->fixed_parameters);
+  if (self.compiled->by_values || !self.limited.empty() || !self.regions.groups().empty()) return false;
   std::copy(values.begin(), values.end(), self.parameters.begin());
   for (int cell = 0; cell < self.cells.size(); ++cell) self.cells.move(cell, 0, self.parameters);
   self.constant_gradients.reset();

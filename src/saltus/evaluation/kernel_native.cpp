@@ -46,19 +46,20 @@ std::string direct_field(const casadi::Function& field) {
 }  // namespace
 
 bool ModelKernel::Implementation::has_small_field() const {
-  return within(of_steps, static_cast<int>(x.numel()), free.field.operations());
+  return within(of_steps, static_cast<int>(compiled->x.numel()), free.field.operations());
 }
 
-Expected<void> ModelKernel::Implementation::start_native(NativeCode wanted) {
+Expected<void> ModelKernel::Implementation::start_native() {
   const auto& field = free.field.function();
   std::string appended = direct_field(field);
-  const auto n = static_cast<int>(x.numel());
+  const auto n = static_cast<int>(compiled->x.numel());
   if (has_small_field()) appended += field_stages_source(name_of_direct(field), n);
   if (within(of_sliding_steps, n, free.field.operations())) appended += sliding_stages_source(name_of_direct(field), n);
   std::vector<model::ModelFunction*> all{&free.field, &free.constants,  &functions,
                                          &scales,     &output_function, &input_function};
   for (auto* function : jumps.functions()) all.push_back(function);
-  const bool has_nesting = std::any_of(inner.begin(), inner.end(), [](const auto& list) { return !list.empty(); });
+  const bool has_nesting =
+      std::any_of(compiled->inner.begin(), compiled->inner.end(), [](const auto& list) { return !list.empty(); });
   // Otherwise the rows are made once.
   if (cells.size() > 0 || !regions.groups().empty() || has_nesting) all.push_back(&affine_rows.function());
   auto started = native.start(wanted, std::move(all), std::move(appended));

@@ -22,11 +22,13 @@ ModelKernel::~ModelKernel() {
   implementation_.reset();
 }
 
-int ModelKernel::states() const { return static_cast<int>(implementation_->x.numel()); }
-int ModelKernel::switching_functions() const { return implementation_->n_psi; }
-int ModelKernel::event_functions() const { return static_cast<int>(implementation_->phi.numel()); }
-int ModelKernel::outputs() const { return static_cast<int>(implementation_->outputs.numel()); }
-int ModelKernel::controls() const { return static_cast<int>(implementation_->input.numel()); }
+std::shared_ptr<CompiledModel> ModelKernel::compiled() const { return implementation_->compiled; }
+
+int ModelKernel::states() const { return static_cast<int>(implementation_->compiled->x.numel()); }
+int ModelKernel::switching_functions() const { return implementation_->compiled->n_psi; }
+int ModelKernel::event_functions() const { return static_cast<int>(implementation_->compiled->phi.numel()); }
+int ModelKernel::outputs() const { return static_cast<int>(implementation_->compiled->outputs.numel()); }
+int ModelKernel::controls() const { return static_cast<int>(implementation_->compiled->input.numel()); }
 long ModelKernel::field_evaluations() const { return implementation_->field_use.evaluations; }
 const void* ModelKernel::motion() const { return implementation_->motion; }
 
@@ -127,7 +129,7 @@ double ModelKernel::cell_argument(int cell, double t, const double* x, const dou
 }
 
 bool ModelKernel::depends_on_cell(int function, int cell) const {
-  return implementation_->on_cells[at(function)][at(cell)];
+  return implementation_->compiled->on_cells[at(function)][at(cell)];
 }
 
 }  // namespace saltus::evaluation

@@ -18,6 +18,7 @@ struct System;
 namespace saltus::evaluation {
 
 struct ContactValues;
+struct CompiledModel;
 
 /// Whether the functions that every step needs run as native code: compiled C, cached by content. Bit-identical to the
 /// interpreter. `automatic`: from the cache, or compiled once a run is long enough that it pays; interpreted where
@@ -93,15 +94,20 @@ struct FieldConstants {
 /// All functions take t (model time), x (n_x), alpha (n_psi, in [0, 1]) and write to the caller's memory; values that
 /// are not finite mark points where the model is undefined. Controls are replaced by their inputs u(t).
 ///
-/// A kernel is compiled functions and the context of one run: parameters, cells, references of regions, what is held.
-/// Who changes the context has a kernel that is not const. Not thread safe: one kernel per thread (the interpreter's
-/// work space is inside).
+/// A kernel is a compiled model and the context of one run: parameters, cells, references of regions, what is held,
+/// work space. Who changes the context has a kernel that is not const. One kernel per thread; kernels of one compiled
+/// model (share) may run in several threads at a time.
 class ModelKernel {
  public:
   /// Compiles the functions that every run needs; derivatives of single functions are compiled when first asked for.
   /// Fails (invalid_model) if the symbolic layer refuses an expression, (not_available) if native code is insisted on
   /// and cannot be had.
   [[nodiscard]] static Expected<ModelKernel> compile(const model::System& system, NativeCode native = NativeCode::off);
+
+  /// Another kernel of a compiled model, as if it was just compiled with the parameters of its system: nothing is
+  /// differentiated or compiled twice. Others may run meanwhile. Fails (not_available) as compile() does.
+  [[nodiscard]] static Expected<ModelKernel> of(std::shared_ptr<CompiledModel> model, NativeCode native);
+  [[nodiscard]] std::shared_ptr<CompiledModel> compiled() const;
 
   /// The kernel of a system with the same structure (model::structure) and these parameters, as if it was just compiled
   /// and bit by bit; what was compiled stays.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -14,20 +15,44 @@ Expected<KernelStore::Kept> KernelStore::take(const model::System& system, evalu
     const SymbolicLock lock;
     structure = model::structure(system);
   }
-  const auto find = [&]() -> std::optional<Kept> {
+  const auto fits = [&](const auto& known) { return known.native == native && known.structure == structure; };
+  std::optional<Kept> found;
+  std::shared_ptr<evaluation::CompiledModel> compiled;
+  {
     const std::lock_guard guard(mutex_);
-    const auto fits = [&](const Kept& kept) { return kept.native == native && kept.structure == structure; };
-    const auto found = std::find_if(waiting_.begin(), waiting_.end(), fits);
-    if (found == waiting_.end()) return std::nullopt;
-    std::optional<Kept> taken(std::move(*found));
-    *found = std::move(waiting_.back());
-    waiting_.pop_back();
-    return taken;
-  };
-  if (auto found = find(); found && found->kernel.set_parameters(system.parameter_values)) return std::move(*found);
+    if (const auto kept = std::find_if(waiting_.begin(), waiting_.end(), fits); kept != waiting_.end()) {
+      found = std::move(*kept);
+      *kept = std::move(waiting_.back());
+      waiting_.pop_back();
+    } else if (const auto known = std::find_if(compiled_.begin(), compiled_.end(), fits); known != compiled_.end()) {
+      compiled = known->model;
+    }
+  }
+  if (compiled) {
+    auto kernel = evaluation::ModelKernel::of(std::move(compiled), native);
+    if (!kernel) return tl::unexpected(kernel.error());
+    found = Kept{structure, native, std::move(*kernel)};
+  }
+  if (found && found->kernel.set_parameters(system.parameter_values)) return std::move(*found);
   auto kernel = evaluation::ModelKernel::compile(system, native);
   if (!kernel) return tl::unexpected(kernel.error());
+  remember({structure, native, kernel->compiled()});
   return Kept{std::move(structure), native, std::move(*kernel)};
+}
+
+void KernelStore::remember(Compiled made) {
+  // What it is changed for is dropped when the mutex is free: that takes the symbolic lock.
+  const std::lock_guard guard(mutex_);
+  const auto same = [&](const Compiled& known) {
+    return known.native == made.native && known.structure == made.structure;
+  };
+  if (const auto known = std::find_if(compiled_.begin(), compiled_.end(), same); known != compiled_.end()) {
+    std::swap(*known, made);
+  } else if (compiled_.size() < most_models) {
+    compiled_.push_back(std::move(made));
+  } else {
+    std::swap(compiled_[next_model_++ % most_models], made);
+  }
 }
 
 void KernelStore::give_back(Kept kept) {

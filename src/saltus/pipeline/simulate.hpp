@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -43,16 +44,27 @@ class KernelStore {
     evaluation::NativeCode native = evaluation::NativeCode::off;
     evaluation::ModelKernel kernel;
   };
-  /// A kernel of the system: one that waits here, or a new one; as of ModelKernel::compile. Results are the same.
+  /// A kernel of the system: one that waits here, another one of a model that was compiled here, or a new one, as of
+  /// ModelKernel::compile. Results are the same.
   [[nodiscard]] Expected<Kept> take(const model::System& system, evaluation::NativeCode native);
   void give_back(Kept kept);
 
  private:
+  struct Compiled {
+    std::vector<std::uint64_t> structure;
+    evaluation::NativeCode native = evaluation::NativeCode::off;
+    std::shared_ptr<evaluation::CompiledModel> model;
+  };
+  void remember(Compiled made);
+
   /// More than threads that run at a time; what is beyond is dropped.
   static constexpr std::size_t most_kept = 64;
   std::mutex mutex_;
   std::vector<Kept> waiting_;
   std::size_t next_ = 0;  ///< to be changed for a newer one
+  static constexpr std::size_t most_models = 8;
+  std::vector<Compiled> compiled_;
+  std::size_t next_model_ = 0;  ///< likewise
 };
 
 /// Simulates a system with the chosen method; follows other admissible modes if asked to (EventOptions::trajectories).

@@ -72,6 +72,28 @@ TEST(ModelKernel, NumbersFunctionsAndEvaluatesThem) {
   EXPECT_EQ(kernel->field_evaluations(), 1);
 }
 
+TEST(ModelKernel, KernelsOfOneCompiledModelDoNotSeeEachOther) {
+  auto first = ModelKernel::compile(example());
+  ASSERT_TRUE(first.has_value());
+  auto second = ModelKernel::of(first->compiled(), NativeCode::off);
+  ASSERT_TRUE(second.has_value());
+  ASSERT_TRUE(second->set_parameters({7.0}));
+  const double t = 0.5;
+  const double x[] = {0.3, -0.4};
+  const double alpha[] = {0.25, 1.0, 0.0};
+  double u = 0.0;
+  first->inputs(t, alpha, &u);
+  EXPECT_DOUBLE_EQ(u, 0.375);
+  second->inputs(t, alpha, &u);
+  EXPECT_DOUBLE_EQ(u, 3.5);
+  const double rate = second->lie_derivative(0, 2, t, x, alpha);
+  first.emplace(std::move(*ModelKernel::of(second->compiled(), NativeCode::off)));
+  EXPECT_NE(first->lie_derivative(0, 2, t, x, alpha), rate);  // of other parameters
+  ASSERT_TRUE(first->set_parameters({7.0}));
+  EXPECT_EQ(first->lie_derivative(0, 2, t, x, alpha), rate);
+  EXPECT_EQ(first->field_evaluations(), 0);
+}
+
 TEST(ModelKernel, KnowsTheStructure) {
   const auto kernel = ModelKernel::compile(example());
   ASSERT_TRUE(kernel.has_value());
