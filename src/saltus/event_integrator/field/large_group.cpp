@@ -58,13 +58,13 @@ std::pair<double, double> loss_and_stability(const EffectMatrix& effects, const 
 /// Groups that Newton's method solves are taken together where one of them is large, or where they are many: each
 /// evaluation of the field is for all of them.
 void ModeField::find_large_groups() {
-  large_.reset();
+  groups_.large.reset();
   if (!affine_in_alpha_ || !kernel_.region_groups().empty()) return;
   constexpr std::size_t many = 4;
   std::vector<std::size_t> rows;
   std::size_t count = 0;
   bool any_large = false;
-  for (const auto& group : groups_) {
+  for (const auto& group : groups_.lists) {
     if (group.size() < 3) continue;
     rows.insert(rows.end(), group.begin(), group.end());
     any_large = any_large || is_large(group.size());
@@ -83,32 +83,32 @@ void ModeField::find_parts(const std::vector<std::size_t>& group) {
   for (std::size_t k = 0; k < group.size(); ++k) {
     const int i = sliding_[group[k]];
     for (const int j : kernel_.neighbours(i)) {
-      const int row = row_of_[at(j)];
+      const int row = groups_.row_of[at(j)];
       if (row >= 0 && kernel_.depends(i, j)) feels[k].push_back(place[at(row)]);
     }
     std::sort(feels[k].begin(), feels[k].end());
   }
   LargeGroup large{group, switching::ordered_parts(feels), std::make_unique<switching::SparseNewton>(feels)};
   for (const auto& part : large.parts) {
-    for (const int k : part) group_size_[group[at(k)]] = 0;
-    group_size_[group[at(part.front())]] = part.size();
+    for (const int k : part) groups_.size[group[at(k)]] = 0;
+    groups_.size[group[at(part.front())]] = part.size();
   }
-  large_ = std::move(large);
+  groups_.large = std::move(large);
 }
 
 /// From the selections of the mode, all of them together: where influence is one-way G is triangular.
 void ModeField::evaluate_large(double t, const double* x, LargeGroup& large) {
   const auto& rows = large.rows;
-  for (std::size_t k = 0; k < rows.size(); ++k) selections_[k] = start_alpha_[at(sliding_[rows[k]])];
+  for (std::size_t k = 0; k < rows.size(); ++k) groups_.selections[k] = start_alpha_[at(sliding_[rows[k]])];
   const auto velocities = [&](const double* alpha, double* g) {
     for (std::size_t k = 0; k < rows.size(); ++k) trial_[at(sliding_[rows[k]])] = alpha[k];
     kernel_.field(t, x, trial_.data(), f_[1].data());
-    for (std::size_t k = 0; k < rows.size(); ++k) g[k] = normal_velocity(rows[k], f_[1]);
+    for (std::size_t k = 0; k < rows.size(); ++k) g[k] = rows_.velocity(rows[k], f_[1]);
   };
-  const bool found = large.newton->solve(velocities, selections_.data());
+  const bool found = large.newton->solve(velocities, groups_.selections.data());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto j = at(sliding_[rows[k]]);
-    alpha_[j] = found ? selections_[k] : not_a_number;
+    alpha_[j] = found ? groups_.selections[k] : not_a_number;
     exits_[rows[k]] = {alpha_[j], alpha_[j] - 1.0, 0.0, 0.0};
     trial_[j] = 0.0;
   }

@@ -10,28 +10,30 @@
 namespace saltus::event_integrator {
 
 ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha)
-    : kernel_(kernel), affine_in_alpha_(affine_in_alpha), several_exits_(kernel) {
-  const auto n = at(kernel.states());
+    : kernel_(kernel),
+      affine_in_alpha_(affine_in_alpha),
+      rows_(at(kernel.switching_functions())),
+      groups_(at(kernel.switching_functions())),
+      exit_forms_(kernel) {
   const auto n_psi = at(kernel.switching_functions());
-  for (auto& f : f_) f.resize(n);
+  for (auto& f : f_) f.resize(at(kernel.states()));
   for (auto& corner : corner_) corner.resize(n_psi);
   trial_.resize(n_psi);
   alpha_.resize(n_psi);
   values_.resize(at(kernel.event_functions()));
-  known_rows_.resize(n_psi);
-  row_of_.assign(n_psi, -1);
 }
 
 void ModeField::gradients(double t, const double* x) {
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    if (constant_row_[row]) continue;
-    if (!take_known_row(row)) {
+    if (rows_.is_constant[row]) continue;
+    if (!rows_.take_known(row, at(sliding_[row]))) {
       // With the mode's selections, not the last ones: the field must not depend on what was evaluated before.
-      kernel_.gradient(sliding_[row], t, x, start_alpha_.data(), f_[0].data(), &rates_[static_cast<Eigen::Index>(row)]);
+      kernel_.gradient(sliding_[row], t, x, start_alpha_.data(), f_[0].data(),
+                       &rows_.rates[static_cast<Eigen::Index>(row)]);
       take_row(row);
     }
     if (sliding_.size() != 1) continue;
-    row_square_ = rows_.squaredNorm();
+    rows_.square = rows_.dense.squaredNorm();
     refer_to_constants();
   }
   find_ties();
@@ -60,24 +62,18 @@ ode::RightHandSideStages ModeField::native_stages() const {
     if (!constants_[0].has_steps()) return {};
     return {constants_[0].steps->field, constants_[0].values.data()};
   }
-  if (!is_single() || !constant_row_[0] || !constants_[0].has_steps()) return {};
+  if (!is_single() || !rows_.is_constant[0] || !constants_[0].has_steps()) return {};
   return {constants_[0].steps->sliding, &sliding_constants_};
 }
 
 const ode::LinearField* ModeField::linear_field() {
   if (solve_ == SlidingSolve::none) return linear_motion_.of_region(kernel_, constants_[0]);
-  if (!is_single() || !constant_row_[0]) return nullptr;
-  return linear_motion_.on_surface(kernel_, constants_[0], constants_[1], {rows_.data(), coordinate_[0]});
-}
-
-double ModeField::normal_velocity(std::size_t row, const std::vector<double>& f) const {
-  const auto r = static_cast<Eigen::Index>(row);
-  if (const int only = coordinate_[row]; only >= 0) return normal_[row].value.front() * f[at(only)] + rates_[r];
-  return normal_[row].dot(f, rates_[r]);
+  if (!is_single() || !rows_.is_constant[0]) return nullptr;
+  return linear_motion_.on_surface(kernel_, constants_[0], constants_[1], {rows_.dense.data(), rows_.coordinate[0]});
 }
 
 const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region, const double* x) {
-  if (solve_ != SlidingSolve::decoupled || !constant_row_[row]) return nullptr;
+  if (solve_ != SlidingSolve::decoupled || !rows_.is_constant[row]) return nullptr;
   const double side = region == Region::below ? 0.0 : 1.0;
   const bool several = sliding_.size() > 1;
   if (several && !keeps_rows()) {
@@ -87,36 +83,19 @@ const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region,
   }
   const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : trial_;
   evaluation::FixedState fixed;
-  if (const int only = coordinate_[row]; only >= 0 && rates_[static_cast<Eigen::Index>(row)] == 0.0) {
+  if (const int only = rows_.coordinate[row]; only >= 0 && rows_.rates[static_cast<Eigen::Index>(row)] == 0.0) {
     fixed = {only, x[only]};
   }
-  if (several && keeps_rows()) return several_exits_.of(sliding_[row], side, fixed, start_alpha_);
-  // What cells and references change is not in the key.
-  if (several || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
-    return kernel_.lie_row(sliding_[row], fixed, alpha.data(), exit_form_) ? &exit_form_ : nullptr;
-  }
-  const void* motion = constants_[0].use->motion;
-  for (const auto& known : exit_rows_) {
-    if (known.motion == motion && known.surface == sliding_[row] && known.fixed.component == fixed.component &&
-        known.fixed.value == fixed.value && known.alpha == alpha) {
-      return &known.form;
-    }
-  }
-  if (!kernel_.lie_row(sliding_[row], fixed, alpha.data(), exit_form_)) return nullptr;
-  auto& oldest = exit_rows_[next_exit_row_++ % exit_rows_.size()];
-  oldest.motion = motion;
-  oldest.surface = sliding_[row];
-  oldest.fixed = fixed;
-  oldest.alpha = alpha;
-  oldest.form = exit_form_;
-  return &oldest.form;
+  if (several && keeps_rows()) return exit_forms_.several.of(sliding_[row], side, fixed, start_alpha_);
+  const bool is_kept = !several && keeps_rows();
+  return exit_forms_.of(sliding_[row], fixed, alpha, is_kept ? constants_[0].use->motion : nullptr);
 }
 
 double ModeField::normal_terms(std::size_t row) const {
-  if (solve_ == SlidingSolve::coupled || solve_ == SlidingSolve::higher_order) return condition_[row];
+  if (solve_ == SlidingSolve::coupled || solve_ == SlidingSolve::higher_order) return groups_.condition[row];
   const auto r = static_cast<Eigen::Index>(row);
-  double sum = std::abs(rates_[r]);
-  const auto& [column, value] = normal_[row];
+  double sum = std::abs(rows_.rates[r]);
+  const auto& [column, value] = rows_.normal[row];
   for (std::size_t k = 0; k < column.size(); ++k) {
     const std::size_t i = column[k];
     sum += std::abs(value[k]) * std::max(std::abs(f_[0][i]), std::abs(f_[1][i]));
@@ -129,7 +108,7 @@ void ModeField::evaluate_corners(double t, const double* x) {
   gradients(t, x);
   kernel_.prepared_field(t, x, constants_[0], f_[0].data());
   kernel_.prepared_field(t, x, constants_[1], f_[1].data());
-  exits_[0] = {normal_velocity(0, f_[0]), normal_velocity(0, f_[1]), 0.0};
+  exits_[0] = {rows_.velocity(0, f_[0]), rows_.velocity(0, f_[1]), 0.0};
 }
 
 /// The usual sliding: everything in closed form.
@@ -139,26 +118,26 @@ void ModeField::slide_on_one(double t, const double* x, double* xdot) {
   for (const std::size_t i : between_) alpha_[i] = corner_[0][i] + selection * (corner_[1][i] - corner_[0][i]);
   const auto n = f_[0].size();
   for (std::size_t i = 0; i < n; ++i) xdot[i] = f_[0][i] + selection * (f_[1][i] - f_[0][i]);
-  const double* row = rows_.data();
-  if (const int only = coordinate_[0]; only >= 0) {
-    if (std::isfinite(xdot[only])) xdot[only] = rates_[0] == 0.0 ? 0.0 : -rates_[0] / row[only];
+  const double* row = rows_.dense.data();
+  if (const int only = rows_.coordinate[0]; only >= 0) {
+    if (std::isfinite(xdot[only])) xdot[only] = rows_.rates[0] == 0.0 ? 0.0 : -rows_.rates[0] / row[only];
     return;
   }
-  double normal = rates_[0];
+  double normal = rows_.rates[0];
   for (std::size_t i = 0; i < n; ++i) normal += row[i] * xdot[i];
   if (!rooted_rows_.empty()) {  // as in balance_beside_roots()
     const double factor = normal / (exits_[0].above - exits_[0].below);
     for (std::size_t i = 0; i < n; ++i) xdot[i] -= (f_[1][i] - f_[0][i]) * factor;
     return;
   }
-  const double factor = row_square_ > 0.0 ? normal / row_square_ : not_a_number;
+  const double factor = rows_.square > 0.0 ? normal / rows_.square : not_a_number;
   for (std::size_t i = 0; i < n; ++i) xdot[i] -= row[i] * factor;
 }
 
 double ModeField::selected_velocity(double t, const double* x, std::size_t row, double selection) {
   trial_[at(sliding_[row])] = selection;
   kernel_.field(t, x, trial_.data(), f_[1].data());
-  return normal_velocity(row, f_[1]);
+  return rows_.velocity(row, f_[1]);
 }
 
 void ModeField::evaluate_nonaffine(double t, const double* x) {
@@ -212,7 +191,7 @@ void ModeField::evaluate_higher_order(double t, const double* x) {
   exits_.assign(sliding_.size(), {1.0, -1.0});
   for (const auto& range : higher_order_->ranges()) {
     exits_[range.row] = {range.max, range.min};
-    condition_[range.row] = range.exactness * range.terms;
+    groups_.condition[range.row] = range.exactness * range.terms;
   }
 }
 

@@ -2,27 +2,20 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "saltus/base/function_ref.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/field/higher_order.hpp"
-#include "saltus/event_integrator/field/large_group.hpp"
 #include "saltus/event_integrator/field/linear_motion.hpp"
+#include "saltus/event_integrator/field/sliding_groups.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
-#include "saltus/event_integrator/mode/region_ties.hpp"
-#include "saltus/event_integrator/sliding/exit_rows.hpp"
-#include "saltus/event_integrator/sliding/normal_rows.hpp"
+#include "saltus/event_integrator/sliding/exit_forms.hpp"
+#include "saltus/event_integrator/sliding/surface_rows.hpp"
 #include "saltus/ode/stepper.hpp"
-#include "saltus/switching/plane/bilinear_root.hpp"
-#include "saltus/switching/regions/region_weights.hpp"
-#include "saltus/switching/selections/selection_newton.hpp"
+#include "saltus/switching/table/projected_field.hpp"
 
 namespace saltus::event_integrator {
 
@@ -119,29 +112,16 @@ class ModeField {
   bool project(double t, double* x);
 
  private:
-  /// Regions of a group by `indicator` that slide, as rows, and the reference they are measured against.
-  struct SlidingRegions {
-    int reference = 0;
-    std::vector<std::size_t> rows;
-    /// Where the gradients of `rows` depend on each other.
-    std::optional<switching::RegionWeights> tie = {};
-    RegionBasis basis = {};
-    Eigen::MatrixXd gradients = {};  ///< that the tie was made of
-    bool constant = false;           ///< gradients of all rows
-  };
-
   [[nodiscard]] ode::RightHandSideStages native_stages() const;
   [[nodiscard]] const ode::LinearField* linear_field();
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
   void resize_rows();
   [[nodiscard]] bool keeps_rows() const;
-  [[nodiscard]] bool take_known_row(std::size_t row);
   void take_row(std::size_t row);
   void find_rooted_rows();
   void refer_to_constants();
   void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]; not for one affine surface
   void gradients(double t, const double* x);
-  [[nodiscard]] double normal_velocity(std::size_t row, const std::vector<double>& f) const;
   void evaluate_corners(double t, const double* x);
   void slide(double t, const double* x, double* xdot);
   void slide_on_one(double t, const double* x, double* xdot);
@@ -154,7 +134,7 @@ class ModeField {
   void find_large_groups();
   void find_parts(const std::vector<std::size_t>& group);
   [[nodiscard]] bool is_in_large(std::size_t row) const {
-    return large_ && std::binary_search(large_->rows.begin(), large_->rows.end(), row);
+    return groups_.large && std::binary_search(groups_.large->rows.begin(), groups_.large->rows.end(), row);
   }
   void find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows);
   void find_stability();
@@ -171,8 +151,6 @@ class ModeField {
   void balance_beside_roots(double t, const double* x);
   void remove_normal_part(double* xdot);
   void evaluate_higher_order(double t, const double* x);
-  [[nodiscard]] bool solve_normal_equations();
-  [[nodiscard]] bool solve_independent_equations();
 
   const evaluation::ModelKernel& kernel_;
   bool affine_in_alpha_;
@@ -188,56 +166,15 @@ class ModeField {
   std::vector<double> f_[2];                 ///< n_x each
   std::vector<double> values_;               ///< all event functions
   std::vector<ExitValues> exits_;            ///< of the last evaluation
-  std::vector<std::vector<std::size_t>> groups_;  ///< rows that influence each other, connected and ascending
-  std::vector<std::size_t> group_size_;           ///< by row, 0 behind the first of a group
-  std::vector<std::optional<switching::RootKind>>
-      kind_;  ///< by row, for the first of a pair: known once it was evaluated
-  std::vector<SlidingRegions> regions_;
-  bool ties_known_ = false;                ///< of this mode: once gradients are
-  std::vector<Eigen::Index> independent_;  ///< of ties: rows whose gradients are; empty = all
-  Eigen::MatrixXd tie_rows_, tie_rates_, base_rows_;
-  Eigen::VectorXd base_residual_;
-  std::vector<double> theta_;
-  std::vector<std::optional<switching::SelectionNewton>> newton_;  ///< by row, for the first of a larger group
-  std::optional<LargeGroup> large_;
-  std::vector<double> selections_;  ///< of the group at hand
-  std::vector<double> speed_;       ///< by row: in groups of more than two
-  std::vector<double> scaled_;      ///< G of such a group, rows over their speeds
-  std::vector<double> condition_;   ///< by row: of a coupled selection
-  /// Forms of exits that were asked for: solutions come back to their modes.
-  struct ExitRow {
-    const void* motion = nullptr;  ///< of the kernel
-    int surface = 0;
-    evaluation::FixedState fixed;
-    std::vector<double> alpha;
-    evaluation::AffineRow form;
-  };
-  std::array<ExitRow, 8> exit_rows_;  ///< the last ones
-  ExitRows several_exits_;            ///< the same where several surfaces are slid on
-  std::size_t next_exit_row_ = 0;
-  evaluation::AffineRow exit_form_;                 ///< of a row that is not kept
+  SurfaceRows rows_;                         ///< J
+  SlidingGroups groups_;
+  SlidingTies ties_;
+  ExitForms exit_forms_;
   int single_ = -1;                                 ///< the surface that rows and groups are of, if it is one
   std::vector<std::size_t> rooted_rows_;            ///< of functions around a root of one whose sign they hold
   std::vector<double> jump_;                        ///< n_x
-  std::vector<bool> constant_row_;                  ///< gradient known once and for all in this mode
-  std::vector<int> coordinate_;                     ///< the only nonzero column of a row, or -1
   evaluation::SlidingConstants sliding_constants_;  ///< of one surface with a constant gradient
   LinearMotion linear_motion_;
-  NormalRows normal_;               ///< J
-  std::vector<double> correction_;  ///< n_x
-  /// Gradients that no mode changes, by surface, with d psi/dt.
-  struct KnownRow {
-    bool known = false;
-    SparseRow row = {};
-    double rate = 0.0;
-  };
-  std::vector<KnownRow> known_rows_;
-  std::vector<int> row_of_;           ///< by surface while groups are found, -1 = it is not slid on
-  Eigen::MatrixXd rows_;              ///< J, m x n_x; of one sliding surface, and where there are regions
-  double row_square_ = 0.0;           ///< |J|^2 of one sliding surface
-  Eigen::VectorXd rates_, residual_;  ///< d psi_I/dt, m
-  Eigen::MatrixXd normal_matrix_;     ///< J J^T
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 
 }  // namespace saltus::event_integrator

@@ -17,14 +17,14 @@ void ModeField::enter(const ModeState& state) {
   start_alpha_ = state.alpha;
   alpha_ = state.alpha;
   solve_ = SlidingSolve::none;
-  independent_.clear();
-  ties_known_ = true;
+  rows_.independent.rows.clear();
+  ties_.known = true;
   if (sliding_.empty()) {
     kernel_.prepare_field(alpha_.data(), constants_[0]);
     return;
   }
   // Cells may change a gradient that is constant in each.
-  const bool same_rows = same_single && constant_row_.front() && kernel_.cells() == 0;
+  const bool same_rows = same_single && rows_.is_constant.front() && kernel_.cells() == 0;
   if (!same_rows) resize_rows();
   if (same_single) {
     solve_ = SlidingSolve::decoupled;
@@ -56,15 +56,9 @@ void ModeField::enter(const ModeState& state) {
 }
 
 void ModeField::resize_rows() {
-  const auto m = static_cast<Eigen::Index>(sliding_.size());
-  normal_.resize(sliding_.size(), at(kernel_.states()));
-  const bool dense = m == 1 || !kernel_.region_groups().empty();
-  rows_.resize(dense ? m : 0, kernel_.states());
-  rates_.resize(m);
-  residual_.resize(m);
+  const bool dense = sliding_.size() == 1 || !kernel_.region_groups().empty();
+  rows_.resize(sliding_.size(), at(kernel_.states()), dense);
   exits_.assign(sliding_.size(), {});
-  coordinate_.assign(sliding_.size(), -1);
-  constant_row_.assign(sliding_.size(), false);
 }
 
 void ModeField::find_rooted_rows() {
@@ -125,7 +119,8 @@ void ModeField::pass(std::size_t surface, double alpha, double selection,
 /// For native steps on one surface.
 void ModeField::refer_to_constants() {
   sliding_constants_ = {
-      constants_[0].values.data(), constants_[1].values.data(), rows_.data(), rates_[0], row_square_, coordinate_[0]};
+      constants_[0].values.data(), constants_[1].values.data(), rows_.dense.data(), rows_.rates[0], rows_.square,
+      rows_.coordinate[0]};
 }
 
 }  // namespace saltus::event_integrator

@@ -35,13 +35,13 @@ switching::RootKind kind_of_mode(const switching::PairCorners& g, double alpha_1
 /// Groups of sliding surfaces that influence each other, and from them the way to solve.
 void ModeField::find_groups() {
   const auto m = sliding_.size();
-  groups_.clear();
-  group_size_.assign(m, 0);
-  condition_.assign(m, 1.0);
-  speed_.assign(m, not_a_number);
-  kind_.assign(m, std::nullopt);
+  groups_.lists.clear();
+  groups_.size.assign(m, 0);
+  groups_.condition.assign(m, 1.0);
+  groups_.speed.assign(m, not_a_number);
+  groups_.kind.assign(m, std::nullopt);
   std::vector<bool> placed(m, false);
-  for (std::size_t row = 0; row < m; ++row) row_of_[at(sliding_[row])] = static_cast<int>(row);
+  for (std::size_t row = 0; row < m; ++row) groups_.row_of[at(sliding_[row])] = static_cast<int>(row);
   for (std::size_t first = 0; first < m; ++first) {
     if (placed[first]) continue;
     std::vector<std::size_t> group{first};
@@ -54,76 +54,78 @@ void ModeField::find_groups() {
     for (std::size_t k = 0; k < group.size(); ++k) {
       const int i = sliding_[group[k]];
       for (const int j : kernel_.neighbours(i)) {
-        if (row_of_[at(j)] >= 0) place(at(row_of_[at(j)]));
+        if (groups_.row_of[at(j)] >= 0) place(at(groups_.row_of[at(j)]));
       }
       for (std::size_t other = 0; !kernel_.region_groups().empty() && other < m; ++other) {
         if (same_group(kernel_, i, sliding_[other])) place(other);
       }
     }
     std::sort(group.begin(), group.end());
-    group_size_[first] = group.size();
-    groups_.push_back(std::move(group));
+    groups_.size[first] = group.size();
+    groups_.lists.push_back(std::move(group));
   }
   find_large_groups();
-  for (const int j : sliding_) row_of_[at(j)] = -1;
-  solve_ = !affine_in_alpha_     ? SlidingSolve::nonaffine
-           : groups_.size() == m ? SlidingSolve::decoupled
-                                 : SlidingSolve::coupled;
-  newton_.assign(m, std::nullopt);
-  selections_.resize(m);
-  for (const auto& group : groups_) {
+  for (const int j : sliding_) groups_.row_of[at(j)] = -1;
+  solve_ = !affine_in_alpha_           ? SlidingSolve::nonaffine
+           : groups_.lists.size() == m ? SlidingSolve::decoupled
+                                       : SlidingSolve::coupled;
+  groups_.newton.assign(m, std::nullopt);
+  groups_.selections.resize(m);
+  for (const auto& group : groups_.lists) {
     if (!is_in_large(group[0]) && (group.size() > 2 || several_regions(group[0])))
-      newton_[group[0]].emplace(static_cast<int>(group.size()));
+      groups_.newton[group[0]].emplace(static_cast<int>(group.size()));
   }
 }
 
 /// Whether a row is in a group with several regions of one group by `indicator`: their weights follow from linear
 /// equations, and their exits are the zeros of these.
 bool ModeField::several_regions(std::size_t row) const {
-  if (regions_.empty()) return false;
-  const auto group = std::find_if(groups_.begin(), groups_.end(),
+  if (ties_.regions.empty()) return false;
+  const auto group = std::find_if(groups_.lists.begin(), groups_.lists.end(),
                                   [&](const auto& rows) { return std::binary_search(rows.begin(), rows.end(), row); });
-  return std::any_of(regions_.begin(), regions_.end(), [&](const SlidingRegions& regions) {
+  return std::any_of(ties_.regions.begin(), ties_.regions.end(), [&](const SlidingRegions& regions) {
     return regions.rows.size() > 1 && std::binary_search(group->begin(), group->end(), regions.rows.front());
   });
 }
 
 void ModeField::find_regions(const ModeState& state) {
-  regions_.clear();
-  independent_.clear();
+  ties_.regions.clear();
+  rows_.independent.rows.clear();
   for (const auto& group : kernel_.region_groups()) {
     SlidingRegions regions;
     regions.reference = reference_of(state, group);
     for (std::size_t row = 0; row < sliding_.size(); ++row) {
       if (group.holds(sliding_[row])) regions.rows.push_back(row);
     }
-    if (!regions.rows.empty()) regions_.push_back(std::move(regions));
+    if (!regions.rows.empty()) ties_.regions.push_back(std::move(regions));
   }
-  ties_known_ = std::none_of(regions_.begin(), regions_.end(), [](const auto& r) { return r.rows.size() > 1; });
+  ties_.known =
+      std::none_of(ties_.regions.begin(), ties_.regions.end(), [](const auto& r) { return r.rows.size() > 1; });
 }
 
 /// Behind gradients(): which rows of regions depend on others, once in a mode, and how they do.
 void ModeField::find_ties() {
-  if (ties_known_ && independent_.empty()) return;
-  for (auto& regions : regions_) {
-    if (regions.rows.size() < 2 || (ties_known_ && (!regions.tie || regions.constant))) continue;
-    take_rows(rows_, regions.rows, tie_rows_);
-    if (ties_known_ && tie_rows_ == regions.gradients) continue;
-    regions.gradients = tie_rows_;
-    if (ties_known_) {
-      regions.tie->polytope().move(coordinates_in(regions.basis, tie_rows_));
+  if (ties_.known && rows_.independent.rows.empty()) return;
+  for (auto& regions : ties_.regions) {
+    if (regions.rows.size() < 2 || (ties_.known && (!regions.tie || regions.constant))) continue;
+    take_rows(rows_.dense, regions.rows, ties_.rows);
+    if (ties_.known && ties_.rows == regions.gradients) continue;
+    regions.gradients = ties_.rows;
+    if (ties_.known) {
+      regions.tie->polytope().move(coordinates_in(regions.basis, ties_.rows));
       continue;
     }
-    regions.basis = basis_of(tie_rows_);
-    if (regions.basis.spans_all(tie_rows_.rows())) continue;
-    auto polytope = switching::RegionPolytope::make(coordinates_in(regions.basis, tie_rows_));
+    regions.basis = basis_of(ties_.rows);
+    if (regions.basis.spans_all(ties_.rows.rows())) continue;
+    auto polytope = switching::RegionPolytope::make(coordinates_in(regions.basis, ties_.rows));
     // Two exits for each row are what there is for the facets.
     if (!polytope || polytope->facets().size() > 2 * regions.rows.size()) continue;
     regions.tie.emplace(std::move(*polytope));
-    regions.constant = std::all_of(regions.rows.begin(), regions.rows.end(), [&](auto r) { return constant_row_[r]; });
+    regions.constant =
+        std::all_of(regions.rows.begin(), regions.rows.end(), [&](auto r) { return rows_.is_constant[r]; });
   }
-  if (!ties_known_) find_independent_rows();
-  ties_known_ = true;
+  if (!ties_.known) find_independent_rows();
+  ties_.known = true;
 }
 
 void ModeField::find_independent_rows() {
@@ -134,21 +136,21 @@ void ModeField::find_independent_rows() {
     return std::none_of(base.begin(), base.end(), [&](auto k) { return regions->rows[at(k)] == row; });
   };
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    if (!is_dependent(row)) independent_.push_back(static_cast<Eigen::Index>(row));
+    if (!is_dependent(row)) rows_.independent.rows.push_back(static_cast<Eigen::Index>(row));
   }
-  if (independent_.size() == sliding_.size()) independent_.clear();
+  if (rows_.independent.rows.size() == sliding_.size()) rows_.independent.rows.clear();
 }
 
 std::vector<int> ModeField::independent() const {
-  if (independent_.empty()) return sliding_;
+  if (rows_.independent.rows.empty()) return sliding_;
   std::vector<int> surfaces;
-  for (const auto row : independent_) surfaces.push_back(sliding_[at(row)]);
+  for (const auto row : rows_.independent.rows) surfaces.push_back(sliding_[at(row)]);
   return surfaces;
 }
 
 /// The regions of a row, if they depend on each other.
-const ModeField::SlidingRegions* ModeField::tie_of(std::size_t row) const {
-  for (const auto& regions : regions_) {
+const SlidingRegions* ModeField::tie_of(std::size_t row) const {
+  for (const auto& regions : ties_.regions) {
     if (regions.tie && std::binary_search(regions.rows.begin(), regions.rows.end(), row)) return &regions;
   }
   return nullptr;
@@ -157,7 +159,7 @@ const ModeField::SlidingRegions* ModeField::tie_of(std::size_t row) const {
 /// The reference of a group has the weight that the others leave; where there are several others, that weight ends the
 /// mode at 0, and none of theirs at 1.
 void ModeField::weigh_references() {
-  for (const auto& regions : regions_) {
+  for (const auto& regions : ties_.regions) {
     const auto& rows = regions.rows;
     double weight = 1.0;
     for (const std::size_t row : rows) weight -= alpha_[at(sliding_[row])];
@@ -170,14 +172,14 @@ void ModeField::weigh_references() {
 bool ModeField::has_loss(std::size_t row) const {
   if (const auto* regions = tie_of(row)) return regions->rows.front() == row;
   if (several_regions(row)) return on_other_surface(row);
-  return solve_ == SlidingSolve::nonaffine || (solve_ == SlidingSolve::coupled && group_size_[row] > 1);
+  return solve_ == SlidingSolve::nonaffine || (solve_ == SlidingSolve::coupled && groups_.size[row] > 1);
 }
 
 /// Of the first row of a group with several regions: whether a surface is in it. The equations are not linear then.
 bool ModeField::on_other_surface(std::size_t row) const {
-  return group_size_[row] > 1 && std::any_of(groups_.begin(), groups_.end(), [&](const auto& group) {
+  return groups_.size[row] > 1 && std::any_of(groups_.lists.begin(), groups_.lists.end(), [&](const auto& group) {
            return group.front() == row && std::any_of(group.begin(), group.end(), [&](std::size_t other) {
-                    return std::none_of(regions_.begin(), regions_.end(), [&](const auto& regions) {
+                    return std::none_of(ties_.regions.begin(), ties_.regions.end(), [&](const auto& regions) {
                       return std::binary_search(regions.rows.begin(), regions.rows.end(), other);
                     });
                   });
@@ -186,26 +188,26 @@ bool ModeField::on_other_surface(std::size_t row) const {
 
 bool ModeField::has_stability(std::size_t row) const {
   if (const auto* regions = tie_of(row)) return regions->rows.front() == row;
-  return solve_ == SlidingSolve::coupled && group_size_[row] > 1 && !several_regions(row);
+  return solve_ == SlidingSolve::coupled && groups_.size[row] > 1 && !several_regions(row);
 }
 
 /// Surfaces that no other sliding one influences: all at once.
 void ModeField::evaluate_alone(double t, const double* x) {
   const auto alone = [&](const auto& group) { return group.size() == 1 && tie_of(group.front()) == nullptr; };
   bool any = false;
-  for (const auto& group : groups_) {
+  for (const auto& group : groups_.lists) {
     if (!alone(group)) continue;
     trial_[at(sliding_[group.front()])] = 1.0;
     any = true;
   }
   if (!any) return;
   kernel_.field(t, x, trial_.data(), f_[1].data());
-  for (const auto& group : groups_) {
+  for (const auto& group : groups_.lists) {
     if (!alone(group)) continue;
     const std::size_t row = group.front();
     const auto j = at(sliding_[row]);
     trial_[j] = 0.0;
-    exits_[row].above = normal_velocity(row, f_[1]);
+    exits_[row].above = rows_.velocity(row, f_[1]);
     alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
   }
 }
@@ -214,13 +216,13 @@ void ModeField::evaluate_groups(double t, const double* x) {
   trial_ = start_alpha_;
   for (const int j : sliding_) trial_[at(j)] = 0.0;
   kernel_.field(t, x, trial_.data(), f_[0].data());
-  for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {normal_velocity(row, f_[0]), 0.0, 0.0, 0.0};
+  for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {rows_.velocity(row, f_[0]), 0.0, 0.0, 0.0};
   evaluate_alone(t, x);
-  for (const auto& rows : groups_) {
-    const auto tie = std::find_if(regions_.begin(), regions_.end(), [&](const auto& regions) {
+  for (const auto& rows : groups_.lists) {
+    const auto tie = std::find_if(ties_.regions.begin(), ties_.regions.end(), [&](const auto& regions) {
       return regions.tie && regions.rows.front() == rows.front();
     });
-    if (tie != regions_.end()) {
+    if (tie != ties_.regions.end()) {
       evaluate_tie(t, x, *tie);
       continue;
     }
@@ -230,7 +232,7 @@ void ModeField::evaluate_groups(double t, const double* x) {
     }
     if (rows.size() > 1 && !is_in_large(rows[0])) evaluate_many(t, x, rows);
   }
-  if (large_) evaluate_large(t, x, *large_);
+  if (groups_.large) evaluate_large(t, x, *groups_.large);
   weigh_references();
   kernel_.field(t, x, alpha_.data(), f_[0].data());
 }
@@ -243,17 +245,17 @@ void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::
   for (std::size_t corner = 1; corner < 4; ++corner) {
     for (std::size_t k = 0; k < 2; ++k) trial_[at(sliding_[rows[k]])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
     kernel_.field(t, x, trial_.data(), f_[1].data());
-    for (std::size_t k = 0; k < 2; ++k) g[corner][k] = normal_velocity(rows[k], f_[1]);
+    for (std::size_t k = 0; k < 2; ++k) g[corner][k] = rows_.velocity(rows[k], f_[1]);
   }
   for (const std::size_t row : rows) trial_[at(sliding_[row])] = 0.0;
-  auto& kind = kind_[rows[0]];
+  auto& kind = groups_.kind[rows[0]];
   if (!kind) kind = kind_of_mode(g, start_alpha_[at(sliding_[rows[0]])], start_alpha_[at(sliding_[rows[1]])]);
   const auto root = switching::bilinear_root(g, *kind);
   const auto selections = switching::balanced_selections(g, root);
   for (std::size_t k = 0; k < 2; ++k) {
     alpha_[at(sliding_[rows[k]])] = selections[k];
     exits_[rows[k]] = {root.alpha[k], root.from_one[k], 0.0, 0.0};
-    condition_[rows[k]] = root.condition[k];
+    groups_.condition[rows[k]] = root.condition[k];
   }
   exits_[rows[0]].loss = root.discriminant;
   exits_[rows[0]].stability = root.stability;
@@ -265,11 +267,11 @@ void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions)
   const auto& base = regions.basis.base;
   const auto velocities = [&](const std::vector<double>& f, Eigen::Index column) {
     for (std::size_t k = 0; k < base.size(); ++k) {
-      tie_rates_(static_cast<Eigen::Index>(k), column) = normal_velocity(rows[at(base[k])], f);
+      ties_.rates(static_cast<Eigen::Index>(k), column) = rows_.velocity(rows[at(base[k])], f);
     }
   };
-  tie_rates_.resize(static_cast<Eigen::Index>(base.size()), static_cast<Eigen::Index>(rows.size()) + 1);
-  theta_.assign(1, start_alpha_[at(regions.reference)]);
+  ties_.rates.resize(static_cast<Eigen::Index>(base.size()), static_cast<Eigen::Index>(rows.size()) + 1);
+  ties_.theta.assign(1, start_alpha_[at(regions.reference)]);
   velocities(f_[0], 0);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto j = at(sliding_[rows[k]]);
@@ -277,16 +279,16 @@ void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions)
     kernel_.field(t, x, trial_.data(), f_[1].data());
     trial_[j] = 0.0;
     velocities(f_[1], static_cast<Eigen::Index>(k) + 1);
-    theta_.push_back(start_alpha_[j]);
+    ties_.theta.push_back(start_alpha_[j]);
   }
-  const bool found = regions.tie->solve(tie_rates_, theta_.data());
+  const bool found = regions.tie->solve(ties_.rates, ties_.theta.data());
   const auto facets = regions.tie->polytope().facets().size();
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    alpha_[at(sliding_[rows[k]])] = found ? theta_[k + 1] : not_a_number;
+    alpha_[at(sliding_[rows[k]])] = found ? ties_.theta[k + 1] : not_a_number;
     const auto excess = [&](std::size_t facet) { return facet < facets ? regions.tie->excess(facet) : 1.0; };
     exits_[rows[k]] = {found ? excess(2 * k) : not_a_number, found ? -excess(2 * k + 1) : not_a_number, 0.0, 0.0};
     // Weights are as good as the equations are regular.
-    condition_[rows[k]] = 1.0 / std::max(std::abs(regions.tie->determinant()), 1e-6);
+    groups_.condition[rows[k]] = 1.0 / std::max(std::abs(regions.tie->determinant()), 1e-6);
   }
   exits_[rows[0]].loss = regions.tie->determinant();
 }
@@ -295,27 +297,28 @@ void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions)
 void ModeField::find_speeds(switching::ProjectedField velocities, const std::vector<std::size_t>& rows) {
   std::vector<double> alpha(rows.size());
   std::vector<double> g(rows.size());
-  for (const std::size_t row : rows) speed_[row] = 0.0;
+  for (const std::size_t row : rows) groups_.speed[row] = 0.0;
   for (std::size_t corner = 0; corner < std::size_t{1} << rows.size(); ++corner) {
     for (std::size_t k = 0; k < rows.size(); ++k) alpha[k] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
     velocities(alpha.data(), g.data());
-    for (std::size_t k = 0; k < rows.size(); ++k) speed_[rows[k]] = std::max(speed_[rows[k]], std::abs(g[k]));
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      groups_.speed[rows[k]] = std::max(groups_.speed[rows[k]], std::abs(g[k]));
   }
 }
 
 /// More than two surfaces: Newton from the selections of the mode.
 void ModeField::evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows) {
-  for (std::size_t k = 0; k < rows.size(); ++k) selections_[k] = start_alpha_[at(sliding_[rows[k]])];
+  for (std::size_t k = 0; k < rows.size(); ++k) groups_.selections[k] = start_alpha_[at(sliding_[rows[k]])];
   const auto velocities = [&](const double* alpha, double* g) {
     for (std::size_t k = 0; k < rows.size(); ++k) trial_[at(sliding_[rows[k]])] = alpha[k];
     kernel_.field(t, x, trial_.data(), f_[1].data());
-    for (std::size_t k = 0; k < rows.size(); ++k) g[k] = normal_velocity(rows[k], f_[1]);
+    for (std::size_t k = 0; k < rows.size(); ++k) g[k] = rows_.velocity(rows[k], f_[1]);
   };
-  if (std::isnan(speed_[rows[0]])) find_speeds(velocities, rows);
-  const bool found = newton_[rows[0]]->solve(velocities, selections_.data());
+  if (std::isnan(groups_.speed[rows[0]])) find_speeds(velocities, rows);
+  const bool found = groups_.newton[rows[0]]->solve(velocities, groups_.selections.data());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto j = at(sliding_[rows[k]]);
-    alpha_[j] = found ? selections_[k] : not_a_number;
+    alpha_[j] = found ? groups_.selections[k] : not_a_number;
     exits_[rows[k]] = {alpha_[j], alpha_[j] - 1.0, 0.0, 0.0};
     trial_[j] = 0.0;
   }
@@ -323,20 +326,20 @@ void ModeField::evaluate_many(double t, const double* x, const std::vector<std::
 
 /// Behind evaluate_groups(): what only the event functions need of groups of more than two.
 void ModeField::find_stability() {
-  for (std::size_t k = 0; large_ && k < large_->parts.size(); ++k) {
-    const auto& part = large_->parts[k];
+  for (std::size_t k = 0; groups_.large && k < groups_.large->parts.size(); ++k) {
+    const auto& part = groups_.large->parts[k];
     if (part.size() < 2) continue;
-    auto& exit = exits_[large_->rows[at(part.front())]];
-    std::tie(exit.loss, exit.stability) = loss_and_stability(large_->newton->jacobian(), part);
+    auto& exit = exits_[groups_.large->rows[at(part.front())]];
+    std::tie(exit.loss, exit.stability) = loss_and_stability(groups_.large->newton->jacobian(), part);
   }
-  for (const auto& rows : groups_) {
+  for (const auto& rows : groups_.lists) {
     if (const auto* regions = tie_of(rows[0])) {
       auto& exit = exits_[regions->rows.front()];
       exit.stability = std::isfinite(exit.below) ? regions->tie->stability() : not_a_number;
       continue;
     }
-    if (rows.size() <= 2 || !newton_[rows[0]]) continue;
-    const auto& newton = *newton_[rows[0]];
+    if (rows.size() <= 2 || !groups_.newton[rows[0]]) continue;
+    const auto& newton = *groups_.newton[rows[0]];
     const auto jacobian = newton.jacobian();
     double size = 1.0;
     for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -347,10 +350,10 @@ void ModeField::find_stability() {
     exits_[rows[0]].loss = newton.determinant() / size;
     // Some scaling makes the root stable: one that Fisher and Fuller know of, or that of the hidden dynamics where the
     // mode began, which may have settled there beyond their condition.
-    scaled_.assign(jacobian.begin(), jacobian.end());
-    for (std::size_t k = 0; k < scaled_.size(); ++k) scaled_[k] /= speed_[rows[k / rows.size()]];
+    groups_.scaled.assign(jacobian.begin(), jacobian.end());
+    for (std::size_t k = 0; k < groups_.scaled.size(); ++k) groups_.scaled[k] /= groups_.speed[rows[k / rows.size()]];
     exits_[rows[0]].stability =
-        std::max(newton.margin(), switching::hurwitz_margin(scaled_, static_cast<int>(rows.size())));
+        std::max(newton.margin(), switching::hurwitz_margin(groups_.scaled, static_cast<int>(rows.size())));
   }
 }
 
@@ -359,11 +362,12 @@ double ModeField::root_distance(double t, const double* x) {
   select(t, x);
   find_stability();
   double smallest = 1.0;
-  for (std::size_t row = 0; row < sliding_.size() && large_; ++row) {
-    if (is_in_large(row) && group_size_[row] > 1) smallest = std::min(smallest, std::abs(exits_[row].loss));
+  for (std::size_t row = 0; row < sliding_.size() && groups_.large; ++row) {
+    if (is_in_large(row) && groups_.size[row] > 1) smallest = std::min(smallest, std::abs(exits_[row].loss));
   }
-  for (const auto& rows : groups_) {
-    if (rows.size() < 2 || (rows.size() > 2 && !newton_[rows[0]]) || !has_loss(rows[0]) || tie_of(rows[0]) != nullptr)
+  for (const auto& rows : groups_.lists) {
+    if (rows.size() < 2 || (rows.size() > 2 && !groups_.newton[rows[0]]) || !has_loss(rows[0]) ||
+        tie_of(rows[0]) != nullptr)
       continue;
     const double loss = exits_[rows[0]].loss;
     smallest = std::min(smallest, rows.size() == 2 ? std::sqrt(std::max(0.0, loss)) : std::abs(loss));
@@ -373,7 +377,7 @@ double ModeField::root_distance(double t, const double* x) {
 
 void ModeField::follow(double t, const double* x) {
   const auto is_large = [&](const auto& rows) { return rows.size() > 2 || tie_of(rows.front()) != nullptr; };
-  if (solve_ != SlidingSolve::coupled || std::none_of(groups_.begin(), groups_.end(), is_large)) return;
+  if (solve_ != SlidingSolve::coupled || std::none_of(groups_.lists.begin(), groups_.lists.end(), is_large)) return;
   select(t, x);
   if (is_finite(alpha_)) start_alpha_ = alpha_;
 }

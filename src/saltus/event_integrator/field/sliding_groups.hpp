@@ -1,0 +1,53 @@
+// Sliding surfaces that influence each other, and regions among them whose gradients depend on each other.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/event_integrator/field/large_group.hpp"
+#include "saltus/event_integrator/mode/region_ties.hpp"
+#include "saltus/switching/plane/bilinear_root.hpp"
+#include "saltus/switching/regions/region_weights.hpp"
+#include "saltus/switching/selections/selection_newton.hpp"
+
+namespace saltus::event_integrator {
+
+/// Rows of the sliding surfaces in groups, how each group is solved, and work space for that.
+struct SlidingGroups {
+  explicit SlidingGroups(std::size_t surfaces) : row_of(surfaces, -1) {}
+
+  std::vector<std::vector<std::size_t>> lists;  ///< rows that influence each other, connected and ascending
+  std::vector<std::size_t> size;                ///< by row, 0 behind the first of a group
+  /// By row, for the first of a pair: known once it was evaluated.
+  std::vector<std::optional<switching::RootKind>> kind;
+  std::vector<std::optional<switching::SelectionNewton>> newton;  ///< by row, for the first of a larger group
+  std::optional<LargeGroup> large;
+  std::vector<double> selections;  ///< of the group at hand
+  std::vector<double> speed;       ///< by row: in groups of more than two
+  std::vector<double> scaled;      ///< G of such a group, rows over their speeds
+  std::vector<double> condition;   ///< by row: of a coupled selection
+  std::vector<int> row_of;         ///< by surface while groups are found, -1 = it is not slid on
+};
+
+/// Regions of a group by `indicator` that slide, as rows, and the reference they are measured against.
+struct SlidingRegions {
+  int reference = 0;
+  std::vector<std::size_t> rows;
+  /// Where the gradients of `rows` depend on each other.
+  std::optional<switching::RegionWeights> tie = {};
+  RegionBasis basis = {};
+  Eigen::MatrixXd gradients = {};  ///< that the tie was made of
+  bool constant = false;           ///< gradients of all rows
+};
+
+struct SlidingTies {
+  std::vector<SlidingRegions> regions;
+  bool known = false;  ///< of this mode: once gradients are
+  Eigen::MatrixXd rows, rates;
+  std::vector<double> theta;
+};
+
+}  // namespace saltus::event_integrator

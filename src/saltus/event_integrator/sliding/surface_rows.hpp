@@ -1,0 +1,67 @@
+// The gradients of the surfaces that are slid on, J, and what moves or corrects along them.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "saltus/base/at.hpp"
+#include "saltus/event_integrator/sliding/normal_rows.hpp"
+
+namespace saltus::event_integrator {
+
+/// Rows of which some depend on others: the normal equations of those that do not.
+class IndependentRows {
+ public:
+  std::vector<Eigen::Index> rows;  ///< ascending; empty = all
+
+  /// residual = (J J^T)^-1 residual of these rows of J, 0 of the others; false where they depend on each other.
+  [[nodiscard]] bool solve(const Eigen::MatrixXd& gradients, Eigen::VectorXd& residual);
+
+ private:
+  Eigen::MatrixXd part_, matrix_;
+  Eigen::VectorXd part_residual_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+};
+
+/// J by rows, d psi_I/dt beside it; gradients that no mode changes are kept.
+class SurfaceRows {
+ public:
+  explicit SurfaceRows(std::size_t surfaces) : known_(surfaces) {}
+
+  NormalRows normal;
+  Eigen::MatrixXd dense;           ///< m x n_x where it is asked for
+  Eigen::VectorXd rates;           ///< d psi_I/dt
+  Eigen::VectorXd residual;        ///< of the normal equations
+  double square = 0.0;             ///< |J|^2 of one row
+  std::vector<bool> is_constant;   ///< in this mode
+  std::vector<int> coordinate;     ///< the only nonzero column of a row, or -1
+  std::vector<double> correction;  ///< n_x, J^T z
+  IndependentRows independent;
+
+  void resize(std::size_t m, std::size_t states, bool with_dense);
+  /// A gradient that was the same in all modes so far.
+  [[nodiscard]] bool take_known(std::size_t row, std::size_t surface);
+  /// `keep`: from now on it is known.
+  void take(std::size_t row, std::size_t surface, const std::vector<double>& gradient, bool constant, bool keep);
+  /// grad psi . f + d psi/dt
+  [[nodiscard]] double velocity(std::size_t row, const std::vector<double>& f) const {
+    const auto r = static_cast<Eigen::Index>(row);
+    if (const int only = coordinate[row]; only >= 0) return normal[row].value.front() * f[at(only)] + rates[r];
+    return normal[row].dot(f, rates[r]);
+  }
+  /// residual = (J J^T)^-1 residual; false where rows depend on each other.
+  [[nodiscard]] bool solve_normal_equations();
+
+ private:
+  struct KnownRow {
+    bool known = false;
+    SparseRow row = {};
+    double rate = 0.0;
+  };
+  std::vector<KnownRow> known_;  ///< by surface
+};
+
+}  // namespace saltus::event_integrator
