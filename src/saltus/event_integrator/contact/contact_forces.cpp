@@ -24,8 +24,13 @@ std::vector<ContactMode> mode_options(const ContactPoint& point, int i) {
 /// The least margin of all conditions.
 double margin_of(const ContactPoint& point, const std::vector<int>& resting, const ContactForces& found) {
   const int m = point.contacts();
-  const double force = found.forces.cwiseAbs().maxCoeff();
-  const double largest = (point.acceleration.cwiseAbs() + (point.influence * found.forces).cwiseAbs()).maxCoeff();
+  // Where a body leaves a gap, what is left of its force and acceleration is the rounding of their terms.
+  constexpr double rounded = 1e-5;
+  const double largest = std::max(
+      rounded * point.terms, (point.acceleration.cwiseAbs() + (point.influence * found.forces).cwiseAbs()).maxCoeff());
+  const double response = point.influence.cwiseAbs().maxCoeff();
+  const double force =
+      std::max(response > 0.0 ? rounded * point.terms / response : 0.0, found.forces.cwiseAbs().maxCoeff());
   const auto part = [](double value, double size) { return size > 0.0 ? value / size : 0.0; };
   double least = std::numeric_limits<double>::infinity();
   const auto note = [&](double value, double size) { least = std::min(least, part(value, size)); };

@@ -12,6 +12,7 @@ struct ContactPoint {
   Eigen::MatrixXd influence;                  ///< 2 m x 2 m: d velocity / d impulse, (N, T)' M^-1 (N, T)
   Eigen::VectorXd velocity;                   ///< 2 m
   Eigen::VectorXd acceleration;               ///< 2 m, without contact forces
+  double terms = 0.0;                         ///< the largest sum of the sizes of the terms of an acceleration
   std::vector<double> friction, restitution;  ///< m; friction 0: frictionless
 
   [[nodiscard]] int contacts() const { return static_cast<int>(friction.size()); }

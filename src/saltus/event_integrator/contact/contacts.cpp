@@ -35,12 +35,28 @@ bool Contacts::owns(int jump) const {
   return std::any_of(contacts_.begin(), contacts_.end(), [jump](const auto& contact) { return contact.jump == jump; });
 }
 
+/// Along the motion without contact forces.
+double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
+  auto open = x;
+  for (const auto& contact : contacts_) {
+    for (const int state : {contact.active, contact.stick, contact.slip, contact.share}) open[at(state)] = 0.0;
+  }
+  std::vector<double> rate(x.size());
+  kernel_.field(t, open.data(), alpha.data(), rate.data());
+  VectorXd free(static_cast<Eigen::Index>(system_.velocities.size()));
+  for (Eigen::Index k = 0; k < free.size(); ++k) free(k) = rate[at(system_.velocities[static_cast<std::size_t>(k)])];
+  const VectorXd bias = values_.acceleration - values_.rows * free;
+  const VectorXd terms = values_.rows.cwiseAbs() * free.cwiseAbs() + bias.cwiseAbs();
+  return terms.allFinite() ? terms.maxCoeff() : 0.0;
+}
+
 ContactPoint Contacts::point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
   kernel_.contacts(t, x.data(), alpha.data(), values_);
   ContactPoint point;
   point.influence = values_.rows * values_.responses;
   point.velocity = values_.velocity;
   point.acceleration = values_.acceleration;
+  point.terms = acceleration_terms(t, alpha, x);
   point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<Eigen::Index>(i)) : 0.0);

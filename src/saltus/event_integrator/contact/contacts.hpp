@@ -62,6 +62,8 @@ class Contacts {
 
  private:
   [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha,
+                                          const std::vector<double>& x) const;
   [[nodiscard]] ContactMode mode_of(int contact, const std::vector<double>& x) const;
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
              const std::vector<int>& ended) const;
