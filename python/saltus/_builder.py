@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections.abc
 import json
 import typing
 
@@ -216,15 +217,20 @@ class Builder:
         gap: Operand,
         *,
         tangent: Rates | None = None,
+        tangents: collections.abc.Sequence[Rates] | None = None,
         friction: Operand = None,
         restitution: Operand = None,
     ) -> None:
-        """Bodies that touch where `gap` is 0; `tangent` has the coefficients of velocities by position."""
+        """Bodies that touch where `gap` is 0.
+
+        `tangent` has the coefficients of velocities by position; in space there are two of them, `tangents`.
+        """
         self._take(name)
         entry = {
             "name": name,
             "gap": self._own(gap),
             "tangent": None if tangent is None else self._rates(tangent),
+            "tangents": None if tangents is None else [self._rates(one) for one in tangents],
             "friction": None if friction is None else self._own(friction),
             "restitution": None if restitution is None else self._own(restitution),
         }

@@ -230,6 +230,20 @@ def test_contacts_and_mechanics():
         m.contact("ground", gap=x)
 
 
+def test_friction_in_a_plane():
+    """A puck stops where |v| = mu g t, in the direction of its velocity."""
+    m = saltus.Builder("puck")
+    x, y, z = m.state("x", 0), m.state("y", 0), m.state("z", 0)
+    u, v, w = m.state("u", 3), m.state("v", 4), m.state("w", 0)
+    m.mechanics([x, y, z], [u, v, w], force={w: -10})
+    m.contact("table", gap=z, tangents=[{x: 1}, {y: 1}], friction=0.5)
+    r = m.simulate(until=2, rtol=1e-10)
+    assert [e.kind for e in r.events] == ["stick"]
+    assert r.events[0].t == pytest.approx(1, abs=1e-9)
+    assert (r.final["x"], r.final["y"]) == pytest.approx((1.5, 2), abs=1e-9)
+    assert (r.final["u"], r.final["v"]) == (0, 0)
+
+
 def test_hysteresis_switches_at_its_thresholds():
     m = saltus.Builder("room")
     T = m.state("T", 15)

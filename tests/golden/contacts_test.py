@@ -28,6 +28,28 @@ friction = "mu"
 until = 2
 """
 
+SPACE = """[model]
+name = "ball in space"
+[states]
+x = 0
+y = 0
+z = 1
+vx = 3
+vy = 4
+vz = 0
+[mechanics]
+positions = ["x", "y", "z"]
+velocities = ["vx", "vy", "vz"]
+potential = "10*z"
+[[contacts]]
+name = "ground"
+gap = "z"
+tangents = [{ x = 1 }, { y = 1 }]
+friction = 0.3
+[simulate]
+until = 3
+"""
+
 PENDULUM = """[model]
 name = "double pendulum"
 [states]
@@ -75,6 +97,8 @@ MALFORMED = {
     "no name": ('name = "ground"\n', "", 14, "no `name`"),
     "tangent over velocities": ("{ x = 1 }", "{ vx = 1 }", 17, "no position", "the position whose rate this velocity is"),
     "friction without tangent": ("tangent = { x = 1 }\n", "", 17, "friction and no `tangent`"),
+    "three tangents": ("tangent = { x = 1 }", "tangents = [{ x = 1 }, { x = 1 }, { z = 1 }]", 15, "has 3 tangents"),
+    "tangents in one direction": ("tangent = { x = 1 }", "tangents = [{ x = 1 }, { x = 2 }]", 15, "have one direction"),
     "friction negative": ('friction = "mu"', "friction = -1", 18, "friction of 'ground' is -1"),
     "friction of a state": ('friction = "mu"', 'friction = "z"', 18, "no constant"),
     "restitution": ('friction = "mu"', "restitution = 1.5", 18, "restitution of 'ground' is 1.5", "[0, 1]"),
@@ -116,6 +140,33 @@ class Contacts(tool.ToolTest):
         energy = [outputs[4] for outputs in rows["outputs"]]
         self.assertTrue(all(b <= a + 1e-9 for a, b in zip(energy, energy[1:])))
         self.run_tool("report", "r.json", "--out", "r.html", code=0)
+
+    def test_friction_in_a_plane(self):
+        result = self.result(SPACE, "--rtol", "1e-11", "--atol", "1e-13")
+        self.assertEqual(result["outputs"], ["gap(ground)", "force(ground)", "friction(ground)[1]", "friction(ground)[2]",
+                                             "impulse(ground)", "energy"])
+        impact, stick = result["events"]
+        self.assertEqual((impact["kind"], stick["kind"]), ("impact", "stick"))
+        speed = 5 - 0.3 * math.sqrt(20)
+        for k, part in ((3, 0.6), (4, 0.8)):
+            self.assertAlmostEqual(impact["x_after"][k], part * speed, delta=1e-9)
+            self.assertAlmostEqual(impact["impulse"][0][k - 2], -part * 0.3 * math.sqrt(20), delta=1e-9)
+        self.assertAlmostEqual(stick["t"] - impact["t"], speed / 3, delta=1e-9)
+        self.assertEqual(result["final"]["x"][3:], [0.0, 0.0, 0.0])
+        self.run_tool("report", "r.json", "--out", "r.html", code=0)
+        _, err = self.run_tool("simulate", "m.toml", "--method", "fesd", code=2)
+        self.assertIn("has two tangents", err)
+
+    def test_a_block_pushed_sideways_on_an_incline(self):
+        block = (tool.SOURCE / "examples/contacts/block-on-incline.toml").read_text(encoding="utf-8")
+        for integrator in ("dopri5", "radau5"):
+            result = self.result(block, "--rtol", "1e-11", "--atol", "1e-13", "--integrator", integrator)
+            (stick,) = result["events"]
+            self.assertEqual(stick["kind"], "stick")
+            self.assertAlmostEqual(stick["t"], 0.6914766235042755, delta=1e-9)
+            friction = result["trajectory"]["outputs"][-1][2:4]
+            self.assertAlmostEqual(friction[0], -9.81 * math.sin(0.3), delta=1e-9)
+            self.assertAlmostEqual(friction[1], 0.0, delta=1e-9)
 
     def test_a_slip_that_turns_around_is_told(self):
         """Times of a Taylor series of degree 40 that shares nothing with the engine."""

@@ -5,14 +5,14 @@
 
 namespace saltus::evaluation {
 
-/// Of m contacts and n velocities; see model::ContactSystem.
+/// Of m contacts with r rows and n velocities; see model::ContactSystem.
 struct ContactValues {
   using Rows = Eigen::MatrixXd;
   Eigen::VectorXd gap;                    ///< m
-  Eigen::VectorXd velocity;               ///< 2 m
-  Rows rows;                              ///< 2 m x n
-  Rows responses;                         ///< n x 2 m
-  Eigen::VectorXd acceleration;           ///< 2 m, without contact forces
+  Eigen::VectorXd velocity;               ///< r
+  Rows rows;                              ///< r x n
+  Rows responses;                         ///< n x r
+  Eigen::VectorXd acceleration;           ///< r, without contact forces
   Eigen::VectorXd friction, restitution;  ///< m
 };
 

@@ -90,12 +90,13 @@ double ModelKernel::jump_delay(int jump, double t, const double* x, const double
 
 void ModelKernel::contacts(double t, const double* x, const double* alpha, ContactValues& values) const {
   auto& self = *implementation_;
-  const auto m = self.contact_function.function().numel_out(0), n = self.contact_function.function().size2_out(2);
+  const auto& function = self.contact_function.function();
+  const auto m = function.numel_out(0), r = function.size1_out(2), n = function.size2_out(2);
   values.gap.resize(m);
-  values.velocity.resize(2 * m);
-  values.rows.resize(2 * m, n);
-  values.responses.resize(n, 2 * m);
-  values.acceleration.resize(2 * m);
+  values.velocity.resize(r);
+  values.rows.resize(r, n);
+  values.responses.resize(n, r);
+  values.acceleration.resize(r);
   values.friction.resize(m);
   values.restitution.resize(m);
   self.contact_function(

@@ -21,6 +21,7 @@
 #include "saltus/model/statement/model_scope_internal.hpp"
 #include "saltus/model/statement/modes_internal.hpp"
 #include "saltus/model/time_freezing/freeze_internal.hpp"
+#include "saltus/model/written_friction_internal.hpp"
 
 namespace saltus::model {
 namespace {
@@ -71,11 +72,11 @@ class Build {
       for (const auto& entry : quantities_->expressions) scope_.note_names(entry.expression);
     }
     using Step = MaybeError (Build::*)();
-    constexpr Step steps[] = {&Build::names,       &Build::overrides,  &Build::parameters, &Build::controls,
-                              &Build::states,      &Build::bounds,     &Build::switching,  &Build::dynamics,
-                              &Build::modes,       &Build::outputs,    &Build::quantities, &Build::events,
-                              &Build::jumps,       &Build::hysteresis, &Build::mechanics,  &Build::inputs,
-                              &Build::definitions, &Build::freeze};
+    constexpr Step steps[] = {&Build::names,  &Build::overrides,   &Build::parameters, &Build::controls,
+                              &Build::states, &Build::bounds,      &Build::switching,  &Build::dynamics,
+                              &Build::modes,  &Build::outputs,     &Build::quantities, &Build::events,
+                              &Build::jumps,  &Build::hysteresis,  &Build::mechanics,  &Build::written_friction,
+                              &Build::inputs, &Build::definitions, &Build::freeze};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return error;
     }
@@ -286,6 +287,12 @@ class Build {
     return state_mechanics(recognition_, statement_, **stated, take);
   }
 
+  /// Finite elements and optimal control take the right-hand side as it is written.
+  MaybeError written_friction() {
+    if (freezing_ || quantities_ != nullptr) return std::nullopt;
+    return state_written_friction(recognition_, statement_);
+  }
+
   MaybeError freeze() {
     if (freezing_) freeze_rates(statement_, *freezing_);
     return std::nullopt;
@@ -464,7 +471,13 @@ bool stands_still(const Description& description) {
 
 Expected<System> build(const Description& description, const std::vector<Override>& overrides) {
   auto system = build_with(description, overrides, nullptr);
-  if (!system || !stands_still(description)) return system;
+  if (!system) return system;
+  if (!stands_still(description)) {
+    if (system->contacts.empty()) return system;
+    const Quantities none;
+    system->frozen = std::make_shared<const FrozenSystem>(FrozenSystem{build_with(description, overrides, &none)});
+    return system;
+  }
   FreezingPlan plan{.purpose = FrozenFor::simulation};
   auto frozen = build_guarded(description, [&] { return Build(description, overrides, nullptr, plan).run(); });
   system->frozen = std::make_shared<const FrozenSystem>(FrozenSystem{std::move(frozen)});

@@ -15,6 +15,7 @@
 #include "saltus/model/statement/modes_internal.hpp"
 #include "saltus/model/statement/names_internal.hpp"
 #include "saltus/model/statement/statement_internal.hpp"
+#include "saltus/model/written_friction_internal.hpp"
 
 namespace saltus::model {
 
@@ -134,19 +135,23 @@ struct Builder::Parts {
       ContactStatement contact{.name = name, .gap = gaps[i]};
       contact.friction = entry(options.friction, "friction of " + name);
       contact.restitution = entry(options.restitution, "restitution of " + name);
-      if (!options.tangent.empty()) contact.tangent = SX::zeros(1, static_cast<casadi_int>(stated.positions.size()));
-      for (const auto& [position, value] : options.tangent) {
-        const auto place =
-            std::find_if(stated.positions.begin(), stated.positions.end(),
-                         [&, &wanted = position](int state) { return whole.states[at(state)].name == wanted; });
-        if (place == stated.positions.end()) {
-          return Error{ErrorCode::unknown_name,
-                       fmt::format("the tangent of '{}' has the entry '{}', which is no position", name, position),
-                       "a tangent is a row over the positions",
-                       {},
-                       {}};
+      for (const auto* tangent : {&options.tangent, &options.second_tangent}) {
+        if (tangent->empty()) continue;
+        SX row = SX::zeros(1, static_cast<casadi_int>(stated.positions.size()));
+        for (const auto& [position, value] : *tangent) {
+          const auto place =
+              std::find_if(stated.positions.begin(), stated.positions.end(),
+                           [&, &wanted = position](int state) { return whole.states[at(state)].name == wanted; });
+          if (place == stated.positions.end()) {
+            return Error{ErrorCode::unknown_name,
+                         fmt::format("the tangent of '{}' has the entry '{}', which is no position", name, position),
+                         "a tangent is a row over the positions",
+                         {},
+                         {}};
+          }
+          row(0, place - stated.positions.begin()) = entry(value, "tangent of " + name);
         }
-        contact.tangent(0, place - stated.positions.begin()) = entry(value, "tangent of " + name);
+        contact.tangents = contact.tangents.is_empty() ? row : SX::vertcat({contact.tangents, row});
       }
       stated.contacts.push_back(std::move(contact));
     }
@@ -471,6 +476,7 @@ Expected<System> Builder::build() {
     Statement statement = parts_->statement;  // more may be stated later
     if (auto error = add_modes(parts_->recognition, statement)) return tl::unexpected(*error);
     if (auto error = parts_->add_mechanics(statement)) return tl::unexpected(*error);
+    if (auto error = state_written_friction(parts_->recognition, statement)) return tl::unexpected(*error);
     return assemble(parts_->recognition, statement);
   } catch (const std::exception& exception) {
     return tl::unexpected(

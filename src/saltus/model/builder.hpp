@@ -57,11 +57,12 @@ struct Mechanics {
   std::map<std::string, casadi::SX> force{};  ///< by velocity; absent: 0
 };
 
-/// gap >= 0, with friction along a tangent (interface.md, [[contacts]]).
+/// gap >= 0, with friction along a tangent, or in the plane of two (docs/model-file.md, [[contacts]]).
 struct ContactOptions {
-  std::map<std::string, casadi::SX> tangent{};  ///< by position; empty: frictionless
-  casadi::SX friction = 0.0;                    ///< >= 0, over parameters
-  casadi::SX restitution = 0.0;                 ///< in [0, 1], over parameters
+  std::map<std::string, casadi::SX> tangent{};         ///< by position; empty: frictionless
+  casadi::SX friction = 0.0;                           ///< >= 0, over parameters
+  casadi::SX restitution = 0.0;                        ///< in [0, 1], over parameters
+  std::map<std::string, casadi::SX> second_tangent{};  ///< by position; empty: slip has one direction
 };
 
 /// Builds a System step by step; the names, the rules and the errors are those of the model file.

@@ -243,9 +243,12 @@ result::Result frame(const model::System& system, const SimulateOptions& options
 
 Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
                                   const Observers& observers, KernelStore* kernels) {
+  const bool by_elements = options.method == Method::fesd || options.method == Method::timestepping;
+  if (by_elements && system.frozen && system.frozen->system && !system.frozen->system->freezing)
+    return simulate(*system.frozen->system, options, observers, kernels);
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
-  if (options.method == Method::fesd || options.method == Method::timestepping) {
+  if (by_elements) {
     const SymbolicLock lock;  // its problems are made while it runs
     if (system.frozen) {
       return simulate_frozen(system, options, std::move(integration_or->output.times), frame(system, options),

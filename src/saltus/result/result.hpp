@@ -89,7 +89,7 @@ struct Event {
   std::optional<std::vector<double>> alpha_before, alpha_after;
   std::optional<Regions> regions_before, regions_after;
   std::vector<ContactMode> contact_modes_before{}, contact_modes_after{};  ///< by contact; empty without contacts
-  std::optional<std::vector<std::array<double, 2>>> impulse{};  ///< of an impact, by contact: normal, tangential
+  std::optional<std::vector<std::vector<double>>> impulse{};  ///< of an impact, by contact: normal, tangential ones
   std::vector<double> x, x_after;
   std::optional<bool> unique = true;  ///< nullopt: not decided
   std::vector<Alternative> alternatives;

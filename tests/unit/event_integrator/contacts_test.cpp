@@ -238,6 +238,36 @@ TEST(Contacts, ABlockOnTwoFeetSticksAndSlides) {
   expect_apart(run, {0, 4});
 }
 
+/// Two discs on a table, one pushed: it rolls off the other one. Where the force ends, gap, rate and acceleration are
+/// roundings.
+TEST(Contacts, ADiscLeavesAnotherOneAtEveryTolerance) {
+  model::Builder model("discs");
+  const SX x1 = model.state("x1", {-2.0}), y1 = model.state("y1", {0.0}), x2 = model.state("x2", {-1.0}),
+           y2 = model.state("y2", {0.1});
+  const SX vx1 = model.state("vx1", {4.0}), vy1 = model.state("vy1", {0.0}), vx2 = model.state("vx2", {0.0}),
+           vy2 = model.state("vy2", {0.0});
+  model.mechanics(
+      {.positions = {"x1", "y1", "x2", "y2"},
+       .velocities = {"vx1", "vy1", "vx2", "vy2"},
+       .mass = SX::diag(SX(std::vector<double>{2.0, 2.0, 1.0, 1.0})),
+       .force = {{"vx1", 10.0 - 2.0 * vx1}, {"vy1", -2.0 * vy1}, {"vx2", -2.0 * vx2}, {"vy2", -2.0 * vy2}}});
+  model.contact("discs", (x1 - x2) * (x1 - x2) + (y1 - y2) * (y1 - y2) - 0.25);
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor, ode::Method::radau5}) {
+    for (const double rtol : {1e-5, 1e-6, 1e-7, 1e-9, 1e-11}) {
+      SCOPED_TRACE(::testing::Message() << static_cast<int>(method) << " " << rtol);
+      IntegrationOptions options;
+      options.method = method;
+      options.tolerances = {rtol, rtol / 100.0};
+      options.until = 2.0;
+      options.max_events = 100;
+      const auto run = run_model(model, options);
+      expect_done(run);
+      EXPECT_EQ(kinds(run), (std::vector<EventKind>{EventKind::impact, EventKind::lift_off}));
+      EXPECT_NEAR(run.events.back().t, 0.46576918, 1e3 * rtol);
+    }
+  }
+}
+
 TEST(Contacts, CollidesAtTheStart) {
   model::Builder model("start");
   const SX y = model.state("y", {0.0});

@@ -9,13 +9,22 @@
 
 namespace saltus::event_integrator {
 
-enum class ContactMode { open, closed, stick, slip_up, slip_down };
+enum class ContactMode {
+  open,
+  closed,  ///< frictionless
+  stick,
+  slip_up,    ///< along the tangent
+  slip_down,  ///< against it
+  slip        ///< in the plane of two tangents
+};
+[[nodiscard]] constexpr bool slips(ContactMode mode) { return mode >= ContactMode::slip_up; }
 
 /// Modes of all contacts, and their forces.
 struct ContactForces {
   std::vector<ContactMode> modes;
-  Eigen::VectorXd forces;        ///< 2 m
-  Eigen::VectorXd acceleration;  ///< 2 m, with them
+  std::vector<Eigen::Vector2d> directions;  ///< by contact, of slip: unit vectors over its tangents; 0 without
+  Eigen::VectorXd forces;                   ///< r
+  Eigen::VectorXd acceleration;             ///< r, with them
   /// What is left until the first of the modes ends, relative to its terms: a normal force or acceleration, the
   /// distance to the edge of a friction cone. Negative: a mode does not hold.
   double margin = 0.0;

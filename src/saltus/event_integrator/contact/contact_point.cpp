@@ -1,5 +1,7 @@
 #include "saltus/event_integrator/contact/contact_point.hpp"
 
+#include <algorithm>
+
 #include <Eigen/QR>
 
 namespace saltus::event_integrator {
@@ -33,6 +35,31 @@ bool HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& st
   if (!((rows * unknowns - right).cwiseAbs().maxCoeff() <= 1e-8 * size)) return false;
   forces += columns * unknowns;
   return true;
+}
+
+bool find_directions(const ContactPoint& point, const std::vector<int>& free, std::vector<Eigen::Vector2d>& directions,
+                     const Eigen::VectorXd& forces, const Eigen::VectorXd& rates, FunctionRef<bool()> solve) {
+  // A step along the rate, as long as would turn friction around: one contact without other influences needs one.
+  constexpr int most_steps = 500;
+  constexpr double settled = 1e-15, found = 1e-9;
+  double change = 0.0;
+  for (int step = 0; step < most_steps; ++step) {
+    if (!solve()) return false;
+    change = 0.0;
+    for (const int i : free) {
+      const int first = point.tangent_row(i, 0), second = point.tangent_row(i, 1);
+      const double push = point.friction[static_cast<std::size_t>(i)] * forces(i) *
+                          std::max(point.influence(first, first), point.influence(second, second));
+      auto& direction = directions[static_cast<std::size_t>(i)];
+      const Eigen::Vector2d rate = point.along(rates, i);
+      const Eigen::Vector2d next = push > 0.0 ? Eigen::Vector2d(direction + rate / push) : rate;
+      if (!(next.norm() > 0.0)) continue;
+      change = std::max(change, (next.normalized() - direction).norm());
+      direction = next.normalized();
+    }
+    if (change <= settled) break;
+  }
+  return change <= found && solve();
 }
 
 }  // namespace saltus::event_integrator

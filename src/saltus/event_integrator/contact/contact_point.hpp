@@ -5,18 +5,30 @@
 
 #include <Eigen/Core>
 
+#include "saltus/base/function_ref.hpp"
+
 namespace saltus::event_integrator {
 
-/// m contacts: vectors over them have the normal parts first, then the tangential ones (0 without friction).
+/// m contacts: vectors over them have the normal parts first, then those along first tangents, then those along second
+/// ones if a contact has two (0 where there is none); r = 2 m or 3 m.
 struct ContactPoint {
-  Eigen::MatrixXd influence;                  ///< 2 m x 2 m: d velocity / d impulse, (N, T)' M^-1 (N, T)
-  Eigen::VectorXd velocity;                   ///< 2 m
-  Eigen::VectorXd acceleration;               ///< 2 m, without contact forces
+  Eigen::MatrixXd influence;                  ///< r x r: d velocity / d impulse, (N, T)' M^-1 (N, T)
+  Eigen::VectorXd velocity;                   ///< r
+  Eigen::VectorXd acceleration;               ///< r, without contact forces
+  double terms = 0.0;                         ///< the largest sum of the sizes of the terms of an acceleration
   std::vector<double> friction, restitution;  ///< m; friction 0: frictionless
+  std::vector<int> tangents;                  ///< m; 0: frictionless
+  std::vector<bool> has_gap;                  ///< m; false: always closed, with the normal force 1
 
   [[nodiscard]] int contacts() const { return static_cast<int>(friction.size()); }
+  [[nodiscard]] bool in_plane(int i) const { return tangents[static_cast<std::size_t>(i)] == 2; }
+  /// The row of a tangent of a contact.
+  [[nodiscard]] int tangent_row(int i, int tangent) const { return (1 + tangent) * contacts() + i; }
   [[nodiscard]] double normal_velocity(int i) const { return velocity(i); }
-  [[nodiscard]] double tangential_velocity(int i) const { return velocity(contacts() + i); }
+  /// The part of a vector along both tangents of a contact; of one tangent the second component is 0.
+  [[nodiscard]] Eigen::Vector2d along(const Eigen::VectorXd& vector, int i) const {
+    return {vector(tangent_row(i, 0)), in_plane(i) ? vector(tangent_row(i, 1)) : 0.0};
+  }
 };
 
 /// Unknown forces or impulses y of contacts, in forces = given + columns y, that keep the rows `held` of
@@ -26,12 +38,22 @@ struct HeldRows {
   Eigen::MatrixXd columns;
   std::vector<int> held;
 
-  explicit HeldRows(int contacts) : given(Eigen::VectorXd::Zero(2 * contacts)), columns(2 * contacts, 0) {}
+  explicit HeldRows(Eigen::Index rows) : given(Eigen::VectorXd::Zero(rows)), columns(rows, 0) {}
   /// One more unknown and its row; returns its number.
   int hold(int row);
   /// The forces; nothing where the rows contradict each other.
   [[nodiscard]] bool solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start,
                            Eigen::VectorXd& forces) const;
 };
+
+/// Directions in which contacts begin to slip from rest: along the rates of their tangential velocities, which follow
+/// from the directions.
+/// @param free        contacts that begin to slip, in a plane each
+/// @param directions  by contact, unit vectors: those of `free` are found, from what they are
+/// @param solve       finds forces and rates (r each) for the directions; returns false where there are none
+/// @return false where solve does, or nothing is found
+[[nodiscard]] bool find_directions(const ContactPoint& point, const std::vector<int>& free,
+                                   std::vector<Eigen::Vector2d>& directions, const Eigen::VectorXd& forces,
+                                   const Eigen::VectorXd& rates, FunctionRef<bool()> solve);
 
 }  // namespace saltus::event_integrator

@@ -1,7 +1,6 @@
 #include "saltus/event_integrator/contact/contact_results.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -29,12 +28,14 @@ class Shown {
     return result;
   }
 
-  [[nodiscard]] std::vector<std::array<double, 2>> impulses(const std::vector<double>& before,
-                                                            const std::vector<double>& x) const {
-    std::vector<std::array<double, 2>> result;
+  [[nodiscard]] std::vector<std::vector<double>> impulses(const std::vector<double>& before,
+                                                          const std::vector<double>& x) const {
+    std::vector<std::vector<double>> result;
     for (const auto& contact : contacts_.contacts) {
-      const auto k = at(contact.impulse);
-      result.push_back({x[k] - before[k], x[k + 1] - before[k + 1]});
+      result.emplace_back();
+      for (int k = contact.impulse; k <= contact.impulse + contact.tangents(); ++k) {
+        result.back().push_back(x[at(k)] - before[at(k)]);
+      }
     }
     return result;
   }
@@ -51,7 +52,7 @@ class Shown {
   /// Whether a slip goes on in the other direction.
   [[nodiscard]] static bool turns(const model::Contact& contact, const std::vector<double>& x,
                                   const std::vector<double>& after) {
-    return x[at(contact.slip)] != 0.0 && after[at(contact.slip)] != 0.0 &&
+    return !contact.in_plane && x[at(contact.slip)] != 0.0 && after[at(contact.slip)] != 0.0 &&
            x[at(contact.share)] * after[at(contact.share)] < 0.0;
   }
 
@@ -63,7 +64,8 @@ class Shown {
     event.name.reset();
     bool hit = false, closes = false, opens = false, sticks = false;
     for (std::size_t i = 0; i < before.size(); ++i) {
-      const bool pushed = impulse[i][0] != 0.0 || impulse[i][1] != 0.0;
+      const bool pushed =
+          std::any_of(impulse[i].begin(), impulse[i].end(), [](double component) { return component != 0.0; });
       if (before[i] == after[i] && !pushed && !turns(contacts_.contacts[i], event.x, event.x_after)) continue;
       event.surfaces.push_back(contacts_.contacts[i].name);
       hit = hit || pushed;

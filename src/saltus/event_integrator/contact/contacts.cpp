@@ -19,6 +19,9 @@ using Eigen::VectorXd;
 constexpr double small_velocity =
     1e-9;  ///< relative size of velocities that count as none at an event: location and projection
 
+/// Of the speed at which a slip in a plane is looked at again: located to its rounding.
+constexpr double ends_below = 1.0 + 1e-3;
+
 }  // namespace
 
 Contacts::Contacts(const evaluation::ModelKernel& kernel, const model::System& system)
@@ -35,15 +38,33 @@ bool Contacts::owns(int jump) const {
   return std::any_of(contacts_.begin(), contacts_.end(), [jump](const auto& contact) { return contact.jump == jump; });
 }
 
+/// Along the motion without contact forces.
+double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
+  auto open = x;
+  for (const auto& contact : contacts_) {
+    std::fill(open.begin() + contact.active, open.begin() + contact.impulse, 0.0);
+  }
+  std::vector<double> rate(x.size());
+  kernel_.field(t, open.data(), alpha.data(), rate.data());
+  VectorXd free(static_cast<Eigen::Index>(system_.velocities.size()));
+  for (Eigen::Index k = 0; k < free.size(); ++k) free(k) = rate[at(system_.velocities[static_cast<std::size_t>(k)])];
+  const VectorXd bias = values_.acceleration - values_.rows * free;
+  const VectorXd terms = values_.rows.cwiseAbs() * free.cwiseAbs() + bias.cwiseAbs();
+  return terms.allFinite() ? terms.maxCoeff() : 0.0;
+}
+
 ContactPoint Contacts::point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
   kernel_.contacts(t, x.data(), alpha.data(), values_);
   ContactPoint point;
   point.influence = values_.rows * values_.responses;
   point.velocity = values_.velocity;
   point.acceleration = values_.acceleration;
+  point.terms = acceleration_terms(t, alpha, x);
   point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<Eigen::Index>(i)) : 0.0);
+    point.has_gap.push_back(contacts_[i].has_gap);
+    point.tangents.push_back(!contacts_[i].has_friction ? 0 : contacts_[i].in_plane ? 2 : 1);
   }
   return point;
 }
@@ -53,12 +74,14 @@ ContactMode Contacts::mode_of(int contact, const std::vector<double>& x) const {
   if (x[at(entry.closed)] == 0.0) return ContactMode::open;
   if (!entry.has_friction) return ContactMode::closed;
   if (x[at(entry.slip)] == 0.0) return ContactMode::stick;
+  if (entry.in_plane) return ContactMode::slip;
   return x[at(entry.share)] > 0.0 ? ContactMode::slip_up : ContactMode::slip_down;
 }
 
 /// Whether the gap is 0: by the mode, by the event, or to the rounding of its terms.
 bool Contacts::touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const {
-  if (x[at(contacts_[at(contact)].closed)] != 0.0 || contains(ended, contact)) return true;
+  const auto& entry = contacts_[at(contact)];
+  if (!entry.has_gap || x[at(entry.closed)] != 0.0 || contains(ended, contact)) return true;
   double terms = 0.0;
   for (std::size_t k = 0; k < system_.positions.size(); ++k) {
     terms += std::abs(values_.rows(contact, static_cast<Eigen::Index>(k)) * x[at(system_.positions[k])]);
@@ -66,23 +89,83 @@ bool Contacts::touches(int contact, const std::vector<double>& x, const std::vec
   return std::abs(values_.gap(contact)) <= std::max(64.0 * rounding_unit * terms, 1e-12);  // as at a start
 }
 
+double Contacts::fastest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
+  double speed = moment.time_scale * point.acceleration.cwiseAbs().maxCoeff();
+  for (const int velocity : system_.velocities) speed = std::max(speed, std::abs(x[at(velocity)]));
+  return speed;
+}
+
+/// Below this speed a slip in a plane has no direction: within the tolerances it may as well be at rest.
+double Contacts::slowest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
+  const double speed = fastest(moment, point, x);
+  constexpr double part = 0.01, rounded = 1e-13, least = 1e-40;
+  return std::max({moment.tolerances.atol + part * moment.tolerances.rtol * speed, rounded * speed, least});
+}
+
+/// Whether what ends at a point is not a slip in a plane, but the range of speeds in which it is followed.
+bool Contacts::reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
+                               const std::vector<double>& x) const {
+  if (mode_of(contact, x) != ContactMode::slip) return false;
+  const double speed = point.along(point.velocity, contact).norm();
+  const auto bounds = at(contacts_[at(contact)].speeds);
+  const bool at_bound = speed <= ends_below * std::sqrt(x[bounds]) || ends_below * speed >= std::sqrt(x[bounds + 1]);
+  return at_bound && speed > ends_below * slowest(moment, point, x);
+}
+
+/// Of slips in a plane. Where the velocity vanishes the force has no direction, and two functions would have to be 0 at
+/// once: so steps end at ever smaller speeds, down to one that is none.
+void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x) {
+  if (std::none_of(contacts_.begin(), contacts_.end(), [&](const auto& contact) { return contact.in_plane; })) return;
+  const ContactPoint point = point_at(moment.t, moment.alpha, x);
+  constexpr double apart = 10.0;
+  for (int i = 0; i < point.contacts(); ++i) {
+    const auto& contact = contacts_[at(i)];
+    if (!contact.in_plane) continue;
+    const bool slipping = x[at(contact.slip)] != 0.0;
+    const double speed = point.along(point.velocity, i).norm();
+    const double least = std::max(speed / apart, slowest(moment, point, x)), largest = apart * speed;
+    x[at(contact.speeds)] = slipping ? least * least : 1.0;
+    x[at(contact.speeds) + 1] = slipping ? largest * largest : 1.0;
+  }
+}
+
+/// At rest the force of a slip has no direction: it begins with a speed that is none.
+void Contacts::start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction,
+                          std::vector<double>& x) {
+  const ContactPoint point = point_at(moment.t, moment.alpha, x);
+  std::vector<int> rows{point.tangent_row(contact, 0), point.tangent_row(contact, 1)};
+  VectorXd change = 4.0 * slowest(moment, point, x) * direction;
+  if (x[at(contacts_[at(contact)].active)] != 0.0) {
+    rows.push_back(contact);
+    change.conservativeResize(3);
+    change(2) = 0.0;
+  }
+  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
+  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
+  const VectorXd velocities = response * influence.ldlt().solve(change - values_.velocity(rows));
+  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+    x[at(system_.velocities[k])] += velocities(static_cast<Eigen::Index>(k));
+  }
+}
+
 /// Velocities that are 0 by their modes, or to their rounding, are 0; so is that of a slip that ends.
 void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
                      const std::vector<int>& ended) const {
   const int m = point.contacts();
-  VectorXd terms = VectorXd::Zero(2 * m);
-  double fastest = moment.time_scale * point.acceleration.cwiseAbs().maxCoeff();
+  VectorXd terms = VectorXd::Zero(point.velocity.size());
   for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    const double speed = std::abs(x[at(system_.velocities[k])]);
-    terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * speed;
-    fastest = std::max(fastest, speed);
+    terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * std::abs(x[at(system_.velocities[k])]);
   }
-  for (int row = 0; row < 2 * m; ++row) {
+  const double small = small_velocity * fastest(moment, point, x), end = ends_below * slowest(moment, point, x);
+  std::vector<bool> slip_has_ended(at(m), false);
+  for (const int i : ended) {
+    if (slips(mode_of(i, x)))
+      slip_has_ended[at(i)] = point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
+  }
+  for (int row = 0; row < static_cast<int>(point.velocity.size()); ++row) {
     const int contact = row % m;
     const auto mode = mode_of(contact, x);
-    const bool slips = mode == ContactMode::slip_up || mode == ContactMode::slip_down;
-    const bool slip_ends =
-        slips && contains(ended, contact) && std::abs(point.velocity(row)) <= small_velocity * fastest;
+    const bool slip_ends = slip_has_ended[at(contact)];
     const bool held = row < m ? mode != ContactMode::open : mode == ContactMode::stick || slip_ends;
     if (held || std::abs(point.velocity(row)) <= 16.0 * rounding_unit * terms(row)) point.velocity(row) = 0.0;
   }
@@ -91,13 +174,22 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
 std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                              std::vector<double>& x) {
   ContactPoint point = point_at(moment.t, moment.alpha, x);
+  if (!ended.empty() &&
+      std::all_of(ended.begin(), ended.end(), [&](int i) { return reaches_a_speed(moment, i, point, x); })) {
+    bound_speeds(moment, x);
+    return std::nullopt;
+  }
+  const auto slowly = [&](int i) {
+    return mode_of(i, x) == ContactMode::slip && point.along(point.velocity, i).isZero(0.0);
+  };
   clean(moment, point, x, ended);
   std::vector<int> touching;
   std::vector<std::vector<ContactMode>> excluded(contacts_.size());
   for (int i = 0; i < point.contacts(); ++i) {
     if (!touches(i, x, ended)) continue;
     touching.push_back(i);
-    if (contains(ended, i)) excluded[at(i)].push_back(mode_of(i, x));
+    if (contains(ended, i) && !slowly(i) && !reaches_a_speed(moment, i, point, x))
+      excluded[at(i)].push_back(mode_of(i, x));
   }
   const bool closing =
       std::any_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) < 0.0; });
@@ -138,8 +230,9 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
     x[at(system_.velocities[k])] += change(static_cast<Eigen::Index>(k));
   }
   for (int i = 0; i < m; ++i) {
-    x[at(contacts_[at(i)].impulse)] += (*impulses)(i);
-    x[at(contacts_[at(i)].impulse + 1)] += (*impulses)(m + i);
+    const auto& contact = contacts_[at(i)];
+    x[at(contact.impulse)] += (*impulses)(i);
+    for (int k = 0; k < contact.tangents(); ++k) x[at(contact.impulse) + 1 + at(k)] += (*impulses)(m * (1 + k) + i);
   }
   const double size = point.velocity.cwiseAbs().maxCoeff();
   point = point_at(moment.t, moment.alpha, x);
@@ -181,8 +274,9 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
         names(touching), moment.t);
   }
   const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, resting, found, x);
-  enter(point, found[chosen], x);
+  enter(moment, point, found[chosen], x);
   static_cast<void>(project(moment.t, moment.alpha, x));
+  bound_speeds(moment, x);
   return std::nullopt;
 }
 
@@ -195,14 +289,17 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<
   for (std::size_t k = 0; k < found.size(); ++k) {
     auto ahead = x;
     const ContactPoint here = point_at(moment.t, moment.alpha, x);
-    enter(here, found[k], ahead);
+    enter(moment, here, found[k], ahead);
     std::vector<double> rate(x.size());
     kernel_.field(moment.t, ahead.data(), moment.alpha.data(), rate.data());
     for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += h * rate[i];
     ContactPoint later = point_at(moment.t + h, moment.alpha, ahead);
     for (const int i : resting) {
       // The sign of the slip is that of the mode.
-      if (found[k].modes[at(i)] == ContactMode::stick) later.velocity(later.contacts() + i) = 0.0;
+      if (found[k].modes[at(i)] != ContactMode::stick) continue;
+      for (int tangent = 0; tangent < later.tangents[at(i)]; ++tangent) {
+        later.velocity(later.tangent_row(i, tangent)) = 0.0;
+      }
     }
     ContactForces forces;
     if (!forces_in(later, resting, found[k].modes, forces)) continue;
@@ -217,7 +314,8 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<
 
 /// The discrete states of these modes. Of rows that depend on each other the first ones hold; the others follow, and a
 /// tangential force that does keeps its share of the friction cone.
-void Contacts::enter(const ContactPoint& point, const ContactForces& found, std::vector<double>& x) const {
+void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
+                     std::vector<double>& x) {
   const int m = point.contacts();
   std::vector<Eigen::VectorXd> basis;
   const auto independent = [&](int row) {
@@ -234,17 +332,23 @@ void Contacts::enter(const ContactPoint& point, const ContactForces& found, std:
     const bool closed = found.modes[at(i)] != ContactMode::open;
     x[at(contact.closed)] = closed ? 1.0 : 0.0;
     x[at(contact.active)] = closed && independent(i) ? 1.0 : 0.0;
-    x[at(contact.stick)] = x[at(contact.slip)] = x[at(contact.share)] = 0.0;
+    std::fill(x.begin() + contact.stick, x.begin() + contact.impulse, 0.0);
   }
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
     const auto mode = found.modes[at(i)];
-    if (mode == ContactMode::stick) {
-      if (independent(m + i)) {
-        x[at(contact.stick)] = 1.0;
-      } else if (const double limit = point.friction[at(i)] * found.forces(i); limit > 0.0) {
-        x[at(contact.share)] = std::clamp(-found.forces(m + i) / limit, -1.0, 1.0);
+    const double limit = point.friction[at(i)] * found.forces(i);
+    for (int k = 0; mode == ContactMode::stick && k < contact.tangents(); ++k) {
+      const int row = point.tangent_row(i, k);
+      if (independent(row)) {
+        x[at(contact.stick + k)] = 1.0;
+      } else if (limit > 0.0) {
+        x[at(contact.share + k)] = std::clamp(-found.forces(row) / limit, -1.0, 1.0);
       }
+    }
+    if (mode == ContactMode::slip) {
+      x[at(contact.slip)] = 1.0;
+      if (point.along(point.velocity, i).isZero(0.0)) start_slip(moment, i, found.directions[at(i)], x);
     } else if (mode == ContactMode::slip_up || mode == ContactMode::slip_down) {
       x[at(contact.share)] = mode == ContactMode::slip_up ? 1.0 : -1.0;
       // Held by another one that sticks: it is at the edge of its cone.
@@ -260,7 +364,10 @@ std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
     if (x[at(contacts_[at(i)].active)] != 0.0) rows.push_back(i);
   }
   for (int i = 0; i < m; ++i) {
-    if (x[at(contacts_[at(i)].stick)] != 0.0) rows.push_back(m + i);
+    const auto& contact = contacts_[at(i)];
+    for (int k = 0; k < contact.tangents(); ++k) {
+      if (x[at(contact.stick + k)] != 0.0) rows.push_back(m * (1 + k) + i);
+    }
   }
   return rows;
 }
@@ -313,7 +420,18 @@ bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<d
 }
 
 void Contacts::forget_impulses(std::vector<double>& x) const {
-  for (const auto& contact : contacts_) x[at(contact.impulse)] = x[at(contact.impulse + 1)] = 0.0;
+  for (const auto& contact : contacts_) {
+    std::fill_n(x.begin() + contact.impulse, 1 + contact.tangents(), 0.0);
+  }
+}
+
+bool Contacts::slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const {
+  if (none()) return false;
+  auto expected = x;
+  for (const auto& contact : contacts_) {
+    if (contact.in_plane) std::copy_n(x_after.begin() + contact.speeds, 2, expected.begin() + contact.speeds);
+  }
+  return expected == x_after && x != x_after;
 }
 
 std::optional<int> Contacts::jump_with_impulse(const std::vector<double>& x) const {

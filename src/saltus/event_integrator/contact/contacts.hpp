@@ -11,6 +11,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/contact/contact_forces.hpp"
 #include "saltus/model/system.hpp"
+#include "saltus/ode/stepper.hpp"
 
 namespace saltus::event_integrator {
 
@@ -19,6 +20,7 @@ struct ContactMoment {
   double t = 0.0;
   const std::vector<double>& alpha;
   double time_scale = 0.0;  ///< over which the fields change little
+  ode::Tolerances tolerances{};
 };
 
 /// Changes the discrete states that say the modes of contacts, and velocities at impacts. Everything else of a contact
@@ -57,12 +59,24 @@ class Contacts {
                                                   std::vector<double>& x);
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
+  /// Whether a jump of a contact has only bounded the speed of a slip in a plane anew.
+  [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
   /// Impulses belong to one instant.
   void forget_impulses(std::vector<double>& x) const;
 
  private:
   [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha,
+                                          const std::vector<double>& x) const;
   [[nodiscard]] ContactMode mode_of(int contact, const std::vector<double>& x) const;
+  [[nodiscard]] double fastest(const ContactMoment& moment, const ContactPoint& point,
+                               const std::vector<double>& x) const;
+  [[nodiscard]] double slowest(const ContactMoment& moment, const ContactPoint& point,
+                               const std::vector<double>& x) const;
+  [[nodiscard]] bool reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
+                                     const std::vector<double>& x) const;
+  void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
+  void start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction, std::vector<double>& x);
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
              const std::vector<int>& ended) const;
   [[nodiscard]] bool touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const;
@@ -73,7 +87,8 @@ class Contacts {
                                                       ContactPoint& point, std::vector<double>& x);
   [[nodiscard]] std::size_t best_ahead(const ContactMoment& moment, const std::vector<int>& resting,
                                        const std::vector<ContactForces>& found, const std::vector<double>& x);
-  void enter(const ContactPoint& point, const ContactForces& found, std::vector<double>& x) const;
+  void enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
+             std::vector<double>& x);
   void correct_positions(std::vector<double>& x) const;
   void correct_velocities(std::vector<double>& x) const;
   [[nodiscard]] std::vector<int> held_rows(const std::vector<double>& x) const;

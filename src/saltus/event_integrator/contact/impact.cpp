@@ -4,15 +4,21 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/ode/stepper.hpp"
+
 namespace saltus::event_integrator {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::VectorXd;
 
 /// What a contact does in a piece of the process.
 struct Branch {
   enum class Normal { open, held, pushed } normal = Normal::open;
-  int slip = 0;  ///< sign of the tangential velocity; 0: sticks, or has no friction
+  bool sticks = false;
+  /// Of slip: a unit vector over the tangents, 0 without; not known yet where a slip in a plane begins.
+  Vector2d direction = Vector2d::Zero();
+  bool begins = false;
 };
 
 constexpr double process_rounding = 1e-11;  ///< relative, of sums of products over many pieces
@@ -25,11 +31,11 @@ class Process {
         touching_(touching),
         m_(point.contacts()),
         velocity_(point.velocity),
-        impulse_(VectorXd::Zero(2 * m_)),
+        impulse_(VectorXd::Zero(velocity_.size())),
         stored_(touching.size(), 0.0),
         releasing_(touching.size(), false) {
     for (const int i : touching) {
-      size_ = std::max({size_, std::abs(velocity_(i)), std::abs(velocity_(m_ + i))});
+      size_ = std::max({size_, std::abs(velocity_(i)), slip(i).norm()});
       strength_ = std::max(strength_, point.influence(i, i));
     }
   }
@@ -42,6 +48,10 @@ class Process {
       if (!forced_ && !closes() && !release()) return impulse_;
       if (!choose()) return std::nullopt;
       forced_.reset();
+      if (turns()) {
+        advance_turning();
+        continue;
+      }
       const double length = piece_length();
       if (!(length <= largest_impulse * size_ / strength_)) return std::nullopt;
       advance(length);
@@ -52,11 +62,17 @@ class Process {
  private:
   [[nodiscard]] double friction(int i) const { return point_.friction[static_cast<std::size_t>(i)]; }
 
+  [[nodiscard]] Vector2d slip(int i) const { return point_.along(velocity_, i); }
+  [[nodiscard]] int tangents(int i) const { return point_.tangents[static_cast<std::size_t>(i)]; }
+
+  void stop_slip(int i) {
+    for (int tangent = 0; tangent < tangents(i); ++tangent) velocity_(point_.tangent_row(i, tangent)) = 0.0;
+  }
+
   void round() {
     for (const int i : touching_) {
-      for (const int row : {i, m_ + i}) {
-        if (std::abs(velocity_(row)) <= process_rounding * size_) velocity_(row) = 0.0;
-      }
+      if (std::abs(velocity_(i)) <= process_rounding * size_) velocity_(i) = 0.0;
+      if (slip(i).norm() <= process_rounding * size_) stop_slip(i);
     }
   }
 
@@ -90,46 +106,74 @@ class Process {
     }
     std::vector<Branch> result;
     for (const auto normal : normals) {
-      const double slip = velocity_(m_ + i);
+      const Vector2d along = slip(i);
       if (normal == Branch::Normal::open || friction(i) == 0.0) {
-        result.push_back({normal, 0});
-      } else if (slip != 0.0) {
-        result.push_back({normal, slip > 0.0 ? 1 : -1});
+        result.push_back({normal});
+      } else if (!along.isZero(0.0)) {
+        result.push_back({normal, false, along.normalized()});
       } else {
-        for (const int sign : {0, 1, -1}) result.push_back({normal, sign});
+        result.push_back({normal, true});
+        if (point_.in_plane(i)) {
+          result.push_back({normal, false, Vector2d::Zero(), true});
+        } else {
+          for (const double sign : {1.0, -1.0}) result.push_back({normal, false, {sign, 0.0}});
+        }
       }
     }
     return result;
   }
 
   /// The rates of all impulses in these branches, and those of the velocities.
-  bool rates(const std::vector<Branch>& branches) {
-    HeldRows rows(m_);
+  bool rates(std::vector<Branch>& branches) {
+    std::vector<int> beginning;
+    std::vector<Vector2d> directions(static_cast<std::size_t>(m_), Vector2d::Zero());
+    for (std::size_t k = 0; k < touching_.size(); ++k) {
+      if (branches[k].begins) beginning.push_back(touching_[k]);
+    }
+    if (beginning.empty()) return solve_rates(branches);
+    // Against the impulses that would keep them from slipping.
+    auto sticking = branches;
+    for (auto& branch : sticking) branch.sticks = branch.sticks || branch.begins;
+    const bool solved = solve_rates(sticking);
+    for (const int i : beginning) {
+      const Vector2d needed = solved ? Vector2d(-point_.along(rate_, i)) : Vector2d::Zero();
+      directions[static_cast<std::size_t>(i)] = needed.norm() > 0.0 ? needed.normalized() : Vector2d(1.0, 0.0);
+    }
+    return find_directions(point_, beginning, directions, rate_, change_, [&] {
+      for (std::size_t k = 0; k < touching_.size(); ++k) {
+        if (branches[k].begins) branches[k].direction = directions[static_cast<std::size_t>(touching_[k])];
+      }
+      return solve_rates(branches);
+    });
+  }
+
+  bool solve_rates(const std::vector<Branch>& branches) {
+    HeldRows rows(velocity_.size());
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const auto& branch = branches[k];
       if (branch.normal == Branch::Normal::open) continue;
-      const double along = -friction(i) * branch.slip;
-      if (branch.normal == Branch::Normal::pushed) {
-        rows.given(i) = 1.0;
-        rows.given(m_ + i) = along;
-      } else {
-        rows.columns(m_ + i, rows.hold(i)) = along;
+      const bool pushed = branch.normal == Branch::Normal::pushed;
+      if (pushed) rows.given(i) = 1.0;
+      const int normal = pushed ? -1 : rows.hold(i);
+      for (int tangent = 0; tangent < tangents(i); ++tangent) {
+        const int row = point_.tangent_row(i, tangent);
+        (pushed ? rows.given(row) : rows.columns(row, normal)) = -friction(i) * branch.direction(tangent);
+        if (branch.sticks) rows.hold(row);
       }
-      if (friction(i) > 0.0 && branch.slip == 0) rows.hold(m_ + i);
     }
-    if (!rows.solve(point_.influence, VectorXd::Zero(2 * m_), rate_)) return false;
+    if (!rows.solve(point_.influence, VectorXd::Zero(velocity_.size()), rate_)) return false;
     change_ = point_.influence * rate_;
     return true;
   }
 
-  [[nodiscard]] bool admits(const std::vector<Branch>& branches) {
+  [[nodiscard]] bool admits(std::vector<Branch>& branches) {
     if (!rates(branches)) return false;
     const double least = 1e-9, slow = least * strength_;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const auto& branch = branches[k];
-      const double normal = rate_(i), tangential = rate_(m_ + i);
+      const double normal = rate_(i);
       const bool at_rest = velocity_(i) == 0.0 && !pushes(k);
       if (branch.normal == Branch::Normal::held && !(normal >= -least && normal <= 1.0 + least)) return false;
       if (branch.normal == Branch::Normal::open) {
@@ -138,8 +182,9 @@ class Process {
       }
       if (branch.normal == Branch::Normal::pushed && at_rest && change_(i) > -slow) return false;
       if (friction(i) == 0.0) continue;
-      if (branch.slip == 0 && std::abs(tangential) > friction(i) * normal + least) return false;
-      if (branch.slip != 0 && velocity_(m_ + i) == 0.0 && branch.slip * change_(m_ + i) < -slow) return false;
+      if (branch.sticks && point_.along(rate_, i).norm() > friction(i) * normal + least) return false;
+      const bool from_rest = !branch.sticks && slip(i).isZero(0.0);
+      if (from_rest && branch.direction.dot(point_.along(change_, i)) < -slow) return false;
     }
     return true;
   }
@@ -171,10 +216,17 @@ class Process {
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       zero(i);
-      if (friction(i) > 0.0 && branches_[k].normal != Branch::Normal::open) zero(m_ + i);
+      if (friction(i) > 0.0 && branches_[k].normal != Branch::Normal::open) length = std::min(length, slip_length(i));
       if (releasing_[k]) length = std::min(length, release_length(k));
     }
     return length;
+  }
+
+  /// Up to where a slip that does not turn ends.
+  [[nodiscard]] double slip_length(int i) const {
+    const Vector2d along = slip(i), change = point_.along(change_, i);
+    const double closing = -along.dot(change);
+    return closing > 0.0 ? along.squaredNorm() / closing : std::numeric_limits<double>::infinity();
   }
 
   /// (v + v' p/2) p = work.
@@ -183,6 +235,18 @@ class Process {
     const double root = v * v + 2.0 * rate * stored_[k];
     return root >= 0.0 && v + std::sqrt(root) > 0.0 ? 2.0 * stored_[k] / (v + std::sqrt(root))
                                                     : std::numeric_limits<double>::infinity();
+  }
+
+  /// Whether a slip in a plane turns: its direction, and with it the rates, change along the piece.
+  [[nodiscard]] bool turns() const {
+    for (std::size_t k = 0; k < touching_.size(); ++k) {
+      const int i = touching_[k];
+      if (branches_[k].normal == Branch::Normal::open || !point_.in_plane(i)) continue;
+      const Vector2d along = slip(i), change = point_.along(change_, i);
+      const double across = along.x() * change.y() - along.y() * change.x();
+      if (std::abs(across) > 1e-14 * strength_ * along.norm()) return true;
+    }
+    return false;
   }
 
   void advance(double length) {
@@ -198,14 +262,118 @@ class Process {
     }
     velocity_ += length * change_;
     impulse_ += length * rate_;
+    keep_at_rest();
+  }
+
+  /// Velocities that are held are 0.
+  void keep_at_rest() {
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       if (stored_[k] == 0.0) releasing_[k] = false;
       const int i = touching_[k];
       if (branches_[k].normal == Branch::Normal::held) velocity_(i) = 0.0;
-      if (branches_[k].normal != Branch::Normal::open && friction(i) > 0.0 && branches_[k].slip == 0) {
-        velocity_(m_ + i) = 0.0;
+      if (branches_[k].normal != Branch::Normal::open && branches_[k].sticks) stop_slip(i);
+    }
+  }
+
+  /// Velocities, impulses and stored work as states over p.
+  [[nodiscard]] std::vector<double> states() const {
+    std::vector<double> y(velocity_.begin(), velocity_.end());
+    y.insert(y.end(), impulse_.begin(), impulse_.end());
+    y.insert(y.end(), stored_.begin(), stored_.end());
+    return y;
+  }
+
+  void take(const double* y) {
+    const auto n = velocity_.size();
+    velocity_ = Eigen::Map<const VectorXd>(y, n);
+    impulse_ = Eigen::Map<const VectorXd>(y + n, n);
+    std::copy_n(y + 2 * n, stored_.size(), stored_.begin());
+  }
+
+  /// Their rates in these branches, with the directions of slip there.
+  void differentiate(const double* y, double* rate) {
+    const auto n = velocity_.size();
+    const VectorXd velocity = Eigen::Map<const VectorXd>(y, n);
+    auto branches = branches_;
+    for (std::size_t k = 0; k < touching_.size(); ++k) {
+      const Vector2d along = point_.along(velocity, touching_[k]);
+      if (!branches[k].sticks && point_.in_plane(touching_[k]) && !along.isZero(0.0))
+        branches[k].direction = along.normalized();
+    }
+    const bool solved = solve_rates(branches);
+    const double undefined = std::numeric_limits<double>::quiet_NaN();
+    for (Eigen::Index row = 0; row < n; ++row) {
+      rate[row] = solved ? change_(row) : undefined;
+      rate[n + row] = rate_(row);
+    }
+    for (std::size_t k = 0; k < touching_.size(); ++k) {
+      const double e = point_.restitution[static_cast<std::size_t>(touching_[k])];
+      const double speed = branches[k].normal == Branch::Normal::pushed ? y[touching_[k]] : 0.0;
+      rate[2 * n + static_cast<Eigen::Index>(k)] = speed > 0.0 ? -speed : -e * e * speed;
+    }
+  }
+
+  /// What is above 0 as long as a piece in which slip turns goes on, in its branches.
+  [[nodiscard]] double left(const double* y) const {
+    double least = std::numeric_limits<double>::infinity();
+    const auto n = velocity_.size();
+    for (std::size_t k = 0; k < touching_.size(); ++k) {
+      const int i = touching_[k];
+      const auto note = [&](double now, double then) {
+        if (now != 0.0) least = std::min(least, then / now);
+      };
+      if (branches_[k].normal != Branch::Normal::held) note(velocity_(i), y[i]);
+      if (releasing_[k]) note(stored_[k], y[2 * n + static_cast<Eigen::Index>(k)]);
+      const bool slips = branches_[k].normal != Branch::Normal::open && tangents(i) == 1 && !branches_[k].sticks;
+      if (slips) note(velocity_(m_ + i), y[m_ + i]);
+    }
+    return least;
+  }
+
+  /// One step in p, no further than to the end of the branches; directions are followed by an eighth of their turn or
+  /// less.
+  void advance_turning() {
+    const auto field = [&](double, const double* y, double* rate) { differentiate(y, rate); };
+    const auto y = states();
+    std::vector<double> slope(y.size());
+    differentiate(y.data(), slope.data());
+    double length = size_ / strength_;
+    for (const int i : touching_) {
+      const double speed = slip(i).norm(), change = point_.along(change_, i).norm();
+      if (point_.in_plane(i) && speed > 0.0 && change > 0.0) length = std::min(length, speed / (8.0 * change));
+    }
+    ode::Stepper stepper(ode::Method::dop853, static_cast<int>(y.size()));
+    const ode::Tolerances tolerances{1e-13, 1e-13 * size_};
+    const auto try_length = [&](double h) {
+      return stepper.attempt(field, 0.0, y.data(), slope.data(), h, tolerances) == ode::Attempt::finite;
+    };
+    while (!try_length(length) || stepper.error_norm() > 1.0) length *= 0.5;
+    if (left(stepper.x_new()) < 0.0) {
+      double low = 0.0, high = length;
+      for (int halving = 0; halving < 60; ++halving) {
+        const double middle = 0.5 * (low + high);
+        if (!try_length(middle)) break;
+        (left(stepper.x_new()) < 0.0 ? high : low) = middle;
+      }
+      static_cast<void>(try_length(high));
+      end_branches(stepper.x_new());
+    } else {
+      take(stepper.x_new());
+    }
+    keep_at_rest();
+  }
+
+  /// What has changed its sign there is 0.
+  void end_branches(const double* y) {
+    const VectorXd before = velocity_;
+    take(y);
+    for (const int i : touching_) {
+      for (const int row : {i, m_ + i}) {
+        const bool one_tangent = row == i || tangents(i) == 1;
+        if (one_tangent && before(row) * velocity_(row) < 0.0) velocity_(row) = 0.0;
       }
     }
+    for (double& work : stored_) work = std::max(work, 0.0);
   }
 
   const ContactPoint& point_;
@@ -225,7 +393,7 @@ class Process {
 std::optional<VectorXd> impact(const ContactPoint& point, const std::vector<int>& touching, std::optional<int> pushed) {
   if (touching.size() == 1 && point.friction[static_cast<std::size_t>(touching.front())] == 0.0) {
     const int i = touching.front();
-    VectorXd impulse = VectorXd::Zero(2 * point.contacts());
+    VectorXd impulse = VectorXd::Zero(point.velocity.size());
     impulse(i) = -(1.0 + point.restitution[static_cast<std::size_t>(i)]) * point.velocity(i) / point.influence(i, i);
     return impulse;
   }

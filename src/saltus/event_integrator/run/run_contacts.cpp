@@ -1,4 +1,5 @@
 // Contacts in a run: where their modes change.
+#include <algorithm>
 #include <utility>
 
 #include "saltus/event_integrator/run/run_internal.hpp"
@@ -7,11 +8,20 @@ namespace saltus::event_integrator {
 
 using result::Termination;
 
+ContactMoment Run::contact_moment() const { return {here_.t, here_.state.alpha, here_.time_scale, tolerances_.step()}; }
+
+/// Whether the jumps of this time were none: a slip in a plane goes on as it was.
+bool Run::only_slips_on() const {
+  const auto executed = cascade_.executed().items();
+  return std::all_of(executed.begin(), executed.end(),
+                     [&](const auto& one) { return contacts_.slip_goes_on(one.x, one.x_after); });
+}
+
 /// Modes at the start; bodies that touch and approach collide at once.
 bool Run::begin_contacts() {
   if (contacts_.none()) return true;
   const auto before = here_.x;
-  if (auto problem = contacts_.resolve({here_.t, here_.state.alpha, here_.time_scale}, {}, here_.x)) {
+  if (auto problem = contacts_.resolve(contact_moment(), {}, here_.x)) {
     fail(Termination::outside_class, std::move(*problem));
     return false;
   }
@@ -27,7 +37,7 @@ bool Run::begin_contacts() {
 /// All contacts whose modes end here, at once.
 bool Run::move_contacts() {
   const auto ended = contacts_.with_jumps([&](int jump) { return jumps_.holds(jump); });
-  auto problem = contacts_.resolve({here_.t, here_.state.alpha, here_.time_scale}, ended, here_.x);
+  auto problem = contacts_.resolve(contact_moment(), ended, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   return !problem;
 }
@@ -39,7 +49,7 @@ void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x
   contacts_.copy_modes(x_last, here_.x);
   contacts_.forget_impulses(here_.x);
   cascade_.begin();
-  auto problem = contacts_.settle({here_.t, here_.state.alpha, here_.time_scale}, limit.events, here_.x);
+  auto problem = contacts_.settle(contact_moment(), limit.events, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   const auto accumulated = [&] {
     recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},

@@ -156,6 +156,8 @@ class Run {
   bool jump(const ModeState& before, const std::vector<double>& x_before);
   bool settle_jumps();
   bool execute_jump();
+  [[nodiscard]] ContactMoment contact_moment() const;
+  [[nodiscard]] bool only_slips_on() const;
   bool begin_contacts();
   bool move_contacts();
   void settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before);

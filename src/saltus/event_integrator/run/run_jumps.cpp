@@ -111,7 +111,8 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before) {
     search_.set_held({}, {});
   }
   const bool settled = settle_jumps();
-  if (!cascade_.executed().empty()) {
+  const bool slips_on = only_slips_on();
+  if (!slips_on) {
     cascade_.transition().state = here_.state;
     recorder_.jumped(here_.t, cascade_.executed().items(), &before, cascade_.transition());
   }
@@ -121,7 +122,7 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before) {
   }
   if (stopped != Termination::completed) fail(stopped, message);
   fire_user_events(x_before, before, fired);
-  jump_accumulation_.note(cascade_, jumps_, search_.user_signs());
+  if (!slips_on) jump_accumulation_.note(cascade_, jumps_, search_.user_signs());
   start_step();
   static_cast<void>(steps_.memory().change(here_.state.mode, here_.t,
                                            here_.h));  // the mode lasts from here; its step is that of a start

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -36,7 +37,11 @@ class ContactMotion {
       if (auto error = check_gap(stated)) return tl::unexpected(*error);
       Contact contact{.name = stated.name};
       contact.has_friction =
-          !stated.tangent.is_empty() && recognition_.parameter_value(stated.friction.scalar()).value_or(0.0) > 0.0;
+          !stated.tangents.is_empty() && recognition_.parameter_value(stated.friction.scalar()).value_or(0.0) > 0.0;
+      contact.in_plane = contact.has_friction && stated.tangents.size1() == 2;
+      if (contact.in_plane) {
+        if (auto error = check_tangents(stated)) return tl::unexpected(*error);
+      }
       system_.contacts.push_back(std::move(contact));
     }
     set_motion();
@@ -58,7 +63,7 @@ class ContactMotion {
                                     : fmt::format("the friction of '{}' is no constant", contact.name),
                            "it is a number that is 0 or positive, or an expression of parameters");
     }
-    if (*friction > 0.0 && contact.tangent.is_empty()) {
+    if (*friction > 0.0 && contact.tangents.is_empty()) {
       return contact_error(contact.friction_location,
                            fmt::format("the contact '{}' has friction and no `tangent`", contact.name),
                            "write tangent = { x = 1 }: the direction in which it slips, over the positions");
@@ -71,6 +76,20 @@ class ContactMotion {
                            "it is a number in [0, 1], or an expression of parameters");
     }
     return std::nullopt;
+  }
+
+  /// They span a plane at the start.
+  std::optional<Error> check_tangents(const ContactStatement& contact) {
+    const SX products = SX::mtimes(contact.tangents, contact.tangents.T());
+    const auto product = [&](casadi_int i, casadi_int j) { return at_start(SX(products(i, j))); };
+    const auto first = product(0, 0), mixed = product(0, 1), second = product(1, 1);
+    for (const auto* value : {&first, &mixed, &second}) {
+      if (!*value) return with_location(value->error(), contact.location);
+    }
+    if (*first * *second - *mixed * *mixed > 1e-12 * *first * *second) return std::nullopt;
+    return contact_error(contact.location,
+                         fmt::format("the tangents of '{}' have one direction at the start", contact.name),
+                         "two tangents span the plane in which the contact slips; in one direction one is enough");
   }
 
   std::optional<Error> check_gap(const ContactStatement& contact) {
@@ -95,14 +114,18 @@ class ContactMotion {
   void set_motion() {
     const auto m = static_cast<casadi_int>(contacts_.size());
     std::vector<SX> gaps, friction, restitution;
-    SX tangents = SX::zeros(m, q_.numel());
+    const bool in_plane = std::any_of(system_.contacts.begin(), system_.contacts.end(),
+                                      [](const auto& contact) { return contact.in_plane; });
+    SX tangents = SX::zeros((in_plane ? 2 : 1) * m, q_.numel());
     for (casadi_int i = 0; i < m; ++i) {
       const auto& stated = contacts_[static_cast<std::size_t>(i)];
       gaps.push_back(stated.gap);
       friction.push_back(stated.friction);
       restitution.push_back(stated.restitution);
       if (!system_.contacts[static_cast<std::size_t>(i)].has_friction) continue;
-      tangents(i, casadi::Slice()) = stated.tangent;
+      for (casadi_int k = 0; k < stated.tangents.size1(); ++k) {
+        tangents(k * m + i, casadi::Slice()) = stated.tangents(k, casadi::Slice());
+      }
     }
     const SX time(statement_.time);
     system_.gap = SX::densify(SX::vertcat(gaps));

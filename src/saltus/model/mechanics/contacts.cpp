@@ -14,25 +14,25 @@ namespace {
 
 class ContactBuild {
  public:
-  ContactBuild(Recognition& recognition, Statement& statement, const std::vector<ContactStatement>& contacts,
-               const MotionWithoutContacts& motion)
-      : recognition_(recognition), statement_(statement), contacts_(contacts), motion_(motion) {}
+  ContactBuild(Recognition& recognition, Statement& statement, ContactSystem system,
+               std::vector<SourceLocation> locations)
+      : recognition_(recognition),
+        statement_(statement),
+        system_(std::move(system)),
+        locations_(std::move(locations)),
+        m_(static_cast<casadi_int>(system_.contacts.size())) {}
 
-  [[nodiscard]] Expected<SX> run() {
-    auto motion = contact_motion(recognition_, statement_, contacts_, motion_);
-    if (!motion) return tl::unexpected(motion.error());
-    system_ = std::move(*motion);
+  [[nodiscard]] SX run() {
     system_.first_hidden = static_cast<int>(statement_.states.size());
     for (auto& contact : system_.contacts) declare(contact);
     set_forces();
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
       add_jump(i);
-      add_outputs(i);
+      if (system_.contacts[i].has_gap) add_outputs(i);
     }
     const SX forces = SX::vertcat({system_.normal_force, system_.tangential_force});
-    SX total = motion_.force + SX::mtimes(system_.rows.T(), forces);
     statement_.contacts = std::move(system_);
-    return total;
+    return forces;
   }
 
  private:
@@ -47,46 +47,88 @@ class ContactBuild {
   void declare(Contact& contact) {
     contact.closed = declare_state(contact.name + ".closed");
     contact.active = declare_state(contact.name + ".active");
-    contact.stick = declare_state(contact.name + ".stick");
+    contact.stick = declare_along(contact, ".stick");
     contact.slip = declare_state(contact.name + ".slip");
-    contact.share = declare_state(contact.name + ".share");
+    contact.share = declare_along(contact, ".share");
+    if (contact.in_plane) {
+      contact.speeds = declare_state(contact.name + ".least_speed");
+      const int largest = declare_state(contact.name + ".largest_speed");
+      for (const int bound : {contact.speeds, largest}) statement_.states[at(bound)].initial = 1.0;
+    }
     contact.impulse = declare_state(contact.name + ".impulse");
-    declare_state(contact.name + ".impulse_t");
+    declare_along(contact, ".impulse_t");
+  }
+
+  /// One state per tangent; returns the first one.
+  int declare_along(const Contact& contact, const std::string& name) {
+    const int first = declare_state(contact.name + name);
+    if (contact.in_plane) declare_state(contact.name + name + "2");
+    return first;
   }
 
   SX state(int index) const { return SX(statement_.states[at(index)].symbol); }
 
   /// Every contact has two equations that its mode blends: the acceleration is 0, or the force is given.
   void set_forces() {
-    const auto m = static_cast<casadi_int>(contacts_.size());
+    const casadi_int m = m_;
     const SX influence = SX::mtimes(system_.rows, system_.responses);  // d acceleration / d force
     // Tangential ones first: their block has no minor that is 0, as M^-1 has none.
     std::vector<casadi_int> order;
-    for (casadi_int i = 0; i < m; ++i) {
-      if (system_.contacts[static_cast<std::size_t>(i)].has_friction) order.push_back(m + i);
+    for (casadi_int row = m; row < system_.rows.size1(); ++row) {
+      const auto& contact = system_.contacts[at_(row % m)];
+      if (row < 2 * m ? contact.has_friction : contact.in_plane) order.push_back(row);
     }
     for (casadi_int i = 0; i < m; ++i) order.push_back(i);
     const auto n = static_cast<casadi_int>(order.size());
     SX matrix = SX::zeros(n, n), right = SX::zeros(n, 1);
     for (casadi_int r = 0; r < n; ++r) {
-      const bool tangential = order[at_(r)] >= m;
-      const casadi_int i = tangential ? order[at_(r)] - m : order[at_(r)];
+      const casadi_int i = order[at_(r)] % m, tangent = order[at_(r)] / m - 1;
+      const bool tangential = tangent >= 0;
       const auto& contact = system_.contacts[at_(i)];
-      const SX held = state(tangential ? contact.stick : contact.active);
+      const SX held = tangential        ? state(contact.stick + static_cast<int>(tangent))
+                      : contact.has_gap ? state(contact.active)
+                                        : SX(0.0);
       right(r) = -held * system_.acceleration(order[at_(r)]);
+      if (!tangential && !contact.has_gap) right(r) = 1.0;
       for (casadi_int c = 0; c < n; ++c) {
         SX entry = held * influence(order[at_(r)], order[at_(c)]);
         if (c == r) entry += 1.0 - held;
-        if (tangential && order[at_(c)] == i) entry += (1.0 - held) * system_.friction(i) * state(contact.share);
+        if (tangential && order[at_(c)] == i) entry += (1.0 - held) * system_.friction(i) * share(i, tangent);
         matrix(r, c) = entry;
       }
     }
     const SX forces = eliminate(matrix, right);
-    system_.normal_force = system_.tangential_force = SX::zeros(m, 1);
+    system_.normal_force = SX::zeros(m, 1);
+    system_.tangential_force = SX::zeros(system_.rows.size1() - m, 1);
     for (casadi_int r = 0; r < n; ++r) {
       const casadi_int row = order[at_(r)];
       (row >= m ? system_.tangential_force(row - m) : system_.normal_force(row)) = forces(r);
     }
+  }
+
+  [[nodiscard]] SX tangential_velocity(casadi_int i, casadi_int tangent) const {
+    return system_.velocity((1 + tangent) * m_ + i);
+  }
+
+  /// The square of the speed of slip in a plane.
+  [[nodiscard]] SX speed_squared(casadi_int i) const {
+    const SX first = tangential_velocity(i, 0), second = tangential_velocity(i, 1);
+    return first * first + second * second;
+  }
+
+  /// NOTE: with less than the rounding of any speed at which a contact slips, derivatives are finite at 0.
+  static SX norm(const SX& first, const SX& second) {
+    constexpr double nothing = 1e-120;
+    return sqrt(first * first + second * second + nothing);
+  }
+
+  /// Of the edge of the friction cone, along a tangent.
+  [[nodiscard]] SX share(casadi_int i, casadi_int tangent) const {
+    const auto& contact = system_.contacts[at_(i)];
+    const SX own = state(contact.share + static_cast<int>(tangent));
+    if (!contact.in_plane) return own;
+    const SX slip = state(contact.slip), speed = norm(tangential_velocity(i, 0), tangential_velocity(i, 1));
+    return slip * tangential_velocity(i, tangent) / speed + (1.0 - slip) * own;
   }
 
   static std::size_t at_(casadi_int i) { return static_cast<std::size_t>(i); }
@@ -97,23 +139,40 @@ class ContactBuild {
     const auto i = static_cast<casadi_int>(k);
     const auto& contact = system_.contacts[k];
     const SX closed = state(contact.closed), active = state(contact.active);
-    std::vector<SX> result{(1.0 - closed) * system_.gap(i) +
-                           closed * (active * system_.normal_force(i) + 1.0 - active)};
+    std::vector<SX> result;
+    if (contact.has_gap) {
+      result.push_back((1.0 - closed) * system_.gap(i) + closed * (active * system_.normal_force(i) + 1.0 - active));
+    }
     if (!contact.has_friction) return result;
+    if (contact.in_plane) {
+      add_guards_in_plane(i, result);
+      return result;
+    }
     const SX stick = state(contact.stick), slip = state(contact.slip);
     const SX limit = system_.friction(i) * system_.normal_force(i), friction = system_.tangential_force(i);
-    const auto m = static_cast<casadi_int>(contacts_.size());
-    result.push_back(stick * (limit - friction) + slip * state(contact.share) * system_.velocity(m + i) + 1.0 - stick -
+    result.push_back(stick * (limit - friction) + slip * state(contact.share) * system_.velocity(m_ + i) + 1.0 - stick -
                      slip);
     result.push_back(stick * (limit + friction) + 1.0 - stick);
     return result;
+  }
+
+  /// What is left of the cone, and the bounds of the speed of slip.
+  void add_guards_in_plane(casadi_int i, std::vector<SX>& guards) const {
+    const auto& contact = system_.contacts[at_(i)];
+    const SX first = state(contact.stick), second = state(contact.stick + 1), slip = state(contact.slip);
+    const SX sticks = first + second - first * second, limit = system_.friction(i) * system_.normal_force(i);
+    const SX along = system_.tangential_force(i), across = system_.tangential_force(m_ + i);
+    guards.push_back(sticks * (limit - norm(along, across)) + 1.0 - sticks);
+    // Quotients: speeds may be smaller than the rounding of 1.
+    guards.push_back(slip * (speed_squared(i) / state(contact.speeds) - 1.0) + 1.0 - slip);
+    guards.push_back(slip * (1.0 - speed_squared(i) / state(contact.speeds + 1)) + 1.0 - slip);
   }
 
   /// The engine finds the new mode, and the velocities behind an impact; the values here only say what changes.
   void add_jump(std::size_t k) {
     auto& contact = system_.contacts[k];
     contact.jump = static_cast<int>(statement_.jumps.size());
-    const auto& location = contacts_[k].location;
+    const auto& location = locations_[k];
     JumpStatement jump{.name = contact.name};
     Condition leaves = Condition::never();
     for (const SX& guard : guards(k)) leaves = leaves || less(SX::densify(guard), 0.0);
@@ -130,27 +189,44 @@ class ContactBuild {
   void add_outputs(std::size_t k) {
     const auto i = static_cast<casadi_int>(k);
     const auto& contact = system_.contacts[k];
-    const auto add = [&](const char* kind, const SX& value) {
-      statement_.automatic_outputs.push_back({fmt::format("{}({})", kind, contact.name), SX::densify(value).scalar()});
+    const auto add = [&](const char* kind, const SX& value, const char* tangent = "") {
+      statement_.automatic_outputs.push_back(
+          {fmt::format("{}({}){}", kind, contact.name, tangent), SX::densify(value).scalar()});
     };
     add("gap", system_.gap(i));
     add("force", system_.normal_force(i));
-    if (contact.has_friction) add("friction", system_.tangential_force(i));
+    if (contact.in_plane) {
+      add("friction", system_.tangential_force(i), "[1]");
+      add("friction", system_.tangential_force(m_ + i), "[2]");
+    } else if (contact.has_friction) {
+      add("friction", system_.tangential_force(i));
+    }
     add("impulse", state(contact.impulse));
   }
 
   Recognition& recognition_;
   Statement& statement_;
-  const std::vector<ContactStatement>& contacts_;
-  const MotionWithoutContacts& motion_;
   ContactSystem system_;
+  std::vector<SourceLocation> locations_;
+  casadi_int m_;
 };
 
 }  // namespace
 
+SX state_contact_modes(Recognition& recognition, Statement& statement, ContactSystem system,
+                       std::vector<SourceLocation> locations) {
+  return ContactBuild(recognition, statement, std::move(system), std::move(locations)).run();
+}
+
 Expected<SX> add_contacts(Recognition& recognition, Statement& statement, const std::vector<ContactStatement>& contacts,
                           const MotionWithoutContacts& motion) {
-  return ContactBuild(recognition, statement, contacts, motion).run();
+  auto system = contact_motion(recognition, statement, contacts, motion);
+  if (!system) return tl::unexpected(system.error());
+  const SX rows = system->rows;
+  std::vector<SourceLocation> locations;
+  for (const auto& contact : contacts) locations.push_back(contact.location);
+  return motion.force +
+         SX::mtimes(rows.T(), state_contact_modes(recognition, statement, std::move(*system), std::move(locations)));
 }
 
 }  // namespace saltus::model

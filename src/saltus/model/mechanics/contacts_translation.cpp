@@ -31,10 +31,10 @@ class ContactTranslation {
       if (!e) return tl::unexpected(e.error());
       *result = SX(*e);
     }
-    if (!contact_.tangents.empty()) {
-      auto row = tangent(contact_.tangents.front());
+    for (const auto& entries : contact_.tangents) {
+      auto row = tangent(entries);
       if (!row) return tl::unexpected(row.error());
-      stated.tangent = std::move(*row);
+      stated.tangents = stated.tangents.is_empty() ? *row : SX::vertcat({stated.tangents, *row});
     }
     return stated;
   }
@@ -80,11 +80,11 @@ Expected<std::vector<ContactStatement>> contacts_of(const Description& descripti
                                                     const Statement& statement, const MechanicsStatement& mechanics) {
   std::vector<ContactStatement> result;
   for (const auto& contact : description.contacts) {
-    if (contact.tangents.size() > 1) {
+    if (contact.tangents.size() > 2) {
       return tl::unexpected(
-          Error{ErrorCode::not_available,
+          Error{ErrorCode::invalid_model,
                 fmt::format("the contact '{}' has {} tangents", contact.name, contact.tangents.size()),
-                "friction in space is not available yet: give the contact one `tangent`",
+                "a contact slips along one tangent, or in the plane of two",
                 contact.location,
                 {"in [[contacts]]"}});
     }

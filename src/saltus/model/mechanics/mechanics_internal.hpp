@@ -13,7 +13,7 @@ namespace saltus::model {
 struct ContactStatement {
   std::string name;
   casadi::SX gap{};
-  casadi::SX tangent{};  ///< 1 x n over the positions; 0 x 0 without
+  casadi::SX tangents{};  ///< 1 x n or 2 x n over the positions; 0 x 0 without
   casadi::SX friction = 0.0, restitution = 0.0;
   SourceLocation location{}, gap_location{}, friction_location{}, restitution_location{};
 };

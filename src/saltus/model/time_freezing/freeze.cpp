@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,12 +40,12 @@ std::optional<Error> freeze_hysteresis(Recognition& recognition, Statement& stat
 
 namespace {
 
-Error friction_and_restitution(const std::string& name) {
+Error not_frozen(std::string message, std::string remedy) {
   // Member by member: g++ 12 takes the aggregate for uninitialised.
   Error error;
   error.code = ErrorCode::not_available;
-  error.message = fmt::format("the contact '{}' has friction and restitution: time-freezing covers one of both", name);
-  error.remedy = "simulate with method = \"event\", or leave one of them out";
+  error.message = std::move(message);
+  error.remedy = std::move(remedy);
   error.context.emplace_back("in [[contacts]]");
   return error;
 }
@@ -60,6 +61,11 @@ class ContactFreezing {
 
   [[nodiscard]] std::optional<Error> run() {
     for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+      if (system_.contacts[i].in_plane) {
+        return not_frozen(
+            fmt::format("the contact '{}' has two tangents: time-freezing covers one", system_.contacts[i].name),
+            "simulate with method = \"event\", or leave one of them out");
+      }
       if (auto error = plan_.made.contacts[i].is_elastic ? take_elastic(i) : take_inelastic(i)) return error;
     }
     return std::nullopt;
@@ -112,7 +118,9 @@ class ContactFreezing {
     const auto i = static_cast<casadi_int>(k);
     auto& made = plan_.made.contacts[k];
     if (system_.contacts[k].has_friction) {
-      return friction_and_restitution(made.name);
+      return not_frozen(
+          fmt::format("the contact '{}' has friction and restitution: time-freezing covers one of both", made.name),
+          "simulate with method = \"event\", or leave one of them out");
     }
     const SX depth(statement_.states[at(plan_.depth[k])].symbol), rate = system_.velocity(i);
     const auto open = selection(system_.gap(i) + depth, made.name + ".gap", made.gap);

@@ -199,7 +199,7 @@ class PhysicalTime {
   }
 
   [[nodiscard]] bool take_impact(Event& event) const {
-    std::vector<std::array<double, 2>> impulse;
+    std::vector<std::vector<double>> impulse;
     for (const auto& contact : freezing_.contacts) {
       if (contact.impulse < 0) return take_jump_of_velocities(event);
       const std::size_t state = at(contact.impulse);

@@ -1,0 +1,279 @@
+// Contacts with two tangents: friction with a direction in the plane.
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Dense>
+
+#include "run_model.hpp"
+
+namespace saltus::event_integrator::testing {
+namespace {
+
+using casadi::SX;
+using result::ContactMode;
+using result::EventKind;
+
+constexpr double g = 10.0;
+const std::vector<std::string> positions{"x", "y", "z"}, velocities{"vx", "vy", "vz"};
+
+std::vector<EventKind> kinds_of(const Integration& run) {
+  std::vector<EventKind> result;
+  for (const auto& event : run.events) result.push_back(event.kind);
+  return result;
+}
+
+/// A point over the ground z = 0.
+struct PointInSpace {
+  model::Builder model{"point"};
+  SX x, y, z;
+
+  PointInSpace(const std::array<double, 3>& place, const std::array<double, 3>& speed) {
+    x = model.state("x", {place[0]});
+    y = model.state("y", {place[1]});
+    z = model.state("z", {place[2]});
+    for (std::size_t i = 0; i < 3; ++i) static_cast<void>(model.state(velocities[i], {speed[i]}));
+  }
+  void moves(const std::map<std::string, SX>& force = {}, const SX& mass = SX::eye(3)) {
+    model.mechanics(
+        {.positions = positions, .velocities = velocities, .mass = mass, .potential = g * z, .force = force});
+  }
+  void touches(double friction, double restitution = 0.0) {
+    model.contact(
+        "ground", z,
+        {.tangent = {{"x", 1.0}}, .friction = friction, .restitution = restitution, .second_tangent = {{"y", 1.0}}});
+  }
+};
+
+Integration thrown_in_space(double angle, double restitution) {
+  PointInSpace ball({0.0, 0.0, 1.0}, {4.0 * std::cos(angle), 4.0 * std::sin(angle), 0.0});
+  ball.moves();
+  ball.touches(0.3, restitution);
+  return run_tightly(ball.model, 3.0);
+}
+
+Integration thrown_in_the_plane(double restitution) {
+  model::Builder model("ball");
+  static_cast<void>(model.state("x", {0.0}));
+  const SX z = model.state("z", {1.0});
+  static_cast<void>(model.state("vx", {4.0}));
+  static_cast<void>(model.state("vz", {0.0}));
+  model.mechanics({.positions = {"x", "z"}, .velocities = {"vx", "vz"}, .potential = g * z});
+  model.contact("ground", z, {.tangent = {{"x", 1.0}}, .friction = 0.3, .restitution = restitution});
+  return run_tightly(model, 3.0);
+}
+
+/// What happens in a plane happens in the same way in that plane turned around the vertical.
+TEST(ContactsInPlane, AThrownBallMovesAsInThePlane) {
+  for (const double restitution : {0.0, 0.5}) {
+    const auto plane = thrown_in_the_plane(restitution);
+    ASSERT_EQ(plane.status.termination, result::Termination::completed);
+    for (const double angle : {0.0, 0.3, 1.0, std::numbers::pi / 2.0, 2.5, -1.9}) {
+      SCOPED_TRACE(::testing::Message() << angle << " " << restitution);
+      const auto space = thrown_in_space(angle, restitution);
+      ASSERT_EQ(space.status.termination, result::Termination::completed) << space.status.message;
+      ASSERT_EQ(kinds_of(space), kinds_of(plane));
+      const double c = std::cos(angle), s = std::sin(angle);
+      for (std::size_t k = 0; k < plane.events.size(); ++k) {
+        EXPECT_NEAR(space.events[k].t, plane.events[k].t, 1e-9);
+        EXPECT_EQ(space.events[k].contact_modes_after, plane.events[k].contact_modes_after);
+        EXPECT_NEAR(space.events[k].x_after[3], c * plane.events[k].x_after[2], 1e-9);
+        EXPECT_NEAR(space.events[k].x_after[4], s * plane.events[k].x_after[2], 1e-9);
+      }
+      EXPECT_NEAR(space.final.x[0], c * plane.final.x[0], 1e-9);
+      EXPECT_NEAR(space.final.x[1], s * plane.final.x[0], 1e-9);
+      EXPECT_EQ(space.final.x[3], 0.0);
+      EXPECT_EQ(space.final.x[4], 0.0);
+      EXPECT_EQ(space.final.contact_modes, std::vector<ContactMode>{ContactMode::stick});
+      const auto& impulse = space.events[0].impulse->front();
+      ASSERT_EQ(impulse.size(), 3U);
+      EXPECT_NEAR(impulse[1], c * plane.events[0].impulse->front()[1], 1e-9);
+      EXPECT_NEAR(impulse[2], s * plane.events[0].impulse->front()[1], 1e-9);
+    }
+  }
+}
+
+/// A block on an incline, pushed sideways: with gravity a down the plane and friction k the speed is
+/// v = C tan(phi/2)^(k/a) / sin phi over the angle phi to the line of fall, phi' = -a sin phi / v.
+struct Incline {
+  double a, k, v0, phi0;
+
+  [[nodiscard]] double speed(double phi) const {
+    const double q = k / a;
+    return v0 * std::sin(phi0) / std::sin(phi) * std::pow(std::tan(0.5 * phi) / std::tan(0.5 * phi0), q);
+  }
+  /// Of k |v| + a v.e the rate is a^2 - k^2.
+  [[nodiscard]] double stop() const { return v0 * (k + a * std::cos(phi0)) / (k * k - a * a); }
+  /// Along and across the line of fall, by Simpson's rule over log phi.
+  [[nodiscard]] std::array<double, 2> way() const {
+    std::array<double, 2> sum{0.0, 0.0};
+    constexpr int panels = 200000;
+    const double span = 60.0, h = span / panels;
+    for (int i = 0; i <= panels; ++i) {
+      const double phi = phi0 * std::exp(-h * i), v = speed(phi);
+      const double weight = (i == 0 || i == panels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * h / 3.0;
+      const double time = v * phi / (a * std::sin(phi));
+      sum[0] += weight * time * v * std::cos(phi);
+      sum[1] += weight * time * v * std::sin(phi);
+    }
+    return sum;
+  }
+};
+
+TEST(ContactsInPlane, ABlockPushedSidewaysOnAnInclineStops) {
+  const Incline incline{2.0, 3.0, 1.5, 2.0};
+  PointInSpace block({0.0, 0.0, 0.0}, {1.5 * std::cos(2.0), 1.5 * std::sin(2.0), 0.0});
+  block.moves({{"vx", 2.0}});
+  block.touches(0.3);
+  const auto way = incline.way();
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+    IntegrationOptions options;
+    options.method = method;
+    options.tolerances = {1e-11, 1e-13};
+    options.until = 4.0;
+    const auto run = run_model(block.model, options);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_EQ(kinds_of(run), std::vector<EventKind>{EventKind::stick});
+    EXPECT_NEAR(run.events[0].t, incline.stop(), 1e-9);
+    EXPECT_NEAR(run.final.x[0], way[0], 1e-9);
+    EXPECT_NEAR(run.final.x[1], way[1], 1e-9);
+    EXPECT_EQ(run.final.x[3], 0.0);
+    EXPECT_EQ(run.final.x[4], 0.0);
+    // What holds it: the force down the plane.
+    EXPECT_NEAR(run.final.outputs.at(2), -2.0, 1e-9);
+    EXPECT_NEAR(run.final.outputs.at(3), 0.0, 1e-9);
+  }
+}
+
+TEST(ContactsInPlane, ABlockOnASteepInclineTurnsDown) {
+  const Incline incline{4.0, 3.0, 1.0, 2.5};
+  PointInSpace block({0.0, 0.0, 0.0}, {std::cos(2.5), std::sin(2.5), 0.0});
+  block.moves({{"vx", 4.0}});
+  block.touches(0.3);
+  const auto run = run_tightly(block.model, 1.0);
+  ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+  EXPECT_TRUE(run.events.empty());
+  const double vx = run.final.x[3], vy = run.final.x[4];
+  EXPECT_NEAR(std::hypot(vx, vy), incline.speed(std::atan2(vy, vx)), 1e-9);
+  EXPECT_NEAR(3.0 * std::hypot(vx, vy) + 4.0 * vx, 3.0 + 4.0 * std::cos(2.5) + 7.0, 1e-9);
+}
+
+/// It sticks until the force leaves the cone, and then follows it.
+TEST(ContactsInPlane, AForceThatGrowsOvercomesFriction) {
+  const double angle = 0.7, friction = 0.4, pull = 3.0;
+  PointInSpace block({0.0, 0.0, 0.0}, {0.0, 0.0, 0.0});
+  const SX t = block.model.time();
+  block.moves({{"vx", pull * t * std::cos(angle)}, {"vy", pull * t * std::sin(angle)}});
+  block.touches(friction);
+  const auto run = run_model(block.model, 3.0, {1e-8, 1e-10});
+  ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+  ASSERT_EQ(kinds_of(run), std::vector<EventKind>{EventKind::slip});
+  const double start = friction * g / pull;
+  EXPECT_NEAR(run.events[0].t, start, 1e-10);
+  const double speed = 0.5 * pull * (3.0 - start) * (3.0 - start);
+  EXPECT_NEAR(run.final.x[3], speed * std::cos(angle), 1e-7);
+  EXPECT_NEAR(run.final.x[4], speed * std::sin(angle), 1e-7);
+  for (std::size_t i = 0; i < run.trajectory.t.size(); ++i) {
+    if (run.trajectory.contact_modes[i][0] != ContactMode::stick) continue;
+    EXPECT_EQ(run.trajectory.x[i][3], 0.0);
+    EXPECT_EQ(run.trajectory.x[i][4], 0.0);
+  }
+}
+
+/// v' = A (F - k v/|v|) under a force that turns and beats: it sticks and slips; all integrators agree.
+TEST(ContactsInPlane, SticksAndSlipsUnderAForceThatTurns) {
+  const auto run_with = [](ode::Method method, double rtol) {
+    PointInSpace block({0.0, 0.0, 0.0}, {0.2, 0.1, 0.0});
+    const SX t = block.model.time();
+    block.moves({{"vx", 5.0 * cos(t) * sin(3.0 * t)}, {"vy", 4.0 * sin(2.0 * t)}});
+    block.touches(0.3);
+    IntegrationOptions options;
+    options.method = method;
+    options.tolerances = {rtol, rtol / 100.0};
+    options.until = 5.0;
+    return run_model(block.model, options);
+  };
+  const auto exact = run_with(ode::Method::radau5, 1e-10);
+  ASSERT_EQ(exact.status.termination, result::Termination::completed) << exact.status.message;
+  ASSERT_GT(exact.events.size(), 3U);
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+    const auto run = run_with(method, 1e-7);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_EQ(kinds_of(run), kinds_of(exact));
+    for (std::size_t k = 0; k < exact.events.size(); ++k) EXPECT_NEAR(run.events[k].t, exact.events[k].t, 1e-5);
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(run.final.x[i], exact.final.x[i], 1e-5);
+  }
+}
+
+/// dv/dp = M^-1 (n - mu T v_t/|v_t|) by 10^6 steps of the classical method; slip that ends would stick.
+Eigen::Vector3d behind_impact(const Eigen::Matrix3d& mass, Eigen::Vector3d v, double friction, double restitution) {
+  const Eigen::Matrix3d inverse = mass.inverse();
+  const auto rate = [&](const Eigen::Vector3d& at) -> Eigen::Vector3d {
+    const double slip = std::hypot(at.x(), at.y());
+    return inverse * Eigen::Vector3d(-friction * at.x() / slip, -friction * at.y() / slip, 1.0);
+  };
+  const auto step = [&](const Eigen::Vector3d& at, double h) -> Eigen::Vector3d {
+    const Eigen::Vector3d a = rate(at), b = rate(at + 0.5 * h * a), c = rate(at + 0.5 * h * b), d = rate(at + h * c);
+    return at + h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+  };
+  double work = 0.0, h = 1e-5;
+  while (v.z() < -1e-13) {
+    const double length = std::min(h, -v.z() / rate(v).z());
+    const auto middle = step(v, 0.5 * length), next = step(v, length);
+    work -= length / 6.0 * (v.z() + 4.0 * middle.z() + next.z());
+    v = next;
+  }
+  double left = restitution * restitution * work;
+  while (left > 1e-13) {
+    const double slope = rate(v).z();
+    const double length = std::min(h, 2.0 * left / (v.z() + std::sqrt(v.z() * v.z() + 2.0 * slope * left)));
+    const auto middle = step(v, 0.5 * length), next = step(v, length);
+    left -= length / 6.0 * (v.z() + 4.0 * middle.z() + next.z());
+    v = next;
+  }
+  return v;
+}
+
+TEST(ContactsInPlane, TheSlipTurnsInAnImpact) {
+  Eigen::Matrix3d mass;
+  mass << 1.0, 0.2, -0.3, 0.2, 3.0, 0.4, -0.3, 0.4, 2.0;
+  SX symbolic(3, 3);
+  for (casadi_int i = 0; i < 3; ++i) {
+    for (casadi_int j = 0; j < 3; ++j) symbolic(i, j) = mass(i, j);
+  }
+  for (const double restitution : {0.0, 0.6}) {
+    PointInSpace body({0.0, 0.0, 0.0}, {1.5, -1.0, -2.0});
+    body.moves({}, symbolic);
+    body.touches(0.4, restitution);
+    const auto run = run_tightly(body.model, 0.001);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_FALSE(run.events.empty());
+    const auto exact = behind_impact(mass, {1.5, -1.0, -2.0}, 0.4, restitution);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(run.events[0].x_after[3 + i], exact(static_cast<Eigen::Index>(i)), 1e-9) << restitution;
+    }
+  }
+}
+
+/// Friction holds in the impact what has come to rest in it.
+TEST(ContactsInPlane, AnImpactMayEndTheSlip) {
+  Eigen::Matrix3d mass;
+  mass << 1.0, 0.2, 0.0, 0.2, 1.5, 0.1, 0.0, 0.1, 2.0;
+  SX symbolic(3, 3);
+  for (casadi_int i = 0; i < 3; ++i) {
+    for (casadi_int j = 0; j < 3; ++j) symbolic(i, j) = mass(i, j);
+  }
+  PointInSpace body({0.0, 0.0, 0.0}, {0.3, -0.2, -3.0});
+  body.moves({}, symbolic);
+  body.touches(0.8);
+  const auto run = run_tightly(body.model, 0.1);
+  ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+  ASSERT_EQ(kinds_of(run), std::vector<EventKind>{EventKind::impact});
+  for (std::size_t i = 3; i < 6; ++i) EXPECT_NEAR(run.events[0].x_after[i], 0.0, 1e-11);
+  EXPECT_EQ(run.final.contact_modes, std::vector<ContactMode>{ContactMode::stick});
+  EXPECT_EQ(run.final.x[3], 0.0);
+  EXPECT_EQ(run.final.x[4], 0.0);
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator::testing
