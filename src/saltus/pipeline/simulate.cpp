@@ -12,6 +12,8 @@
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/pipeline/bodies/drawing.hpp"
+#include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -239,10 +241,18 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   return result;
 }
 
-}  // namespace
+/// Of a mechanical system what is drawn of it, and how deep its bodies are in each other.
+void add_bodies(const model::System& system, result::Result& result) {
+  result.drawing = drawing_of(system, system.parameter_values, result.trajectory.x);
+  if (!system.contacts.empty()) {
+    const SymbolicLock lock;
+    result.penetration = Gaps(system, system.parameter_values).depth(result.trajectory);
+  }
+  for (auto& branch : result.branches) add_bodies(system, branch);
+}
 
-Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
-                                  const Observers& observers, KernelStore* kernels) {
+Expected<result::Result> simulated(const model::System& system, const SimulateOptions& options,
+                                   const Observers& observers, KernelStore* kernels) {
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   if (options.method == Method::fesd || options.method == Method::timestepping) {
@@ -286,6 +296,15 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   };
   auto result = follow_branches(run_one, {options.event.trajectories, options.event.members});
   kernels->give_back(std::move(*kept));
+  return result;
+}
+
+}  // namespace
+
+Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
+                                  const Observers& observers, KernelStore* kernels) {
+  auto result = simulated(system, options, observers, kernels);
+  if (result) add_bodies(system, *result);
   return result;
 }
 
