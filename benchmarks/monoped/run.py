@@ -4,7 +4,7 @@ python3 benchmarks/monoped/run.py SALTUS [--intervals 30 40 …] [--start rest|r
     [--seconds 600] [--stages KEY=VALUE,… KEY=VALUE,… …]
 
 Every stage begins at the result of the one before (the first one as --start says) and changes what it names, for itself and those behind it:
-goal (metres), friction, a_n, stabilisation, form (step|stewart), sigma (the first one), factor, ground (lowest foot, metres), or key.of.optimize.
+goal (metres), friction, a_n, stabilisation (followed down to 0 with sigma), form (step|stewart), sigma (the first one), factor, ground (lowest foot, metres), or key.of.optimize.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import reference
 
 MODEL = pathlib.Path(__file__).parents[2] / "examples/contacts/monoped.toml"
 COLUMNS = ["N", "stage", "status", "objective", "iterations", "seconds", "ms per iteration", "primal", "complementarity",
-           "stationarity", "lowest foot [m]", "defect", "q_x(T)"]
+           "stationarity", "penetration [m]", "simulated [m]", "defect", "q_x(T)", "open loop", "amplification", "closed loop"]
 
 
 def replaced(text, old, new):
@@ -33,7 +33,8 @@ def model_text(arguments, intervals, stage, table):
     text = replaced(text, '"q_x - 3"', f'"q_x - {goal}"')
     text = replaced(text, "friction = 0.8", f"friction = {stage.get('friction', 0.8)}")
     text = replaced(text, "foot_z >= -1e-3", f"foot_z >= {stage.get('ground', -1e-3)}")
-    text = replaced(text, "a_n = 200", f"a_n = {stage.get('a_n', 200)}\nstabilisation = {stage.get('stabilisation', 0)}")
+    text = replaced(text, "a_n = 200", f"a_n = {stage.get('a_n', 200)}\n"
+                    f"stabilisation = {{ initial = {stage.get('stabilisation', 0)}, final = 0 }}")
     if arguments.terminal_weight == "T/N":
         scale = horizon / intervals
         weights = [1000 * scale] * 4 + [10 * scale] * 4
@@ -48,7 +49,7 @@ def model_text(arguments, intervals, stage, table):
 
 
 def settings(arguments, stage):
-    keys = {"optimize.native": "on", "optimize.mpcc.iteration_limit": arguments.iterations}
+    keys = {"optimize.native": "on", "optimize.closed_loop": "true", "optimize.mpcc.iteration_limit": arguments.iterations}
     names = {"form": "optimize.reformulation", "sigma": "optimize.mpcc.sigma_initial", "factor": "optimize.mpcc.sigma_factor"}
     for key, value in stage.items():
         if key in names or key.startswith("optimize."):
@@ -59,12 +60,13 @@ def settings(arguments, stage):
 def row_of(intervals, name, result):
     certificate, statistics = result["certificate"], result["statistics"]
     iterations = max(statistics["iterations"], 1)
-    foot = [row[0] for row in result["trajectory"]["outputs"]]
     verification = result.get("verification") or {}
+    depth, open_loop, closed_loop = (verification.get(key, {}) for key in ("penetration", "open_loop", "closed_loop"))
     return [intervals, name, result["status"]["termination"], result["objective"], statistics["iterations"],
             statistics["wall_seconds"], 1e3 * statistics["wall_seconds"] / iterations,
             certificate["primal_infeasibility"], certificate["complementarity_residual"], certificate["stationarity"],
-            min(foot), verification.get("interval_defect"), result["final"]["x"][0]]
+            depth.get("solution"), depth.get("simulation"), verification.get("interval_defect"), result["final"]["x"][0],
+            open_loop.get("end_state_error"), open_loop.get("amplification"), closed_loop.get("end_state_error")]
 
 
 def run(arguments, intervals, stage, name, files):

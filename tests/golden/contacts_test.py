@@ -88,6 +88,22 @@ MALFORMED = {
     "force on a position": ('potential = "10*z"', 'force = { x = 1 }', 13, "a force on 'x'", "'vx'"),
     "coriolis misspelt": ('potential = "10*z"', 'coriolis = "automatic"', 13, '"auto"'),
     "key misspelt": ('potential = "10*z"', 'potentail = "10*z"', 13, "did you mean 'potential'"),
+    "drawn disc without radius": ('potential = "10*z"', 'draw = [{ point = ["x", "z"] }]', 13, "a line or a disc"),
+    "drawn line with a radius": ('potential = "10*z"', 'draw = [{ line = [["x", "z"], [0, 0]], radius = 1 }]', 13,
+                                 "a line or a disc"),
+    "drawn line of one point": ('potential = "10*z"', 'draw = [{ line = [["x", "z"]] }]', 13, "a line or a disc"),
+    "drawn line and point": ('potential = "10*z"', 'draw = [{ line = [["x", "z"], [0, 0]], point = [0, 0] }]', 13,
+                             "a line or a disc"),
+    "drawn in space": ('potential = "10*z"', 'draw = [{ point = ["x", 0, "z"], radius = 1 }]', 13, "two coordinates"),
+    "drawn key misspelt": ('potential = "10*z"', 'draw = [{ pint = ["x", "z"], radius = 1 }]', 13, "did you mean 'point'"),
+    "drawn with a velocity": ('potential = "10*z"', 'draw = [{ point = ["vx", "z"], radius = 1 }]', 13,
+                              "what is drawn depends on 'vx'"),
+    "drawn with time": ('potential = "10*z"', 'draw = [{ point = ["x", "z"], radius = "1 + t" }]', 13,
+                        "the radius of what is drawn depends on 't'"),
+    "drawn with a name unknown": ('potential = "10*z"', 'draw = [{ point = ["x", "y"], radius = 1 }]', 13, "'y'", "in draw"),
+    "drawn disc too small": ('potential = "10*z"', 'draw = [{ point = ["x", "z"], radius = "z - 1" }]', 13,
+                             "the radius of a disc that is drawn is 0 at the start"),
+    "drawn by no list": ('potential = "10*z"', 'draw = { point = ["x", "z"], radius = 1 }', 13, "a list of"),
     "dynamics of a position": ("[mechanics]", "[dynamics]\nx = 'vx'\n[mechanics]", 11, "'x' is a position of [mechanics]"),
     "dynamics of a velocity": ("[mechanics]", "[dynamics]\nvz = '-10'\n[mechanics]", 11, "'vz' is a velocity of [mechanics]"),
     "gap without positions": ('gap = "z"', 'gap = "mu"', 16, "no position in it"),
@@ -167,6 +183,29 @@ class Contacts(tool.ToolTest):
             friction = result["trajectory"]["outputs"][-1][2:4]
             self.assertAlmostEqual(friction[0], -9.81 * math.sin(0.3), delta=1e-9)
             self.assertAlmostEqual(friction[1], 0.0, delta=1e-9)
+
+    def test_what_is_drawn_lies_at_every_row(self):
+        drawn = BALL.replace('potential = "10*z"', 'potential = "10*z"\ndraw = [{ line = [[-1, 0], [5, 0]] }, '
+                             '{ point = ["x", "z + mu"], radius = "mu" }]')
+        for arguments in ((), ("--method", "fesd")):
+            result = self.result(drawn.replace('friction = "mu"', "friction = 0.3"), *arguments)
+            self.assertEqual(result["drawing"]["shapes"], [{"kind": "line", "points": 2}, {"kind": "disc", "points": 1}])
+            self.assertEqual(result["drawing"]["rows"],
+                             [[-1, 0, 5, 0, x[0], x[1] + 0.3, 0.3] for x in result["trajectory"]["x"]])
+            out = self.run_tool("report", "r.json", "--out", "r.html", code=0)
+            self.assertNotIn("warning", "".join(out))
+        stored = self.folder / "r.json"
+        result["drawing"]["rows"][3].pop()
+        stored.write_text(json.dumps(result), encoding="utf-8")
+        _, err = self.run_tool("report", "r.json", "--out", "r.html", code=2)
+        self.assertIn("/drawing/rows/3", err)
+        self.assertNotIn("drawing", self.result(BALL))
+
+    def test_how_deep_bodies_are_in_each_other_is_told(self):
+        self.assertLess(self.result(BALL)["penetration"], 1e-12)
+        frozen = self.result(BALL.replace('"mu"', "0.3"), "--method", "fesd", "--set", "simulate.fesd.steps=20")
+        gaps = [outputs[0] for outputs in frozen["trajectory"]["outputs"]]
+        self.assertAlmostEqual(frozen["penetration"], max(0.0, -min(gaps)), delta=1e-14)
 
     def test_a_slip_that_turns_around_is_told(self):
         """Times of a Taylor series of degree 40 that shares nothing with the engine."""

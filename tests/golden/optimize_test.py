@@ -80,6 +80,47 @@ class OptimizeCheck(tool.ToolTest):
             self.assertIn(warning, text)
 
 
+# Implicit Euler is wrong by several percent in each interval, and the system makes 20 of every 1 of it.
+UNSTABLE = """[model]
+name = "unstable"
+[states]
+x = 1
+[controls]
+u = { lower = -50, upper = 50 }
+[dynamics]
+x = "3*x + u"
+[optimize]
+horizon = 1
+control_intervals = 10
+elements = 1
+scheme = "radau_iia"
+stages = 1
+running_cost = "u^2"
+terminal_cost = "100*x^2"
+verification_tolerance = 1
+"""
+
+
+class ClosedLoop(tool.ToolTest):
+    def test_feedback_brings_it_there_where_the_open_loop_does_not(self):
+        file = self.write("m.toml", UNSTABLE)
+        self.run_tool("optimize", file, "--set", "optimize.closed_loop=true", "--quiet", "--out", "r.json", code=0)
+        verification = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["verification"]
+        open_loop, closed_loop = verification["open_loop"], verification["closed_loop"]
+        self.assertGreater(open_loop["end_state_error"], 0.05)
+        self.assertLess(closed_loop["end_state_error"], 0.2 * open_loop["end_state_error"])
+        self.assertEqual(closed_loop["termination"], "completed")
+        self.assertEqual(closed_loop["x"][0], [1.0])
+        out, _ = self.run_tool("optimize", file, "--set", "optimize.closed_loop=true", code=0)
+        self.assertIn("With feedback from the states at the nodes", " ".join(out.split()))
+
+    def test_it_is_left_out_unless_it_is_asked_for(self):
+        self.run_tool("optimize", self.write("m.toml", UNSTABLE), "--quiet", "--out", "r.json", code=0)
+        self.assertNotIn("closed_loop", json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["verification"])
+        _, err = self.run_tool("optimize", "m.toml", "--set", "optimize.closed_loop=perhaps", code=2)
+        self.assertIn("true or false", err)
+
+
 class Optimize(tool.ToolTest):
     def test_the_car_arrives_in_least_time(self):
         self.write("car.toml", CAR)

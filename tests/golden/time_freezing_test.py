@@ -57,6 +57,29 @@ until = 9
 """
 
 
+# A ball lands and stays where it is; what it is pushed with costs.
+LANDING = HEAD + """[states]
+z = 0.5
+v = 0
+[controls]
+u = { lower = -5, upper = 5 }
+[mechanics]
+positions = ["z"]
+velocities = ["v"]
+force = { v = "u - 9.81" }
+draw = [{ point = [0, "z + 0.1"], radius = 0.1 }]
+[[contacts]]
+name = "ground"
+gap = "z"
+[time_freezing]
+a_n = 20
+[optimize]
+horizon = 0.6
+control_intervals = 2
+elements = 3
+running_cost = "(u - 1)^2"
+"""
+
 QUARTER = math.pi / 4
 # Of an independent code, but for the ninth digit of M33 (by hand).
 MONOPED = (
@@ -120,6 +143,10 @@ class TimeFreezing(tool.ToolTest):
             (("[simulate]", "[time_freezing]\nstiffness = -1\n[simulate]"), "stiffness is -1"),
             (("[simulate]", "[time_freezing]\ntransfer = 0\n[simulate]"), "transfer is 0"),
             (("[simulate]", "[time_freezing]\nstabilisation = -1\n[simulate]"), "stabilisation is -1"),
+            (("[simulate]", "[time_freezing]\nstabilisation = { initial = -1 }\n[simulate]"), "initial is -1"),
+            (("[simulate]", "[time_freezing]\nstabilisation = { initial = 1, final = -1 }\n[simulate]"), "final is -1"),
+            (("[simulate]", "[time_freezing]\nstabilisation = { final = 1 }\n[simulate]"), "no `initial`"),
+            (("[simulate]", "[time_freezing]\nstabilisation = { initial = 1, fnal = 0 }\n[simulate]"), "'final'"),
             (("[simulate]", "[time_freezing]\nclock = 'x'\n[simulate]"), "`clock` beside [[contacts]]"),
             (("vz = 0\n", "vz = 0\nclock = 0\n"), "a state with the name 'clock' beside [[contacts]]"),
         ):
@@ -143,6 +170,24 @@ class TimeFreezing(tool.ToolTest):
             found = self.simulated(text, "event", "--until", "1e-6", *sets)["trajectory"]["outputs"][0]
             for a, b in zip(found, expected):
                 self.assertAlmostEqual(a, b, delta=1e-9)
+
+    def optimised(self, text):
+        self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
+    def test_a_stabilisation_that_is_followed_down_leaves_the_problem_as_it_is(self):
+        plain = self.optimised(LANDING)
+        followed = self.optimised(LANDING.replace("a_n = 20", "a_n = 20\nstabilisation = { initial = 10, final = 0 }"))
+        self.assertAlmostEqual(plain["objective"], followed["objective"], delta=1e-6)
+        self.assertEqual(followed["model"]["parameters"], {})
+        self.assertNotEqual(plain["homotopy"][0]["iterations"], followed["homotopy"][0]["iterations"])
+        for result in (plain, followed):
+            self.assertEqual(result["events"][0]["kind"], "impact")
+            self.assertEqual(set(result["verification"]["penetration"]), {"solution", "simulation"})
+            self.assertLess(result["verification"]["penetration"]["solution"], 1e-3)
+            self.assertLess(result["verification"]["penetration"]["simulation"], 1e-9)
+            rows, drawn = result["trajectory"]["x"], result["drawing"]["rows"]
+            self.assertEqual(drawn, [[0, x[0] + 0.1, 0.1] for x in rows])
 
     def test_hysteresis_of_a_car_is_optimised(self):
         text = (tool.SOURCE / "examples/contacts/turbo-hysteresis.toml").read_text(encoding="utf-8")

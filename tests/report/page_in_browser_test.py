@@ -216,6 +216,53 @@ until = 3
         self.assertLess(abs(sum(means) / len(means)), 0.05)
 
 
+class Bodies(Page):
+    MOVING = "[...document.querySelectorAll('.bodies .moving circle')].map((ball) => Number(ball.getAttribute('cy')))"
+
+    def slide(self, value):
+        self.value("(() => { const slider = document.querySelector('.slider input'); "
+                   f"slider.value = '{value}'; slider.dispatchEvent(new Event('input')); }})()")
+
+    def test_a_ball_falls_with_the_slider_and_lies_with_the_selected_event(self):
+        self.show("sliding-ball")
+        at_start = self.value(self.MOVING)[0]
+        # Fourteen frames behind it, and a floor that stands still.
+        self.assertEqual(self.value("document.querySelectorAll('.bodies .strobe circle').length"), 14)
+        self.assertEqual(self.value("document.querySelectorAll('.bodies .strobe polyline, .bodies .moving polyline').length"), 0)
+        self.assertEqual(self.value("document.querySelectorAll('.bodies > g > polyline').length"), 1)
+        self.slide(1000)
+        floor = "Number(document.querySelector('.bodies > g > polyline').getAttribute('points').split(/[ ,]/)[1])"
+        radius = "Number(document.querySelector('.bodies .moving circle').getAttribute('r'))"
+        self.assertGreater(self.value(self.MOVING)[0], at_start)
+        self.assertAlmostEqual(self.value(floor) - self.value(self.MOVING)[0], self.value(radius), delta=1e-6)
+        self.slide(0)
+        self.assertEqual(self.value(self.MOVING)[0], at_start)
+        self.value(key("ArrowDown"))
+        self.becomes("document.querySelector('.slider-time').textContent", "t = 0.44721")
+        phases = "[...document.querySelectorAll('.contact-strip rect title')].map((title) => title.textContent.split(',')[0])"
+        self.assertEqual(self.value(phases), ["ground slips", "ground sticks"])
+
+    def test_play_comes_to_the_end_and_paper_shows_the_strobe(self):
+        self.show("sliding-ball")
+        self.slide(990)
+        button = "document.querySelector('.slider button')"
+        self.value(button + ".click()")
+        self.becomes(button + ".textContent", "play")
+        self.becomes("document.querySelector('.slider-time').textContent", "t = 2")
+        self.value("window.dispatchEvent(new Event('beforeprint'))")
+        self.assertEqual(self.value("getComputedStyle(document.querySelector('.slider')).display"), "none")
+        self.assertGreater(self.value("document.querySelector('.bodies').getBoundingClientRect().height"), 50)
+        self.value("window.dispatchEvent(new Event('afterprint'))")
+
+    def test_contacts_without_a_drawing_have_their_phases(self):
+        model = (SOURCE / "models/sliding-ball.toml").read_text(encoding="utf-8")
+        lines = [line for line in model.splitlines() if not line.startswith("draw")]
+        (self.folder / "m.toml").write_text("\n".join(lines), encoding="utf-8")
+        self.show("m.toml")
+        self.assertEqual(self.value("document.querySelector('.bodies-card h2').textContent"), "Contacts")
+        self.assertEqual(self.value("document.querySelectorAll('.bodies').length"), 0)
+
+
 class Source(Page):
     def test_the_page_has_the_model_the_start_and_its_rows(self):
         self.tool("simulate", "stick-slip", "--set", "q=0.1", "--quiet", "--report", "page.html")

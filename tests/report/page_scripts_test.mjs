@@ -8,7 +8,7 @@ const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
       "format.js", "series.js", "panels.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
-      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js"
+      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js", "bodies.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
@@ -579,4 +579,48 @@ test("the rows of a page are a table with both sides of events", () => {
   assert.equal(lines[3], "2,0,1,0,2,1,7,0,-1");
   assert.equal(lines[4], "2,1,1,1,2,,7,1,1");
   assert.equal(lines.length, 6);
+});
+
+test("bodies lie where their numbers say, linearly between rows and behind a jump", () => {
+  const shapes = [{kind: "line", points: 2}, {kind: "disc", points: 1}];
+  const trajectory = {t: [0, 1, 1, 3], drawing: [[0, 2, 5, 7], [0, 0, 0, 0], [1, 3, 6, 8], [0, 0, 0, 0], [0, 4, 4, 4], [1, 1, 1, 1], [0.5, 0.5, 0.5, 0.5]]};
+  assert.deepEqual(saltus.placedShapes(shapes, saltus.bodiesAt(trajectory, 0.5)), [
+    {index: 0, kind: "line", points: [[1, 0], [2, 0]], radius: 0},
+    {index: 1, kind: "disc", points: [[2, 1]], radius: 0.5},
+  ]);
+  assert.equal(saltus.bodiesAt(trajectory, 1)[0], 5);
+  assert.equal(saltus.bodiesAt(trajectory, 2)[0], 6);
+  assert.equal(saltus.bodiesAt(trajectory, 3)[0], 7);
+  assert.equal(saltus.bodiesAt(trajectory, -1)[0], 0);
+});
+
+test("a shape with a missing number is left out, the others stay where they are", () => {
+  const shapes = [{kind: "line", points: 2}, {kind: "disc", points: 1}];
+  const placed = saltus.placedShapes(shapes, [null, 0, 1, 0, 4, 1, 0.5]);
+  assert.deepEqual(placed, [{index: 1, kind: "disc", points: [[4, 1]], radius: 0.5}]);
+});
+
+test("the box of bodies holds discs with their radii, and has one scale on both axes", () => {
+  const shapes = [{kind: "disc", points: 1}];
+  const box = saltus.bodiesBox(shapes, {t: [0, 1], drawing: [[0, 10], [1, 1], [1, 1]]});
+  assert.deepEqual(box.map((range) => range.map((value) => Number(value.toFixed(9)))), [[-1.48, 11.48], [-0.48, 2.48]]);
+  const picture = saltus.bodiesPicture(box, 1296, 420);
+  assert.ok(Math.abs(picture.scale - 100) < 1e-9);
+  assert.ok(Math.abs(picture.height - 296) < 1e-9);
+  assert.ok(Math.abs(picture.y(-0.48) - picture.height) < 1e-9);
+  assert.deepEqual(saltus.bodiesBox([], {t: [0], drawing: []}), [[0, 1], [0, 1]]);
+});
+
+test("what is made of numbers stands still", () => {
+  const shapes = [{kind: "line", points: 2}, {kind: "disc", points: 1}];
+  const trajectory = {t: [0, 1], drawing: [[0, 0], [0, 0], [1, 1], [0, 0], [0, 4], [1, 1], [2, 2]]};
+  assert.ok(saltus.standsStill(shapes, trajectory, 0));
+  assert.ok(!saltus.standsStill(shapes, trajectory, 1));
+});
+
+test("frames of a strobe and ticks are round and within their ranges", () => {
+  assert.deepEqual(saltus.strobeTimes({t: [1, 2, 3]}, 3), [1, 2, 3]);
+  assert.deepEqual(saltus.strobeTimes({t: [1]}), [1]);
+  assert.deepEqual(saltus.roundTicks([-0.1, 1.05], 5), [0, 0.5, 1]);
+  assert.deepEqual(saltus.roundTicks([0.13, 0.31], 4), [0.15, 0.2, 0.25, 0.3]);
 });

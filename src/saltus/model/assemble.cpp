@@ -98,6 +98,7 @@ class Assembly {
       }
     }
     system_.contacts = statement_.contacts;
+    system_.drawing = statement_.drawing;
     system_.t = statement_.time;
     system_.x = column(x);
     system_.p = column(p);

@@ -126,6 +126,27 @@ struct Builder::Parts {
     known->modes.push_back(std::move(mode));
   }
 
+  /// @return false after a mistake
+  bool take_drawing(const std::vector<DrawnShape>& shapes, MechanicsStatement& stated) {
+    for (const auto& [points, radius] : shapes) {
+      const bool is_disc = !radius.is_empty();
+      if (points.size1() != 2 || points.size2() < 1 || is_disc != (points.size2() == 1)) {
+        fail({ErrorCode::invalid_model,
+              fmt::format("what is drawn has {} x {} coordinates and {} radius", points.size1(), points.size2(),
+                          is_disc ? "a" : "no"),
+              "a line has 2 x n of them, n >= 2, and no radius; a disc 2 x 1 and a radius",
+              {},
+              {}});
+        return false;
+      }
+      DrawnStatement drawn{.shape = {SX::densify(points), SX()}};
+      for (SXElem& e : drawn.shape.points.nonzeros()) e = entry(SX(e), "what is drawn");
+      if (is_disc) drawn.shape.radius = SX(entry(radius, "the radius of what is drawn"));
+      stated.draw.push_back(std::move(drawn));
+    }
+    return true;
+  }
+
   std::optional<Error> add_mechanics(Statement& whole) {
     if (!mechanics && contacts.empty()) return std::nullopt;
     if (!mechanics) return Error{ErrorCode::invalid_model, "contacts without mechanics()", "call mechanics()", {}, {}};
@@ -371,6 +392,7 @@ void Builder::mechanics(const Mechanics& mechanics) {
     }
     stated.force(place - mechanics.velocities.begin()) = parts_->entry(force, "force on " + name);
   }
+  if (!parts_->take_drawing(mechanics.draw, stated)) return;
   parts_->mechanics = std::move(stated);
 }
 

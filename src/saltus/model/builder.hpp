@@ -55,6 +55,7 @@ struct Mechanics {
   casadi::SX potential = 0.0;                          ///< over positions and parameters: its gradient is subtracted
   Coriolis coriolis = Coriolis::in_force;
   std::map<std::string, casadi::SX> force{};  ///< by velocity; absent: 0
+  std::vector<DrawnShape> draw{};             ///< of the bodies, over positions and parameters; for the report
 };
 
 /// gap >= 0, with friction along a tangent, or in the plane of two (docs/model-file.md, [[contacts]]).

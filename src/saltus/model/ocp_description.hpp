@@ -87,6 +87,8 @@ struct ClockDescription {
   std::string clock;                             ///< the state that is physical time; empty: there is none by hand
   expression::NodePtr speed_lower, speed_upper;  ///< null: 1
   expression::NodePtr a_n, stiffness, stabilisation, transfer;  ///< null: the default
+  /// { initial = …, final = … }: with what an optimisation begins, `stabilisation` is where it ends; null: it is fixed.
+  expression::NodePtr stabilisation_initial;
   SourceLocation location;
 };
 

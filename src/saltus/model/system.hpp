@@ -11,6 +11,7 @@
 #include "saltus/model/cells.hpp"
 #include "saltus/model/description.hpp"
 #include "saltus/model/mechanics/contact_system.hpp"
+#include "saltus/model/mechanics/drawn_shape.hpp"
 
 namespace saltus::model {
 
@@ -142,6 +143,7 @@ struct System {
   std::vector<bool> discrete_states;  ///< n_x: dynamics 0, changed by jumps only
   std::vector<ModeGroup> mode_groups;
   ContactSystem contacts;                        ///< empty unless bodies touch
+  std::vector<DrawnShape> drawing;               ///< of the bodies
   std::shared_ptr<const TimeFreezing> freezing;  ///< of a system without jumps whose time stands still instead
   std::shared_ptr<const FrozenSystem> frozen;    ///< of one with contacts or hysteresis: the same, frozen
 

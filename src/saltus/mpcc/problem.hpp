@@ -35,10 +35,10 @@ struct Bounds {
 /// Whether one side of a pair is known to be nonnegative.
 enum class Sign {
   constrained,  ///< 0 <= G_i(w) is a constraint of its own
-  /// Follows from the bounds of w, nobody need impose it again: the side is affine, a sum of distances of variables from
-  /// their finite bounds with positive weights (w_k - lower_k where dG_i/dw_k > 0, upper_k - w_k where it is < 0), so
-  /// that it is zero if and only if each of them is at that bound. A product of such sums is `implied`, too, but then it
-  /// has to be a method's own (Problem::pair_group -1).
+  /// Follows from the bounds of w, nobody need impose it again: the side is affine, a sum of distances of variables
+  /// from their finite bounds with positive weights (w_k - lower_k where dG_i/dw_k > 0, upper_k - w_k where it is < 0),
+  /// so that it is zero if and only if each of them is at that bound. A product of such sums is `implied`, too, but
+  /// then it has to be a method's own (Problem::pair_group -1).
   implied,
 };
 
@@ -52,10 +52,10 @@ enum class ActiveSide {
 
 /// What a branch problem fixes besides the sides of its pairs (Problem::close_branch).
 struct BranchClosure {
-  std::vector<int> at_lower;                ///< variables fixed at their lower bounds
-  std::vector<int> at_upper;                ///< and upper ones
-  std::vector<std::pair<int, int>> equal;   ///< variables of equal value
-  std::vector<int> dropped_rows;            ///< of g: those of a method, not of the user's problem
+  std::vector<int> at_lower;               ///< variables fixed at their lower bounds
+  std::vector<int> at_upper;               ///< and upper ones
+  std::vector<std::pair<int, int>> equal;  ///< variables of equal value
+  std::vector<int> dropped_rows;           ///< of g: those of a method, not of the user's problem
   /// What the branch leaves open, not what the user asks for: variables fixed at a bound, and rows of g without bounds
   /// that are equations here, g = 0. A solver may do without them where they leave no solution.
   struct Freedom {
@@ -119,16 +119,19 @@ class Problem {
   /// at w. They never do before the first call, nor after without_method_terms().
   virtual void with_method_terms(ConstVectorView w) { static_cast<void>(w); }
   virtual void without_method_terms() {}
+  /// From now on parameters that a method follows down with the relaxation have their values at this part of it: 1 at
+  /// the first relaxed problem of a path, 0 (as before the first call) for the problem itself.
+  virtual void relaxed_by(double part) { static_cast<void>(part); }
   /// Pairs of the same group have the same zero side in a branch problem; -1: a pair of the method's own, which a
   /// branch problem leaves out. By default every pair is its own group.
   [[nodiscard]] virtual int pair_group(int pair) const { return pair; }
   /// What else a branch problem with these zero sides (G or H, one per pair) fixes, makes equal and leaves out.
   [[nodiscard]] virtual BranchClosure close_branch(const std::vector<ActiveSide>& sides) const;
-  /// Gives variables that only the rows of a method ask for the values that these rows have at w, a solution of a branch
-  /// problem. By default there are none.
+  /// Gives variables that only the rows of a method ask for the values that these rows have at w, a solution of a
+  /// branch problem. By default there are none.
   virtual void complete(VectorView w) { static_cast<void>(w); }
-  /// Other sides with which the same point can be written, although no pair of it is biactive: what a closure keeps apart
-  /// (an element of length zero has the modes of either neighbour). By default none.
+  /// Other sides with which the same point can be written, although no pair of it is biactive: what a closure keeps
+  /// apart (an element of length zero has the modes of either neighbour). By default none.
   [[nodiscard]] virtual std::vector<BranchMove> equal_branches(const std::vector<ActiveSide>& sides,
                                                                ConstVectorView w) const;
 };

@@ -12,6 +12,8 @@
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/pipeline/bodies/drawing.hpp"
+#include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -239,16 +241,25 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   return result;
 }
 
-}  // namespace
+/// Of a mechanical system what is drawn of it, and how deep its bodies are in each other.
+void add_bodies(const model::System& system, result::Result& result) {
+  result.drawing = drawing_of(system, system.parameter_values, result.trajectory.x);
+  if (!system.contacts.empty()) {
+    const SymbolicLock lock;
+    result.penetration = Gaps(system, system.parameter_values).depth(result.trajectory);
+  }
+  for (auto& branch : result.branches) add_bodies(system, branch);
+}
 
-Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
-                                  const Observers& observers, KernelStore* kernels) {
-  const bool by_elements = options.method == Method::fesd || options.method == Method::timestepping;
-  if (by_elements && system.frozen && system.frozen->system && !system.frozen->system->freezing)
-    return simulate(*system.frozen->system, options, observers, kernels);
+bool by_elements(const SimulateOptions& options) {
+  return options.method == Method::fesd || options.method == Method::timestepping;
+}
+
+Expected<result::Result> simulated(const model::System& system, const SimulateOptions& options,
+                                   const Observers& observers, KernelStore* kernels) {
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
-  if (by_elements) {
+  if (by_elements(options)) {
     const SymbolicLock lock;  // its problems are made while it runs
     if (system.frozen) {
       return simulate_frozen(system, options, std::move(integration_or->output.times), frame(system, options),
@@ -289,6 +300,19 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   };
   auto result = follow_branches(run_one, {options.event.trajectories, options.event.members});
   kernels->give_back(std::move(*kept));
+  return result;
+}
+
+}  // namespace
+
+Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
+                                  const Observers& observers, KernelStore* kernels) {
+  const auto& frozen = system.frozen;
+  if (by_elements(options) && frozen && frozen->system && !frozen->system->freezing) {
+    return simulate(*frozen->system, options, observers, kernels);
+  }
+  auto result = simulated(system, options, observers, kernels);
+  if (result) add_bodies(system, *result);
   return result;
 }
 

@@ -106,9 +106,17 @@ Finding path_finding(const result::Verification& verification) {
                                      error_text(verification.path_violation))};
 }
 
+/// What a person would see in a picture of bodies of length 1.
+constexpr double visible_depth = 1e-3;
+
+Finding penetration_finding(const result::Penetration& penetration) {
+  const bool fine = penetration.solution <= visible_depth;
+  return {good_if(fine), fmt::format("Bodies are at most {} deep in each other in the solution, {} in its simulation.",
+                                     error_text(penetration.solution), error_text(penetration.simulation))};
+}
+
 /// Information, never a verdict: an unstable system fails it at every accuracy.
-Finding open_loop_finding(const result::OpenLoop& open_loop) {
-  std::string text = "Controls over the whole horizon, from the start on: ";
+Finding open_loop_finding(std::string text, const result::OpenLoop& open_loop) {
   if (!is_done(open_loop.termination)) {
     text += fmt::format("the simulation ended early ({}).", name(open_loop.termination));
     return {Tone::neutral, open_loop.message.empty() ? text : text + " " + open_loop.message};
@@ -138,7 +146,11 @@ std::vector<Finding> verification_findings(const result::Optimization& optimizat
   findings.push_back(interval_finding(optimization, verification));
   findings.push_back(switch_finding(verification));
   findings.push_back(path_finding(verification));
-  findings.push_back(open_loop_finding(verification.open_loop));
+  if (verification.penetration) findings.push_back(penetration_finding(*verification.penetration));
+  findings.push_back(open_loop_finding("Controls over the whole horizon, from the start on: ", verification.open_loop));
+  if (verification.closed_loop) {
+    findings.push_back(open_loop_finding("With feedback from the states at the nodes: ", *verification.closed_loop));
+  }
   return findings;
 }
 

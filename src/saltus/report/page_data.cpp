@@ -71,6 +71,26 @@ json::array_t mode_bands(const result::Trajectory& trajectory, std::size_t width
   return bands;
 }
 
+/// Bands of the contacts: their modes by name.
+json::array_t contact_bands(const result::Result& result) {
+  json::array_t bands;
+  for (std::size_t k = 0; k < std::min(columns_in_page, result.contacts.size()); ++k) {
+    bands.push_back(mode_intervals(
+        result.trajectory, [&](std::size_t i) -> json { return result::name(result.trajectory.contact_modes[i][k]); }));
+  }
+  return bands;
+}
+
+/// What is drawn of the bodies.
+json shapes_data(const std::optional<result::Drawing>& drawing) {
+  json shapes = json::array();
+  if (!drawing) return shapes;
+  for (const auto& shape : drawing->shapes) {
+    shapes.push_back({{"kind", shape.is_disc ? "disc" : "line"}, {"points", shape.points}});
+  }
+  return shapes;
+}
+
 /// Bands of the modes by `indicator`: 1 active alone, 0 active with others, null not active.
 json::array_t region_bands(const result::Result& result) {
   json::array_t bands;
@@ -186,7 +206,8 @@ json model_data(const result::ModelRecord& model) {
 
 json trajectory_data(const result::Result& result, std::size_t limit) {
   const auto& trajectory = result.trajectory;
-  const std::size_t columns_drawn = 1 + number_of_columns(trajectory, columns_in_page);
+  const std::size_t of_bodies = result.drawing ? result.drawing->width() : 0;
+  const std::size_t columns_drawn = 1 + number_of_columns(trajectory, columns_in_page) + of_bodies;
   const auto chosen = rows_to_draw(trajectory, std::max<std::size_t>(1, limit / columns_drawn), columns_in_page);
   const auto width = [](const std::vector<std::string>& names) { return std::min(columns_in_page, names.size()); };
   json::array_t t;
@@ -199,6 +220,8 @@ json trajectory_data(const result::Result& result, std::size_t limit) {
           {"alpha", columns(trajectory.alpha, chosen, width(result.switching_functions))},
           {"outputs", columns(trajectory.outputs, chosen, width(result.outputs))},
           {"theta", columns(trajectory.theta, chosen, width(result::region_labels(result.region_groups)))},
+          {"drawing", result.drawing ? columns(result.drawing->rows, chosen, of_bodies) : json::array()},
+          {"contact_modes", contact_bands(result)},
           {"modes", mode_bands(trajectory, width(result.switching_functions))},
           {"regions", region_bands(result)}};
 }
@@ -348,6 +371,9 @@ json page_data(const result::Result& result, std::size_t limit) {
           {"switching_functions", shown(result.switching_functions)},
           {"regions", shown(result::region_labels(result.region_groups))},
           {"output_names", shown(result.outputs)},
+          {"contacts", shown(result.contacts)},
+          {"shapes", shapes_data(result.drawing)},
+          {"penetration", or_null(result.penetration)},
           {"sizes",
            {{"states", result.states.size()},
             {"controls", result.controls.size()},

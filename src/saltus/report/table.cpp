@@ -248,6 +248,10 @@ std::string to_table(const result::Result& result, std::size_t shown_events, con
   if (result.optimization) text += objective_table(*result.optimization);
   text += end_state(result, captions);
   if (result.optimization) text += findings_table(result, *result.optimization);
+  constexpr double rounding = 1e-12;
+  if (result.penetration.value_or(0.0) > rounding) {
+    text += paragraph("contacts", fmt::format("bodies are at most {:.2g} deep in each other", *result.penetration));
+  }
   if (result.sensitivities) text += sensitivity_table(result, *result.sensitivities);
   text += event_table(result, shown_events);
   text += branch_table(result);

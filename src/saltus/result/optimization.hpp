@@ -69,6 +69,12 @@ struct OpenLoop {
   std::vector<std::vector<double>> x;
 };
 
+/// How deep bodies are in each other: the largest -gap of all contacts, 0 without any.
+struct Penetration {
+  double solution = 0.0;    ///< at the nodes and stages that the optimisation has
+  double simulation = 0.0;  ///< of the event engine, interval by interval
+};
+
 /// What the event engine says of an optimised trajectory.
 struct Verification {
   double tolerance = 0.0;
@@ -80,7 +86,9 @@ struct Verification {
   int switches_extra = 0;   ///< of the solution, not found in the simulation
   double path_violation = 0.0;
   OpenLoop open_loop;
-  std::string message;  ///< why an interval could not be simulated; empty otherwise
+  std::optional<OpenLoop> closed_loop;     ///< with u_k + K_k (x(t_k) - x_k), if asked for
+  std::optional<Penetration> penetration;  ///< of a system with contacts
+  std::string message;                     ///< why an interval could not be simulated; empty otherwise
 };
 
 struct ObjectiveTerms {

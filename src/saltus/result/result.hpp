@@ -13,6 +13,7 @@
 
 #include "saltus/result/caption.hpp"
 #include "saltus/result/comparison.hpp"
+#include "saltus/result/drawing.hpp"
 #include "saltus/result/elements.hpp"
 #include "saltus/result/optimization.hpp"
 #include "saltus/result/sensitivities.hpp"
@@ -252,6 +253,8 @@ struct Result {
   Trajectory trajectory;
   Statistics statistics;  ///< of an optimisation those of Optimization are written instead
   OptionRecord options;
+  std::optional<Drawing> drawing;           ///< of a mechanical system that says what is drawn
+  std::optional<double> penetration;        ///< with contacts: the largest depth -gap of all rows, 0 without any
   std::vector<Surface> surfaces;            ///< empty unless asked for (pipeline::surfaces)
   std::optional<VectorField> vector_field;  ///< of a model with two states, if asked for (pipeline::vector_field)
 

@@ -120,6 +120,7 @@ class Path {
   bool solve(double sigma) {
     const double started = run_.seconds();
     auto& relaxed = *run_.relaxed.problem;
+    run_.problem.relaxed_by(sigma / run_.options.schedule.sigma_initial);
     relaxed.set_sigma(sigma);
     run_.relaxed.sigma = sigma;
     NlpOptions options = run_.nlp_options();
@@ -128,6 +129,8 @@ class Path {
     run_.problem.with_method_terms(w_);
     const NlpReport report = run_.nlp.solve(relaxed, point, options);
     run_.problem.without_method_terms();
+    run_.problem.relaxed_by(0.0);
+    relaxed.set_sigma(sigma);
 
     const Eigen::VectorXd w = point.w.head(w_.size());
     const double infeasibility = point.w.allFinite() && !report.diverging ? infeasibility_of(w) : NAN;

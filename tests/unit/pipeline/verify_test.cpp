@@ -51,7 +51,7 @@ result::Event crossing(double t, int before, int after) {
 }
 
 Verification verified(const Ocp& ocp, const OptimizedPath& path) {
-  const auto verification = verify(ocp, path, 1e-3, {});
+  const auto verification = verify(ocp, path, {1e-3}, {});
   EXPECT_TRUE(verification.has_value()) << (verification ? "" : to_text(verification.error()));
   return verification ? *verification : Verification{};
 }
@@ -292,7 +292,7 @@ TEST(VerifyTest, ControlsActAsSampledInputs) {
 }
 
 TEST(VerifyTest, CanBeInterrupted) {
-  const auto found = verify(refraction(), refracted(), 1e-3, [] { return true; });
+  const auto found = verify(refraction(), refracted(), {1e-3}, [] { return true; });
   ASSERT_TRUE(found.has_value());
   EXPECT_TRUE(std::isnan(found->interval_defect));
   EXPECT_EQ(found->open_loop.termination, Termination::stopped_by_user);

@@ -6,6 +6,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 
 namespace saltus::discretization {
 
@@ -24,6 +25,13 @@ OcpProblem::Implementation::Implementation(std::unique_ptr<OcpStructure> made, c
         mean_values.push_back(1.0 / interval.elements);
       }
     }
+  }
+  if (ocp.system.freezing && ocp.system.freezing->stabilisation >= 0) {
+    const int parameter = ocp.system.freezing->stabilisation;
+    const auto& free = structure->kernel.free_parameters;
+    const auto before = std::lower_bound(free.begin(), free.end(), parameter) - free.begin();
+    stabilisation = {parameter - before, ocp.system.freezing->stabilisation_initial,
+                     ocp.system.parameter_values[at(parameter)]};
   }
   find_patterns();
   start = Eigen::VectorXd::Zero(structure->n_w).cwiseMax(structure->w_bounds.lower).cwiseMin(structure->w_bounds.upper);
@@ -72,11 +80,11 @@ OcpProblem::OcpProblem(std::unique_ptr<Implementation> implementation) : impleme
 OcpProblem::~OcpProblem() = default;
 
 Expected<std::unique_ptr<OcpProblem>> OcpProblem::make(std::shared_ptr<OcpKernel> kernel, const model::Ocp& ocp,
-                                                       const reformulation::Dcs& dcs, const std::vector<int>& elements) {
+                                                       const reformulation::Dcs& dcs,
+                                                       const std::vector<int>& elements) {
   auto structure = ocp_structure(std::move(kernel), ocp, dcs, elements);
   if (!structure) return tl::unexpected(structure.error());
-  return std::unique_ptr<OcpProblem>(
-      new OcpProblem(std::make_unique<Implementation>(std::move(*structure), ocp)));
+  return std::unique_ptr<OcpProblem>(new OcpProblem(std::make_unique<Implementation>(std::move(*structure), ocp)));
 }
 
 int OcpProblem::variables() const { return implementation_->structure->n_w; }
@@ -152,7 +160,8 @@ void OcpProblem::hessian(ConstVectorView w, double objective_factor, ConstVector
   double* next = values.data();
   for (const auto& placed : made.functions) {
     if (placed.function->hessian_pattern().entries() == 0) continue;
-    next = placed.placed->hessian(w, made.constants, made.local_parameters, objective_factor * own.factor(placed), y, next);
+    next = placed.placed->hessian(w, made.constants, made.local_parameters, objective_factor * own.factor(placed), y,
+                                  next);
   }
   for (const auto& penalty : made.penalties) {
     if (penalty.squared) *next++ = 2.0 * objective_factor * penalty.factor;
@@ -170,5 +179,12 @@ void OcpProblem::with_method_terms(ConstVectorView w) {
   own.method_scale = (std::isfinite(f) ? std::max(1.0, std::abs(f)) : 1.0) / (n * n);
 }
 void OcpProblem::without_method_terms() { implementation_->method_scale = 0.0; }
+
+void OcpProblem::relaxed_by(double part) {
+  const auto& followed = implementation_->stabilisation;
+  if (!followed) return;
+  implementation_->structure->local_parameters[followed->place] =
+      followed->last + part * (followed->initial - followed->last);
+}
 
 }  // namespace saltus::discretization

@@ -111,6 +111,7 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] const mpcc::Chain* chain() const override;
   void with_method_terms(mpcc::ConstVectorView w) override;
   void without_method_terms() override;
+  void relaxed_by(double part) override;
   [[nodiscard]] int pair_group(int pair) const override;
   [[nodiscard]] mpcc::BranchClosure close_branch(const std::vector<mpcc::ActiveSide>& sides) const override;
   void complete(mpcc::VectorView w) override;

@@ -2,19 +2,29 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "saltus/discretization/ocp/ocp_structure_internal.hpp"
 
 namespace saltus::discretization {
+
+/// A fixed parameter that the relaxed problems follow from one value to another.
+struct FollowedParameter {
+  Eigen::Index place = 0;  ///< among the parameters of the local functions
+  double initial = 0.0, last = 0.0;
+};
 
 struct OcpProblem::Implementation {
   std::unique_ptr<OcpStructure> structure;
   mpcc::Pattern jacobian_pattern, hessian_pattern;
   Eigen::VectorXd start;
   double time_weight = 0.0;
-  double method_scale = 0.0;  ///< 0: without the method's terms
+  double method_scale = 0.0;      ///< 0: without the method's terms
   std::vector<int> mean_lengths;  ///< of heuristic_mean: variables; their mean is 1 over the number of their interval
   std::vector<double> mean_values;
+  std::optional<FollowedParameter> stabilisation;
   std::vector<std::string> path_names, terminal_names, state_names;
 
   Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp);

@@ -30,16 +30,22 @@ Json open_loop_json(const result::OpenLoop& open_loop) {
 }
 
 Json verification_json(const result::Verification& verification) {
-  return {{"tolerance", verification.tolerance},
-          {"interval_defect", verification.interval_defect},
-          {"interval", verification.interval < 0 ? Json() : Json(verification.interval)},
-          {"state", verification.state},
-          {"switch_time_error", verification.switch_time_error},
-          {"switches_missed", verification.switches_missed},
-          {"switches_extra", verification.switches_extra},
-          {"path_violation", verification.path_violation},
-          {"message", verification.message},
-          {"open_loop", open_loop_json(verification.open_loop)}};
+  Json json = {{"tolerance", verification.tolerance},
+               {"interval_defect", verification.interval_defect},
+               {"interval", verification.interval < 0 ? Json() : Json(verification.interval)},
+               {"state", verification.state},
+               {"switch_time_error", verification.switch_time_error},
+               {"switches_missed", verification.switches_missed},
+               {"switches_extra", verification.switches_extra},
+               {"path_violation", verification.path_violation},
+               {"message", verification.message},
+               {"open_loop", open_loop_json(verification.open_loop)}};
+  if (verification.closed_loop) json["closed_loop"] = open_loop_json(*verification.closed_loop);
+  if (verification.penetration) {
+    json["penetration"] = {{"solution", verification.penetration->solution},
+                           {"simulation", verification.penetration->simulation}};
+  }
+  return json;
 }
 
 }  // namespace

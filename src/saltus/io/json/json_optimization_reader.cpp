@@ -81,6 +81,13 @@ void read_open_loop(JsonReader& reader, const Json& json, const std::string& pat
   reader.read_member(json, path, "x", open_loop.x);
 }
 
+void read_penetration(JsonReader& reader, const Json& json, const std::string& path,
+                      std::optional<result::Penetration>& penetration) {
+  penetration.emplace();
+  reader.read_member(json, path, "solution", penetration->solution);
+  reader.read_member(json, path, "simulation", penetration->simulation);
+}
+
 void read_verification(JsonReader& reader, const Json& json, const std::string& path,
                        result::Verification& verification) {
   reader.read_member(json, path, "tolerance", verification.tolerance);
@@ -96,6 +103,13 @@ void read_verification(JsonReader& reader, const Json& json, const std::string& 
   reader.read_member(json, path, "path_violation", verification.path_violation);
   reader.read_member(json, path, "message", verification.message);
   read_part(reader, json, path, "open_loop", read_open_loop, verification.open_loop);
+  if (!json.is_object()) return;
+  if (json.contains("closed_loop")) {
+    read_part(reader, json, path, "closed_loop", read_open_loop, verification.closed_loop.emplace());
+  }
+  if (json.contains("penetration")) {
+    read_part(reader, json, path, "penetration", read_penetration, verification.penetration);
+  }
 }
 
 void read_optimization_statistics(JsonReader& reader, const Json& json, const std::string& path,

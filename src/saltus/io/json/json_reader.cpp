@@ -242,6 +242,29 @@ void read_vector_field(JsonReader& reader, const Json& json, const std::string& 
   read_part(reader, json, path, "sliding", read_arrows, field->sliding);
 }
 
+std::optional<bool> is_disc_named(std::string_view name) {
+  return name == "disc" ? std::optional(true) : name == "line" ? std::optional(false) : std::nullopt;
+}
+
+result::DrawnShape read_shape(JsonReader& reader, const Json& json, const std::string& path) {
+  result::DrawnShape shape;
+  reader.read_word(json, path, "kind", is_disc_named, "kind of what is drawn", shape.is_disc);
+  shape.points = read_number(reader, json, path, "points");
+  if (!reader.error() && shape.is_disc != (shape.points == 1)) {
+    reader.fail(path + "/points", fmt::format("expected 1 of a disc and more of a line, found {}", shape.points));
+  }
+  return shape;
+}
+
+void read_drawing(JsonReader& reader, const Json& json, const std::string& path,
+                  std::optional<result::Drawing>& drawing) {
+  drawing.emplace();
+  if (const auto* shapes = reader.member(json, path, "shapes")) {
+    read_list(reader, *shapes, path + "/shapes", drawing->shapes, read_shape);
+  }
+  reader.read_member(json, path, "rows", drawing->rows);
+}
+
 result::Result read_whole(JsonReader& reader, const Json& json, const std::string& path, int depth);
 
 void read_branches(JsonReader& reader, const Json& json, const std::string& path, int depth, result::Result& result) {
@@ -280,6 +303,10 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   read_part(reader, json, path, "final", read_final, result.final);
   read_part(reader, json, path, "events", read_recorded_events, result.events);
   read_part(reader, json, path, "trajectory", read_trajectory, result.trajectory);
+  if (json.is_object() && json.contains("drawing")) {
+    read_part(reader, json, path, "drawing", read_drawing, result.drawing);
+  }
+  reader.read_if_there(json, path, "penetration", result.penetration);
   if (result.command == "optimize") read_optimization(reader, json, path, result.optimization.emplace());
   // Results of versions before surfaces were recorded have none.
   if (json.is_object() && json.contains("surfaces")) {

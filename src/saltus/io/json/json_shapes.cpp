@@ -126,6 +126,9 @@ void check_optimization(JsonReader& reader, const std::string& path, const resul
   if (!optimization.verification) return;
   const auto& open_loop = optimization.verification->open_loop;
   check_rows(reader, path + "/verification/open_loop/x", open_loop.x, open_loop.t.size(), result.states.size());
+  if (!optimization.verification->closed_loop) return;
+  const auto& closed_loop = *optimization.verification->closed_loop;
+  check_rows(reader, path + "/verification/closed_loop/x", closed_loop.x, closed_loop.t.size(), result.states.size());
 }
 
 }  // namespace
@@ -145,6 +148,9 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   check_length(reader, path + "/final/mode", result.final.mode, columns);
   check_length(reader, path + "/final/alpha", result.final.alpha, columns);
   check_length(reader, path + "/final/outputs", result.final.outputs, result.outputs.size());
+  if (result.drawing) {
+    check_rows(reader, path + "/drawing/rows", result.drawing->rows, times, result.drawing->width());
+  }
   if (result.sensitivities) {
     const auto& [x0, p, parameters] = *result.sensitivities;
     check_rows(reader, path + "/sensitivities/x0", x0, result.states.size(), result.states.size());

@@ -199,6 +199,17 @@ Json options_json(const result::OptionRecord& options) {
   return json;
 }
 
+void append_drawing(TextStream& stream, const result::Drawing& drawing, std::size_t indent) {
+  ObjectStream object(stream, indent);
+  Json shapes = Json::array();
+  for (const auto& shape : drawing.shapes) {
+    shapes.push_back({{"kind", shape.is_disc ? "disc" : "line"}, {"points", shape.points}});
+  }
+  object.member("shapes", shapes);
+  object.list("rows", drawing.rows, [&](const auto& row, std::size_t) { append_json(stream.text(), row); });
+  object.end();
+}
+
 /// What an optimisation has found, as members of the result.
 void append_optimum(ObjectStream& object, const result::Optimization& optimization) {
   Json found = Json::object();
@@ -231,6 +242,11 @@ void append_whole(TextStream& stream, const result::Result& result, std::size_t 
   object.list("events", result.events, [&](const auto& event, std::size_t at) { append_event(stream, event, at); });
   object.key("trajectory");
   append_trajectory(stream, result.trajectory, indent + 2);
+  if (result.drawing) {
+    object.key("drawing");
+    append_drawing(stream, *result.drawing, indent + 2);
+  }
+  if (result.penetration) object.member("penetration", *result.penetration);
   if (result.optimization) append_optimum(object, *result.optimization);
   Json surfaces = Json::array();
   for (const auto& surface : result.surfaces) surfaces.push_back(surface_json(surface));

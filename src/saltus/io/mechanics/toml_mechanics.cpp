@@ -111,8 +111,10 @@ class MechanicsReader {
         reader_.unknown_key(entry, {"line", "point", "radius"});
       }
     }
+    // Coordinates that could not be read have their own mistake.
+    const bool is_both = table.size() == 2 && shape.radius == nullptr && shape.points.size() > 1;
     const bool is_point = shape.points.size() == 1;
-    if (shape.points.empty() || is_point != (shape.radius != nullptr)) {
+    if (shape.points.empty() || is_both || is_point != (shape.radius != nullptr)) {
       fail("what is drawn is a line or a disc",
            "write { line = [[\"x\", 0], [\"x\", 1]] } or { point = [\"x\", \"z\"], radius = 0.1 }", location);
     }

@@ -247,9 +247,8 @@ void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
 
 /// A key of [time_freezing] that is a number or an expression of parameters; nothing if it is no such key.
 expression::NodePtr* freezing_number(model::ClockDescription& clock, const std::string& key) {
-  for (const auto& [name, node] :
-       {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness},
-        std::pair{"stabilisation", &clock.stabilisation}, std::pair{"transfer", &clock.transfer}}) {
+  for (const auto& [name, node] : {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness},
+                                   std::pair{"transfer", &clock.transfer}}) {
     if (key == name) return node;
   }
   return nullptr;
@@ -258,11 +257,33 @@ expression::NodePtr* freezing_number(model::ClockDescription& clock, const std::
 void read_freezing_number(TomlReader& reader, const TomlEntry& field, expression::NodePtr& node) {
   node = reader.expression(field.value);
   const auto value = node ? constant_value(*node) : std::nullopt;
-  const bool may_vanish = field.key == "stabilisation";
+  const bool may_vanish = field.key == "stabilisation" || field.key == "initial" || field.key == "final";
   if (!value || *value > 0.0 || (may_vanish && *value == 0.0)) return;
   reader.fail(with_context({ErrorCode::invalid_model,
                             fmt::format("{} is {}", field.key, *value),
                             may_vanish ? "it is a number that is 0 or positive" : "it is a positive number",
+                            field.value.location,
+                            {}},
+                           "in [time_freezing]"));
+}
+
+/// A number, or { initial = …, final = … }.
+void read_stabilisation(TomlReader& reader, const TomlEntry& field, model::ClockDescription& clock) {
+  const auto* table = std::get_if<TomlTable>(&field.value.value);
+  if (table == nullptr) return read_freezing_number(reader, field, clock.stabilisation);
+  for (const auto& entry : *table) {
+    if (entry.key == "initial") {
+      read_freezing_number(reader, entry, clock.stabilisation_initial);
+    } else if (entry.key == "final") {
+      read_freezing_number(reader, entry, clock.stabilisation);
+    } else {
+      reader.unknown_key(entry, {"initial", "final"});
+    }
+  }
+  if (clock.stabilisation_initial) return;
+  reader.fail(with_context({ErrorCode::invalid_model,
+                            "stabilisation has no `initial`",
+                            "write { initial = 10, final = 0 }, or a number",
                             field.value.location,
                             {}},
                            "in [time_freezing]"));
@@ -279,6 +300,8 @@ void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& m
       clock.location = field.value.location;
     } else if (field.key == "speed") {
       read_speed(reader, field, clock);
+    } else if (field.key == "stabilisation") {
+      read_stabilisation(reader, field, clock);
     } else if (auto* number = freezing_number(clock, field.key)) {
       read_freezing_number(reader, field, *number);
     } else if (field.key == "eps_t") {

@@ -41,6 +41,7 @@ class MechanicsBuild {
       return error;
     }
     if (auto error = check_symmetry()) return error;
+    if (auto error = take_drawing()) return error;
     const SymbolicLdl factors(mechanics_.mass);
     if (auto error = check_definite(factors.pivots())) return error;
     SX force = total_force();
@@ -134,6 +135,28 @@ class MechanicsBuild {
           "every velocity needs a positive mass or inertia of its own");
     }
     return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<Error> take_drawing() {
+    for (const auto& [shape, location] : mechanics_.draw) {
+      for (const SXElem& e : SX::densify(shape.points).nonzeros()) {
+        if (auto error = check_reach(e, "what is drawn", location)) return error;
+      }
+      if (!shape.radius.is_empty()) {
+        if (auto error = check_radius(shape.radius.scalar(), location)) return error;
+      }
+      statement_.drawing.push_back(shape);
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<Error> check_radius(const SXElem& radius, const SourceLocation& location) {
+    if (auto error = check_reach(radius, "the radius of what is drawn", location)) return error;
+    const auto value = at_start(radius);
+    if (!value) return value.error();
+    if (*value > 0.0 && std::isfinite(*value)) return std::nullopt;
+    return mechanics_error(location, fmt::format("the radius of a disc that is drawn is {} at the start", *value),
+                           "it is a length > 0");
   }
 
   [[nodiscard]] SX total_force() const {

@@ -18,6 +18,12 @@ struct ContactStatement {
   SourceLocation location{}, gap_location{}, friction_location{}, restitution_location{};
 };
 
+/// What is drawn, and where it is written.
+struct DrawnStatement {
+  DrawnShape shape;
+  SourceLocation location{};
+};
+
 /// A mechanical system in expressions of the statement it belongs to.
 struct MechanicsStatement {
   std::vector<int> positions{}, velocities{};  ///< states, in the same order
@@ -26,6 +32,7 @@ struct MechanicsStatement {
   casadi::SX force{};  ///< n
   Coriolis coriolis = Coriolis::in_force;
   std::vector<ContactStatement> contacts{};
+  std::vector<DrawnStatement> draw{};
   SourceLocation location{}, mass_location{}, potential_location{};
 };
 
@@ -46,8 +53,10 @@ using StateContacts =
 /// coriolis + forces of contacts), and appends the outputs of the contacts and `energy`, v'M v/2 + potential. The
 /// initial values of the states are known.
 /// @param contacts  as they are for the event engine if empty
-/// @return the mistake: a right-hand side that is there already; a mass matrix or potential that depends on more than
-///         positions and parameters; a mass matrix that is not symmetric or not positive definite at the start
+/// @return the mistake: a right-hand side that is there already; a mass matrix, a potential or a drawing that depends
+/// on
+///         more than positions and parameters; a mass matrix that is not symmetric or not positive definite at the
+///         start
 [[nodiscard]] std::optional<Error> state_mechanics(Recognition& recognition, Statement& statement,
                                                    const MechanicsStatement& mechanics,
                                                    const StateContacts& contacts = {});

@@ -25,8 +25,9 @@ class MechanicsTranslation {
     stated_.coriolis = mechanics_.coriolis;
     stated_.location = mechanics_.location;
     stated_.mass_location = mechanics_.mass_location;
-    for (const auto step : {&MechanicsTranslation::states, &MechanicsTranslation::mass,
-                            &MechanicsTranslation::potential, &MechanicsTranslation::force}) {
+    for (const auto step :
+         {&MechanicsTranslation::states, &MechanicsTranslation::mass, &MechanicsTranslation::potential,
+          &MechanicsTranslation::force, &MechanicsTranslation::draw}) {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }
     return std::move(stated_);
@@ -121,6 +122,27 @@ class MechanicsTranslation {
       auto force = scope_.expression(*entry.force);
       if (!force) return with_context(force.error(), fmt::format("in force {}", entry.velocity));
       stated_.force(static_cast<casadi_int>(i)) = *force;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> draw() {
+    for (const auto& drawn : mechanics_.draw) {
+      DrawnStatement stated{.shape = {SX::zeros(2, static_cast<casadi_int>(drawn.points.size())), SX()},
+                            .location = drawn.location};
+      for (std::size_t k = 0; k < drawn.points.size(); ++k) {
+        for (const std::size_t axis : {0U, 1U}) {
+          auto coordinate = scope_.expression(*drawn.points[k][axis]);
+          if (!coordinate) return with_context(coordinate.error(), "in draw");
+          stated.shape.points(static_cast<casadi_int>(axis), static_cast<casadi_int>(k)) = *coordinate;
+        }
+      }
+      if (drawn.radius) {
+        auto radius = scope_.expression(*drawn.radius);
+        if (!radius) return with_context(radius.error(), "in draw");
+        stated.shape.radius = SX(*radius);
+      }
+      stated_.draw.push_back(std::move(stated));
     }
     return std::nullopt;
   }

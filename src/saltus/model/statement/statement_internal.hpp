@@ -131,6 +131,7 @@ struct Statement {
   std::vector<EventStatement> events;
   std::vector<JumpStatement> jumps;
   ContactSystem contacts;
+  std::vector<DrawnShape> drawing;
   std::vector<OutputStatement> automatic_outputs;  ///< behind the others
   std::vector<std::string> warnings;
 };

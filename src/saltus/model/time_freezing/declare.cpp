@@ -23,6 +23,7 @@ std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& sc
   for (const auto& key :
        {Key{"a_n", stated.a_n, numbers.a_n, false}, Key{"stiffness", stated.stiffness, numbers.stiffness, false},
         Key{"stabilisation", stated.stabilisation, numbers.stabilisation, true},
+        Key{"stabilisation.initial", stated.stabilisation_initial, numbers.stabilisation_initial, true},
         Key{"transfer", stated.transfer, numbers.transfer, false}}) {
     if (!key.node) continue;
     const auto value = scope.value(*key.node, Reach::everything, key.name);
@@ -44,6 +45,21 @@ int declare_state(Recognition& recognition, Statement& statement, const std::str
   return index;
 }
 
+/// A number, or, for an optimisation that begins with another one, a parameter: a variable, so that nothing folds.
+void declare_stabilisation(const Description& description, Recognition& recognition, Statement& statement,
+                           FreezingPlan& plan) {
+  plan.stabilisation = plan.numbers.stabilisation;
+  const bool is_followed = description.clock && description.clock->stabilisation_initial;
+  if (!is_followed || plan.purpose != FrozenFor::optimisation || description.contacts.empty()) return;
+  plan.made.stabilisation = static_cast<int>(statement.parameters.size());
+  plan.made.stabilisation_initial = plan.numbers.stabilisation_initial;
+  const SXElem symbol = recognition.graph.symbol(
+      "time_freezing.stabilisation",
+      {.kind = VariableKind::control, .index = plan.made.stabilisation, .value = plan.numbers.stabilisation});
+  statement.parameters.push_back({"time_freezing.stabilisation", symbol, plan.numbers.stabilisation});
+  plan.stabilisation = casadi::SX(symbol);
+}
+
 }  // namespace
 
 std::optional<Error> declare_frozen(const Description& description, ModelScope& scope, Recognition& recognition,
@@ -51,6 +67,7 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
   if (description.clock) {
     if (auto error = take_numbers(*description.clock, scope, plan.numbers)) return error;
   }
+  declare_stabilisation(description, recognition, statement, plan);
   for (const auto& entry : description.hysteresis) {
     plan.made.hysteresis.push_back({entry.name, declare_state(recognition, statement, entry.name, entry.location)});
   }

@@ -104,9 +104,8 @@ class ContactFreezing {
       tangential = -system_.friction(i) * (2.0 * *side - 1.0) * normal;
     }
     add_to(system_.velocities, response(i) * normal + response(m_ + i) * tangential);
-    if (plan_.numbers.stabilisation > 0.0) {
-      add_to(system_.positions,
-             -plan_.numbers.stabilisation * response(i) * system_.gap(i) * (1.0 - *gap) * (1.0 - *rate));
+    if (!plan_.stabilisation.is_zero()) {
+      add_to(system_.positions, -plan_.stabilisation * response(i) * system_.gap(i) * (1.0 - *gap) * (1.0 - *rate));
     }
     add_outputs(k, normal, tangential);
     return std::nullopt;

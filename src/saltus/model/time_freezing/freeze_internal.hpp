@@ -18,6 +18,7 @@ enum class FrozenFor { simulation, optimisation };
 /// Numbers of [time_freezing] (docs/model-file.md).
 struct FreezingNumbers {
   double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
+  double stabilisation_initial = 0.0;
 };
 
 /// A rate that is added to that of a state.
@@ -45,8 +46,9 @@ struct FreezingPlan {
   /// Instead of `waits`: the one hysteresis of an optimisation by regions in the plane of its input and state.
   std::optional<HysteresisPlane> plane{};
   bool takes_plane = false;
-  casadi::SX waits = 1.0;  ///< 1 unless a hysteresis switches
-  casadi::SX moves = 1.0;  ///< 1 unless a contact is closed
+  casadi::SX waits = 1.0;          ///< 1 unless a hysteresis switches
+  casadi::SX moves = 1.0;          ///< 1 unless a contact is closed
+  casadi::SX stabilisation = 0.0;  ///< kappa: a number, or a parameter
   std::vector<AddedRate> added{};
   std::vector<std::pair<SXElem, FrozenSelection*>> selections{};  ///< to be found in the system
 };

@@ -40,6 +40,8 @@ struct TimeFreezing {
   std::vector<int> velocities;  ///< states
   std::vector<FrozenContact> contacts;
   std::vector<FrozenHysteresis> hysteresis;
+  int stabilisation = -1;              ///< parameter of the system: kappa, if it is followed down; -1: a constant
+  double stabilisation_initial = 0.0;  ///< its value at the first relaxed problem; at last it has its parameter's
 };
 
 /// What a system with contacts or hysteresis is when it is frozen, or why it cannot be.

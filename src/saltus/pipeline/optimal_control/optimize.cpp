@@ -12,6 +12,8 @@
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/base/at.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/pipeline/bodies/drawing.hpp"
+#include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
@@ -20,6 +22,7 @@
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
+#include "saltus/solver/feedback.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -164,14 +167,33 @@ std::optional<solver::Start> same_structure(const discretization::OcpProblem& pr
   return start;
 }
 
+/// How deep bodies are in each other at the nodes and stages.
+double solution_depth(const model::Ocp& ocp, const discretization::OcpSolution& solution) {
+  Gaps gaps(*ocp.physical, solution.parameters);
+  const auto clock = at(ocp.system.freezing->clock);
+  const auto depth = [&](const std::vector<double>& x) { return gaps.depth(x[clock], x); };
+  double deepest = depth(solution.initial_state);
+  for (const auto& interval : solution.elements) {
+    for (const auto& element : interval) {
+      for (Eigen::Index m = 0; m < element.states.cols(); ++m) {
+        deepest = std::max(deepest, depth(list_of(element.states.col(m))));
+      }
+      deepest = std::max(deepest, depth(list_of(element.end)));
+    }
+  }
+  return deepest;
+}
+
 /// Frozen systems stand for others, which the event engine simulates.
 Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const OptimizedPath& path,
                                                 const result::Result& run, const OptimizeOptions& options,
+                                                std::vector<Eigen::MatrixXd> gains,
                                                 const OptimizeObservers& observers) {
-  if (!ocp.physical) return verify(ocp, path, options.verification_tolerance, observers.is_interrupted);
+  const VerificationWanted wanted{options.verification_tolerance, std::move(gains)};
+  if (!ocp.physical) return verify(ocp, path, wanted, observers.is_interrupted);
   const auto physical = physical_path(ocp, path, run);
   if (!physical) return tl::unexpected(physical.error());
-  return verify(physical_ocp(ocp), *physical, options.verification_tolerance, observers.is_interrupted);
+  return verify(physical_ocp(ocp), *physical, wanted, observers.is_interrupted);
 }
 
 }  // namespace
@@ -203,7 +225,9 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
 
   const auto read = problem.read(solution->w);
   take_solution(ocp, read, found);
+  const int stabilisation = ocp.system.freezing ? ocp.system.freezing->stabilisation : -1;
   for (std::size_t i = 0; i < read.parameters.size(); ++i) {
+    if (static_cast<int>(i) == stabilisation) continue;  // not one of the model
     result.model.parameters.emplace_back(ocp.system.parameter_names[i], read.parameters[i]);
   }
   result.status.time_reached = found.grid.back();
@@ -213,14 +237,21 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   for (std::size_t i = 0; i < result.states.size() && !result.trajectory.x.empty(); ++i) {
     result.model.initial_state.emplace_back(result.states[i], result.trajectory.x.front()[i]);
   }
+  result.drawing = drawing_of(ocp.system, read.parameters, result.trajectory.x);
   result.events = std::move(run->events);
   result.final = std::move(run->final);
   result.elements = std::move(run->elements);
   if (ocp.system.freezing) result.switching_functions = run->switching_functions;
   if (result.status.termination != Termination::stopped_by_user && solution->w.allFinite()) {
-    auto verification = judged_by_events(ocp, run->path, result, options, observers);
+    std::vector<Eigen::MatrixXd> gains;
+    if (options.closed_loop) {
+      gains = solver::feedback_gains(problem, *solution, static_cast<int>(ocp.system.control_names.size()),
+                                     static_cast<int>(result.states.size()));
+    }
+    auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), observers);
     if (!verification) return tl::unexpected(verification.error());
     judge(*verification, options.verification_tolerance, result.status);
+    if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);
     found.verification = std::move(*verification);
   }
   found.statistics.wall_seconds = whole.seconds();

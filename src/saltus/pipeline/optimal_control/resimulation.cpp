@@ -31,19 +31,6 @@ constexpr double difference_step = 1e-5;
 /// Of an interval: switches so near to its start are there, to what switching times are found to.
 constexpr double at_start = 1e-6;
 
-IntegrationOptions resimulation_options(double from, double until, std::size_t rows) {
-  IntegrationOptions options;
-  options.method = ode::Method::dop853;
-  options.tolerances = verification_tolerances;
-  options.from = from;
-  options.until = until;
-  options.max_steps = most_explicit_steps;
-  options.max_events = most_resimulated_events;
-  options.output.rows = OutputTimes::Rows::at_times;
-  options.output.times = equal_times(from, until, rows);
-  return options;
-}
-
 /// The mode of the solution at the start of interval k, over the columns of the result; nullopt if no event says it.
 std::optional<result::Mode> mode_at_start(const OptimizedPath& path, std::size_t k) {
   const double t = path.times[k] + at_start * (path.times[k + 1] - path.times[k]);
@@ -56,6 +43,19 @@ std::optional<result::Mode> mode_at_start(const OptimizedPath& path, std::size_t
 }
 
 }  // namespace
+
+IntegrationOptions resimulation_options(double from, double until, std::size_t rows) {
+  IntegrationOptions options;
+  options.method = ode::Method::dop853;
+  options.tolerances = verification_tolerances;
+  options.from = from;
+  options.until = until;
+  options.max_steps = most_explicit_steps;
+  options.max_events = most_resimulated_events;
+  options.output.rows = OutputTimes::Rows::at_times;
+  options.output.times = equal_times(from, until, rows);
+  return options;
+}
 
 std::vector<double> equal_times(double from, double until, std::size_t n) {
   std::vector<double> times;

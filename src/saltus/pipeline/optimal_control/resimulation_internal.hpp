@@ -30,8 +30,8 @@ class Resimulation {
   [[nodiscard]] Segment interval(std::size_t k, const std::function<bool()>& is_interrupted);
   /// From the first node over the whole horizon, likewise.
   [[nodiscard]] Segment open_loop(const std::function<bool()>& is_interrupted);
-  /// The 2-norm of d x(T) / d x(from), the product of the derivatives of all intervals, by central differences in steps of
-  /// 1e-5 `scales`; NaN if a simulation does not come to its end.
+  /// The 2-norm of d x(T) / d x(from), the product of the derivatives of all intervals, by central differences in steps
+  /// of 1e-5 `scales`; NaN if a simulation does not come to its end.
   [[nodiscard]] double amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted);
 
  private:
@@ -50,6 +50,16 @@ class Resimulation {
   evaluation::ModelKernel kernel_;
   const OptimizedPath* path_;
 };
+
+/// From the first node over the whole horizon, in interval k with u_k + K_k (x(t_k) - x_k), moved onto the bounds of
+/// the controls.
+/// @param gains  K_k over all controls and the states of the result
+[[nodiscard]] Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
+                                                                   const std::vector<Eigen::MatrixXd>& gains,
+                                                                   const std::function<bool()>& is_interrupted);
+
+/// So sharp that defects of 1e-9 of the range are those of the solution; `rows` + 1 rows of equal distance.
+[[nodiscard]] event_integrator::IntegrationOptions resimulation_options(double from, double until, std::size_t rows);
 
 /// n + 1 times of equal distance from `from` until `until`.
 [[nodiscard]] std::vector<double> equal_times(double from, double until, std::size_t n);

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
 #include "saltus/pipeline/optimal_control/switch_comparison_internal.hpp"
 
@@ -102,6 +104,10 @@ class IntervalChecks {
  public:
   IntervalChecks(const Ocp& ocp, const OptimizedPath& path, Verification& verification)
       : ocp_(ocp), path_(path), verification_(verification), scales_(ocp.system, path) {
+    if (!ocp.system.contacts.empty()) {
+      gaps_.emplace(ocp.system, path.parameters);
+      verification.penetration.emplace();
+    }
     for (const auto& column : ocp.system.columns) {
       is_listed_.push_back(ocp.system.switching[at(column.function)].role == model::SwitchingRole::listed);
     }
@@ -120,6 +126,10 @@ class IntervalChecks {
         continue;
       }
       scales_.include(interval.run);
+      if (gaps_) {
+        double& deepest = verification_.penetration->simulation;
+        deepest = std::max(deepest, gaps_->depth(interval.run.trajectory));
+      }
       const double worst = path_violation(ocp_, interval.run, path_.times[k + 1]);
       verification_.path_violation = worse(verification_.path_violation, worst);
     }
@@ -189,6 +199,7 @@ class IntervalChecks {
   std::vector<std::vector<Switch>> switches_;
   std::vector<bool> is_listed_;
   std::vector<std::size_t> chosen_;
+  std::optional<Gaps> gaps_;
   int failures_ = 0;
 };
 
@@ -223,12 +234,12 @@ result::OpenLoop open_loop_of(const Ocp& ocp, const OptimizedPath& path, const S
 
 }  // namespace
 
-Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, double tolerance,
+Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, const VerificationWanted& wanted,
                               const std::function<bool()>& is_interrupted) {
   auto resimulation = Resimulation::make(ocp.system, path);
   if (!resimulation) return tl::unexpected(resimulation.error());
   Verification verification;
-  verification.tolerance = tolerance;
+  verification.tolerance = wanted.tolerance;
   IntervalChecks checks(ocp, path, verification);
   if (!checks.simulate(*resimulation, is_interrupted)) {
     verification.interval_defect = verification.path_violation = not_known;
@@ -243,6 +254,11 @@ Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, double 
   auto scales = checks.scales().all();
   scales.resize(shown_states(ocp));
   verification.open_loop.amplification = resimulation->amplification(scales, is_interrupted);
+  if (wanted.gains.empty()) return verification;
+  auto closed_loop = simulate_closed_loop(ocp, path, wanted.gains, is_interrupted);
+  if (!closed_loop) return tl::unexpected(closed_loop.error());
+  verification.closed_loop = open_loop_of(ocp, path, checks.scales(), std::move(*closed_loop));
+  verification.closed_loop->amplification = not_known;
   return verification;
 }
 

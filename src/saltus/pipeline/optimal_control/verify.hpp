@@ -4,6 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "saltus/base/error.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/result/optimization.hpp"
@@ -28,11 +30,20 @@ struct OptimizedPath {
   std::vector<result::Event> events;
 };
 
+/// What is asked of the truth check.
+struct VerificationWanted {
+  double tolerance = 1e-3;
+  /// K_k of every interval, over all controls and the states of the result: the controls are simulated with this
+  /// feedback, too. None: they are not.
+  std::vector<Eigen::MatrixXd> gains{};
+};
+
 /// Simulates every interval from its node with its controls, then the whole horizon from the first node, and compares.
 /// The amplification is that of the product of the intervals' derivatives, by central differences.
 /// Definitions: interface.md, `verification`.
 /// Cost: one compilation of the model, (2 n + 1) N + 1 event-driven simulations with n states.
-[[nodiscard]] Expected<result::Verification> verify(const model::Ocp& ocp, const OptimizedPath& path, double tolerance,
+[[nodiscard]] Expected<result::Verification> verify(const model::Ocp& ocp, const OptimizedPath& path,
+                                                    const VerificationWanted& wanted,
                                                     const std::function<bool()>& is_interrupted);
 
 }  // namespace saltus::pipeline

@@ -63,6 +63,13 @@ Expected<void> set_switch_detection(OptimizeOptions& options, const OptionValue&
   return {};
 }
 
+Expected<void> set_closed_loop(OptimizeOptions& options, const OptionValue& value) {
+  const auto* truth = std::get_if<bool>(&value);
+  if (truth == nullptr) return tl::unexpected(out_of_range("true or false", value));
+  options.closed_loop = *truth;
+  return {};
+}
+
 Expected<void> set_time_limit(OptimizeOptions& options, const OptionValue& value) {
   if (const auto* word = std::get_if<std::string>(&value); word != nullptr && *word == "none") {
     options.mpcc.time_limit.reset();
@@ -170,6 +177,11 @@ std::vector<OptimizeField> all_fields() {
                   "What selections and multipliers begin with: middle values, or those of a simulation of the guess.",
                   without_name<set_choice<start_values_of, start_words, OptimizeOptions>>,
                   record_choice<start_values_of, start_words, OptimizeOptions>});
+  list.push_back({"closed_loop", "true or false",
+                  "Simulate the controls with feedback from the states at the nodes, too, beside the open loop.",
+                  set_closed_loop, [](const OptimizeOptions& options, std::string_view key, OptionRecord& record) {
+                    record.emplace_back(key, options.closed_loop);
+                  }});
   list.push_back({"verification_tolerance", "a finite number > 0",
                   "Of the defects of intervals that are simulated again, relative to the range of each state.",
                   without_name<set_number<verification_of, Range::positive, OptimizeOptions>>,

@@ -71,9 +71,12 @@ model::Ocp physical_ocp(const model::Ocp& ocp) {
 
 Expected<OptimizedPath> physical_path(const model::Ocp& ocp, const OptimizedPath& path, const result::Result& run) {
   model::System system = *ocp.physical;
-  system.parameter_values = path.parameters;
+  // Behind those of the physical system is the parameter of a stabilisation that is followed down.
+  system.parameter_values.assign(path.parameters.begin(),
+                                 path.parameters.begin() + index(system.parameter_names.size()));
   const std::size_t shown = at(ocp.system.freezing->first_hidden), n = system.state_names.size();
   OptimizedPath physical = path;
+  physical.parameters = system.parameter_values;
   const std::size_t intervals = path.controls.size();
   const auto& rows = run.trajectory;
   std::optional<Nodes> nodes;

@@ -110,6 +110,7 @@ saltus.start = () => {
     resized: (height) => layout.style.setProperty("--drawing-height", `${height + 92}px`),
   }, address);
   saltus.cursor(result, frame, holder, timeline, select);
+  const bodies = saltus.bodiesCard(result, timeline);
   const cards = saltus.element("div", {class: "cards"});
   const branches = saltus.branchCard(result, {
     select,
@@ -121,7 +122,7 @@ saltus.start = () => {
   });
   const families = saltus.familyCard(result);
   const sensitivities = saltus.sensitivityCard(result);
-  const sections = [saltus.verdictCard(result), branches, families, cards, sensitivities];
+  const sections = [saltus.verdictCard(result), bodies?.element ?? null, branches, families, cards, sensitivities];
   main.append(...sections.filter((section) => section !== null), saltus.notes(result));
   if (saltus.columns(result).length > 1 && result.states.length > 0 && result.trajectory.t.length > 0) {
     phases.push(saltus.phasePlane(result, timeline, select, address));
@@ -140,6 +141,7 @@ saltus.start = () => {
     cards.append(...inCards.map((phase) => phase.element));
   }
   cards.append(saltus.element("div", {class: "info"}, ...saltus.infoCards(result)));
+  if (bodies !== null) phases.push(bodies);
   // Not before all stand at their places: a drawing takes its width from there.
   for (const phase of phases) phase.start();
   table.render();

@@ -1,0 +1,18 @@
+// The bodies of a mechanical system along a trajectory.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/model/system.hpp"
+#include "saltus/result/drawing.hpp"
+
+namespace saltus::pipeline {
+
+/// What the system says is drawn, at states of which its own are the first ones; nothing if it says nothing.
+/// @param parameters  values of System::p
+[[nodiscard]] std::optional<result::Drawing> drawing_of(const model::System& system,
+                                                        const std::vector<double>& parameters,
+                                                        const std::vector<std::vector<double>>& states);
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,77 @@
+// The controls of an optimum with feedback, simulated event by event.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
+#include "saltus/pipeline/simulate.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using event_integrator::Integration;
+using result::Termination;
+
+/// The system whose controls are its last parameters.
+model::System with_parameters_as_controls(const model::Ocp& ocp, const OptimizedPath& path) {
+  model::System system = ocp.system;
+  const auto n = static_cast<casadi_int>(system.control_names.size());
+  // Without the cells of its own inputs, and without those of the ones given here.
+  system = model::with_controls(std::move(system), {path.times.front()}, {path.controls.front()});
+  system.cells.resize(system.cells.size() - system.control_names.size());
+  const casadi::SX controls = casadi::SX::sym("control", n);
+  system.input = controls;
+  system.p = casadi::SX::vertcat({system.p, controls});
+  system.parameter_values = path.parameters;
+  for (const auto& name : system.control_names) system.parameter_names.push_back("control." + name);
+  system.parameter_values.resize(system.parameter_names.size(), 0.0);
+  system.events.clear();  // they would stop it
+  return system;
+}
+
+/// Rows of equal distance in each interval.
+constexpr std::size_t rows_of_interval = 20;
+
+}  // namespace
+
+Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
+                                                     const std::vector<Eigen::MatrixXd>& gains,
+                                                     const std::function<bool()>& is_interrupted) {
+  model::System system = with_parameters_as_controls(ocp, path);
+  const std::size_t first = path.parameters.size();
+  const auto observer = [&](const result::Progress&) {
+    return is_interrupted && is_interrupted() ? result::Continue::no : result::Continue::yes;
+  };
+  KernelStore kernels;
+  Resimulation::Segment whole;
+  std::vector<double> x = path.nodes.front();
+  for (std::size_t k = 0; k < path.controls.size(); ++k) {
+    Eigen::VectorXd off(gains[k].cols());
+    for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = x[at(i)] - path.nodes[k][at(i)];
+    const Eigen::VectorXd change = gains[k] * off;
+    for (std::size_t i = 0; i < path.controls[k].size(); ++i) {
+      const double u = path.controls[k][i] + change[index(i)];
+      system.parameter_values[first + i] = std::clamp(u, ocp.system.control_lower[i], ocp.system.control_upper[i]);
+    }
+    system.initial_state = x;
+    auto kept = kernels.take(system, evaluation::NativeCode::automatic);
+    if (!kept) return tl::unexpected(kept.error());
+    Integration run = event_integrator::integrate(
+        kept->kernel, system, resimulation_options(path.times[k], path.times[k + 1], rows_of_interval), observer);
+    kernels.give_back(std::move(*kept));
+    auto& rows = whole.run.trajectory;
+    rows.t.insert(rows.t.end(), run.trajectory.t.begin(), run.trajectory.t.end());
+    rows.x.insert(rows.x.end(), run.trajectory.x.begin(), run.trajectory.x.end());
+    x = run.final.x;
+    whole.run.final = std::move(run.final);
+    whole.run.status = std::move(run.status);
+    const bool is_at_end = whole.run.status.time_reached >= path.times[k + 1] &&
+                           std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
+    if (!is_at_end || whole.run.status.termination == Termination::stopped_by_user) return whole;
+  }
+  whole.is_complete = true;
+  return whole;
+}
+
+}  // namespace saltus::pipeline

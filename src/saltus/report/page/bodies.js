@@ -1,0 +1,101 @@
+// Where the bodies of a mechanical system are: shapes of a row, between rows, the box around all of them, frames of a
+// strobe.
+"use strict";
+
+/** Numbers that a shape has in a row: x and y of every point, and the radius of a disc. */
+saltus.shapeNumbers = ({kind, points}) => 2 * points + (kind === "disc" ? 1 : 0);
+
+/** The shapes of a list of numbers: {kind, points: [[x, y], …], radius}; those with a missing number are left out. */
+saltus.placedShapes = (shapes, numbers) => {
+  const placed = [];
+  let at = 0;
+  shapes.forEach((shape, index) => {
+    const own = numbers.slice(at, at + saltus.shapeNumbers(shape));
+    at += own.length;
+    if (own.some((value) => value === null || value === undefined)) return;
+    const points = Array.from({length: shape.points}, (_, k) => [own[2 * k], own[2 * k + 1]]);
+    placed.push({index, kind: shape.kind, points, radius: shape.kind === "disc" ? own[2 * shape.points] : 0});
+  });
+  return placed;
+};
+
+/** Numbers of all shapes at a time, linearly between rows; where two rows have one time, behind it. */
+saltus.bodiesAt = ({t, drawing}, time) => {
+  if (time >= t[t.length - 1]) return drawing.map((column) => column[t.length - 1]);
+  const right = Math.max(1, saltus.upperBound(t, time));
+  const share = Math.max(0, (time - t[right - 1]) / (t[right] - t[right - 1]));
+  const between = (a, b) => (a === null || b === null ? null : a + share * (b - a));
+  return drawing.map((column) => between(column[right - 1], column[right]));
+};
+
+/** Number of entries of an ascending list that are not above `value`. */
+saltus.upperBound = (list, value) => {
+  let [low, high] = [0, list.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (list[middle] <= value)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+};
+
+/** The box around all shapes of all rows: [[x from, to], [y from, to]], with a little room. */
+saltus.bodiesBox = (shapes, {t, drawing}) => {
+  const box = [[Infinity, -Infinity], [Infinity, -Infinity]];
+  for (let row = 0; row < t.length; row += 1) {
+    for (const {points, radius} of saltus.placedShapes(shapes, drawing.map((column) => column[row]))) {
+      for (const point of points) {
+        box.forEach((range, axis) => {
+          range[0] = Math.min(range[0], point[axis] - radius);
+          range[1] = Math.max(range[1], point[axis] + radius);
+        });
+      }
+    }
+  }
+  if (!(box[0][0] <= box[0][1])) return [[0, 1], [0, 1]];
+  const largest = Math.max(box[0][1] - box[0][0], box[1][1] - box[1][0]) || 1;
+  return box.map(([from, to]) => [from - 0.04 * largest, to + 0.04 * largest]);
+};
+
+/** Whether shape number `index` stands still. */
+saltus.standsStill = (shapes, {drawing}, index) => {
+  const first = shapes.slice(0, index).reduce((sum, shape) => sum + saltus.shapeNumbers(shape), 0);
+  const own = drawing.slice(first, first + saltus.shapeNumbers(shapes[index]));
+  return own.every((column) => column.every((value) => value === column[0]));
+};
+
+/** Frames of the strobe. */
+saltus.strobeFrames = 14;
+/** Times of equal distance from the first to the last one. */
+saltus.strobeTimes = ({t}, count = saltus.strobeFrames) => {
+  const [from, to] = [t[0], t[t.length - 1]];
+  return to > from ? Array.from({length: count}, (_, i) => from + ((to - from) * i) / (count - 1)) : [from];
+};
+
+/** Round numbers within a range, at most `most` of them. */
+saltus.roundTicks = ([from, to], most) => {
+  const rough = (to - from) / Math.max(1, most);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * ([1, 2, 5, 10].find((factor) => factor * power >= rough) ?? 10);
+  const ticks = [];
+  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; k += 1) ticks.push(k * step);
+  return ticks.map((tick) => Number(tick.toPrecision(12)));
+};
+
+/** Largest width and height of the picture in pixels; the scale is that of both axes. */
+saltus.bodiesPicture = (box, widest, tallest) => {
+  const [width, height] = box.map(([from, to]) => to - from);
+  const scale = Math.min(widest / width, tallest / height);
+  return {
+    scale,
+    width: Math.max(1, scale * width),
+    height: Math.max(1, scale * height),
+    x: (value) => scale * (value - box[0][0]),
+    y: (value) => scale * (box[1][1] - value),
+  };
+};
+
+/** The mode of a contact in words, at a time. */
+saltus.contactWord = (mode) => ({open: "open", closed: "closed", stick: "sticks", slip: "slips"})[mode] ?? "";

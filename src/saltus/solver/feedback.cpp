@@ -1,0 +1,221 @@
+#include "saltus/solver/feedback.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/SparseLU>
+
+#include "saltus/base/at.hpp"
+#include "saltus/solver/crossover/branch_problem.hpp"
+#include "saltus/solver/crossover/sides.hpp"
+
+namespace saltus::solver {
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+constexpr double regularisation = 1e-9;
+/// Of the size of a bound: what is nearer is on it.
+constexpr double on_bound = 1e-7;
+
+bool is_on(double value, double bound) {
+  return std::isfinite(bound) && std::abs(value - bound) <= on_bound * std::max(1.0, std::abs(bound));
+}
+
+std::vector<bool> on_bounds(const Eigen::VectorXd& values, const mpcc::Bounds& bounds) {
+  std::vector<bool> on;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    on.push_back(is_on(values[i], bounds.lower[i]) || is_on(values[i], bounds.upper[i]));
+  }
+  return on;
+}
+
+crossover::BranchProblem branch_of(mpcc::Problem& problem, const Solution& solution) {
+  Eigen::VectorXd c(problem.rows());
+  problem.functions(solution.w, c);
+  const auto sides =
+      solution.crossed_over ? solution.sides : crossover::smaller_sides(problem, crossover::groups_of(problem), c);
+  return {problem, crossover::reduce(problem, sides, jacobian_matrix(problem, solution.w), c)};
+}
+
+/// The optimality conditions of the branch problem, and the conditions of what is behind a node as a part of them.
+class Conditions {
+ public:
+  Conditions(mpcc::Problem& problem, const Solution& solution)
+      : chain_(*problem.chain()), branch_(branch_of(problem, solution)), place_(branch_.reduction().place) {
+    const Eigen::VectorXd v = branch_.reduced(solution.w);
+    Eigen::VectorXd values(branch_.jacobian_pattern().entries()), c(branch_.constraints());
+    branch_.jacobian(v, values);
+    rows_ = sparse<Eigen::RowMajor>(branch_.jacobian_pattern(), values, branch_.constraints(), branch_.variables());
+    branch_.functions(v, c);
+    is_active_ = on_bounds(c, branch_.constraint_bounds());
+    is_fixed_ = on_bounds(v, branch_.variable_bounds());
+    take_hessian(v, multipliers(problem, solution.multipliers));
+    find_intervals();
+  }
+
+  /// d u_k / d x_k; 0 where the conditions cannot be factorised.
+  [[nodiscard]] Eigen::MatrixXd gain(int k, int controls, int states) {
+    mark(k, states);
+    Eigen::MatrixXd gain = Eigen::MatrixXd::Zero(controls, states);
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(unknowns_ + rows_.rows(), states);
+    add_hessian(entries, right);
+    const Eigen::Index size = add_rows(entries, right);
+    Matrix conditions(size, size);
+    conditions.setFromTriplets(entries.begin(), entries.end());
+    Eigen::SparseLU<Matrix> factors(conditions);
+    if (factors.info() != Eigen::Success) return gain;
+    const Eigen::MatrixXd change = factors.solve(right.topRows(size));
+    const auto& shared = chain_.intervals[at(k)].shared;
+    for (int i = 0; i < controls; ++i) {
+      const int place = place_[at(shared.first + i)];
+      if (place < 0 || unknown_[at(place)] < 0) continue;
+      if (change.row(unknown_[at(place)]).allFinite()) gain.row(i) = change.row(unknown_[at(place)]);
+    }
+    return gain;
+  }
+
+ private:
+  /// Of the rows of the branch problem, in L = f + y'c.
+  [[nodiscard]] Eigen::VectorXd multipliers(const mpcc::Problem& problem, const MpccMultipliers& found) const {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(problem.rows());
+    if (found.rows.size() == problem.constraints()) all.head(found.rows.size()) = found.rows;
+    if (found.G.size() == problem.pairs() && found.H.size() == problem.pairs()) {
+      all.segment(problem.constraints(), problem.pairs()) = -found.G;
+      all.tail(problem.pairs()) = -found.H;
+    }
+    const auto& rows = branch_.reduction().rows;
+    Eigen::VectorXd y(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) y[index(i)] = all[rows[i]];
+    return y;
+  }
+
+  void take_hessian(const Eigen::VectorXd& v, const Eigen::VectorXd& y) {
+    const auto& pattern = branch_.hessian_pattern();
+    Eigen::VectorXd values(pattern.entries());
+    branch_.hessian(v, 1.0, y, values);
+    for (int e = 0; e < pattern.entries(); ++e) {
+      const int i = pattern.row[at(e)], j = pattern.column[at(e)];
+      hessian_.emplace_back(i, j, values[e]);
+      if (i != j) hessian_.emplace_back(j, i, values[e]);
+    }
+  }
+
+  /// Of each place the first interval that has a variable of it; -1 for what belongs to none.
+  void find_intervals() {
+    constexpr int none = std::numeric_limits<int>::max();
+    interval_.assign(at(branch_.variables()), none);
+    const auto note = [&](int variable, int k) {
+      if (place_[at(variable)] >= 0)
+        interval_[at(place_[at(variable)])] = std::min(interval_[at(place_[at(variable)])], k);
+    };
+    for (const auto& range : {chain_.border, chain_.start}) {
+      for (int w = range.first; w < range.end(); ++w) note(w, -1);
+    }
+    for (std::size_t k = 0; k < chain_.intervals.size(); ++k) {
+      const auto& [shared, first, elements] = chain_.intervals[k];
+      for (int w = shared.first; w < shared.end(); ++w) note(w, static_cast<int>(k));
+      for (int e = first; e < first + elements; ++e) {
+        const auto& own = chain_.elements[at(e)].variables;
+        for (int w = own.first; w < own.end(); ++w) note(w, static_cast<int>(k));
+      }
+    }
+  }
+
+  /// What is behind node k: numbers of unknowns, of the states of the node, and what is held.
+  void mark(int k, int states) {
+    const std::size_t n = interval_.size();
+    unknown_.assign(n, -1);
+    state_.assign(n, -1);
+    is_held_.assign(n, false);
+    unknowns_ = 0;
+    const auto& node = chain_.elements[at(chain_.intervals[at(k)].first_element - 1)];
+    for (std::size_t i = 0; i < node.link_state.size(); ++i) {
+      const int place = place_[at(node.link_state[i])];
+      if (place < 0) continue;
+      is_held_[at(place)] = true;
+      if (static_cast<int>(i) < states) state_[at(place)] = static_cast<int>(i);
+    }
+    for (const int variable : node.link_multipliers) {
+      if (place_[at(variable)] >= 0) is_held_[at(place_[at(variable)])] = true;
+    }
+    for (std::size_t p = 0; p < n; ++p) {
+      if (interval_[p] >= k && !is_fixed_[p] && !is_held_[p]) {
+        unknown_[p] = unknowns_++;
+      } else if (interval_[p] < 0 || is_fixed_[p]) {
+        is_held_[p] = true;
+      }
+    }
+  }
+
+  void add_hessian(std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& right) const {
+    for (const auto& entry : hessian_) {
+      const int row = unknown_[at(entry.row())];
+      if (row < 0) continue;
+      if (const int column = unknown_[at(entry.col())]; column >= 0) entries.emplace_back(row, column, entry.value());
+      if (const int state = state_[at(entry.col())]; state >= 0) right(row, state) -= entry.value();
+    }
+    for (int i = 0; i < unknowns_; ++i) entries.emplace_back(i, i, regularisation);
+  }
+
+  /// Those that speak of unknowns, of the node and of what is held only. @return the size of the conditions
+  Eigen::Index add_rows(std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& right) const {
+    int next = unknowns_;
+    for (int row = 0; row < rows_.rows(); ++row) {
+      if (!is_active_[at(row)] || !is_behind(row)) continue;
+      for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
+        const auto place = at(entry.col());
+        if (const int column = unknown_[place]; column >= 0) {
+          entries.emplace_back(next, column, entry.value());
+          entries.emplace_back(column, next, entry.value());
+        } else if (state_[place] >= 0) {
+          right(next, state_[place]) -= entry.value();
+        }
+      }
+      entries.emplace_back(next, next, -regularisation);
+      ++next;
+    }
+    return next;
+  }
+
+  [[nodiscard]] bool is_behind(int row) const {
+    bool has_unknown = false;
+    for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
+      const auto place = at(entry.col());
+      if (unknown_[place] < 0 && !is_held_[place]) return false;
+      has_unknown = has_unknown || unknown_[place] >= 0;
+    }
+    return has_unknown;
+  }
+
+  const mpcc::Chain& chain_;
+  crossover::BranchProblem branch_;
+  const std::vector<int>& place_;
+  RowMatrix rows_;
+  std::vector<Eigen::Triplet<double>> hessian_;  ///< both triangles
+  std::vector<bool> is_active_, is_fixed_;
+  std::vector<int> interval_;
+  // Of the node under way, by place.
+  std::vector<int> unknown_, state_;
+  std::vector<bool> is_held_;
+  int unknowns_ = 0;
+};
+
+}  // namespace
+
+std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Solution& solution, int controls,
+                                            int states) {
+  if (problem.chain() == nullptr || !solution.w.allFinite()) return {};
+  problem.without_method_terms();
+  problem.relaxed_by(0.0);
+  Conditions conditions(problem, solution);
+  std::vector<Eigen::MatrixXd> gains{Eigen::MatrixXd::Zero(controls, states)};
+  for (std::size_t k = 1; k < problem.chain()->intervals.size(); ++k) {
+    gains.push_back(conditions.gain(static_cast<int>(k), controls, states));
+  }
+  return gains;
+}
+
+}  // namespace saltus::solver

@@ -1,0 +1,24 @@
+// How the optimal controls change with the states at the nodes: gains of a feedback.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/solver/solve.hpp"
+
+namespace saltus::solver {
+
+/// Of each interval the gain K_k = d u_k / d x_k: how the first `controls` variables that the interval shares change
+/// with the first `states` of its left node, if everything from there on is optimal again to first order, with the
+/// sides of all pairs, the active constraints, and the horizon as they are. That of the first interval is 0, whose node
+/// is given.
+///
+/// They are columns of the inverse of the optimality conditions from node k on, the same as those of the Riccati
+/// recursion over the linearised intervals, with 1e-9 on both diagonals: rows that depend on each other do no harm.
+/// @param problem  with a chain; else there are none
+/// Cost: per interval a sparse factorisation of what is behind it.
+[[nodiscard]] std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Solution& solution,
+                                                          int controls, int states);
+
+}  // namespace saltus::solver
