@@ -41,7 +41,7 @@ nb::object finished(Expected<result::Result> result, const cli::ModelInput& inpu
                     std::shared_ptr<const model::System> system, Watch& watch) {
   if (!result) raise(io::located(result.error(), input.file));
   auto shared = std::make_shared<result::Result>(std::move(*result));
-  nb::object run = nb::cast(Run{std::move(shared), std::move(system), {}, {}, {}, {}, {}, {}});
+  nb::object run = nb::cast(Run{std::move(shared), std::move(system), {}, {}, {}});
   watch.raise_what_came(run);
   return run;
 }
@@ -141,7 +141,7 @@ nb::object values_at(Model& model, const Run& run, std::vector<std::string> sett
   values->region_groups = of.region_groups;
   values->status = of.status;
   values->trajectory = std::move(*rows);
-  nb::object found = nb::cast(Run{std::move(values), nullptr, {}, {}, {}, {}, {}, {}});
+  nb::object found = nb::cast(Run{std::move(values), nullptr, {}, {}, {}});
   watch.raise_what_came(found);
   return found;
 }

@@ -1,5 +1,6 @@
 #include "result.hpp"
 
+#include <algorithm>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
@@ -7,6 +8,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,29 +36,35 @@ nb::ndarray<nb::numpy, const T> look_at(const T* data, std::size_t rows, nb::han
   return {data, {rows}, owner};
 }
 
-/// A read-only view of all rows of one kind: (rows, width), columns contiguous.
-template <class T>
-nb::ndarray<nb::numpy, const T> block_array(Block<T>& block, const std::vector<std::vector<T>>& rows, std::size_t width,
-                                            nb::handle owner) {
+/// A read-only view of all rows of a table: (rows, width).
+nb::ndarray<nb::numpy, const double> table_array(const result::Table<double>& table, std::size_t width,
+                                                 nb::handle owner) {
+  return {table.data(), {table.size(), width}, owner};
+}
+
+/// The same of one that is kept by its changes: written out when it is asked for first, columns contiguous.
+template <class T, class Number>
+nb::ndarray<nb::numpy, const T> block_array(Block<T>& block, const result::SteadyTable<Number>& table,
+                                            std::size_t width, nb::handle owner) {
+  const std::size_t rows = table.size();
   if (!block.made) {
-    block.rows = rows.size();
-    block.columns.resize(block.rows * width);
-    for (std::size_t i = 0; i < block.rows; ++i) {
-      for (std::size_t k = 0; k < width; ++k) block.columns[k * block.rows + i] = rows[i][k];
+    block.columns.resize(rows * width);
+    for (std::size_t k = 0; k < table.width(); ++k) {
+      T* const column = block.columns.data() + k * rows;
+      table.column(k).for_each_change(
+          [&](std::size_t from, Number value) { std::fill(column + from, column + rows, static_cast<T>(value)); });
     }
     block.made = true;
   }
-  return nb::ndarray<nb::numpy, const T>(block.columns.data(), {block.rows, width}, owner,
-                                         {1, static_cast<std::int64_t>(block.rows)});
+  return nb::ndarray<nb::numpy, const T>(block.columns.data(), {rows, width}, owner,
+                                         {1, static_cast<std::int64_t>(rows)});
 }
 
-/// Which rows of a trajectory one property shows, and where they are kept.
-template <class T, auto block, auto rows, auto names>
-void add_block(nb::class_<Run>& type, const char* name) {
+template <auto rows, auto names>
+void add_table(nb::class_<Run>& type, const char* name) {
   type.def_prop_ro(name, [](nb::handle self) {
-    auto& run = nb::cast<Run&>(self);
-    const auto& trajectory = run.result->trajectory;
-    return block_array<T>(run.*block, trajectory.*rows, ((*run.result).*names).size(), self);
+    const auto& result = *nb::cast<Run&>(self).result;
+    return table_array(result.trajectory.*rows, (result.*names).size(), self);
   });
 }
 
@@ -117,7 +125,7 @@ nb::object sensitivities(const Run& run) {
 nb::list branches(const Run& run) {
   nb::list list;
   for (auto& branch : run.result->branches) {
-    list.append(nb::cast(Run{std::shared_ptr<result::Result>(run.result, &branch), nullptr, {}, {}, {}, {}, {}, {}}));
+    list.append(nb::cast(Run{std::shared_ptr<result::Result>(run.result, &branch), nullptr, {}, {}, {}}));
   }
   return list;
 }
@@ -153,17 +161,10 @@ void save(Run& run, const std::string& path) {
 }
 
 Run load(const std::string& path) {
-  return {std::make_shared<result::Result>(value_or_raise(io::read_result(path))), nullptr, {}, {}, {}, {}, {}, {}};
+  return {std::make_shared<result::Result>(value_or_raise(io::read_result(path))), nullptr, {}, {}, {}};
 }
 Run parse(const std::string& text) {
-  return {std::make_shared<result::Result>(value_or_raise(io::parse_result(text, "<memory>"))),
-          nullptr,
-          {},
-          {},
-          {},
-          {},
-          {},
-          {}};
+  return {std::make_shared<result::Result>(value_or_raise(io::parse_result(text, "<memory>"))), nullptr, {}, {}, {}};
 }
 
 void add_names(nb::class_<Run>& type) {
@@ -201,20 +202,31 @@ void add_result(nb::module_& module) {
   });
   using result::Result;
   using result::Trajectory;
-  add_block<double, &Run::x, &Trajectory::x, &Result::states>(type, "x");
-  add_block<double, &Run::u, &Trajectory::u, &Result::controls>(type, "u");
-  add_block<double, &Run::alpha, &Trajectory::alpha, &Result::switching_functions>(type, "alpha");
-  add_block<int, &Run::mode, &Trajectory::mode, &Result::switching_functions>(type, "mode");
-  add_block<double, &Run::outputs, &Trajectory::outputs, &Result::outputs>(type, "outputs");
+  add_table<&Trajectory::x, &Result::states>(type, "x");
+  add_table<&Trajectory::u, &Result::controls>(type, "u");
+  add_table<&Trajectory::outputs, &Result::outputs>(type, "outputs");
+  type.def_prop_ro("alpha", [](nb::handle self) {
+    auto& run = nb::cast<Run&>(self);
+    return block_array(run.alpha, run.result->trajectory.alpha, run.result->switching_functions.size(), self);
+  });
+  type.def_prop_ro("mode", [](nb::handle self) {
+    auto& run = nb::cast<Run&>(self);
+    return block_array(run.mode, run.result->trajectory.mode, run.result->switching_functions.size(), self);
+  });
   type.def_prop_ro("theta",
                    [](nb::handle self) {
                      auto& run = nb::cast<Run&>(self);
                      const auto width = run.result->region_groups.empty()
                                             ? 0
                                             : result::region_labels(run.result->region_groups).size();
-                     return block_array<double>(run.theta, run.result->trajectory.theta, width, self);
+                     return block_array(run.theta, run.result->trajectory.theta, width, self);
                    })
-      .def_prop_ro("events", [](const Run& self) { return self.result->events; })
+      .def_prop_ro("events",
+                   [](const Run& self) {
+                     nb::list list;
+                     for (result::Event event : self.result->events) list.append(nb::cast(std::move(event)));
+                     return list;
+                   })
       .def_prop_ro("final", final_of)
       .def_prop_ro("branches", branches)
       .def_prop_ro("sensitivities", sensitivities)

@@ -2,21 +2,19 @@
 #pragma once
 
 #include <memory>
+#include <nanobind/nanobind.h>
 #include <string>
 #include <vector>
-
-#include <nanobind/nanobind.h>
 
 #include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::python {
 
-/// Rows of numbers as one block that arrays of Python look at.
+/// Rows of numbers, kept by their changes, as one block that arrays of Python look at.
 template <class T>
 struct Block {
   std::vector<T> columns;  ///< one after the other
-  std::size_t rows = 0;
   bool made = false;
 };
 
@@ -24,7 +22,7 @@ struct Block {
 struct Run {
   std::shared_ptr<result::Result> result;       ///< of a branch: into that of its root
   std::shared_ptr<const model::System> system;  ///< null for one that was loaded, and for branches
-  Block<double> x, u, alpha, outputs, theta;
+  Block<double> alpha, theta;
   Block<int> mode;
 };
 

@@ -82,7 +82,7 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
   }
   nb::list results;
   for (const auto& run : *runs) {
-    results.append(nb::cast(Run{std::make_shared<result::Result>(run.result), nullptr, {}, {}, {}, {}, {}, {}}));
+    results.append(nb::cast(Run{std::make_shared<result::Result>(run.result), nullptr, {}, {}, {}}));
   }
   nb::object found = nb::make_tuple(columns, results, plan.names());
   watch.raise_what_came(found);

@@ -109,7 +109,7 @@ TEST(ShippedBranches, StayOnARootThatHasLostItsStability) {
     const Result result = model.run(options);
     EXPECT_EQ(result::not_followed(result), 0U) << name;
     const auto stays = [&](const Result& branch) {
-      const auto& first = branch.events.at(0);
+      const auto& first = branch.events[0];
       return branch.left_at.value().event == 1 && first.mode_after == result::Mode{0, 0} &&
              branch.final.mode == *first.mode_after;
     };
@@ -133,7 +133,7 @@ TEST(ShippedBranches, TheOtherRootOfTheSameMode) {
   options.event.trajectories = 64;
   const Result result = model.run(options);
   const auto changes = [](const Result& branch) {
-    return branch.left_at.value().event == 1 && branch.events.at(0).kind == result::EventKind::start &&
+    return branch.left_at.value().event == 1 && branch.events[0].kind == result::EventKind::start &&
            branch.events.size() == 2;
   };
   const auto branch = std::find_if(result.branches.begin(), result.branches.end(), changes);

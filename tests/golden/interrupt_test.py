@@ -72,7 +72,7 @@ class Interrupt(tool.ToolTest):
         self.write("r.json", "precious")
         process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--out", "r.json"], cwd=self.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        while not any(path.stat().st_size > 0 for path in self.folder.glob(".saltus-*.tmp")):
+        while not any(path.stat().st_size > 0 for path in self.folder.glob("r.json.part")):
             self.assertIsNone(process.poll(), "ended by itself")
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)

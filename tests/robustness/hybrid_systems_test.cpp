@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "changed_results.hpp"
 #include "region_systems.hpp"
 
 namespace saltus::robustness {
@@ -73,10 +74,12 @@ TEST(HybridSystemsJudge, FindsPlantedMistakes) {
   const std::size_t v = system.walls[0].velocity;
   const std::function<void(result::Result&)> mistakes[] = {
       [](result::Result& r) { r.status.termination = result::Termination::iteration_limit; },
-      [&](result::Result& r) { r.events[jump].x_after[v] *= 1.0 + 1e-9; },
-      [&](result::Result& r) { r.events[jump].x[system.walls[0].position] += 1e-6; },
-      [](result::Result& r) { r.trajectory.x[1][0] += 1e-6; },
-      [](result::Result& r) { r.trajectory.mode[1][0] *= -1; },
+      [&](result::Result& r) { change_events(r, [&](auto& events) { events[jump].x_after[v] *= 1.0 + 1e-9; }); },
+      [&](result::Result& r) {
+        change_events(r, [&](auto& events) { events[jump].x[system.walls[0].position] += 1e-6; });
+      },
+      [](result::Result& r) { r.trajectory.x.change(1)[0] += 1e-6; },
+      [](result::Result& r) { change_rows<result::Mode>(r.trajectory.mode, [](auto& rows) { rows[1][0] *= -1; }); },
       [](result::Result& r) { std::swap(r.trajectory.t[1], r.trajectory.t[2]); },
       [](result::Result& r) { r.final.t -= 1.0; },
   };
@@ -97,14 +100,15 @@ TEST(HybridSystemsJudge, CountsHowOftenThresholdsFire) {
          good.events[second].surfaces != good.events[second - 1].surfaces)
     ++second;
   result::Result once = good;
-  once.events.erase(once.events.begin() + static_cast<std::ptrdiff_t>(second));
+  change_events(once, [&](auto& events) { events.erase(events.begin() + static_cast<std::ptrdiff_t>(second)); });
   EXPECT_NE(complaint(system, once, 1e-8).find("is exceeded 2 times and fires 1 times"), std::string::npos);
   result::Result thrice = good;
-  auto third = good.events[second];
+  result::Event third = good.events[second];
   const auto& reset = system.thresholds[std::stoul(third.surfaces.front().substr(9))].reset;
   third.x = third.x_after;
   for (std::size_t i = 0; i < reset.size(); ++i) third.x_after[i] += reset[i];
-  thrice.events.insert(thrice.events.begin() + static_cast<std::ptrdiff_t>(second) + 1, third);
+  change_events(thrice,
+                [&](auto& events) { events.insert(events.begin() + static_cast<std::ptrdiff_t>(second) + 1, third); });
   EXPECT_NE(complaint(system, thrice, 1e-8).find("fires below the threshold"), std::string::npos);
 }
 
@@ -115,11 +119,13 @@ TEST(RegionSystemsJudge, FindsPlantedMistakes) {
   ASSERT_GT(good.trajectory.t.size(), 4U);
   const std::function<void(result::Result&)> mistakes[] = {
       [](result::Result& r) { r.status.termination = result::Termination::no_admissible_mode; },
-      [](result::Result& r) { r.trajectory.x[1][0] += 1e-6; },
-      [](result::Result& r) { r.trajectory.theta[1].front() += 1e-6; },
+      [](result::Result& r) { r.trajectory.x.change(1)[0] += 1e-6; },
+      [](result::Result& r) {
+        change_rows<std::vector<double>>(r.trajectory.theta, [](auto& rows) { rows[1].front() += 1e-6; });
+      },
       [](result::Result& r) {
         const auto other = r.trajectory.regions[1].front().front() == "r0" ? "r1" : "r0";
-        r.trajectory.regions[1].front().front() = other;
+        change_rows<result::Regions>(r.trajectory.regions, [&](auto& rows) { rows[1].front().front() = other; });
       },
   };
   for (std::size_t i = 0; i < std::size(mistakes); ++i) {

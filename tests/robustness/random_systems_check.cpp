@@ -272,7 +272,7 @@ bool is_near_limit(const Result& result, double t) {
 
 /// The first lap of a solution that spirals out of an intersection is passed in one step, from its closed form.
 bool begins_to_spiral(const Result& result, double t) {
-  const auto& events = result.events;
+  const std::vector<Event> events = result.events;
   const auto first =
       std::lower_bound(events.begin(), events.end(), t, [](const Event& e, double at) { return e.t < at; });
   for (auto event = first; event != events.end() && event->t == t; ++event) {
@@ -325,7 +325,7 @@ std::string repetition(const std::vector<Event>& events, std::size_t i) {
 }
 
 std::string events_of(const RandomSystem& system, const Result& result, const std::vector<bool>& listed) {
-  const auto& events = result.events;
+  const std::vector<Event> events = result.events;
   std::vector<std::optional<std::size_t>> last(listed.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
@@ -416,7 +416,7 @@ std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& l
 bool ends_in_shrinking_laps(const Result& result) {
   if (result.status.termination != result::Termination::iteration_limit) return false;
   if (result.status.message.find("shrink like the power") == std::string::npos) return false;
-  const auto& events = result.events;
+  const std::vector<Event> events = result.events;
   const std::size_t quarter = events.size() / 4;
   const auto taken = [&](std::size_t last) { return events[last].t - events[last - quarter].t; };
   const std::size_t end = events.size() - 1;

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "changed_results.hpp"
 #include "random_systems_campaign.hpp"
 #include "random_systems_check.hpp"
 #include "random_systems_model.hpp"
@@ -94,18 +95,26 @@ TEST(RandomSystemsJudge, FindsPlantedMistakes) {
   ASSERT_GT(sliding * classical, 0U);
   const std::function<void(result::Result&)> mistakes[] = {
       [](result::Result& r) { r.status.termination = result::Termination::iteration_limit; },
-      [](result::Result& r) { r.events.erase(r.events.begin() + 1); },
-      [](result::Result& r) { r.events.insert(r.events.begin() + 1, r.events[1]); },
-      [](result::Result& r) { r.events[1].t += 1e-12; },
-      [](result::Result& r) { std::swap(r.events[1].mode_before, r.events[1].mode_after); },
-      [](result::Result& r) { r.trajectory.x.back()[0] += 1e-6; },
-      [&](result::Result& r) { r.trajectory.x[classical][0] += 1e-6; },
-      [&](result::Result& r) { r.trajectory.mode[classical][0] *= -1; },
+      [](result::Result& r) { change_events(r, [](auto& events) { events.erase(events.begin() + 1); }); },
+      [](result::Result& r) {
+        change_events(r, [](auto& events) { events.insert(events.begin() + 1, result::Event(events[1])); });
+      },
+      [](result::Result& r) { change_events(r, [](auto& events) { events[1].t += 1e-12; }); },
+      [](result::Result& r) {
+        change_events(r, [](auto& events) { std::swap(events[1].mode_before, events[1].mode_after); });
+      },
+      [](result::Result& r) { r.trajectory.x.change(r.trajectory.x.size() - 1)[0] += 1e-6; },
+      [&](result::Result& r) { r.trajectory.x.change(classical)[0] += 1e-6; },
       [&](result::Result& r) {
-        for (auto& alpha : r.trajectory.alpha[sliding]) alpha += 1e-8;
+        change_rows<result::Mode>(r.trajectory.mode, [&](auto& rows) { rows[classical][0] *= -1; });
       },
       [&](result::Result& r) {
-        for (auto& x : r.trajectory.x[sliding]) x += 1e-10;
+        change_rows<State>(r.trajectory.alpha, [&](auto& rows) {
+          for (auto& alpha : rows[sliding]) alpha += 1e-8;
+        });
+      },
+      [&](result::Result& r) {
+        for (auto& x : r.trajectory.x.change(sliding)) x += 1e-10;
       },
   };
   for (std::size_t i = 0; i < std::size(mistakes); ++i) {
@@ -140,17 +149,20 @@ TEST(RandomSystemsJudge, FindsEventsThatAreFoundTwice) {
     std::swap(back.mode_before, back.mode_after);
     again.t += h;
     again.x = again.x_after = x;
-    bad.events.insert(bad.events.begin() + static_cast<std::ptrdiff_t>(k) + 1, {back, again});
+    change_events(bad, [&](auto& events) {
+      events.insert(events.begin() + static_cast<std::ptrdiff_t>(k) + 1, {back, again});
+    });
     const std::size_t before = row - 1;
     ASSERT_EQ(rows.mode[before], *event.mode_before);
     const auto add = [&](std::size_t like, double t, const State& at) {
       const auto here = static_cast<std::ptrdiff_t>(row) + 1;
-      const auto alpha = good.trajectory.alpha[like];
-      const auto mode = good.trajectory.mode[like];
+      const State alpha = good.trajectory.alpha[like];
+      const result::Mode mode = good.trajectory.mode[like];
+      const auto put = [&](const auto& row) { return [&](auto& list) { list.insert(list.begin() + here, row); }; };
       rows.t.insert(rows.t.begin() + here, t);
-      rows.x.insert(rows.x.begin() + here, at);
-      rows.mode.insert(rows.mode.begin() + here, mode);
-      rows.alpha.insert(rows.alpha.begin() + here, alpha);
+      change_rows<State>(rows.x, put(at));
+      change_rows<result::Mode>(rows.mode, put(mode));
+      change_rows<State>(rows.alpha, put(alpha));
       ++row;
     };
     const std::size_t behind = row;
@@ -171,13 +183,16 @@ TEST(RandomSystemsJudge, FindsNullsOfDeterminedSelections) {
     const Model model(system);
     result::Result bad = model.run({Integrator::dop853, 1e-8}, system.start);
     EXPECT_EQ(complaint(system, model.listed(), bad, 1e-8), "");
+    std::vector<State> alphas(bad.trajectory.alpha.begin(), bad.trajectory.alpha.end());
     for (std::size_t row = 0; row < bad.trajectory.t.size(); ++row) {
-      const auto& mode = bad.trajectory.mode[row];
+      const result::Mode mode = bad.trajectory.mode[row];
       if (std::count(mode.begin(), mode.end(), 0) < 2) continue;
       for (std::size_t j = 0; j < mode.size(); ++j) {
-        if (mode[j] == 0) bad.trajectory.alpha[row][j] = std::nan("");
+        if (mode[j] == 0) alphas[row][j] = std::nan("");
       }
     }
+    bad.trajectory.alpha = {};
+    for (const auto& alpha : alphas) bad.trajectory.alpha.push_back(alpha);
     return complaint(system, model.listed(), bad, 1e-8);
   };
   EXPECT_EQ(with_nulls(Family::smooth, 211274), "");

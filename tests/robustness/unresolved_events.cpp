@@ -50,7 +50,7 @@ bool keeps_its_sides(const RandomSystem& system, const std::vector<bool>& listed
 
 bool is_unresolved(const RandomSystem& system, const std::vector<bool>& listed, const result::Result& result,
                    std::size_t first, std::size_t second) {
-  const auto& events = result.events;
+  const std::vector<result::Event> events = result.events;
   const auto keeps = [&](const result::Mode& mode, double t_of_row, double t, double until, const State& x) {
     return keeps_its_sides(system, listed, mode, selections_at(result, t_of_row, mode), t, until - t, x);
   };

@@ -20,6 +20,7 @@ void catch_interrupt() {
   action.sa_flags = static_cast<int>(SA_RESETHAND | static_cast<unsigned>(SA_RESTART));
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);  // a queue that wants its machine back
 }
 
 bool interrupted() { return arrived != 0; }

@@ -95,14 +95,9 @@ class WatchedWriting {
     line_.show([&] { return fmt::format("writing {}   {:.0f} MB", file_, static_cast<double>(bytes_) / 1e6); });
     return sink(piece);
   }
-  /// Notices a large file.
   void end() {
     line_.clear();
-    constexpr std::size_t large = 50000000;
-    if (bytes_ < large || show_ == ShowProgress::never) return;
-    const bool packed = file_.ends_with(".npz");
-    print_error(fmt::format("note: {} has {:.0f} MB{}", file_, static_cast<double>(bytes_) / 1e6,
-                            packed ? "" : "; --out NAME.npz holds the same numbers in a fraction of it"));
+    if (show_ != ShowProgress::never) note_if_large(file_, bytes_);
   }
 
  private:
@@ -164,6 +159,40 @@ bool Outputs::show_surfaces() const {
 
 bool Outputs::fill_standard_output() const {
   return std::find(names_.files.begin(), names_.files.end(), standard_output) != names_.files.end();
+}
+
+std::optional<GrowingOutputs> Outputs::growing(std::size_t events) const {
+  constexpr std::size_t most_events = 10000;
+  const auto needs_all = [&](const std::string& file) {
+    return (file == standard_output ? names_.format : file).ends_with("npz");
+  };
+  if (names_.files.empty() || !names_.report.empty() || events > most_events ||
+      std::any_of(names_.files.begin(), names_.files.end(), needs_all)) {
+    return std::nullopt;
+  }
+  return GrowingOutputs(names_.files, names_.format, events);
+}
+
+Expected<Written> Outputs::finish(GrowingOutputs& growing, const result::Result& rest, ShowProgress show) const {
+  catch_interrupt();
+  ProgressLine line(show);
+  std::string stopped;
+  auto written = growing.finish(rest, [&](const std::string& name, std::size_t bytes) {
+    if (interrupted()) {
+      stopped = name;
+      return false;
+    }
+    line.show([&] { return fmt::format("writing {}   {:.0f} MB", name, static_cast<double>(bytes) / 1e6); });
+    return true;
+  });
+  line.clear();
+  if (!stopped.empty()) {
+    print_error(fmt::format("writing {} was interrupted; an earlier file of that name is as it was", stopped));
+    return Written::interrupted;
+  }
+  if (show != ShowProgress::never) growing.note_large_files();
+  if (!written) return tl::unexpected(written.error());
+  return Written::all;
 }
 
 Expected<Written> Outputs::write(const result::Result& result, ShowProgress show,

@@ -1,11 +1,13 @@
 // Files a run writes: checked before computing, written whole or not at all.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/cli/growing_outputs.hpp"
 #include "saltus/cli/progress.hpp"
 #include "saltus/report/overlay.hpp"
 #include "saltus/result/result.hpp"
@@ -38,6 +40,12 @@ class Outputs {
   [[nodiscard]] bool show_surfaces() const;
   /// Whether standard output has one of them, and nothing else.
   [[nodiscard]] bool fill_standard_output() const;
+
+  /// These outputs as files that grow while a run goes on; nullopt where one of them needs the whole result.
+  /// @param events  of the table, at each end
+  [[nodiscard]] std::optional<GrowingOutputs> growing(std::size_t events) const;
+  /// Ends them as write() does.
+  [[nodiscard]] Expected<Written> finish(GrowingOutputs& growing, const result::Result& rest, ShowProgress show) const;
 
   /// Writes all it can, with a line of progress, until Ctrl-C; returns the first failure.
   /// @param overlays  results that the page lays over this one

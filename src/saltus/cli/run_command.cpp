@@ -22,13 +22,22 @@
 namespace saltus::cli {
 namespace {
 
+/// @param growing  gets rows and events on the way; may be null
 Expected<result::Result> compute_all(const RunArguments& arguments, const ModelInput& input, const Outputs& outputs,
-                                     Compute compute) {
+                                     GrowingOutputs* growing, Compute compute) {
   const auto system = model::build(input.file.description, input.overrides);
   if (!system) return tl::unexpected(system.error());
   for (const auto& warning : system->warnings) print_error(fmt::format("warning: {}", warning));
   ProgressLine progress(progress_of(arguments));
-  auto result = compute(*system, input.file.simulate, watched(progress));
+  auto observers = watched(progress);
+  bool can_write = true;
+  if (growing != nullptr) {
+    observers.on_part = [&](const result::Result& part) { can_write = growing->add(part) && can_write; };
+    observers.on_step = [&can_write, on_step = std::move(observers.on_step)](const pipeline::StepRecord& step) {
+      return can_write ? on_step(step) : pipeline::Proceed::stop;
+    };
+  }
+  auto result = compute(*system, input.file.simulate, observers);
   if (!result) return result;
   complete_record(input, *result);
   if (outputs.show_surfaces()) pipeline::add_drawings(*system, *result);
@@ -196,10 +205,14 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
 
   if (arguments.methods == RunMethods::chosen)
     for (const auto& warning : options_without_effect(input->file)) print_error(fmt::format("warning: {}", warning));
-  auto result = compute_all(arguments, *input, *outputs, compute);
+  auto growing = outputs->growing(*shown);
+  auto result = compute_all(arguments, *input, *outputs, growing ? &*growing : nullptr, compute);
   if (!result) return refuse_with_source(io::located(result.error(), input->file), *text);
 
-  const auto written = outputs->write(*result, progress_of(arguments));
+  const bool has_grown = growing && growing->begun();
+  const auto written = has_grown ? outputs->finish(*growing, *result, progress_of(arguments))
+                                 : outputs->write(*result, progress_of(arguments));
+  if (has_grown) result->events = growing->ends();
   // Also if nothing could be written: it is all that is left.
   if (!arguments.quiet && !outputs->fill_standard_output())
     print(report::to_table(*result, *shown, input->file.captions));

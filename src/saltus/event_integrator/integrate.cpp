@@ -12,22 +12,42 @@ CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const mode
   return Run(kernel, system, options).to_end(observer);
 }
 
-Integration integrate(evaluation::ModelKernel& kernel, const model::System& system,
-                      const IntegrationOptions& options, const StepObserver& observer) {
-  CompactIntegration run = integrate_compact(kernel, system, options, observer);
-  auto& recording = run.recording;
-  Integration integration{std::move(run.status),
-                          recording.last(system),
-                          recording.events(system),
-                          recording.trajectory(system),
-                          run.statistics,
-                          std::move(recording.branch_points),
-                          run.chosen,
-                          recording.listed_families(system),
-                          recording.family_numbers()};
+namespace {
+
+/// Rows and events of a part of a run.
+void expand(const model::System& system, Recording recording, Integration& integration) {
+  // Contacts are shown by states that are left out of the rows.
+  integration.final = recording.last(system);
+  integration.events = recording.events(system);
+  integration.trajectory = std::move(recording).trajectory(system);
   if (!system.contacts.empty()) {
     show_contacts(system, integration.final, integration.events, integration.trajectory);
   }
+}
+
+}  // namespace
+
+Integration integrate(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
+                      const StepObserver& observer, const TakeRecorded& take) {
+  Integration integration;
+  const auto pass_on = [&](Recording recording) {
+    if (recording.row_times.empty()) return;
+    expand(system, std::move(recording), integration);
+    if (!take) return;
+    take(std::move(integration.trajectory), std::move(integration.events));
+    integration.trajectory = {};
+    integration.events = {};
+  };
+  CompactIntegration run =
+      Run(kernel, system, options).to_end(observer, take ? std::function<void(Recording)>(pass_on) : nullptr);
+  auto& recording = run.recording;
+  integration.status = std::move(run.status);
+  integration.statistics = run.statistics;
+  integration.chosen = run.chosen;
+  integration.families = recording.listed_families(system);
+  integration.family_numbers = recording.family_numbers();
+  if (!take) integration.branch_points = std::move(recording.branch_points);
+  pass_on(std::move(recording));
   return integration;
 }
 

@@ -37,6 +37,16 @@ class Descriptor {
   int number_;
 };
 
+/// 0 or errno.
+int write_all(int number, std::string_view content) {
+  while (!content.empty()) {
+    const auto written = ::write(number, content.data(), content.size());
+    if (written < 0 && errno != EINTR) return errno;
+    if (written > 0) content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 /// A temporary file beside the target, removed unless it became the target.
@@ -55,14 +65,7 @@ class TemporaryFile {
   [[nodiscard]] int error_number() const { return error_number_; }
 
   /// 0 or errno.
-  int write(std::string_view content) {
-    while (!content.empty()) {
-      const auto written = ::write(descriptor_.number(), content.data(), content.size());
-      if (written < 0 && errno != EINTR) return errno;
-      if (written > 0) content.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return 0;
-  }
+  int write(std::string_view content) { return write_all(descriptor_.number(), content); }
 
   /// Flushes to disk, then renames over the target: after a crash there is the old file or the new one. 0 or errno.
   int replace(const fs::path& target) {
@@ -151,6 +154,73 @@ Expected<void> stream_file(const fs::path& path, Writer writer) {
   if (error_number == 0) return {};
   return failure(path, fmt::format("cannot write: {}", reason(error_number)),
                  "an earlier file of that name is as it was");
+}
+
+GrowingFile::GrowingFile(const fs::path& path) : target_(target_of(path)), part_(target_) {
+  part_ += ".part";
+}
+
+bool GrowingFile::is_open() {
+  if (number_ < 0 && error_number_ == 0) {
+    number_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (number_ < 0) error_number_ = errno;
+  }
+  return error_number_ == 0;
+}
+
+GrowingFile::~GrowingFile() {
+  if (number_ >= 0) ::close(number_);
+}
+
+bool GrowingFile::write(std::string_view piece) {
+  if (is_open()) error_number_ = write_all(number_, piece);
+  return error_number_ == 0;
+}
+
+Expected<void> GrowingFile::complete() {
+  struct stat old {};
+  const bool exists = ::stat(target_.c_str(), &old) == 0;
+  if (is_open() && exists && ::fchmod(number_, old.st_mode & 07777) != 0) error_number_ = errno;
+  if (error_number_ == 0 && (::fsync(number_) != 0 || ::close(std::exchange(number_, -1)) != 0 ||
+                             ::rename(part_.c_str(), target_.c_str()) != 0)) {
+    error_number_ = errno;
+  }
+  if (error_number_ == 0) return {};
+  return failure(target_, fmt::format("cannot write: {}", reason(error_number_)),
+                 fmt::format("what was written is in {}; an earlier file of that name is as it was", part_.string()));
+}
+
+void GrowingFile::remove() { ::unlink(part_.c_str()); }
+
+SpoolFile::SpoolFile(const fs::path& folder) {
+  std::string path = (folder / ".saltus-XXXXXX.tmp").string();
+  number_ = ::mkostemps(path.data(), 4, O_CLOEXEC);
+  good_ = number_ >= 0;
+  if (good_) ::unlink(path.c_str());
+}
+
+SpoolFile::SpoolFile(SpoolFile&& other) noexcept : number_(std::exchange(other.number_, -1)), good_(other.good_) {}
+
+SpoolFile::~SpoolFile() {
+  if (number_ >= 0) ::close(number_);
+}
+
+bool SpoolFile::write(std::string_view piece) {
+  good_ = good_ && write_all(number_, piece) == 0;
+  return good_;
+}
+
+bool SpoolFile::copy_to(Sink sink) const {
+  std::string buffer(std::size_t{1} << 18, '\0');
+  off_t place = 0;
+  while (good_) {
+    const auto count = ::pread(number_, buffer.data(), buffer.size(), place);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return count == 0;
+    place += count;
+    if (!sink(std::string_view(buffer.data(), static_cast<std::size_t>(count)))) return false;
+  }
+  return false;
 }
 
 Expected<std::string> read_file(const fs::path& path, std::size_t limit) {

@@ -25,6 +25,46 @@ using Writer = FunctionRef<bool(Sink)>;
 /// As write_file, of what is written a piece after the other. Of a writer that returns false nothing is left: an
 /// earlier file of that name is as it was.
 [[nodiscard]] Expected<void> stream_file(const std::filesystem::path& path, Writer writer);
+/// A file that grows beside its place, as NAME.part from its first bytes on, and is put there when it is complete: whoever ends the program
+/// before finds in NAME.part what was written.
+class GrowingFile {
+ public:
+  explicit GrowingFile(const std::filesystem::path& path);
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
+  ~GrowingFile();
+  /// False if it could not be written, which complete() tells.
+  bool write(std::string_view piece);
+  /// Flushes it to disk and renames it over its place.
+  [[nodiscard]] Expected<void> complete();
+  /// Removes it; an earlier file of that name is as it was.
+  void remove();
+
+ private:
+  bool is_open();
+
+  std::filesystem::path target_, part_;
+  int number_ = -1;
+  int error_number_ = 0;
+};
+
+/// Bytes that are put aside on the disk, in a file without a name.
+class SpoolFile {
+ public:
+  /// @param folder  where it lies
+  explicit SpoolFile(const std::filesystem::path& folder);
+  SpoolFile(SpoolFile&& other) noexcept;
+  SpoolFile& operator=(SpoolFile&&) = delete;
+  ~SpoolFile();
+  bool write(std::string_view piece);
+  /// Hands all of it to a sink, in pieces; false if the sink, or the disk, did not.
+  bool copy_to(Sink sink) const;
+
+ private:
+  int number_ = -1;
+  bool good_ = true;
+};
+
 /// The whole content of a file, device or pipe; more than `limit` bytes are an error (a device has no end).
 [[nodiscard]] Expected<std::string> read_file(const std::filesystem::path& path,
                                               std::size_t limit = std::size_t{2} << 30);

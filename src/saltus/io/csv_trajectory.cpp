@@ -1,5 +1,6 @@
 // Trajectories and events as tables of comma-separated values.
 #include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,11 +34,13 @@ void append_names(std::string& text, const std::vector<std::string>& names) {
 }
 
 /// One line for every row, each with `end` behind it.
-void append_rows(TextStream& stream, const result::Result& result, const std::string& end) {
+/// @param before  the time of the row before the first one; NaN if there is none
+void append_rows_behind(double before, TextStream& stream, const result::Result& result, const std::string& end) {
   const auto& trajectory = result.trajectory;
   std::string& text = stream.text();
   for (std::size_t i = 0; i < trajectory.t.size() && stream.pass(); ++i) {
-    fmt::format_to(std::back_inserter(text), "{},{}", trajectory.t[i], side(trajectory, i));
+    const int side_of_row = i == 0 ? (trajectory.t[0] == before ? 1 : 0) : side(trajectory, i);
+    fmt::format_to(std::back_inserter(text), "{},{}", trajectory.t[i], side_of_row);
     append(text, trajectory.x[i]);
     append(text, trajectory.u[i]);
     append(text, trajectory.outputs[i]);
@@ -49,6 +52,10 @@ void append_rows(TextStream& stream, const result::Result& result, const std::st
     }
     text += end + "\n";
   }
+}
+
+void append_rows(TextStream& stream, const result::Result& result, const std::string& end) {
+  append_rows_behind(std::numeric_limits<double>::quiet_NaN(), stream, result, end);
 }
 
 /// Values that are not there leave their fields empty.
@@ -89,9 +96,7 @@ bool write_lines(const std::string& header, const result::Result& result, Append
   return stream.flush();
 }
 
-}  // namespace
-
-bool write_csv(const result::Result& result, Sink sink) {
+std::string head_of_rows(const result::Result& result) {
   std::string text = "t,side";
   append_names(text, result.states);
   append_names(text, result.controls);
@@ -102,17 +107,66 @@ bool write_csv(const result::Result& result, Sink sink) {
     text += "," + field(group.name.empty() ? "regions" : "regions(" + group.name + ")");
   }
   append_heads(text, "theta", result::region_labels(result.region_groups));
-  return write_lines(text, result, append_rows, sink);
+  return text;
 }
 
-bool write_events_csv(const result::Result& result, Sink sink) {
+std::string head_of_events(const result::Result& result) {
   std::string text = "t,kind,name,surfaces";
   append_names(text, result.states);
   append_heads(text, "after", result.states);
   for (const auto* quantity : {"mode_before", "mode_after", "alpha_before", "alpha_after"}) {
     append_heads(text, quantity, result.switching_functions);
   }
-  return write_lines(text + ",unique,reason", result, append_events, sink);
+  return text + ",unique,reason";
+}
+
+/// A table that gets its lines part by part.
+class CsvParts : public ResultParts {
+ public:
+  enum class Of { rows, events };
+  CsvParts(Of of, Sink sink) : of_(of), stream_(sink) {}
+
+  bool add(const result::Result& part) override {
+    begin(part);
+    if (of_ == Of::events) {
+      append_events(stream_, part, "");
+    } else {
+      append_rows_behind(last_, stream_, part, "");
+      if (!part.trajectory.t.empty()) last_ = part.trajectory.t.back();
+    }
+    return stream_.flush();
+  }
+  bool finish(const result::Result& rest) override {
+    begin(rest);
+    return stream_.flush();
+  }
+
+ private:
+  void begin(const result::Result& result) {
+    if (begun_) return;
+    stream_.text() += (of_ == Of::rows ? head_of_rows(result) : head_of_events(result)) + "\n";
+    begun_ = true;
+  }
+  Of of_;
+  TextStream stream_;
+  bool begun_ = false;
+  double last_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace
+
+bool write_csv(const result::Result& result, Sink sink) {
+  return write_lines(head_of_rows(result), result, append_rows, sink);
+}
+
+bool write_events_csv(const result::Result& result, Sink sink) {
+  return write_lines(head_of_events(result), result, append_events, sink);
+}
+
+std::unique_ptr<ResultParts> csv_parts(Sink sink) { return std::make_unique<CsvParts>(CsvParts::Of::rows, sink); }
+
+std::unique_ptr<ResultParts> events_csv_parts(Sink sink) {
+  return std::make_unique<CsvParts>(CsvParts::Of::events, sink);
 }
 
 std::string to_csv(const result::Result& result) {

@@ -138,7 +138,8 @@ class ComparedStates {
     const auto& one = states_[run];
     if (one.t == t) return one.x;
     const auto place = std::find(one.rows.t.rbegin(), one.rows.t.rend(), t);
-    return place == one.rows.t.rend() ? std::vector<double>{} : one.rows.x[at(one.rows.t.rend() - place) - 1];
+    return place == one.rows.t.rend() ? std::vector<double>{}
+                                      : std::vector<double>(one.rows.x[at(one.rows.t.rend() - place) - 1]);
   }
 
  private:

@@ -7,20 +7,6 @@
 #include "saltus/pipeline/output_rows_internal.hpp"
 
 namespace saltus::pipeline {
-namespace {
-
-/// Keeps some rows of one column, which may be empty.
-template <class Column>
-void keep(Column& column, const std::vector<std::size_t>& rows) {
-  if (column.empty()) return;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i] != i) column[i] = std::move(column[rows[i]]);
-  }
-  column.resize(rows.size());
-}
-
-}  // namespace
-
 event_integrator::OutputTimes output_times(const OutputGrid& grid, double from, double until) {
   event_integrator::OutputTimes output;
   if (std::holds_alternative<Automatic>(grid)) output.straight = straight_share;
@@ -48,14 +34,7 @@ void leave_out_event_rows(const std::vector<double>& times, result::Trajectory& 
     if (!last && rows.t[i + 1] == rows.t[i]) continue;  // values are continuous from the right
     if (last || times.empty() || std::binary_search(times.begin(), times.end(), rows.t[i])) kept.push_back(i);
   }
-  keep(rows.t, kept);
-  keep(rows.x, kept);
-  keep(rows.u, kept);
-  keep(rows.alpha, kept);
-  keep(rows.mode, kept);
-  keep(rows.outputs, kept);
-  keep(rows.regions, kept);
-  keep(rows.theta, kept);
+  rows.keep(kept);
 }
 
 }  // namespace saltus::pipeline

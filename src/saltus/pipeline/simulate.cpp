@@ -18,6 +18,7 @@
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
+#include "saltus/pipeline/passed_on_internal.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/pipeline/step_observer_internal.hpp"
 #include "saltus/pipeline/time_freezing/simulate_frozen_internal.hpp"
@@ -279,11 +280,18 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
   if (!kept) return tl::unexpected(kept.error());
 
   auto integration = *integration_or;
+  const bool passes_on = observers.on_part && options.method == Method::event && options.event.trajectories == 1;
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
     const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;
+    std::optional<PassingOn> passing;
+    event_integrator::TakeRecorded take;
+    if (passes_on) {
+      passing.emplace(observers, frame(system, options), options.event_rows ? nullptr : &integration.output.times);
+      take = [&](result::Trajectory rows, result::Events events) { passing->take(std::move(rows), std::move(events)); };
+    }
     auto run = integrand_or->restated(
-        event_integrator::integrate(kept->kernel, integrand_or->system(), integration, observer));
+        event_integrator::integrate(kept->kernel, integrand_or->system(), integration, observer, take));
     Followed followed{frame(system, options), std::move(run.branch_points), std::move(run.family_numbers), run.chosen};
     auto& result = followed.result;
     result.families = std::move(run.families);
@@ -291,6 +299,7 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
     result.final = std::move(run.final);
     result.events = std::move(run.events);
     result.trajectory = std::move(run.trajectory);
+    if (passing) result.passed_on = passing->end();
     if (!options.event_rows) leave_out_event_rows(integration.output.times, result.trajectory);
     result.statistics = run.statistics;
     const auto end = std::chrono::steady_clock::now();

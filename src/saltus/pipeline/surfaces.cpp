@@ -10,6 +10,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/surface_functions.hpp"
 #include "saltus/pipeline/level_curves.hpp"
+#include "saltus/pipeline/recorded_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -76,7 +77,9 @@ std::vector<result::SurfaceCurve> curves_of(const evaluation::SurfaceFunction& f
     if (!std::isfinite(from) || !std::isfinite(to)) return curves;
   }
   const double end = result.final.t;
-  const double begin = result.trajectory.t.empty() ? end : result.trajectory.t.front();
+  const double begin = result.passed_on              ? recorded<double>(result.options, "from").value_or(end)
+                       : result.trajectory.t.empty() ? end
+                                                     : result.trajectory.t.front();
   const int times = function.depends_on_time && begin < end ? times_of_moving_surface : 1;
   for (int i = 0; i < times; ++i) {
     add_curves(function, times == 1 ? end : begin + (end - begin) * i / (times - 1), ranges, curves);
@@ -103,15 +106,18 @@ result::AffineSurface form_of(const evaluation::AffineForm& form) { return {form
 Interval drawn_range(const result::Result& result, int state) {
   const auto column = static_cast<std::size_t>(state);
   double least = result.final.x[column], greatest = least;
-  const auto include = [&](const std::vector<double>& x) {
-    const double value = x[column];
+  const auto include = [&](double value) {
     // Negated, so that a range that begins with NaN takes the first number.
     if (!std::isfinite(value)) return;
     if (!(least <= value)) least = value;
     if (!(greatest >= value)) greatest = value;
   };
-  for (const auto& x : result.trajectory.x) include(x);
-  for (const auto& event : result.events) include(event.x), include(event.x_after);
+  if (result.passed_on) include(result.passed_on->least[column]), include(result.passed_on->greatest[column]);
+  for (const auto& x : result.trajectory.x) include(x[column]);
+  for (std::size_t i = 0; i < result.events.size(); ++i) {
+    include(result.events.x(i)[column]);
+    include(result.events.x_after(i)[column]);
+  }
   const double width = greatest - least;
   const double room = width > 0.0 ? margin * width : std::max(0.5 * std::abs(least), 0.5);
   return {least - room, greatest + room};

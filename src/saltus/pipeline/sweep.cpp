@@ -18,10 +18,8 @@ namespace {
 
 double bytes_of(const result::Trajectory& rows) {
   if (rows.t.empty()) return 0.0;
-  const auto numbers = 1 + rows.x.front().size() + rows.u.front().size() + rows.alpha.front().size() +
-                       rows.outputs.front().size() + rows.mode.front().size();
-  constexpr std::size_t of_containers = 5 * 32;
-  return static_cast<double>(rows.t.size()) * static_cast<double>(8 * numbers + of_containers);
+  const auto numbers = 1 + rows.x.width() + rows.u.width() + rows.alpha.width() + rows.outputs.width();
+  return static_cast<double>(rows.t.size()) * static_cast<double>(8 * numbers);
 }
 
 void leave_what_is_kept(SweepRun& run, Keep keep) {

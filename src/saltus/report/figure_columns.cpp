@@ -37,8 +37,7 @@ std::vector<std::size_t> rows_of_pixels(const std::vector<double>& t, const std:
 std::vector<FigureColumn> figure_columns(const result::Result& result) {
   std::vector<FigureColumn> columns;
   const auto& trajectory = result.trajectory;
-  const auto add = [&](const std::vector<std::string>& names, const std::vector<std::vector<double>>& rows,
-                       ColumnSort sort) {
+  const auto add = [&](const std::vector<std::string>& names, const auto& rows, ColumnSort sort) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       FigureColumn column{sort == ColumnSort::alpha ? fmt::format("alpha({})", names[i]) : names[i], sort, i, {}};
       for (std::size_t row = 0; row < trajectory.t.size(); ++row) {

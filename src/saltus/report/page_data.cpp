@@ -26,7 +26,8 @@ json head_or_null(const std::optional<std::vector<T>>& value, std::size_t most) 
 }
 
 /// One array per column; a row that is too short counts as not a number there.
-json columns(const Rows& rows, const std::vector<std::size_t>& chosen, std::size_t width) {
+template <class Table>
+json columns(const Table& rows, const std::vector<std::size_t>& chosen, std::size_t width) {
   json result = json::array();
   for (std::size_t column = 0; column < width; ++column) {
     json::array_t values;

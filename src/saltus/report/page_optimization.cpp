@@ -47,7 +47,7 @@ json open_loop_data(const result::Optimization& optimization, std::size_t states
   const auto& open_loop = optimization.verification->open_loop;
   result::Trajectory trajectory;
   trajectory.t = open_loop.t;
-  trajectory.x = open_loop.x;
+  trajectory.x = result::Table<double>(open_loop.x);
   const auto chosen = rows_to_draw(trajectory, std::max<std::size_t>(1, limit / (1 + states)), states);
   json::array_t t, x;
   for (const std::size_t i : chosen) t.emplace_back(open_loop.t[i]);

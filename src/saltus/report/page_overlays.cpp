@@ -15,8 +15,9 @@ namespace {
 using nlohmann::json;
 
 /// The columns `names` of a table whose columns are called `own`.
-json by_name(const std::vector<std::string>& names, const std::vector<std::string>& own,
-             const std::vector<std::vector<double>>& rows, const std::vector<std::size_t>& chosen) {
+template <class Table>
+json by_name(const std::vector<std::string>& names, const std::vector<std::string>& own, const Table& rows,
+             const std::vector<std::size_t>& chosen) {
   json::array_t columns;
   for (const auto& name : names) {
     if (columns.size() == columns_in_page) break;

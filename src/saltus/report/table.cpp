@@ -69,20 +69,22 @@ Row event_row(std::size_t number, const result::Event& event, const result::Resu
 
 std::string event_table(const result::Result& result, std::size_t shown_at_each_end) {
   const auto& events = result.events;
-  if (events.empty()) return "events      none\n";
   const std::size_t columns = result.switching_functions.size();
-  const bool all = events.size() / 2 < shown_at_each_end || events.size() == 2 * shown_at_each_end;
+  const std::size_t count_of_all = result.passed_on ? result.passed_on->events : events.size();
+  if (count_of_all == 0) return "events      none\n";
+  const std::size_t left_out = count_of_all - events.size();  // between the first and the last ones
+  const bool all = count_of_all / 2 < shown_at_each_end || count_of_all == 2 * shown_at_each_end;
   std::vector<Row> rows{{"#", "t", "kind", "surfaces", columns > 0 && columns <= most_signs ? "mode" : "",
-                         events.front().regions_after ? "regions" : "", ""}};
+                         !events.empty() && events.front().regions_after ? "regions" : "", ""}};
   for (std::size_t i = 0; i < events.size(); ++i) {
-    if (all || i < shown_at_each_end || events.size() - i <= shown_at_each_end) {
-      rows.push_back(event_row(i + 1, events[i], result));
-    } else if (i == shown_at_each_end) {
-      rows.push_back({"…", "", "", "", "", "", ""});
+    const bool first = i < shown_at_each_end;
+    if (!all && i == shown_at_each_end) rows.push_back({"…", "", "", "", "", "", ""});
+    if (all || first || events.size() - i <= shown_at_each_end) {
+      rows.push_back(event_row(first ? i + 1 : i + 1 + left_out, events[i], result));
     }
   }
-  const auto count = all ? fmt::format("events      {}\n", events.size())
-                         : fmt::format("events      {}, the first and the last {}\n", events.size(), shown_at_each_end);
+  const auto count = all ? fmt::format("events      {}\n", count_of_all)
+                         : fmt::format("events      {}, the first and the last {}\n", count_of_all, shown_at_each_end);
   return count + aligned(rows);
 }
 

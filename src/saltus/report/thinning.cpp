@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -8,10 +7,10 @@
 namespace saltus::report {
 namespace {
 
-using Rows = std::vector<std::vector<double>>;
-
-std::array<const Rows*, 5> tables(const result::Trajectory& trajectory) {
-  return {&trajectory.x, &trajectory.u, &trajectory.alpha, &trajectory.outputs, &trajectory.theta};
+template <class Visit>
+void for_each_table(const result::Trajectory& trajectory, Visit visit) {
+  visit(trajectory.x), visit(trajectory.u), visit(trajectory.alpha), visit(trajectory.outputs);
+  visit(trajectory.theta);
 }
 
 bool is_pair(const result::Trajectory& trajectory, std::size_t i) {
@@ -37,6 +36,7 @@ struct Run {
 };
 
 /// Marks the extremes of one column within a run, and where it first has no finite value.
+template <class Rows>
 void keep_extremes(const Rows& rows, std::size_t column, Run run, std::vector<char>& keep) {
   std::size_t least = run.end, greatest = run.end, missing = run.end;
   for (std::size_t i = run.begin; i < run.end; ++i) {
@@ -57,9 +57,7 @@ void keep_extremes(const Rows& rows, std::size_t column, Run run, std::vector<ch
 
 std::size_t number_of_columns(const result::Trajectory& trajectory, std::size_t most_columns) {
   std::size_t count = 0;
-  for (const Rows* rows : tables(trajectory)) {
-    count += rows->empty() ? 0 : std::min(most_columns, rows->front().size());
-  }
+  for_each_table(trajectory, [&](const auto& rows) { count += std::min(most_columns, rows.width()); });
   return count;
 }
 
@@ -75,14 +73,14 @@ std::vector<std::size_t> rows_to_draw(const result::Trajectory& trajectory, std:
   // Least and greatest of every column: two rows per column and run.
   const std::size_t runs = std::max<std::size_t>(1, limit / (2 * number_of_columns(trajectory, most_columns) + 1));
   const std::size_t length = (size + runs - 1) / runs;
-  for (const Rows* rows : tables(trajectory)) {
-    if (rows->size() != size) continue;
-    for (std::size_t column = 0; column < std::min(most_columns, rows->front().size()); ++column) {
+  for_each_table(trajectory, [&](const auto& rows) {
+    if (rows.size() != size) return;
+    for (std::size_t column = 0; column < std::min(most_columns, rows.width()); ++column) {
       for (std::size_t begin = 0; begin < size; begin += length) {
-        keep_extremes(*rows, column, {begin, std::min(size, begin + length)}, keep);
+        keep_extremes(rows, column, {begin, std::min(size, begin + length)}, keep);
       }
     }
-  }
+  });
   std::erase_if(chosen, [&](std::size_t i) { return keep[i] == 0; });
   return chosen;
 }

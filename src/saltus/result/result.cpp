@@ -160,15 +160,36 @@ std::vector<TreeEntry> tree(const Result& root) {
 }
 
 std::size_t not_followed(const Result& result) {
+  if (result.passed_on) return result.passed_on->alternatives;
   std::size_t listed = 0;
   // The alternatives to a branch's own first mode belong to its parent.
   for (std::size_t i = result.left_at ? 1 : 0; i < result.events.size(); ++i) {
-    listed += result.events[i].alternatives.size();
+    listed += result.events.alternatives(i);
   }
   for (const auto& branch : result.branches) {
     if (branch.left_at && !branch.left_at->member && listed > 0) --listed;
   }
   return listed;
+}
+
+void Trajectory::append(const Trajectory& from, std::size_t row) {
+  t.push_back(from.t[row]);
+  const auto append_to = [row](auto& table, const auto& rows) {
+    if (!rows.empty()) table.push_back(rows[row]);
+  };
+  append_to(x, from.x), append_to(u, from.u), append_to(alpha, from.alpha), append_to(mode, from.mode);
+  append_to(outputs, from.outputs), append_to(regions, from.regions), append_to(theta, from.theta);
+  append_to(contact_modes, from.contact_modes);
+}
+
+void Trajectory::keep(const std::vector<std::size_t>& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) t[i] = t[rows[i]];
+  t.resize(rows.size());
+  const auto keep_of = [&](auto& table) {
+    if (!table.empty()) table.keep(rows);
+  };
+  keep_of(x), keep_of(u), keep_of(alpha), keep_of(mode), keep_of(outputs);
+  keep_of(regions), keep_of(theta), keep_of(contact_modes);
 }
 
 }  // namespace saltus::result

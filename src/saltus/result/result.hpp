@@ -15,99 +15,31 @@
 #include "saltus/result/comparison.hpp"
 #include "saltus/result/drawing.hpp"
 #include "saltus/result/elements.hpp"
+#include "saltus/result/events.hpp"
 #include "saltus/result/optimization.hpp"
 #include "saltus/result/sensitivities.hpp"
 #include "saltus/result/statistics.hpp"
 #include "saltus/result/status.hpp"
+#include "saltus/result/table.hpp"
 
 namespace saltus::result {
-
-/// k in {-1, 0, 1}^n_psi: the sign of psi_j, 0 while the solution slides on psi_j = 0.
-using Mode = std::vector<int>;
-
-enum class EventKind {
-  start,
-  crossing,
-  enter_sliding,
-  leave_sliding,
-  change_sliding,
-  accumulation,
-  jump,
-  user,
-  impact,    ///< of contacts, with impulses
-  contact,   ///< touch-down without an impact
-  lift_off,  ///< the normal force ends
-  stick,
-  slip,
-};
-[[nodiscard]] std::string_view name(EventKind kind);
-/// The inverse of name; nullopt if there is none of that name.
-[[nodiscard]] std::optional<EventKind> event_kind_named(std::string_view name);
-
-/// The kind of a switch from the components of the modes (interface.md section 3).
-[[nodiscard]] EventKind kind_of_switch(const Mode& before, const Mode& after);
-
-/// The active modes of every group by `indicator`, in the order of the model; empty without such groups.
-using Regions = std::vector<std::vector<std::string>>;
-
-/// Of one contact: its gap is positive; or 0 without friction, with friction that holds, with friction that yields.
-enum class ContactMode { open, closed, stick, slip };
-[[nodiscard]] std::string_view name(ContactMode mode);
-/// The inverse of name; nullopt if there is none of that name.
-[[nodiscard]] std::optional<ContactMode> contact_mode_named(std::string_view name);
-
-/// A group of modes by `indicator`, of which those with the smallest one are active.
-struct RegionGroup {
-  std::string name;  ///< empty for the group without a name
-  std::vector<std::string> modes;
-  bool operator==(const RegionGroup&) const = default;
-};
-/// The modes of all groups, one after the other, as columns: "mode", of a named group "group.mode".
-[[nodiscard]] std::vector<std::string> region_labels(const std::vector<RegionGroup>& groups);
-
-struct Alternative {
-  Mode mode;
-  std::vector<double> alpha;  ///< one per switching function; NaN where not determined
-  Regions regions{};
-};
-
-/// The fields where two surfaces that influence each other were met: what a picture of the decision needs.
-struct Intersection {
-  std::array<std::string, 2> surfaces;  ///< names of switching functions
-  /// velocities[j][corner] is d psi_j / dt along the field of `corner`, whose bit i is the selection of surface i.
-  std::array<std::array<double, 4>, 2> velocities{};
-  std::optional<std::array<double, 2>> alpha_before;  ///< where the solution comes from; nullopt at a start
-  std::array<double, 2> alpha_after{};                ///< of the mode that goes on
-};
-
-/// One change of mode, jump or user event. Vectors over switching functions follow Result::switching_functions.
-struct Event {
-  double t = 0.0;
-  EventKind kind = EventKind::crossing;
-  std::optional<std::string> name;
-  std::vector<std::string> surfaces;
-  std::optional<Mode> mode_before, mode_after;
-  std::optional<std::vector<double>> alpha_before, alpha_after;
-  std::optional<Regions> regions_before, regions_after;
-  std::vector<ContactMode> contact_modes_before{}, contact_modes_after{};  ///< by contact; empty without contacts
-  std::optional<std::vector<std::vector<double>>> impulse{};  ///< of an impact, by contact: normal, tangential ones
-  std::vector<double> x, x_after;
-  std::optional<bool> unique = true;  ///< nullopt: not decided
-  std::vector<Alternative> alternatives;
-  std::string reason;
-  std::optional<Intersection> intersection;
-};
 
 /// Rows; every event has two rows with the same time, before and behind it.
 struct Trajectory {
   std::vector<double> t;
-  std::vector<std::vector<double>> x, u, alpha;
-  std::vector<Mode> mode;
-  std::vector<std::vector<double>> outputs;
+  Table<double> x, u;
+  SteadyTable<double> alpha;
+  SteadyTable<signed char> mode;
+  Table<double> outputs;
   /// With groups by `indicator` a row per time, else none: the active modes, and the weights of all (region_labels).
-  std::vector<Regions> regions{};
-  std::vector<std::vector<double>> theta{};
-  std::vector<std::vector<ContactMode>> contact_modes{};  ///< with contacts a row per time, else none
+  SteadyList<Regions> regions{};
+  SteadyTable<double> theta{};
+  SteadyTable<ContactMode> contact_modes{};  ///< with contacts a row per time, else none
+
+  /// Leaves these rows, ascending.
+  void keep(const std::vector<std::size_t>& rows);
+  /// Appends a row of another one with the same columns.
+  void append(const Trajectory& from, std::size_t row);
 };
 
 /// 1 for a row behind another one at the same time, like the one behind an event; else 0.
@@ -239,6 +171,13 @@ struct Departure {
   std::optional<Member> member{};
 };
 
+/// Of rows and events that were passed on while they were computed: what is known without them.
+struct PassedOn {
+  std::size_t rows = 0, events = 0;
+  std::size_t alternatives = 0;         ///< in the events
+  std::vector<double> least, greatest;  ///< of every state, in rows and events; NaN left out
+};
+
 struct Result {
   ModelRecord model;
   std::string command = "simulate";
@@ -249,9 +188,10 @@ struct Result {
   std::vector<RegionGroup> region_groups;
   std::vector<std::string> contacts;
   Final final;
-  std::vector<Event> events;
+  Events events;
   Trajectory trajectory;
-  Statistics statistics;  ///< of an optimisation those of Optimization are written instead
+  std::optional<PassedOn> passed_on;  ///< then the trajectory has no rows, and of the events at most some are left
+  Statistics statistics;              ///< of an optimisation those of Optimization are written instead
   OptionRecord options;
   std::optional<Drawing> drawing;           ///< of a mechanical system that says what is drawn
   std::optional<double> penetration;        ///< with contacts: the largest depth -gap of all rows, 0 without any

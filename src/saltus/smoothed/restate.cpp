@@ -156,18 +156,28 @@ bool describe(Event& event, const Regularisation& regularisation) {
 
 }  // namespace
 
-void restate(const Regularisation& regularisation, std::vector<Event>& events, result::Trajectory& trajectory,
+void restate(const Regularisation& regularisation, result::Events& events, result::Trajectory& trajectory,
              result::Status& status) {
+  result::SteadyTable<signed char> modes;
+  result::SteadyTable<double> alphas;
+  std::size_t outputs_of_user = trajectory.outputs.width();
   for (std::size_t row = 0; row < trajectory.t.size(); ++row) {
+    const Mode edges = trajectory.mode[row];
+    std::vector<double> outputs = trajectory.outputs[row];
     if (!regularisation.regions.empty()) {
-      trajectory.regions.push_back(regions_of(regularisation, trajectory.mode[row]));
-      trajectory.theta.push_back(weights_from(trajectory.outputs[row], regularisation, trajectory.mode[row]));
+      trajectory.regions.push_back(regions_of(regularisation, edges));
+      trajectory.theta.push_back(weights_from(outputs, regularisation, edges));
     }
-    trajectory.mode[row] = modes_of(regularisation, trajectory.mode[row]);
-    trajectory.alpha[row] = selections_from(trajectory.outputs[row], regularisation, trajectory.mode[row]);
+    const Mode mode = modes_of(regularisation, edges);
+    alphas.push_back(selections_from(outputs, regularisation, mode));
+    modes.push_back(mode);
+    outputs_of_user = outputs.size();
   }
-  std::vector<Event> restated;
-  for (Event& event : events) {
+  trajectory.outputs.narrow(outputs_of_user);
+  trajectory.mode = std::move(modes);
+  trajectory.alpha = std::move(alphas);
+  result::Events restated;
+  for (Event event : events) {
     if (event.kind == EventKind::start) continue;  // on an edge, where nothing is decided
     if (!regularisation.regions.empty()) {
       if (event.mode_before) event.regions_before = regions_of(regularisation, *event.mode_before);

@@ -17,7 +17,7 @@ namespace saltus::smoothed {
 /// A status that speaks of switching says that a layer of the width of roundings may be the reason.
 /// @param events      of the regularised system
 /// @param trajectory  its rows, the selections among the outputs
-void restate(const Regularisation& regularisation, std::vector<result::Event>& events, result::Trajectory& trajectory,
+void restate(const Regularisation& regularisation, result::Events& events, result::Trajectory& trajectory,
              result::Status& status);
 
 }  // namespace saltus::smoothed

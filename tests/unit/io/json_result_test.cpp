@@ -135,8 +135,8 @@ TEST(JsonResult, ReadsComparisonsAndOrdersBack) {
 
 TEST(JsonResult, ReadsFamiliesAndTheirMembersBack) {
   auto original = with_branches();
-  const auto& mode = original.events[0].alternatives[1].mode;
-  const auto& alpha = original.events[0].alternatives[1].alpha;
+  const auto mode = original.events[0].alternatives[1].mode;
+  const auto alpha = original.events[0].alternatives[1].alpha;
   original.families = {{result::FamilyKind::later_departure, 0, 0.1, 0.7, {mode, alpha, {}}, std::nullopt},
                        {result::FamilyKind::spiral, 1, 0.3, 0.3, {mode, alpha, {}}, 81.0}};
   original.branches[1].left_at->member = {1, 0.25};

@@ -53,7 +53,7 @@ TEST(Branches, OfASpontaneousSwitchAreItsThreeSolutions) {
     EXPECT_EQ(branch.status.termination, Termination::completed);
     ASSERT_TRUE(branch.left_at.has_value());
     EXPECT_EQ(branch.left_at->event, 0U);
-    const auto& taken = root.events[0].alternatives[branch.left_at->alternative];
+    const auto taken = root.events[0].alternatives[branch.left_at->alternative];
     EXPECT_EQ(*branch.events[0].mode_after, taken.mode);
     EXPECT_EQ(branch.trajectory.mode[1], taken.mode);
     ASSERT_EQ(branch.events[0].alternatives.size(), 2U);
@@ -217,7 +217,7 @@ TEST(Branches, OfAnIntersectionAreAllModesThatLeadOn) {
   ASSERT_EQ(root.status.termination, Termination::completed) << root.status.message;
   const double slid = f[0][0] / (f[0][0] - f[0][1]);
   const double arrival = 1 / ((1 - slid) * f[1][0] + slid * f[1][1]);
-  const auto& event = root.events.at(1);
+  const auto& event = root.events[1];
   EXPECT_NEAR(event.t, arrival, 1e-12);
   EXPECT_EQ(*event.mode_after, (Mode{0, 0}));
   ASSERT_TRUE(event.intersection.has_value());

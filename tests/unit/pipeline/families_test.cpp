@@ -286,9 +286,10 @@ TEST(Families, OfASpiralHaveAllPhases) {
     EXPECT_EQ(phase, members / 4.0);
     const auto& own = branch.events.back();
     EXPECT_NEAR(std::hypot(own.x[0], own.x[1]), 2 * own.t, 1e-9);
-    const auto other = std::find_if(root.events.rbegin(), root.events.rend(),
+    const std::vector<result::Event> events = root.events;
+    const auto other = std::find_if(events.rbegin(), events.rend(),
                                     [&](const auto& event) { return event.mode_after == own.mode_after; });
-    ASSERT_NE(other, root.events.rend());
+    ASSERT_NE(other, events.rend());
     const double laps = std::log(own.t / other->t) / std::log(81.0) - phase;
     EXPECT_NEAR(laps, std::round(laps), 1e-9);
   }

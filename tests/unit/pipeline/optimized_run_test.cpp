@@ -26,7 +26,8 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& ex
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], rounding_error) << i;
 }
 
-std::vector<double> column(const std::vector<std::vector<double>>& rows, std::size_t number) {
+template <class Rows>
+std::vector<double> column(const Rows& rows, std::size_t number) {
   std::vector<double> values;
   for (const auto& row : rows) values.push_back(row.at(number));
   return values;
@@ -171,8 +172,8 @@ TEST(OptimizedRunTest, SlidingWithControls) {
   const auto& rows = run.trajectory;
   expect_near(rows.t, {0.0, 0.5 / 3, 0.5, 0.5, 0.5 + 0.5 / 3, 1.0, 1.0, 1.0 + 1.0 / 3, 2.0});
   expect_near(column(rows.alpha, 0), {1, 1, 1, 0.6, 0.6, 0.6, 0.3, 0.3, 0.3});
-  EXPECT_EQ(rows.u, (std::vector<std::vector<double>>{{1}, {1}, {1}, {1}, {1}, {1}, {-2}, {-2}, {-2}}));
-  EXPECT_EQ(rows.outputs, (std::vector<std::vector<double>>{{1}, {1}, {1}, {1}, {1}, {1}, {4}, {4}, {4}}));
+  EXPECT_EQ(rows.u, (result::Table<double>{{1}, {1}, {1}, {1}, {1}, {1}, {-2}, {-2}, {-2}}));
+  EXPECT_EQ(rows.outputs, (result::Table<double>{{1}, {1}, {1}, {1}, {1}, {1}, {4}, {4}, {4}}));
   ASSERT_EQ(run.events.size(), 1U);
   EXPECT_EQ(run.events.front().kind, EventKind::enter_sliding);
   EXPECT_EQ(run.events.front().t, 0.5);

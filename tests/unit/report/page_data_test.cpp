@@ -49,7 +49,7 @@ TEST(PageData, SeveralRowsAtOneTimeMakeNoInterval) {
 
 TEST(PageData, NonFiniteNumbersAndMissingModesAreNull) {
   auto result = report_samples::failed();
-  result.events.front().mode_before.reset();
+  report_samples::change_event(result, 0, [](result::Event& event) { event.mode_before.reset(); });
   const json data = json::parse(to_script_text(page_data(result)));
   EXPECT_TRUE(data["trajectory"]["x"][0].back().is_null());
   EXPECT_TRUE(data["trajectory"]["x"][1].back().is_null());
@@ -144,7 +144,7 @@ TEST(PageData, OfVeryManyStatesTheFirstAreShownAndTheSizesTold) {
   report_samples::finish(result);
   result::Event event;
   event.x = event.x_after = x;
-  result.events.assign(1000, event);
+  result.events = std::vector<result::Event>(1000, event);
   result.surfaces = {{"first", {}, {"x0"}, false, std::nullopt, {}, {}},
                      {"last", {}, {result.states.back()}, false, {}, {}, {}}};
   const json data = page_data(result, 100000);
@@ -167,7 +167,9 @@ TEST(PageData, AnEmptyResultIsNoError) {
 TEST(PageData, BranchesAreAListWithTheirParents) {
   auto root = report_samples::failed();
   auto branch = report_samples::failed();
-  branch.events.erase(branch.events.begin());
+  std::vector<result::Event> left = branch.events;
+  left.erase(left.begin());
+  branch.events = left;
   branch.left_at = {1, 0};
   auto inner = branch;
   inner.left_at = {2, 1};

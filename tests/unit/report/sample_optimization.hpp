@@ -174,7 +174,7 @@ inline result::Result turbo_car(int intervals = 20) {
   optimization.dual_upper = {0.0, 1e22, 0.25};
   add_turbo_events(result);
   const auto& trajectory = result.trajectory;
-  result.trajectory.outputs.resize(trajectory.t.size());
+  result.trajectory.outputs = {trajectory.t.size(), 0, {}};
   result.final = {trajectory.t.back(), trajectory.x.back(), trajectory.mode.back(), trajectory.alpha.back(), {}};
   result.status.time_reached = TurboCar::horizon;
   result.surfaces = {

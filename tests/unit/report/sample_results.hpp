@@ -26,9 +26,9 @@ inline void add_row(result::Result& result, const Row& row) {
   result.trajectory.alpha.push_back(row.alpha);
 }
 
-/// The event between two rows at one time; adds both rows.
-inline result::Event& add_event(result::Result& result, const Row& before, const Row& after,
-                                const std::string& reason) {
+/// The event between two rows at one time, not yet in the result; adds both rows.
+inline result::Event event_between(result::Result& result, const Row& before, const Row& after,
+                                   const std::string& reason) {
   add_row(result, before);
   add_row(result, after);
   result::Event event;
@@ -44,8 +44,19 @@ inline result::Event& add_event(result::Result& result, const Row& before, const
   event.x = before.x;
   event.x_after = after.x;
   event.reason = reason;
-  result.events.push_back(event);
-  return result.events.back();
+  return event;
+}
+
+inline void add_event(result::Result& result, const Row& before, const Row& after, const std::string& reason) {
+  result.events.push_back(event_between(result, before, after, reason));
+}
+
+/// Changes one event of a result.
+template <class Change>
+void change_event(result::Result& result, std::size_t number, Change change) {
+  std::vector<result::Event> events = result.events;
+  change(events[number]);
+  result.events = events;
 }
 
 inline void finish(result::Result& result) {
@@ -171,21 +182,25 @@ inline result::Result failed() {
     z += 0.005 * v;
     if (z < 0.0 && v < 0.0) {
       const double after = -0.8 * v;
-      auto& event = add_event(result, {t, {z, v}, mode, alpha}, {t, {z, after}, mode, alpha}, "<i>restitution</i> 0.8");
+      auto event =
+          event_between(result, {t, {z, v}, mode, alpha}, {t, {z, after}, mode, alpha}, "<i>restitution</i> 0.8");
       event.kind = result::EventKind::jump;
       event.surfaces = {"ground & floor"};
+      result.events.push_back(event);
       v = after;
     } else if (i == 300) {
-      auto& event = add_event(result, {t, {z, v}, mode, alpha}, {t, {z, v}, {0, -1}, {0.25, 0.0}},
-                              "active_dominant: kept the slow motion");
+      auto event = event_between(result, {t, {z, v}, mode, alpha}, {t, {z, v}, {0, -1}, {0.25, 0.0}},
+                                 "active_dominant: kept the slow motion");
       event.unique = false;
       event.alternatives = {{{1, -1}, {1.0, 0.0}}, {{-1, 0}, {0.0, nan}}};
+      result.events.push_back(event);
       mode = {0, -1};
       alpha = {0.25, 0.0};
     } else if (i == 500) {
-      auto& event = add_event(result, {t, {z, v}, mode, alpha}, {t, {z, v}, {1, 1}, {1.0, 1.0}},
-                              "more than three coupled surfaces");
+      auto event = event_between(result, {t, {z, v}, mode, alpha}, {t, {z, v}, {1, 1}, {1.0, 1.0}},
+                                 "more than three coupled surfaces");
       event.unique = std::nullopt;
+      result.events.push_back(event);
       mode = {1, 1};
       alpha = {1.0, 1.0};
     } else {
@@ -213,7 +228,7 @@ inline result::Result nothing() {
 inline result::Result many_rows(std::size_t rows) {
   result::Result result = stick_slip(40, rows / 40);
   result.model.name = "many rows";
-  result.trajectory.x[rows / 3][1] = 25.0;
+  result.trajectory.x.change(rows / 3)[1] = 25.0;
   return result;
 }
 
@@ -221,7 +236,7 @@ inline result::Result many_rows(std::size_t rows) {
 inline result::Result many_events(std::size_t events) {
   result::Result result = stick_slip(events, 4);
   result.model.name = "many events";
-  result.events[events / 2].unique = false;
+  change_event(result, events / 2, [](result::Event& event) { event.unique = false; });
   return result;
 }
 

@@ -71,8 +71,9 @@ TEST(Table, HasALineForEveryBranch) {
   auto r = sample();
   r.events = {crossing(0.5, "a"), ambiguous(1.5)};
   auto branch = sample();
-  branch.events = {ambiguous(1.5), ambiguous(1.75)};
-  branch.events[0].mode_after = result::Mode{0, 0};
+  auto first = ambiguous(1.5);
+  first.mode_after = result::Mode{0, 0};
+  branch.events = {first, ambiguous(1.75)};
   branch.left_at = {1, 0};
   branch.status = {result::Termination::iteration_limit, "", 1.875};
   auto inner = branch;
@@ -91,8 +92,9 @@ TEST(Table, HasALineForEveryBranch) {
 
 TEST(Table, ColumnsOfEventsAreAligned) {
   auto r = sample();
-  r.events = {crossing(1.0 / 3.0, "a"), crossing(1.5, "größer")};
-  r.events[1].unique = false;
+  auto second = crossing(1.5, "größer");
+  second.unique = false;
+  r.events = {crossing(1.0 / 3.0, "a"), second};
   const auto table = lines(to_table(r));
   const auto head = std::find_if(table.begin(), table.end(), [](const auto& line) { return line.starts_with("  #"); });
   ASSERT_NE(head, table.end());
@@ -139,9 +141,10 @@ TEST(Table, FitsAHundredColumnsWhateverTheModel) {
     r.final.x.push_back(-1.0 / 3.0 * i);
   }
   r.switching_functions = {std::string(200, 's'), "b"};
-  r.events = {crossing(-1.23456789012e-100, std::string(200, 's'))};
-  r.events[0].kind = result::EventKind::change_sliding;
-  r.events[0].unique = std::nullopt;
+  auto event = crossing(-1.23456789012e-100, std::string(200, 's'));
+  event.kind = result::EventKind::change_sliding;
+  event.unique = std::nullopt;
+  r.events = {event};
   for (const auto& line : lines(to_table(r))) EXPECT_LE(columns(line), 100) << line;
 }
 

@@ -168,7 +168,7 @@ TEST(Restate, EdgesBecomeEventsOfTheSurfaceAndSwappedNamesAreSwapped) {
   edge.mode_before = rows.mode[0];
   edge.mode_after = rows.mode[1];
   edge.alpha_before = edge.alpha_after = std::vector<double>{0, 0};
-  std::vector<result::Event> events{edge};
+  result::Events events{edge};
   result::Status status;
   restate(*regular, events, rows, status);
   ASSERT_EQ(events.size(), 1u);

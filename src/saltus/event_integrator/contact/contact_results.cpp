@@ -44,6 +44,8 @@ class Shown {
     if (x.size() > at(contacts_.first_hidden)) x.resize(at(contacts_.first_hidden));
   }
 
+  [[nodiscard]] std::size_t states() const { return at(contacts_.first_hidden); }
+
   [[nodiscard]] bool owns(const std::string& name) const {
     return std::any_of(contacts_.contacts.begin(), contacts_.contacts.end(),
                        [&](const auto& contact) { return contact.name == name; });
@@ -94,17 +96,19 @@ class Shown {
 
 }  // namespace
 
-void show_contacts(const model::System& system, result::Final& final, std::vector<result::Event>& events,
+void show_contacts(const model::System& system, result::Final& final, result::Events& events,
                    result::Trajectory& trajectory) {
   const Shown shown(system.contacts);
-  std::vector<result::Event> told;
-  for (auto& event : events) {
+  result::Events told;
+  for (result::Event event : events) {
     const bool of_contact = event.kind == EventKind::jump && event.name && shown.owns(*event.name);
     const bool empty = of_contact && !shown.tell(event);
-    if (empty && !told.empty() && told.back().t == event.t) {
+    if (empty && !told.empty() && told.t(told.size() - 1) == event.t && event.mode_after) {
       // Several contacts may end at once; the first of their jumps has changed all.
-      if (event.mode_after)
-        std::tie(told.back().mode_after, told.back().alpha_after) = std::tie(event.mode_after, event.alpha_after);
+      result::Event first = told.back();
+      told.pop_back();
+      std::tie(first.mode_after, first.alpha_after) = std::tie(event.mode_after, event.alpha_after);
+      told.push_back(std::move(first));
     }
     if (empty) continue;
     event.contact_modes_before = shown.modes(event.x);
@@ -114,10 +118,8 @@ void show_contacts(const model::System& system, result::Final& final, std::vecto
     told.push_back(std::move(event));
   }
   events = std::move(told);
-  for (auto& x : trajectory.x) {
-    trajectory.contact_modes.push_back(shown.modes(x));
-    shown.cut(x);
-  }
+  for (const auto& x : trajectory.x) trajectory.contact_modes.push_back(shown.modes(x));
+  trajectory.x.narrow(shown.states());
   final.contact_modes = shown.modes(final.x);
   shown.cut(final.x);
 }

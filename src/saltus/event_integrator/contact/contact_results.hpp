@@ -10,7 +10,7 @@ namespace saltus::event_integrator {
 
 /// Takes the discrete states that say the modes of contacts out of rows and events of a run; rows get `contact_modes`,
 /// and jumps of contacts become impacts, contacts, lift-offs, sticks and slips. Those that change nothing go.
-void show_contacts(const model::System& system, result::Final& final, std::vector<result::Event>& events,
+void show_contacts(const model::System& system, result::Final& final, result::Events& events,
                    result::Trajectory& trajectory);
 
 }  // namespace saltus::event_integrator

@@ -73,6 +73,14 @@ std::size_t ModeLog::append_changes(const std::array<Selected, 2>& selected) {
   return ends_.size() - 1;
 }
 
+void ModeLog::restart() {
+  if (ends_.empty()) return;
+  first_mode_ = last_mode_;
+  first_alpha_ = last_alpha_;
+  changes_.clear();
+  ends_.assign(1, 0);
+}
+
 void ModeLog::append_changed(std::vector<std::size_t>& functions) const {
   if (ends_.size() < 2) return;
   for (std::size_t k = ends_[ends_.size() - 2]; k < ends_.back(); ++k) {

@@ -31,6 +31,8 @@ class ModeLog {
     changes_.reserve(modes);
     ends_.reserve(modes);
   }
+  /// Forgets all but the last mode, whose number is then 0.
+  void restart();
   /// Of one function in the last mode.
   [[nodiscard]] int last_mode(std::size_t function) const { return last_mode_[function]; }
   [[nodiscard]] std::size_t size() const { return ends_.size(); }

@@ -341,6 +341,33 @@ void Recorder::accumulated(double t, const std::vector<int>& jumps, const Passag
   add_reason(entry, reason);
 }
 
+Recording Recorder::hand_over() {
+  auto& list = recording_.event_list;
+  constexpr std::size_t remembered = 16;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    past_.event_times.push_back(list[k].t);
+    if (list.size() - k > remembered) continue;
+    const auto named = list[k].surfaces;
+    auto& surfaces = past_.surfaces.emplace_back();
+    for (std::size_t i = named.begin; i < named.end && !list[k].of_jumps; ++i) surfaces.push_back(recording_.surfaces[i]);
+  }
+  if (past_.surfaces.size() > remembered) {
+    past_.surfaces.erase(past_.surfaces.begin(), past_.surfaces.end() - remembered);
+  }
+  if (!list.empty()) past_.unique = list.back().unique;
+  past_.rows += recording_.row_times.size();
+  if (!recording_.row_times.empty()) past_.last_row = recording_.row_times.back();
+  before_switch_ = {};
+  known_reasons_.fill({});
+  Recording rest;
+  rest.n_x = recording_.n_x;
+  rest.n_u = recording_.n_u;
+  rest.n_y = recording_.n_y;
+  rest.modes = recording_.modes;
+  rest.modes.restart();
+  return std::exchange(recording_, std::move(rest));
+}
+
 bool Recorder::switched_lately(int function, long events) const {
   const auto& list = recording_.event_list;
   const auto& columns = listed_columns_[at(function)];
@@ -349,6 +376,9 @@ bool Recorder::switched_lately(int function, long events) const {
     for (std::size_t k = event->surfaces.begin; k < event->surfaces.end; ++k) {
       if (std::find(columns.begin(), columns.end(), recording_.surfaces[k]) != columns.end()) return true;
     }
+  }
+  for (auto past = past_.surfaces.rbegin(); past != past_.surfaces.rend() && events > 0; ++past, --events) {
+    if (std::find_first_of(past->begin(), past->end(), columns.begin(), columns.end()) != past->end()) return true;
   }
   return false;
 }

@@ -96,16 +96,29 @@ class Recorder {
                  std::string_view why);
 
   [[nodiscard]] Recording take() { return std::move(recording_); }
+  /// Whether there are so many rows or events that a run whose output is written on the way should hand them over.
+  [[nodiscard]] bool has_many() const {
+    return recording_.row_times.size() >= 1024 || recording_.event_list.size() >= 256;
+  }
+  /// What has been recorded so far, between two steps; the recording goes on behind it.
+  [[nodiscard]] Recording hand_over();
   [[nodiscard]] bool ends_at(double t) const {
-    return !recording_.row_times.empty() && recording_.row_times.back() == t;
+    return recording_.row_times.empty() ? past_.rows > 0 && past_.last_row == t : recording_.row_times.back() == t;
   }
   /// Of the last event; there must be one.
-  [[nodiscard]] std::optional<bool> last_unique() const { return recording_.event_list.back().unique; }
-  [[nodiscard]] long events() const { return static_cast<long>(recording_.event_list.size()); }
-  [[nodiscard]] double event_time(long event) const { return recording_.event_list[at(event)].t; }
+  [[nodiscard]] std::optional<bool> last_unique() const {
+    return recording_.event_list.empty() ? past_.unique : recording_.event_list.back().unique;
+  }
+  [[nodiscard]] long events() const {
+    return static_cast<long>(past_.event_times.size() + recording_.event_list.size());
+  }
+  [[nodiscard]] double event_time(long event) const {
+    const std::size_t past = past_.event_times.size();
+    return at(event) < past ? past_.event_times[at(event)] : recording_.event_list[at(event) - past].t;
+  }
   /// Whether one of the last events is about a listed switching function.
   [[nodiscard]] bool switched_lately(int function, long events) const;
-  [[nodiscard]] std::size_t rows() const { return recording_.row_times.size(); }
+  [[nodiscard]] std::size_t rows() const { return past_.rows + recording_.row_times.size(); }
 
  private:
   /// A new event; the reference is valid until the next one.
@@ -130,6 +143,15 @@ class Recorder {
   void add_transition(Recording::Event& event, const Transition& transition);
   void add_transition(Recording::Event& event, const Transition& transition, std::size_t mode_after);
 
+  /// What is known of rows and events that were handed over.
+  struct Past {
+    std::size_t rows = 0;
+    double last_row = 0.0;
+    std::vector<double> event_times;
+    std::vector<std::vector<std::size_t>> surfaces;  ///< of the last events; of jumps none
+    std::optional<bool> unique;                      ///< the last one
+  };
+
   /// The last switch: the number of the mode before it.
   struct BeforeSwitch {
     long event = -1;
@@ -147,6 +169,7 @@ class Recorder {
   const evaluation::ModelKernel& kernel_;
   const model::System& system_;
   Recording recording_;
+  Past past_;
   ode::ColumnRanges* ranges_ = nullptr;  ///< nullptr: nobody asks for them
   std::size_t cut_outputs_ = 0;
   std::array<KnownReason, 16> known_reasons_;

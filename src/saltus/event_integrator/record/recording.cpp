@@ -139,13 +139,12 @@ void Recording::drop(std::size_t events, std::size_t rows) {
   }
 }
 
-std::vector<result::Event> Recording::events(const model::System& system) const {
+result::Events Recording::events(const model::System& system) const {
   ModeLog::Reader reader(modes);
   Columns columns(system);
-  std::vector<result::Event> expanded;
-  expanded.reserve(event_list.size());
+  result::Events named;
   for (const Event& event : event_list) {
-    auto& entry = expanded.emplace_back();
+    result::Event entry;
     entry.t = event.t;
     entry.kind = event.kind;
     if (event.kind == result::EventKind::jump) entry.name = system.jumps[event.entry].name;
@@ -177,8 +176,9 @@ std::vector<result::Event> Recording::events(const model::System& system) const 
       entry.alternatives.push_back({columns.mode(), columns.alpha(), active_regions(system, other.mode)});
     }
     entry.reason = text.substr(event.reason.begin, event.reason.end - event.reason.begin);
+    named.push_back(std::move(entry));
   }
-  return expanded;
+  return named;
 }
 
 std::vector<long> Recording::family_numbers() const {
@@ -202,26 +202,31 @@ std::vector<result::Family> Recording::listed_families(const model::System& syst
   return listed;
 }
 
-result::Trajectory Recording::trajectory(const model::System& system) const {
+result::Trajectory Recording::trajectory(const model::System& system) && {
   ModeLog::Reader reader(modes);
   Columns columns(system);
   result::Trajectory rows;
   const std::size_t count = row_times.size();
-  rows.t = row_times;
-  for (auto* column : {&rows.x, &rows.u, &rows.alpha, &rows.outputs}) column->reserve(count);
-  rows.mode.reserve(count);
+  rows.t = std::move(row_times);
+  rows.x = {count, n_x, std::move(row_states)};
+  rows.u = {count, n_u, std::move(row_inputs)};
+  rows.outputs = {count, n_y, std::move(row_outputs)};
+  const bool has_regions = std::any_of(system.mode_groups.begin(), system.mode_groups.end(),
+                                       [](const auto& group) { return group.first >= 0; });
   for (std::size_t k = 0; k < count; ++k) {
-    rows.x.push_back(part(row_states, k * n_x, n_x));
-    rows.u.push_back(part(row_inputs, k * n_u, n_u));
-    rows.outputs.push_back(part(row_outputs, k * n_y, n_y));
+    if (k > 0 && row_modes[k] == row_modes[k - 1]) {
+      rows.alpha.repeat();
+      rows.mode.repeat();
+      if (has_regions) rows.regions.repeat(), rows.theta.repeat();
+      continue;
+    }
     reader.seek(row_modes[k]);
     columns.set(reader.mode(), reader.alpha());
     rows.alpha.push_back(columns.alpha());
     rows.mode.push_back(columns.mode());
-    if (auto active = active_regions(system, reader.mode()); !active.empty()) {
-      rows.regions.push_back(std::move(active));
-      rows.theta.push_back(region_weights(system, reader.mode(), reader.alpha()));
-    }
+    if (!has_regions) continue;
+    rows.regions.push_back(active_regions(system, reader.mode()));
+    rows.theta.push_back(region_weights(system, reader.mode(), reader.alpha()));
   }
   return rows;
 }

@@ -17,7 +17,7 @@
 namespace saltus::event_integrator {
 
 /// Rows and events in the order of time. What one event takes does not grow with the number of switching functions;
-/// events() and trajectory() expand it into the columns of the result, which do.
+/// events() and trajectory() turn it into the columns of the result, by their names.
 struct Recording {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   /// Part of a list.
@@ -76,8 +76,9 @@ struct Recording {
   /// Takes away the first events and rows; families that are left belong to the first event that is.
   void drop(std::size_t events, std::size_t rows);
   /// Events and rows as the result has them. Cost: O(n_psi) for each.
-  [[nodiscard]] std::vector<result::Event> events(const model::System& system) const;
-  [[nodiscard]] result::Trajectory trajectory(const model::System& system) const;
+  [[nodiscard]] result::Events events(const model::System& system) const;
+  /// Takes the numbers of the rows away.
+  [[nodiscard]] result::Trajectory trajectory(const model::System& system) &&;
   [[nodiscard]] std::vector<long> family_numbers() const;
   [[nodiscard]] std::vector<result::Family> listed_families(const model::System& system) const;
   /// The last row; there must be one.

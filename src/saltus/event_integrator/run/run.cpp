@@ -189,7 +189,7 @@ bool Run::begin() {
   return true;
 }
 
-CompactIntegration Run::to_end(const StepObserver& observer) {
+CompactIntegration Run::to_end(const StepObserver& observer, const std::function<void(Recording)>& take) {
   if (begin()) {
     while (outcome_.running && here_.t < options_.until) {
       contacts_.forget_impulses(here_.x);
@@ -209,6 +209,7 @@ CompactIntegration Run::to_end(const StepObserver& observer) {
           observer({here_.t, outcome_.result.statistics.steps, recorder_.events(), shown_state()}) == Continue::no) {
         fail(Termination::stopped_by_user, fmt::format("stopped at {}", where()));
       }
+      if (take && recorder_.has_many()) take(recorder_.hand_over());
     }
   }
   if (!recorder_.ends_at(here_.t)) row(here_.t, here_.x);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -63,7 +64,8 @@ class Run {
       Way way = Way::short_where_ordinary);
 
   /// Runs to the end, or until the observer, which is called behind every step, asks to stop.
-  CompactIntegration to_end(const StepObserver& observer);
+  /// @param take  gets rows and events when there are many; the result has the last ones. May be empty.
+  CompactIntegration to_end(const StepObserver& observer, const std::function<void(Recording)>& take = {});
 
  private:
   enum class Step { taken, shortened, failed };

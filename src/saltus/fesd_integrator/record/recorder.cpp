@@ -70,9 +70,9 @@ void Recorder::row(double t, const std::vector<double>& x, const ActiveSet& set,
   Columns now = columns(set, selections, held);
   trajectory_.t.push_back(t);
   trajectory_.x.push_back(x);
-  auto& inputs = trajectory_.u.emplace_back(facts_.n_u);
+  const auto inputs = trajectory_.u.emplace_back(facts_.n_u);
   functions_.inputs(t, held, inputs.data());
-  auto& outputs = trajectory_.outputs.emplace_back(facts_.n_y);
+  const auto outputs = trajectory_.outputs.emplace_back(facts_.n_y);
   functions_.outputs(t, x.data(), selections.data(), held, outputs.data());
   trajectory_.alpha.push_back(std::move(now.alpha));
   trajectory_.mode.push_back(std::move(now.mode));
@@ -81,10 +81,9 @@ void Recorder::row(double t, const std::vector<double>& x, const ActiveSet& set,
   trajectory_.theta.push_back(std::move(now.theta));
 }
 
-/// Takes out one of the last rows, 1 being the last one.
-void Recorder::drop_row(std::ptrdiff_t from_end) {
+void Recorder::drop_last_row() {
   const auto drop = [&](auto& column) {
-    if (!column.empty()) column.erase(column.end() - from_end);
+    if (!column.empty()) column.pop_back();
   };
   drop(trajectory_.t);
   drop(trajectory_.x);
@@ -98,12 +97,17 @@ void Recorder::drop_row(std::ptrdiff_t from_end) {
 
 void Recorder::row_behind(RowBefore before, const ActiveSet& set, const std::vector<double>& selections,
                           const double* held) {
-  row(trajectory_.t.back(), std::vector<double>(trajectory_.x.back()), set, selections, held);
+  const std::vector<double> x = trajectory_.x.back();
+  row(trajectory_.t.back(), x, set, selections, held);
   const std::size_t last = trajectory_.t.size() - 1;
   const bool same =
       trajectory_.u[last - 1] == trajectory_.u[last] && trajectory_.outputs[last - 1] == trajectory_.outputs[last];
-  if (same) drop_row(1);
-  if (!same && before == RowBefore::replaced) drop_row(2);
+  if (same) drop_last_row();
+  if (same || before != RowBefore::replaced) return;
+  const double t = trajectory_.t.back();
+  drop_last_row();
+  drop_last_row();
+  row(t, x, set, selections, held);
 }
 
 /// The row before a switch, unless the step that ended here has written it.
@@ -112,7 +116,7 @@ void Recorder::row_before(double t, const std::vector<double>& x, const Side& be
   const auto repeated = [](const auto& column) { return column[column.size() - 1] == column[column.size() - 2]; };
   if (trajectory_.t.size() > 1 && repeated(trajectory_.t) && repeated(trajectory_.x) && repeated(trajectory_.mode) &&
       repeated(trajectory_.u) && repeated(trajectory_.outputs))
-    drop_row(1);
+    drop_last_row();
 }
 
 void Recorder::note_before(result::Event& event, const Columns& before) const {

@@ -71,7 +71,7 @@ class Recorder {
     result::Mode before, after;
   };
   void row_before(double t, const std::vector<double>& x, const Side& before);
-  void drop_row(std::ptrdiff_t from_end);
+  void drop_last_row();
   [[nodiscard]] Differences differences(const Columns& from, const Columns& to) const;
   [[nodiscard]] Columns columns(const ActiveSet& set, const std::vector<double>& selections, const double* held) const;
   void note_before(result::Event& event, const Columns& before) const;

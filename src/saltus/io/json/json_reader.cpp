@@ -101,9 +101,14 @@ result::Event read_recorded_event(JsonReader& reader, const Json& json, const st
   return event;
 }
 
-void read_recorded_events(JsonReader& reader, const Json& json, const std::string& path,
-                          std::vector<result::Event>& events) {
+/// Events whose vectors have the lengths that the names of the result say.
+void read_recorded_events(JsonReader& reader, const Json& json, const std::string& path, result::Result& result) {
+  std::vector<result::Event> events;
   read_list(reader, json, path, events, read_recorded_event);
+  for (std::size_t i = 0; i < events.size() && !reader.error(); ++i) {
+    check_event_lengths(reader, events[i], fmt::format("{}/{}", path, i), result);
+  }
+  if (!reader.error()) result.events = events;
 }
 
 void read_trajectory(JsonReader& reader, const Json& json, const std::string& path, result::Trajectory& trajectory) {
@@ -301,7 +306,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   }
   reader.read_if_there(json, path, "contacts", result.contacts);
   read_part(reader, json, path, "final", read_final, result.final);
-  read_part(reader, json, path, "events", read_recorded_events, result.events);
+  read_part(reader, json, path, "events", read_recorded_events, result);
   read_part(reader, json, path, "trajectory", read_trajectory, result.trajectory);
   if (json.is_object() && json.contains("drawing")) {
     read_part(reader, json, path, "drawing", read_drawing, result.drawing);

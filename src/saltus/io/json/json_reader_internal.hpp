@@ -118,6 +118,20 @@ class JsonReader {
       target.push_back(std::move(value));
     }
   }
+  template <class Number>
+  void read(const Json& json, const std::string& path, result::Table<Number>& target) {
+    read_rows<result::RowVector<Number>>(json, path, target);
+  }
+  template <class Number>
+  void read(const Json& json, const std::string& path, result::SteadyTable<Number>& target) {
+    read_rows<result::RowVector<Number>>(json, path, target);
+  }
+  template <class Value>
+  void read(const Json& json, const std::string& path, result::SteadyList<Value>& target) {
+    std::vector<Value> values;
+    read(json, path, values);
+    for (auto& value : values) target.push_back(std::move(value));
+  }
   template <class Element, std::size_t size>
   void read(const Json& json, const std::string& path, std::array<Element, size>& target) {
     std::vector<Element> values;
@@ -145,6 +159,23 @@ class JsonReader {
   }
 
  private:
+  /// Rows of one length; which one it must be is asked later.
+  template <class Row, class Table>
+  void read_rows(const Json& json, const std::string& path, Table& target) {
+    if (!json.is_array()) return mismatch(path, "a list", json);
+    target = {};
+    Row row;
+    for (const auto& element : json) {
+      read(element, path, row);
+      if (!target.empty() && row.size() != target.width()) {
+        fail(fmt::format("{}/{}", path, target.size()),
+             fmt::format("expected {} entries, found {}", target.width(), row.size()));
+      }
+      if (error_) return;
+      target.push_back(row);
+    }
+  }
+
   std::string file_;
   std::optional<Error> error_;
 };

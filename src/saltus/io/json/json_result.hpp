@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "saltus/base/error.hpp"
@@ -25,6 +26,25 @@ namespace saltus::io {
 /// alpha_before(<name>)…,alpha_after(<name>)…,unique,reason. Surfaces are separated by semicolons; what an event does
 /// not have, and `unique` where it is not decided, is empty.
 [[nodiscard]] bool write_events_csv(const result::Result& result, Sink sink);
+/// A file of a result that gets its rows and events part by part, while they are computed; it becomes what the writers
+/// above write, without branches.
+class ResultParts {
+ public:
+  ResultParts() = default;
+  ResultParts(const ResultParts&) = delete;
+  ResultParts& operator=(const ResultParts&) = delete;
+  virtual ~ResultParts() = default;
+  /// A part: rows and events behind those before it. False if the sink, or the disk, did not take everything.
+  [[nodiscard]] virtual bool add(const result::Result& part) = 0;
+  /// All that is not in parts.
+  [[nodiscard]] virtual bool finish(const result::Result& rest) = 0;
+};
+/// Lines reach the sink, which must outlive what is returned, part by part.
+[[nodiscard]] std::unique_ptr<ResultParts> csv_parts(Sink sink);
+[[nodiscard]] std::unique_ptr<ResultParts> events_csv_parts(Sink sink);
+/// Its lists are put aside in files without names, and reach the sink with finish().
+/// @param folder  for those files
+[[nodiscard]] std::unique_ptr<ResultParts> json_parts(const std::filesystem::path& folder, Sink sink);
 [[nodiscard]] std::string events_to_csv(const result::Result& result);
 /// The columns of both tables as a zip archive of .npy arrays, deflated: those of the trajectory by their names, those
 /// of the events with "events." before them. Numbers are float64, `side` and modes of rows int8, words unicode; what is

@@ -24,16 +24,6 @@ void check_length(JsonReader& reader, const std::string& path, const Vector& vec
   reader.fail(path, fmt::format("expected {} entries, found {}", expected, vector.size()));
 }
 
-void check_event_lengths(JsonReader& reader, const result::Event& event, const std::string& path, std::size_t states,
-                         std::size_t columns) {
-  check_length(reader, path + "/x", event.x, states);
-  check_length(reader, path + "/x_after", event.x_after, states);
-  if (event.mode_before) check_length(reader, path + "/mode_before", *event.mode_before, columns);
-  if (event.mode_after) check_length(reader, path + "/mode_after", *event.mode_after, columns);
-  if (event.alpha_before) check_length(reader, path + "/alpha_before", *event.alpha_before, columns);
-  if (event.alpha_after) check_length(reader, path + "/alpha_after", *event.alpha_after, columns);
-}
-
 void check_surface(JsonReader& reader, const result::Surface& surface, const std::string& path,
                    const std::vector<std::string>& states) {
   for (const auto& name : surface.states) {
@@ -133,6 +123,17 @@ void check_optimization(JsonReader& reader, const std::string& path, const resul
 
 }  // namespace
 
+void check_event_lengths(JsonReader& reader, const result::Event& event, const std::string& path,
+                         const result::Result& result) {
+  const std::size_t states = result.states.size(), columns = result.switching_functions.size();
+  check_length(reader, path + "/x", event.x, states);
+  check_length(reader, path + "/x_after", event.x_after, states);
+  if (event.mode_before) check_length(reader, path + "/mode_before", *event.mode_before, columns);
+  if (event.mode_after) check_length(reader, path + "/mode_after", *event.mode_after, columns);
+  if (event.alpha_before) check_length(reader, path + "/alpha_before", *event.alpha_before, columns);
+  if (event.alpha_after) check_length(reader, path + "/alpha_after", *event.alpha_after, columns);
+}
+
 void check_shapes(JsonReader& reader, const std::string& path, const result::Result& result) {
   const auto& trajectory = result.trajectory;
   const std::size_t times = trajectory.t.size();
@@ -158,9 +159,6 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   }
   if (result.optimization) check_optimization(reader, path, result);
   if (result.elements) check_elements(reader, path + "/elements", *result.elements);
-  for (std::size_t i = 0; i < result.events.size(); ++i) {
-    check_event_lengths(reader, result.events[i], fmt::format("{}/events/{}", path, i), result.states.size(), columns);
-  }
   for (std::size_t i = 0; i < result.families.size(); ++i) {
     const auto& family = result.families[i];
     const auto here = fmt::format("{}/families/{}", path, i);

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -30,8 +32,9 @@ inline void append_json(std::string& text, double number) {
 
 inline void append_json(std::string& text, const std::string& words) { text += compact(Json(words)); }
 
-template <class Element>
-void append_json(std::string& text, const std::vector<Element>& list) {
+template <class List>
+requires(!std::is_convertible_v<const List&, std::string_view>) && requires(const List& list) { list.size(), list[0]; }
+void append_json(std::string& text, const List& list) {
   text += '[';
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (i > 0) text += ',';
@@ -72,7 +75,19 @@ class ObjectStream {
       stream_.text().append(i > 0 ? ",\n" : "\n").append(inner);
       append_one(elements[i], inner.size());
     }
-    if (!elements.empty()) stream_.text().append("\n").append(margin_);
+    end_list(elements.empty());
+  }
+  void end_list(bool empty) {
+    if (!empty) stream_.text().append("\n").append(margin_);
+    stream_.text() += ']';
+  }
+  /// Numbers on one line.
+  void line(const char* name, const std::vector<double>& numbers) {
+    key(name) += '[';
+    for (std::size_t i = 0; i < numbers.size() && stream_.pass(); ++i) {
+      if (i > 0) stream_.text() += ',';
+      append_json(stream_.text(), numbers[i]);
+    }
     stream_.text() += ']';
   }
   void end() { stream_.text().append("\n").append(margin_, 0, margin_.size() - 2).append("}"); }

@@ -1,6 +1,10 @@
 // Result -> JSON.
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
 
 #include "saltus/base/version.hpp"
 #include "saltus/io/json/json_optimization_internal.hpp"
@@ -131,25 +135,31 @@ Json final_json(const result::Final& final) {
   return json;
 }
 
-void append_trajectory(TextStream& stream, const result::Trajectory& trajectory, std::size_t indent) {
-  ObjectStream object(stream, indent);
-  const auto rows = [&](const char* key, const auto& table) {
-    object.list(key, table, [&](const auto& row, std::size_t) { append_json(stream.text(), row); });
-  };
-  append_json(object.key("t"), trajectory.t);
-  rows("x", trajectory.x);
-  rows("u", trajectory.u);
-  rows("alpha", trajectory.alpha);
-  rows("mode", trajectory.mode);
-  rows("outputs", trajectory.outputs);
+/// The lists of a trajectory but for its times: append_rows(name, table, append_row).
+template <class Rows>
+void for_each_list(const result::Trajectory& trajectory, Rows append_rows) {
+  const auto numbers = [](std::string& text, const auto& row) { append_json(text, row); };
+  append_rows("x", trajectory.x, numbers);
+  append_rows("u", trajectory.u, numbers);
+  append_rows("alpha", trajectory.alpha, numbers);
+  append_rows("mode", trajectory.mode, numbers);
+  append_rows("outputs", trajectory.outputs, numbers);
   if (!trajectory.regions.empty()) {
-    rows("regions", trajectory.regions);
-    rows("theta", trajectory.theta);
+    append_rows("regions", trajectory.regions, numbers);
+    append_rows("theta", trajectory.theta, numbers);
   }
   if (!trajectory.contact_modes.empty()) {
-    object.list("contact_modes", trajectory.contact_modes,
-                [&](const auto& row, std::size_t) { stream.text() += contact_modes_json(row).dump(); });
+    append_rows("contact_modes", trajectory.contact_modes,
+                [](std::string& text, const auto& row) { text += contact_modes_json(row).dump(); });
   }
+}
+
+void append_trajectory(TextStream& stream, const result::Trajectory& trajectory, std::size_t indent) {
+  ObjectStream object(stream, indent);
+  object.line("t", trajectory.t);
+  for_each_list(trajectory, [&](const char* key, const auto& table, auto append_row) {
+    object.list(key, table, [&](const auto& row, std::size_t) { append_row(stream.text(), row); });
+  });
   object.end();
 }
 
@@ -236,12 +246,15 @@ void append_head(ObjectStream& object, const result::Result& result) {
   object.member("final", final_json(result.final));
 }
 
-void append_whole(TextStream& stream, const result::Result& result, std::size_t indent) {
+/// What grows with a run: events and trajectory, as members of the result.
+using AppendLists = FunctionRef<void(ObjectStream& object)>;
+
+void append_whole(TextStream& stream, const result::Result& result, std::size_t indent);
+
+void append_with(AppendLists append_lists, TextStream& stream, const result::Result& result, std::size_t indent) {
   ObjectStream object(stream, indent);
   append_head(object, result);
-  object.list("events", result.events, [&](const auto& event, std::size_t at) { append_event(stream, event, at); });
-  object.key("trajectory");
-  append_trajectory(stream, result.trajectory, indent + 2);
+  append_lists(object);
   if (result.drawing) {
     object.key("drawing");
     append_drawing(stream, *result.drawing, indent + 2);
@@ -271,7 +284,122 @@ void append_whole(TextStream& stream, const result::Result& result, std::size_t 
   object.end();
 }
 
+void append_whole(TextStream& stream, const result::Result& result, std::size_t indent) {
+  const auto append_lists = [&](ObjectStream& object) {
+    object.list("events", result.events, [&](const auto& event, std::size_t at) { append_event(stream, event, at); });
+    object.key("trajectory");
+    append_trajectory(stream, result.trajectory, indent + 2);
+  };
+  append_with(append_lists, stream, result, indent);
+}
+
+/// The elements of a list that were put aside.
+class SpooledList {
+ public:
+  SpooledList(const std::filesystem::path& folder, std::string between)
+      : file_(folder), between_(std::move(between)), stream_(write_) {}
+  SpooledList(const SpooledList&) = delete;
+  SpooledList& operator=(const SpooledList&) = delete;
+
+  /// Where the next element is to be appended.
+  std::string& next() {
+    static_cast<void>(stream_.pass());
+    return stream_.text().append(count_++ > 0 ? "," : "").append(between_);
+  }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] bool flush() { return stream_.flush(); }
+  void append_to(TextStream& stream) const {
+    static_cast<void>(file_.copy_to([&](std::string_view piece) {
+      stream.text() += piece;
+      return stream.pass();
+    }));
+  }
+
+ private:
+  SpoolFile file_;
+  std::function<bool(std::string_view)> write_ = [this](std::string_view piece) { return file_.write(piece); };
+  std::string between_;  ///< before each element, behind the comma
+  TextStream stream_;
+  std::size_t count_ = 0;
+};
+
+class JsonParts : public ResultParts {
+ public:
+  JsonParts(std::filesystem::path folder, Sink sink) : folder_(std::move(folder)), sink_(sink) {}
+
+  bool add(const result::Result& part) override {
+    auto& events = list("events", "\n" + std::string(margin + 2, ' '));
+    for (std::size_t i = 0; i < part.events.size(); ++i) {
+      std::string text;
+      const auto keep = [&](std::string_view piece) {
+        text += piece;
+        return true;
+      };
+      TextStream event(keep);
+      append_event(event, part.events[i], margin + 2);
+      static_cast<void>(event.flush());
+      events.next() += text;
+    }
+    auto& times = list("t", "");
+    for (const double t : part.trajectory.t) append_json(times.next(), t);
+    for_each_list(part.trajectory, [&](const char* key, const auto& table, auto append_row) {
+      auto& rows = list(key, "\n" + std::string(margin + 4, ' '));
+      for (const auto& row : table) append_row(rows.next(), row);
+    });
+    bool good = true;
+    for (auto& [name, spooled] : lists_) good = spooled->flush() && good;
+    return good;
+  }
+
+  bool finish(const result::Result& rest) override {
+    TextStream stream(sink_);
+    const auto append_lists = [&](ObjectStream& object) {
+      append(object, stream, "events");
+      object.key("trajectory");
+      ObjectStream trajectory(stream, margin);
+      trajectory.key("t") += '[';
+      if (const auto* times = found("t")) times->append_to(stream);
+      stream.text() += ']';
+      for_each_list(rest.trajectory, [&](const char* key, const auto&, auto) { append(trajectory, stream, key); });
+      for (const char* key : {"regions", "theta", "contact_modes"}) {
+        if (found(key) != nullptr) append(trajectory, stream, key);
+      }
+      trajectory.end();
+    };
+    append_with(append_lists, stream, rest, 0);
+    stream.text() += '\n';
+    return stream.flush();
+  }
+
+ private:
+  static constexpr std::size_t margin = 2;  ///< of the members of the result
+
+  SpooledList& list(const std::string& name, const std::string& between) {
+    auto& spooled = lists_[name];
+    if (!spooled) spooled = std::make_unique<SpooledList>(folder_, between);
+    return *spooled;
+  }
+  [[nodiscard]] const SpooledList* found(const std::string& name) const {
+    const auto place = lists_.find(name);
+    return place == lists_.end() || place->second->empty() ? nullptr : place->second.get();
+  }
+  void append(ObjectStream& object, TextStream& stream, const char* key) const {
+    object.key(key) += '[';
+    const auto* spooled = found(key);
+    if (spooled != nullptr) spooled->append_to(stream);
+    object.end_list(spooled == nullptr);
+  }
+
+  std::filesystem::path folder_;
+  Sink sink_;
+  std::map<std::string, std::unique_ptr<SpooledList>> lists_;
+};
+
 }  // namespace
+
+std::unique_ptr<ResultParts> json_parts(const std::filesystem::path& folder, Sink sink) {
+  return std::make_unique<JsonParts>(folder, sink);
+}
 
 bool write_json(const result::Result& result, Sink sink) {
   TextStream stream(sink);

@@ -124,38 +124,39 @@ void add_rows(const result::Result& result, ColumnWriter& columns) {
   columns.table<double>("theta", result::region_labels(result.region_groups), "<f8", of(&result::Trajectory::theta));
 }
 
-/// Of a list that may not be there; NaN then.
-template <class List>
-double entry(const std::optional<List>& list, std::size_t i) {
-  return list ? static_cast<double>((*list)[i]) : std::numeric_limits<double>::quiet_NaN();
-}
-
 void add_events(const result::Result& result, ColumnWriter& columns) {
   columns.set_lines("events.", [](const result::Result& part) { return part.events.size(); });
   using Part = const result::Result&;
-  columns.numbers<double>("t", "<f8", [](Part part, std::size_t k) { return part.events[k].t; });
-  columns.words("kind", [](const auto& part, std::size_t k) { return std::string(name(part.result->events[k].kind)); });
-  columns.words("name", [](const auto& part, std::size_t k) { return part.result->events[k].name.value_or(""); });
-  columns.words("surfaces", [](const auto& part, std::size_t k) {
-    return fmt::format("{}", fmt::join(part.result->events[k].surfaces, ";"));
-  });
+  using result::Events;
+  const auto words = [&](const char* name, auto of) {
+    columns.words(name, [of](const auto& part, std::size_t k) { return std::string(of(part.result->events, k)); });
+  };
+  columns.numbers<double>("t", "<f8", [](Part part, std::size_t k) { return part.events.t(k); });
+  words("kind", [](const Events& events, std::size_t k) { return name(events.kind(k)); });
+  words("name", [](const Events& events, std::size_t k) { return events.name(k); });
+  words("surfaces",
+        [](const Events& events, std::size_t k) { return fmt::format("{}", fmt::join(events.surfaces(k), ";")); });
   columns.table<double>("", result.states, "<f8",
-                        [](Part part, std::size_t k, std::size_t i) { return part.events[k].x[i]; });
+                        [](Part part, std::size_t k, std::size_t i) { return part.events.x(k)[i]; });
   columns.table<double>("after", result.states, "<f8",
-                        [](Part part, std::size_t k, std::size_t i) { return part.events[k].x_after[i]; });
-  const auto of = [](auto member) {
-    return [member](Part part, std::size_t k, std::size_t i) { return entry(part.events[k].*member, i); };
+                        [](Part part, std::size_t k, std::size_t i) { return part.events.x_after(k)[i]; });
+  // NaN where an event has none
+  const auto of = [](auto side) {
+    return [side](Part part, std::size_t k, std::size_t i) {
+      const auto row = (part.events.*side)(k);
+      return row ? static_cast<double>((*row)[i]) : std::numeric_limits<double>::quiet_NaN();
+    };
   };
   const auto& functions = result.switching_functions;
-  columns.table<double>("mode_before", functions, "<f8", of(&result::Event::mode_before));
-  columns.table<double>("mode_after", functions, "<f8", of(&result::Event::mode_after));
-  columns.table<double>("alpha_before", functions, "<f8", of(&result::Event::alpha_before));
-  columns.table<double>("alpha_after", functions, "<f8", of(&result::Event::alpha_after));
+  columns.table<double>("mode_before", functions, "<f8", of(&Events::mode_before));
+  columns.table<double>("mode_after", functions, "<f8", of(&Events::mode_after));
+  columns.table<double>("alpha_before", functions, "<f8", of(&Events::alpha_before));
+  columns.table<double>("alpha_after", functions, "<f8", of(&Events::alpha_after));
   columns.numbers<std::int8_t>("unique", "|i1", [](Part part, std::size_t k) {
-    const auto unique = part.events[k].unique;
+    const auto unique = part.events.unique(k);
     return !unique ? -1 : *unique ? 1 : 0;
   });
-  columns.words("reason", [](const auto& part, std::size_t k) { return part.result->events[k].reason; });
+  words("reason", [](const Events& events, std::size_t k) { return events.reason(k); });
 }
 
 }  // namespace

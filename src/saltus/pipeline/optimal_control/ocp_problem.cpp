@@ -86,7 +86,7 @@ discretization::FesdOptions discretization_options(const OptimizeOptions& option
 }
 
 /// Values of a stored trajectory at a time: straight lines between its rows.
-std::vector<double> row_at(const std::vector<double>& t, const std::vector<std::vector<double>>& rows, double time) {
+std::vector<double> row_at(const std::vector<double>& t, const result::Table<double>& rows, double time) {
   const auto behind = std::upper_bound(t.begin(), t.end(), time);
   if (behind == t.begin()) return rows.front();
   if (behind == t.end()) return rows.back();

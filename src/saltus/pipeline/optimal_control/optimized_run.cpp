@@ -228,8 +228,8 @@ OptimizedPath path_of(const OcpSolution& solution, const std::vector<double>& ti
 
 /// What the problem has added to the model stays out of the result.
 void keep_those_of_the_user(const model::Ocp& ocp, OptimizedRun& run) {
-  for (auto& u : run.trajectory.u) u.resize(at(ocp.user_controls));
-  for (auto& outputs : run.trajectory.outputs) outputs.resize(at(ocp.user_outputs));
+  run.trajectory.u.narrow(at(ocp.user_controls));
+  run.trajectory.outputs.narrow(at(ocp.user_outputs));
   run.final.outputs.resize(at(ocp.user_outputs));
 }
 

@@ -19,7 +19,7 @@ namespace saltus::pipeline {
 /// the complementarities at the points of the elements, as in a simulation with `fesd`.
 struct OptimizedRun {
   result::Trajectory trajectory;
-  std::vector<result::Event> events;
+  result::Events events;
   result::Final final;
   result::Elements elements;
   /// The same for the truth check: nodes, controls, ranges, events in the time of the right-hand side.

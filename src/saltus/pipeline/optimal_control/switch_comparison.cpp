@@ -109,7 +109,7 @@ class OneInterval {
 
 }  // namespace
 
-std::vector<Switch> switches_of(const std::vector<result::Event>& events, const std::vector<bool>& is_listed) {
+std::vector<Switch> switches_of(const result::Events& events, const std::vector<bool>& is_listed) {
   std::vector<Switch> switches;
   for (const auto& event : events) {
     if (event.mode_before && event.mode_after) {

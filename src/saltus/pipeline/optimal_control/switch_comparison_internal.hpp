@@ -18,8 +18,7 @@ struct Switch {
 /// The changes of every function and group in the events, by time. Functions that change together are one each, so
 /// that rounding, which puts one of them before the other, makes no difference.
 /// @param is_listed  one per switching function of the result: changes of others (kinks) are no switches
-[[nodiscard]] std::vector<Switch> switches_of(const std::vector<result::Event>& events,
-                                              const std::vector<bool>& is_listed);
+[[nodiscard]] std::vector<Switch> switches_of(const result::Events& events, const std::vector<bool>& is_listed);
 
 struct SwitchComparison {
   double time_error = 0.0;  ///< largest over those that are the same

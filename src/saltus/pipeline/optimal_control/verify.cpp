@@ -204,12 +204,12 @@ class IntervalChecks {
 };
 
 /// At most so many rows, of equal distance in number; first and last ones stay.
-void keep_rows(result::Trajectory& rows, result::OpenLoop& open_loop) {
+void keep_rows(const result::Trajectory& rows, result::OpenLoop& open_loop) {
   const std::size_t n = rows.t.size(), kept = std::min(n, most_kept_rows);
   for (std::size_t i = 0; i < kept; ++i) {
     const std::size_t row = kept < 2 ? i : i * (n - 1) / (kept - 1);
     open_loop.t.push_back(rows.t[row]);
-    open_loop.x.push_back(std::move(rows.x[row]));
+    open_loop.x.push_back(rows.x[row]);
   }
 }
 

@@ -93,7 +93,7 @@ Expected<OptimizedPath> physical_path(const model::Ocp& ocp, const OptimizedPath
     const auto first = std::lower_bound(rows.t.begin(), rows.t.end(), t - rounding) - rows.t.begin();
     const auto behind = std::upper_bound(rows.t.begin(), rows.t.end(), t + rounding) - rows.t.begin();
     const auto row = at(std::max<std::ptrdiff_t>(behind, 1) - 1);
-    auto node = rows.x[row], end = rows.x[std::min(at(first), row)];
+    std::vector<double> node = rows.x[row], end = rows.x[std::min(at(first), row)];
     node.resize(n, 0.0);
     end.resize(n, 0.0);
     if (nodes && k < intervals && !rows.contact_modes.empty()) nodes->project(t, rows.contact_modes[row], node);

@@ -50,7 +50,7 @@ class PhysicalTime {
       while (last + 1 < raw.t.size() && same_time(raw.x[r][clock_], raw.x[last + 1][clock_])) ++last;
       const double t = raw.x[r][clock_];
       std::vector<Event> here;
-      for (; next < events.size() && (events[next].x[clock_] <= t || same_time(events[next].x[clock_], t)); ++next) {
+      for (; next < events.size() && (events.x(next)[clock_] <= t || same_time(events.x(next)[clock_], t)); ++next) {
         here.push_back(events[next]);
       }
       const std::size_t before = run_.events.size();
@@ -90,8 +90,8 @@ class PhysicalTime {
     rows.t.push_back(t);
     rows.x.push_back(shown_states(system_, raw.x[r]));
     rows.u.push_back(raw.u[r]);
-    rows.alpha.push_back(kept(raw.alpha[r]));
-    rows.mode.push_back(kept(raw.mode[r]));
+    rows.alpha.push_back(kept(std::vector<double>(raw.alpha[r])));
+    rows.mode.push_back(kept(Mode(raw.mode[r])));
     rows.outputs.push_back(outputs(raw.outputs[r]));
     if (!freezing_.contacts.empty()) rows.contact_modes.push_back(contact_modes(raw.mode[r]));
     if (!shows_regions_) return;

@@ -1,0 +1,87 @@
+#include "saltus/cli/growing_outputs.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/cli/text/terminal.hpp"
+
+namespace saltus::cli {
+
+void note_if_large(const std::string& file, std::size_t bytes) {
+  constexpr std::size_t large = 50000000;
+  if (bytes < large) return;
+  print_error(fmt::format("note: {} has {:.0f} MB{}", file, static_cast<double>(bytes) / 1e6,
+                          file.ends_with(".npz") ? "" : "; --out NAME.npz holds the same numbers in a fraction of it"));
+}
+
+bool GrowingOutputs::pass(File& file, std::string_view piece) {
+  file.bytes += piece.size();
+  if (watch_ && !watch_(file.name, file.bytes)) return false;
+  if (file.file) return file.file->write(piece);
+  print(piece);
+  return true;
+}
+
+void GrowingOutputs::begin() {
+  for (const auto& name : names_) {
+    auto& file = *files_.emplace_back(std::make_unique<File>());
+    file.name = name;
+    file.sink = [this, &file](std::string_view piece) { return pass(file, piece); };
+    const bool standard = name == "-";
+    const std::string kind = standard ? format_ : name;
+    if (!standard) file.file = std::make_unique<io::GrowingFile>(name);
+    const auto folder = standard ? std::filesystem::temp_directory_path() : io::target_of(name).parent_path();
+    file.parts = kind.ends_with("events.csv") ? io::events_csv_parts(file.sink)
+                 : kind.ends_with("csv")      ? io::csv_parts(file.sink)
+                                              : io::json_parts(folder.empty() ? "." : folder, file.sink);
+  }
+}
+
+bool GrowingOutputs::add(const result::Result& part) {
+  if (files_.empty()) begin();
+  bool good = true;
+  for (auto& file : files_) {
+    file->good = file->good && file->parts->add(part);
+    good = good && file->good;
+  }
+  const auto& events = part.events;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const bool shown = first_.size() < most_ || events.size() - i <= most_;
+    if (!shown) continue;
+    auto& list = first_.size() < most_ ? first_ : last_;
+    list.push_back(events[i]);
+    if (last_.size() > most_) last_.erase(last_.begin());
+  }
+  return good;
+}
+
+result::Events GrowingOutputs::ends() const {
+  result::Events events = first_;
+  for (const auto& event : last_) events.push_back(event);
+  return events;
+}
+
+Expected<void> GrowingOutputs::finish(const result::Result& rest,
+                                      const std::function<bool(const std::string&, std::size_t)>& watch) {
+  Expected<void> outcome;
+  watch_ = watch;
+  for (auto& file : files_) {
+    file->good = file->good && file->parts->finish(rest);
+    const bool is_ended = watch_ && !watch_(file->name, file->bytes);
+    if (is_ended && file->file) file->file->remove();
+    if (is_ended) break;
+    if (!file->file) continue;
+    auto done = file->file->complete();
+    if (done && !file->good) {
+      done = tl::unexpected(
+          Error{ErrorCode::io_failure, "cannot write all of " + file->name, "is the disk full?", {}, {}});
+    }
+    if (!done && outcome) outcome = std::move(done);
+  }
+  return outcome;
+}
+
+}  // namespace saltus::cli

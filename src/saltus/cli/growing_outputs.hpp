@@ -1,0 +1,63 @@
+// Files of --out that are written while a run goes on.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saltus/base/error.hpp"
+#include "saltus/io/atomic_file.hpp"
+#include "saltus/io/json/json_result.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::cli {
+
+/// Notices a file of 50 MB or more.
+void note_if_large(const std::string& file, std::size_t bytes);
+
+/// Gets the parts of a run (pipeline::Observers::on_part). Begins with the first one.
+class GrowingOutputs {
+ public:
+  /// @param names   files, or - for standard output in this format
+  /// @param events  so many at each end are kept for the table
+  GrowingOutputs(std::vector<std::string> names, std::string format, std::size_t events)
+      : names_(std::move(names)), format_(std::move(format)), most_(events) {}
+
+  [[nodiscard]] bool begun() const { return !files_.empty(); }
+  /// False if something could not be written: a run need not go on.
+  bool add(const result::Result& part);
+  /// The first and the last events.
+  [[nodiscard]] result::Events ends() const;
+  /// Writes the rest and puts the files in their places; returns the first failure.
+  /// @param watch  called before each piece with the name of the file; false ends the writing, and removes the file
+  [[nodiscard]] Expected<void> finish(const result::Result& rest,
+                                      const std::function<bool(const std::string& name, std::size_t bytes)>& watch);
+
+  void note_large_files() const {
+    for (const auto& file : files_) note_if_large(file->name, file->bytes);
+  }
+
+ private:
+  struct File {
+    std::string name;
+    std::unique_ptr<io::GrowingFile> file;  ///< null: standard output
+    std::function<bool(std::string_view)> sink;
+    std::unique_ptr<io::ResultParts> parts;
+    bool good = true;
+    std::size_t bytes = 0;
+  };
+  void begin();
+  bool pass(File& file, std::string_view piece);
+
+  std::vector<std::string> names_;
+  std::string format_;
+  std::size_t most_;
+  std::vector<std::unique_ptr<File>> files_;
+  std::vector<result::Event> first_, last_;
+  std::function<bool(const std::string& name, std::size_t bytes)> watch_;
+};
+
+}  // namespace saltus::cli

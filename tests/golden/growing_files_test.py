@@ -1,0 +1,125 @@
+"""Files of --out that are written while a run goes on: equal to those that are written at its end, and readable before."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import time
+
+import tool
+
+# A relay with a sampled measurement: events, a sliding phase, outputs.
+MODEL = """
+[model]
+name = "relay"
+[parameters]
+k = 2.0
+[states]
+x = 1.0
+v = 0.0
+[dynamics]
+x = "v"
+v = "-x - 0.1*v - k*sign(v + 0.3*x - 0.5*sin(3*t))"
+[outputs]
+energy = "0.5*(x^2 + v^2)"
+[simulate]
+until = 300
+"""
+LONG = """
+[model]
+name = "oscillator"
+[states]
+x = 1
+v = 0
+[dynamics]
+x = "v"
+v = "-x - 0.01*sign(v)"
+[simulate]
+until = UNTIL
+max_steps = 1000000000
+max_events = 100000000
+"""
+
+
+def numbers(path):
+    """A result without what depends on the call and the clock."""
+    result = json.loads(path.read_text(encoding="utf-8"))
+    result["statistics"].pop("wall_seconds")
+    result.pop("command_line")
+    return result
+
+
+class GrowingFiles(tool.ToolTest):
+    def both(self, *words):
+        """The files as they grow, and as they are written at the end: a page needs the whole result."""
+        self.write("m.toml", MODEL)
+        names = [word for name in ("{}.json", "{}.csv", "{}.events.csv") for word in ("--out", name)]
+        self.run_tool("simulate", "m.toml", *words, *(word.format("grown") for word in names), code=0)
+        self.run_tool("simulate", "m.toml", *words, *(word.format("whole") for word in names), "--report", "r.html",
+                      code=0)
+        return [(self.folder / f"grown{suffix}", self.folder / f"whole{suffix}")
+                for suffix in (".json", ".csv", ".events.csv")]
+
+    def test_grown_files_are_those_written_at_the_end(self):
+        for words in ([], ["--set", "simulate.output=steps"], ["--set", "simulate.output.every=0.01"],
+                      ["--set", "simulate.output.every=0.01", "--set", "simulate.output.events=false"],
+                      ["--set", "simulate.output.events=false"], ["--until", "0.01"]):
+            with self.subTest(words=words):
+                (grown, whole), *tables = self.both(*words)
+                self.assertEqual(numbers(grown), numbers(whole))
+                for ours, theirs in tables:
+                    self.assertEqual(ours.read_text(), theirs.read_text())
+        self.assertEqual([path.name for path in self.folder.glob("*.part")], [])
+
+    def test_the_table_is_the_same(self):
+        self.write("m.toml", MODEL)
+        grown, _ = self.run_tool("simulate", "m.toml", "--out", "r.csv", code=0)
+        whole, _ = self.run_tool("simulate", "m.toml", code=0)
+        without_time = [[line for line in text.splitlines() if "evaluations" not in line] for text in (grown, whole)]
+        self.assertEqual(*without_time)
+
+    def test_what_is_killed_leaves_its_rows(self):
+        self.write("m.toml", LONG.replace("UNTIL", "1e7"))
+        process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--quiet", "--out", "r.csv"], cwd=self.folder)
+        part = self.folder / "r.csv.part"
+        while not (part.exists() and part.stat().st_size > 100000):
+            self.assertIsNone(process.poll(), "ended by itself")
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.wait(timeout=60)
+        self.assertFalse((self.folder / "r.csv").exists())
+        head, *lines = part.read_text(encoding="utf-8").splitlines()
+        self.assertEqual(head, "t,side,x,v,alpha(v),mode(v)")
+        rows = list(csv.reader(lines[:-1]))  # the last one may be cut off
+        self.assertGreater(len(rows), 100)
+        self.assertTrue(all(len(row) == 6 for row in rows))
+
+    def test_a_request_to_end_is_like_ctrl_c(self):
+        self.write("m.toml", LONG.replace("UNTIL", "1e7"))
+        process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--quiet", "--out", "r.json"], cwd=self.folder,
+                                   stderr=subprocess.DEVNULL)
+        time.sleep(2.0)
+        self.assertIsNone(process.poll(), "ended by itself")
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=60), 3)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertEqual(result["status"]["termination"], "stopped_by_user")
+        self.assertEqual(result["trajectory"]["t"][-1], result["final"]["t"])
+
+    def test_memory_does_not_grow_with_the_rows(self):
+        self.write("m.toml", LONG.replace("UNTIL", "2000"))
+        peaks = []
+        for rows in (2_000, 500_000):
+            process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--quiet", "--out", "r.csv", "--out", "r.json",
+                                        "--set", f"simulate.output.points={rows}"], cwd=self.folder)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = status
+            self.assertEqual(status, 0)
+            peaks.append(usage.ru_maxrss / 1024)
+        # The times that are asked for are there: 8 bytes for each row.
+        self.assertLess(peaks[1], peaks[0] + 25, peaks)
+
+
+if __name__ == "__main__":
+    tool.main()
