@@ -207,6 +207,30 @@ class Contacts(tool.ToolTest):
         gaps = [outputs[0] for outputs in frozen["trajectory"]["outputs"]]
         self.assertAlmostEqual(frozen["penetration"], max(0.0, -min(gaps)), delta=1e-14)
 
+    def test_a_body_that_is_pulled_up_again_and_again_leaves_each_time(self):
+        """The force that presses it vanishes where its terms cancel: lift-off is where 20 sin(3 t) = 9.81."""
+        pulled = """[states]
+z = 0
+vz = 0
+[mechanics]
+positions = ["z"]
+velocities = ["vz"]
+potential = "9.81*z"
+force = { vz = "20*sin(3*t)" }
+[[contacts]]
+name = "table"
+gap = "z"
+restitution = 0
+[simulate]
+until = 9
+"""
+        first = math.asin(9.81 / 20) / 3
+        for integrator in ("dopri5", "dop853", "radau5", "taylor"):
+            events = self.result(pulled, "--integrator", integrator)["events"]
+            self.assertEqual([event["kind"] for event in events], 4 * ["lift_off", "impact"] + ["lift_off"])
+            for k, event in enumerate(events[::2]):
+                self.assertAlmostEqual(event["t"], first + k * 2 * math.pi / 3, delta=1e-9)
+
     def test_a_slip_that_turns_around_is_told(self):
         """Times of a Taylor series of degree 40 that shares nothing with the engine."""
         rod = (pathlib.Path(__file__).parents[2] / "models/falling-rod.toml").read_text(encoding="utf-8")

@@ -12,6 +12,7 @@
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/branches_internal.hpp"

@@ -38,6 +38,21 @@ bool Contacts::owns(int jump) const {
   return std::any_of(contacts_.begin(), contacts_.end(), [jump](const auto& contact) { return contact.jump == jump; });
 }
 
+/// Of the accelerations that the forces of closed contacts cancel, by the sizes of these forces in t and x.
+double Contacts::force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
+                             const std::vector<double>& x) const {
+  std::vector<double> magnitude(guards_.size()), slope(guards_.size());
+  kernel_.scales(t, x.data(), alpha.data(), magnitude.data(), slope.data());
+  double largest = 0.0;
+  for (int i = 0; i < point.contacts(); ++i) {
+    const auto& contact = contacts_[at(i)];
+    if (!contact.has_gap || x[at(contact.active)] == 0.0) continue;
+    const double force = magnitude[at(kernel_.jump_guard(contact.jump, 0))];
+    if (std::isfinite(force)) largest = std::max(largest, force * point.influence(i, i));
+  }
+  return largest;
+}
+
 /// Along the motion without contact forces.
 double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
   auto open = x;
@@ -59,7 +74,7 @@ ContactPoint Contacts::point_at(double t, const std::vector<double>& alpha, cons
   point.influence = values_.rows * values_.responses;
   point.velocity = values_.velocity;
   point.acceleration = values_.acceleration;
-  point.terms = acceleration_terms(t, alpha, x);
+  point.terms = std::max(acceleration_terms(t, alpha, x), force_terms(point, t, alpha, x));
   point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<Eigen::Index>(i)) : 0.0);

@@ -66,6 +66,8 @@ class Contacts {
 
  private:
   [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  [[nodiscard]] double force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
+                                   const std::vector<double>& x) const;
   [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha,
                                           const std::vector<double>& x) const;
   [[nodiscard]] ContactMode mode_of(int contact, const std::vector<double>& x) const;

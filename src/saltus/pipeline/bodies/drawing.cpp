@@ -11,7 +11,7 @@ namespace saltus::pipeline {
 using casadi::SX;
 
 std::optional<result::Drawing> drawing_of(const model::System& system, const std::vector<double>& parameters,
-                                          const std::vector<std::vector<double>>& states) {
+                                          const result::Table<double>& states) {
   if (system.drawing.empty()) return std::nullopt;
   const SymbolicLock lock;
   result::Drawing drawing;

@@ -6,6 +6,7 @@
 
 #include "saltus/model/system.hpp"
 #include "saltus/result/drawing.hpp"
+#include "saltus/result/table.hpp"
 
 namespace saltus::pipeline {
 
@@ -13,6 +14,6 @@ namespace saltus::pipeline {
 /// @param parameters  values of System::p
 [[nodiscard]] std::optional<result::Drawing> drawing_of(const model::System& system,
                                                         const std::vector<double>& parameters,
-                                                        const std::vector<std::vector<double>>& states);
+                                                        const result::Table<double>& states);
 
 }  // namespace saltus::pipeline

@@ -62,7 +62,7 @@ Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, cons
     kernels.give_back(std::move(*kept));
     auto& rows = whole.run.trajectory;
     rows.t.insert(rows.t.end(), run.trajectory.t.begin(), run.trajectory.t.end());
-    rows.x.insert(rows.x.end(), run.trajectory.x.begin(), run.trajectory.x.end());
+    for (const auto row : run.trajectory.x) rows.x.push_back(row);
     x = run.final.x;
     whole.run.final = std::move(run.final);
     whole.run.status = std::move(run.status);
