@@ -231,6 +231,15 @@ until = 9
             for k, event in enumerate(events[::2]):
                 self.assertAlmostEqual(event["t"], first + k * 2 * math.pi / 3, delta=1e-9)
 
+    def test_tangents_that_no_body_slips_along(self):
+        for row, words in (("{ x = 0 }", "is 0 at the start"), ("{ z = 1 }", "the direction in which its gap opens"),
+                           ("{ z = -2 }", "the direction in which its gap opens")):
+            text = BALL.replace("tangent = { x = 1 }", f"tangent = {row}")
+            self.assertNotEqual(text, BALL)
+            (self.folder / "m.toml").write_text(text, encoding="utf-8")
+            _, err = self.run_tool("simulate", "m.toml", code=2)
+            self.assertIn(words, err)
+
     def test_a_slip_that_turns_around_is_told(self):
         """Times of a Taylor series of degree 40 that shares nothing with the engine."""
         rod = (pathlib.Path(__file__).parents[2] / "models/falling-rod.toml").read_text(encoding="utf-8")

@@ -38,10 +38,46 @@ std::string json_of(double value) { return std::isfinite(value) ? fmt::format("{
 std::string json_of(const std::string& value) { return quoted_json(value); }
 
 template <class Values>
-std::string list_of(const Values& values, std::size_t most) {
+std::string list_of(const Values& values) {
   std::string list = "[";
-  for (std::size_t i = 0; i < std::min(values.size(), most); ++i) list += (i > 0 ? "," : "") + json_of(values[i]);
+  for (const auto& value : values) list += (list.size() > 1 ? "," : "") + json_of(value);
   return list + "]";
+}
+
+/// Rows that are drawn: all, or of every run as many of its last ones as leave room for all runs.
+struct DrawnRows {
+  std::vector<std::size_t> rows;
+  std::vector<std::pair<double, std::size_t>> counts;  ///< of every run, where some are left out
+  std::size_t most_of_run = 0;                         ///< likewise
+};
+
+DrawnRows drawn_rows(const std::vector<TableColumn>& table) {
+  DrawnRows drawn;
+  if (table.empty()) return drawn;
+  const auto& runs = std::get<std::vector<double>>(table.front().values);
+  std::vector<std::size_t> begins;
+  for (std::size_t row = 0; row < runs.size(); ++row) {
+    if (row == 0 || runs[row] != runs[row - 1]) begins.push_back(row);
+  }
+  begins.push_back(runs.size());
+  const bool all = runs.size() <= rows_of_page;
+  drawn.most_of_run = all ? runs.size() : std::max<std::size_t>(1, rows_of_page / (begins.size() - 1));
+  for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
+    const std::size_t count = begins[k + 1] - begins[k];
+    if (!all) drawn.counts.emplace_back(runs[begins[k]], count);
+    for (std::size_t row = begins[k + 1] - std::min(count, drawn.most_of_run); row < begins[k + 1]; ++row) {
+      drawn.rows.push_back(row);
+    }
+  }
+  return drawn;
+}
+
+template <class Value>
+std::vector<Value> rows_in(const std::vector<Value>& values, const std::vector<std::size_t>& rows) {
+  std::vector<Value> result;
+  result.reserve(rows.size());
+  for (const std::size_t row : rows) result.push_back(values[row]);
+  return result;
 }
 
 std::string escaped(std::string_view text) {
@@ -50,24 +86,26 @@ std::string escaped(std::string_view text) {
   return html;
 }
 
-std::string data_of(const std::vector<TableColumn>& table, const SweepPage& page) {
-  std::string columns;
+std::string data_of(const std::vector<TableColumn>& table, const DrawnRows& drawn, const SweepPage& page) {
+  std::string columns, counts;
+  for (const auto& [run, count] : drawn.counts) {
+    counts += fmt::format(R"({}"{}":{})", counts.empty() ? "" : ",", run, count);
+  }
   std::vector<std::string> swept;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (k > 0 && k <= page.names.size()) swept.push_back(table[k].name);
-    columns +=
-        fmt::format("{}{}:{}", k > 0 ? "," : "", quoted_json(table[k].name),
-                    std::visit([](const auto& values) { return list_of(values, rows_of_page); }, table[k].values));
+    columns += fmt::format(
+        "{}{}:{}", k > 0 ? "," : "", quoted_json(table[k].name),
+        std::visit([&](const auto& values) { return list_of(rows_in(values, drawn.rows)); }, table[k].values));
   }
-  return fmt::format(R"({{"columns":{{{}}},"swept":{},"names":{},"command":{},"grid":{}}})", columns,
-                     list_of(swept, swept.size()), list_of(page.names, page.names.size()), quoted_json(page.command),
-                     page.grid);
+  return fmt::format(R"({{"columns":{{{}}},"swept":{},"names":{},"command":{},"grid":{},"rows_of_runs":{{{}}}}})",
+                     columns, list_of(swept), list_of(page.names), quoted_json(page.command), page.grid, counts);
 }
 
 }  // namespace
 
 std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& page) {
-  const std::size_t rows = table.empty() ? 0 : rows_of(table.front());
+  const DrawnRows drawn = drawn_rows(table);
   const auto title = escaped(page.title);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   // Nothing may be fetched from anywhere.
@@ -77,14 +115,16 @@ std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& p
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   html += fmt::format("<title>{} - Saltus</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n<h1>{}</h1>\n", title,
                       style, title);
-  if (rows > rows_of_page)
-    html += fmt::format("<p>The first {} of {} rows of the table are drawn.</p>\n", rows_of_page, rows);
+  if (!drawn.counts.empty()) {
+    html += fmt::format("<p>The table has {} rows: the last {} of every run are drawn.</p>\n", rows_of(table.front()),
+                        drawn.most_of_run);
+  }
   html +=
       "<div id=\"controls\"></div>\n<div id=\"pictures\"></div>\n"
       "<div id=\"run\"><span id=\"chosen\"></span><br><code id=\"command\"></code></div>\n</main>\n";
   html += fmt::format(
       "<script type=\"application/json\" id=\"sweep\">{}</script>\n<script>\n{}</script>\n</body>\n</html>\n",
-      data_of(table, page), embedded::sweep_page_script);
+      data_of(table, drawn, page), embedded::sweep_page_script);
   return html;
 }
 

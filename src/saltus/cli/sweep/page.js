@@ -24,7 +24,7 @@ columns.run.forEach((run, row) => {
   rowsOf.set(run, (rowsOf.get(run) || 0) + 1);
 });
 const runRows = [...firstRow.values()];
-const eventsOf = (row) => (columns.events ? columns.events[row] : rowsOf.get(columns.run[row]));
+const eventsOf = (row) => (columns.events ? columns.events[row] : data.rows_of_runs[columns.run[row]] ?? rowsOf.get(columns.run[row]));
 
 function commandOf(row) {
   const settings = swept.map((name, k) => `--set ${data.names[k]}=${columns[name][row] === null ? "nan" : columns[name][row]}`);
@@ -46,9 +46,14 @@ function axisOf(values) {
   let low = Math.min(...finite.slice(0, 1)), high = low;
   for (const value of finite) { low = Math.min(low, value); high = Math.max(high, value); }
   if (!finite.length) { low = 0; high = 1; }
-  if (low === high) { low -= 0.5; high += 0.5; }
+  // Values that differ by rounding only are one value.
+  if (high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high))) {
+    const half = Math.max(0.5, 1e-3 * Math.abs(low));
+    low -= half;
+    high += half;
+  }
   const ticks = labels ? labels.map((label, k) => [k, label]) : ticksOf(low, high);
-  return { at, low, high, ticks };
+  return { at, low, high, ticks, words };
 }
 function ticksOf(low, high) {
   const raw = (high - low) / 5, power = 10 ** Math.floor(Math.log10(raw));
@@ -70,7 +75,8 @@ function frame(title, xName, yName, xAxis, yAxis) {
   for (const [value, label] of xAxis.ticks) picture.append(make("text", { x: place(xAxis, value), y: bottom + 16, "text-anchor": "middle" }, label));
   for (const [value, label] of yAxis.ticks) picture.append(make("text", { x: size.left - 6, y: place(yAxis, value) + 4, "text-anchor": "end" }, label));
   picture.append(make("text", { x: (size.left + size.width - size.right) / 2, y: size.height - 10, "text-anchor": "middle" }, xName));
-  picture.append(make("text", { x: 14, y: size.height / 2, transform: `rotate(-90 14 ${size.height / 2})`, "text-anchor": "middle" }, yName));
+  // Words say themselves what they are.
+  if (!yAxis.words) picture.append(make("text", { x: 14, y: size.height / 2, transform: `rotate(-90 14 ${size.height / 2})`, "text-anchor": "middle" }, yName));
   return { picture, x, y };
 }
 function mark(picture, row, x, y, colour, radius, label) {
@@ -82,7 +88,7 @@ function mark(picture, row, x, y, colour, radius, label) {
 
 function points(title, xName, yName, chosen, yOf, joined, colourOf = () => palette[0]) {
   const plain = chosen.filter((row) => yOf(row) !== null);
-  const drawn = frame(title, xName, yName, axisOf(chosen.map((row) => columns[xName][row])), axisOf(plain.map(yOf)));
+  const drawn = frame(title, xName, yName, axisOf(runRows.map((row) => columns[xName][row])), axisOf(plain.map(yOf)));
   if (joined) {
     const path = plain.map((row, k) => `${k ? "L" : "M"}${drawn.x(columns[xName][row])} ${drawn.y(yOf(row))}`).join("");
     drawn.picture.append(make("path", { d: path, fill: "none", stroke: palette[0] }));
@@ -90,6 +96,7 @@ function points(title, xName, yName, chosen, yOf, joined, colourOf = () => palet
   for (const row of plain) mark(drawn.picture, row, drawn.x(columns[xName][row]), drawn.y(yOf(row)), colourOf(row), joined ? 3 : 2, `${shown(columns[xName][row])}: ${shown(yOf(row))}`);
   return drawn.picture;
 }
+const colourAt = (share) => `hsl(${240 - 200 * share} 60% ${30 + 40 * share}%)`;
 function map(title, xName, yName, valueOf) {
   const xs = [...new Set(runRows.map((row) => columns[xName][row]))], ys = [...new Set(runRows.map((row) => columns[yName][row]))];
   const drawn = frame(title, xName, yName, axisOf(xs), axisOf(ys));
@@ -100,7 +107,7 @@ function map(title, xName, yName, valueOf) {
   for (const row of runRows) {
     const value = valueOf(row), i = xs.indexOf(columns[xName][row]), j = ys.indexOf(columns[yName][row]);
     const share = value === null ? null : (value - scale.low) / (scale.high - scale.low);
-    const colour = share === null ? "#999" : `hsl(${240 - 200 * share} 60% ${30 + 40 * share}%)`;
+    const colour = share === null ? "#999" : colourAt(share);
     const cell = make("rect", { x: size.left + i * width, y: size.height - size.bottom - (j + 1) * height, width: width + 0.3, height: height + 0.3, fill: colour, class: "run", "data-run": columns.run[row] });
     low = value !== null && !(value >= low) ? value : low;
     high = value !== null && !(value <= high) ? value : high;
@@ -108,7 +115,12 @@ function map(title, xName, yName, valueOf) {
     cell.addEventListener("click", () => choose(row));
     drawn.picture.append(cell);
   }
-  drawn.picture.append(make("text", { x: size.width - size.right, y: size.height - 10, "text-anchor": "end" }, `dark ${shown(low)}, light ${shown(high)}`));
+  const bar = { x: size.width - size.right - 150, y: size.height - 18, width: 80, steps: 20 };
+  for (let k = 0; k < bar.steps; ++k) {
+    drawn.picture.append(make("rect", { x: bar.x + (k * bar.width) / bar.steps, y: bar.y, width: bar.width / bar.steps + 0.3, height: 8, fill: colourAt(k / (bar.steps - 1)) }));
+  }
+  drawn.picture.append(make("text", { x: bar.x - 4, y: bar.y + 8, "text-anchor": "end" }, shown(low)));
+  drawn.picture.append(make("text", { x: bar.x + bar.width + 4, y: bar.y + 8 }, shown(high)));
   return drawn.picture;
 }
 
@@ -122,13 +134,23 @@ function selector(label, options, value, onChange) {
 }
 
 const values = numeric.filter((name) => name !== "run" && !swept.includes(name) && name !== "event");
-const kinds = columns.kind ? [...new Set(columns.kind.map((kind, row) => columns.name[row] || (columns.surfaces[row] ? `${kind} ${columns.surfaces[row]}` : kind)))] : [];
 const kindOf = (row) => columns.name[row] || (columns.surfaces[row] ? `${columns.kind[row]} ${columns.surfaces[row]}` : columns.kind[row]);
-const state = { value: values.find((name) => name !== "t") || values[0], x: swept[0], y: swept[1], kind: kinds[0] };
+// What the model calls an event comes first: at a switching surface its own value is a threshold.
+const named = columns.kind ? columns.run.map((_, row) => row).filter((row) => columns.name[row]).map(kindOf) : [];
+const kinds = columns.kind ? [...new Set([...named, ...columns.run.map((_, row) => kindOf(row))])] : [];
+const state = { value: values.find((name) => name !== "t") || values[0], x: swept[0], y: swept[1], kind: kinds[0], behind: -Infinity };
 
 function section(title, picture) {
-  const box = make("section");
-  box.append(make("h2", {}, title), picture);
+  const box = make("section"), save = make("button", { type: "button" }, "save as SVG");
+  save.addEventListener("click", () => {
+    const copy = picture.cloneNode(true), link = make("a");
+    copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+    copy.prepend(make("style", {}, document.querySelector("style").textContent));
+    link.href = URL.createObjectURL(new Blob([copy.outerHTML], { type: "image/svg+xml" }));
+    link.download = `${title.replace(/[^\w-]+/g, "-")}.svg`;
+    link.click();
+  });
+  box.append(make("h2", {}, title), picture, save);
   document.getElementById("pictures").append(box);
 }
 function draw() {
@@ -137,8 +159,9 @@ function draw() {
   const grid = swept.length === 2 && data.grid;
   const over = (name, of, joined = true) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined && swept.length === 1 && isNumber(state.x)));
   if (kinds.length) {
-    const chosen = columns.run.map((_, row) => row).filter((row) => kindOf(row) === state.kind);
-    if (chosen.length) section(`${state.value} at every event "${state.kind}"`, points("bifurcation", state.x, state.value, chosen, (row) => columns[state.value][row], false));
+    const chosen = columns.run.map((_, row) => row).filter((row) => kindOf(row) === state.kind && columns.t[row] > state.behind);
+    const behind = state.behind > -Infinity ? ` behind t = ${shown(state.behind)}` : "";
+    section(`${state.value} at every event "${state.kind}"${behind}`, points("bifurcation", state.x, state.value, chosen, (row) => columns[state.value][row], false));
   } else section(state.value, over(state.value, (row) => columns[state.value][row]));
   section(columns.events || kinds.length ? "number of events" : "number of rows", over("number", eventsOf));
   const statuses = [...new Set(columns.status)];
@@ -148,5 +171,11 @@ const controls = document.getElementById("controls");
 if (values.length) controls.append(selector("value", values, state.value, (value) => (state.value = value)));
 if (swept.length > 1) controls.append(selector("over", swept, state.x, (value) => { if (value === state.y) state.y = state.x; state.x = value; }));
 if (kinds.length) controls.append(selector("event", kinds, state.kind, (value) => (state.kind = value)));
+if (kinds.length) {
+  const box = make("label", {}, "behind t "), input = make("input", { type: "number", step: "any", size: 6 });
+  input.addEventListener("change", () => { state.behind = input.value === "" ? -Infinity : Number(input.value); draw(); });
+  box.append(input);
+  controls.append(box);
+}
 draw();
 if (rows) choose(0);

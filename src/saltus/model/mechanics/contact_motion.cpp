@@ -39,7 +39,7 @@ class ContactMotion {
       contact.has_friction =
           !stated.tangents.is_empty() && recognition_.parameter_value(stated.friction.scalar()).value_or(0.0) > 0.0;
       contact.in_plane = contact.has_friction && stated.tangents.size1() == 2;
-      if (contact.in_plane) {
+      if (contact.has_friction) {
         if (auto error = check_tangents(stated)) return tl::unexpected(*error);
       }
       system_.contacts.push_back(std::move(contact));
@@ -78,18 +78,44 @@ class ContactMotion {
     return std::nullopt;
   }
 
-  /// They span a plane at the start.
+  /// They are not 0, not along the normal, and two of them span a plane at the start.
   std::optional<Error> check_tangents(const ContactStatement& contact) {
-    const SX products = SX::mtimes(contact.tangents, contact.tangents.T());
-    const auto product = [&](casadi_int i, casadi_int j) { return at_start(SX(products(i, j))); };
-    const auto first = product(0, 0), mixed = product(0, 1), second = product(1, 1);
-    for (const auto* value : {&first, &mixed, &second}) {
-      if (!*value) return with_location(value->error(), contact.location);
+    const auto along = [&](const SX& a, const SX& b) -> Expected<double> {
+      return at_start(SX::mtimes(SX::densify(a), SX::densify(b).T()));
+    };
+    const SX normal = SX::jacobian(contact.gap, q_);
+    std::vector<SX> rows;
+    for (casadi_int k = 0; k < contact.tangents.size1(); ++k) rows.push_back(contact.tangents(k, casadi::Slice()));
+    const auto have_one_direction = [&](const SX& a, const SX& b) -> Expected<bool> {
+      const auto first = along(a, a), mixed = along(a, b), second = along(b, b);
+      for (const auto* value : {&first, &mixed, &second}) {
+        if (!*value) return tl::unexpected(value->error());
+      }
+      return *first * *second > 0.0 && *first * *second - *mixed * *mixed <= 1e-12 * *first * *second;
+    };
+    const auto refused = [&](const std::string& message, const std::string& remedy) {
+      return contact_error(contact.location, fmt::format(fmt::runtime(message), contact.name), remedy);
+    };
+    for (const SX& tangent : rows) {
+      const auto size = along(tangent, tangent);
+      if (!size) return with_location(size.error(), contact.location);
+      if (*size == 0.0) {
+        return refused("the tangent of '{}' is 0 at the start",
+                       "write the direction in which it slips, as tangent = { x = 1 }");
+      }
+      const auto along_normal = have_one_direction(tangent, normal);
+      if (!along_normal) return with_location(along_normal.error(), contact.location);
+      if (*along_normal) {
+        return refused("the tangent of '{}' has the direction in which its gap opens at the start",
+                       "a tangent lies along the surface: of a floor z = 0 it is { x = 1 }, not { z = 1 }");
+      }
     }
-    if (*first * *second - *mixed * *mixed > 1e-12 * *first * *second) return std::nullopt;
-    return contact_error(contact.location,
-                         fmt::format("the tangents of '{}' have one direction at the start", contact.name),
-                         "two tangents span the plane in which the contact slips; in one direction one is enough");
+    if (rows.size() < 2) return std::nullopt;
+    const auto parallel = have_one_direction(rows[0], rows[1]);
+    if (!parallel) return with_location(parallel.error(), contact.location);
+    if (!*parallel) return std::nullopt;
+    return refused("the tangents of '{}' have one direction at the start",
+                   "two tangents span the plane in which the contact slips; in one direction one is enough");
   }
 
   std::optional<Error> check_gap(const ContactStatement& contact) {
