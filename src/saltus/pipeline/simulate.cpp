@@ -12,6 +12,7 @@
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -244,7 +245,8 @@ result::Result frame(const model::System& system, const SimulateOptions& options
 Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
                                   const Observers& observers, KernelStore* kernels) {
   const bool by_elements = options.method == Method::fesd || options.method == Method::timestepping;
-  if (by_elements && system.frozen && system.frozen->system && !system.frozen->system->freezing)
+  const bool has_other_form = options.method != Method::event && system.frozen && system.frozen->system;
+  if (has_other_form && !system.frozen->system->freezing)
     return simulate(*system.frozen->system, options, observers, kernels);
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
