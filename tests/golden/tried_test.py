@@ -158,8 +158,15 @@ class Tried(tool.ToolTest):
         self.assertIn("a wider layer: simulate.smoothed.epsilon = ", err)
         self.assertNotIn('method = "smoothed"', err)
 
-    def test_planar_friction_is_named(self):
-        _, _, err = self.simulated(PUCK, code=3)
+    def test_a_puck_comes_to_rest(self):
+        result, _, _ = self.simulated(PUCK)
+        (stick,) = result["events"]
+        self.assertEqual((stick["kind"], stick["surfaces"]), ("stick", ["friction of vx, vy"]))
+        self.assertAlmostEqual(stick["t"], 13**0.5 / (0.3 * 9.81), delta=1e-7)
+        self.assertEqual(result["final"]["x"][2:], [0.0, 0.0])
+
+    def test_planar_friction_of_another_form_is_named(self):
+        _, _, err = self.simulated(PUCK.replace("-mu*9.81", "-(mu + 0.01*vx^2)*9.81"), code=3)
         self.assertIn("a norm of vx, vy vanishes here", err)
         self.assertIn("sqrt(vx^2 + vy^2 + 1e-6)", err)
 

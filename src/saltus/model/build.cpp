@@ -289,8 +289,8 @@ class Build {
 
   /// Finite elements and optimal control take the right-hand side as it is written.
   MaybeError written_friction() {
-    if (freezing_ || quantities_ != nullptr) return std::nullopt;
-    return state_written_friction(recognition_, statement_);
+    if (!freezing_ && quantities_ == nullptr) state_written_friction(recognition_, statement_);
+    return std::nullopt;
   }
 
   MaybeError freeze() {
@@ -471,15 +471,12 @@ bool stands_still(const Description& description) {
 
 Expected<System> build(const Description& description, const std::vector<Override>& overrides) {
   auto system = build_with(description, overrides, nullptr);
-  if (!system) return system;
-  if (!stands_still(description)) {
-    if (system->contacts.empty()) return system;
-    const Quantities none;
-    system->frozen = std::make_shared<const FrozenSystem>(FrozenSystem{build_with(description, overrides, &none)});
-    return system;
-  }
+  if (!system || (!stands_still(description) && system->contacts.empty())) return system;
+  const Quantities as_written;
   FreezingPlan plan{.purpose = FrozenFor::simulation};
-  auto frozen = build_guarded(description, [&] { return Build(description, overrides, nullptr, plan).run(); });
+  auto frozen = !stands_still(description)
+                    ? build_with(description, overrides, &as_written)
+                    : build_guarded(description, [&] { return Build(description, overrides, nullptr, plan).run(); });
   system->frozen = std::make_shared<const FrozenSystem>(FrozenSystem{std::move(frozen)});
   return system;
 }

@@ -1,9 +1,10 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <unordered_set>
 #include <utility>
+#include <vector>
 
-#include <casadi/core/calculus.hpp>
 #include <casadi/core/function.hpp>
 #include <fmt/format.h>
 
@@ -36,6 +37,19 @@ std::optional<SXElem> root_of_square(const SXElem& e) {
   const bool power = e.is_op(casadi::OP_POW) || e.is_op(casadi::OP_CONSTPOW);
   if (power && e.dep(1).is_constant() && static_cast<double>(e.dep(1)) == 2.0) return e.dep(0);
   return std::nullopt;
+}
+
+/// Whether a root is taken in expressions. Cost: one visit of each operation.
+bool have_roots(std::vector<SXElem> open) {
+  std::unordered_set<const void*> seen;
+  while (!open.empty()) {
+    const SXElem e = open.back();
+    open.pop_back();
+    if (e.is_leaf() || !seen.insert(e.get()).second) continue;
+    if (e.is_op(casadi::OP_HYPOT) || e.is_op(casadi::OP_SQRT)) return true;
+    for (casadi_int k = 0; k < e.n_dep(); ++k) open.push_back(e.dep(k));
+  }
+  return false;
 }
 
 /// Expressions with the norms in them replaced by symbols.
@@ -93,27 +107,32 @@ class FrictionInPlane {
  public:
   FrictionInPlane(Recognition& recognition, Statement& statement) : recognition_(recognition), statement_(statement) {}
 
-  std::optional<Error> run() {
+  void run() {
     for (const auto& state : statement_.states) {
-      if (!state.dynamics) return std::nullopt;
+      if (!state.dynamics) return;
     }
     states_.resize(statement_.states.size());
     std::iota(states_.begin(), states_.end(), 0);
     x_ = symbols_of(statement_, states_);
     std::vector<SXElem> rates;
     for (const auto& state : statement_.states) rates.push_back(*state.dynamics);
+    if (!have_roots(rates)) return;
     const NormsReplaced replaced{SX(rates)};
     f_ = replaced.rates();
     std::vector<PlaneNorm> others;
+    std::vector<SXElem> symbols;
     for (const auto& norm : replaced.norms()) {
+      symbols.push_back(norm.symbol);
       if (!take(norm)) others.push_back(norm);
     }
-    if (taken_.empty()) return std::nullopt;
-    for (const auto& norm : others) {
-      const SX w = SX::vertcat({SX(norm.w[0]), SX(norm.w[1])});
-      f_ = SX::substitute(f_, SX(norm.symbol), sqrt(w(0) * w(0) + w(1) * w(1)));
+    if (taken_.empty()) return;
+    // The last ones first: they may have others inside.
+    for (auto norm = others.rbegin(); norm != others.rend(); ++norm) {
+      const SX w = SX::vertcat({SX(norm->w[0]), SX(norm->w[1])});
+      f_ = SX::substitute(f_, SX(norm->symbol), sqrt(w(0) * w(0) + w(1) * w(1)));
     }
-    return state();
+    if (SX::depends_on(f_, SX(symbols))) return;
+    state();
   }
 
  private:
@@ -201,7 +220,7 @@ class FrictionInPlane {
     return node ? value_at_start(recognition_, statement_, *node) : std::nan("");
   }
 
-  std::optional<Error> state() {
+  void state() {
     const auto m = static_cast<casadi_int>(taken_.size());
     ContactSystem system;
     system.velocities = states_;
@@ -225,7 +244,6 @@ class FrictionInPlane {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       statement_.states[i].dynamics = SX(rates(static_cast<casadi_int>(i))).scalar();
     }
-    return std::nullopt;
   }
 
   Recognition& recognition_;
@@ -237,9 +255,8 @@ class FrictionInPlane {
 
 }  // namespace
 
-std::optional<Error> state_written_friction(Recognition& recognition, Statement& statement) {
-  if (!statement.contacts.empty()) return std::nullopt;
-  return FrictionInPlane(recognition, statement).run();
+void state_written_friction(Recognition& recognition, Statement& statement) {
+  if (statement.contacts.empty()) FrictionInPlane(recognition, statement).run();
 }
 
 }  // namespace saltus::model

@@ -1,8 +1,6 @@
 // Dry friction in a plane as it is written in right-hand sides: along -w/|w|.
 #pragma once
 
-#include <optional>
-
 #include "saltus/model/statement/statement_internal.hpp"
 
 namespace saltus::model {
@@ -13,6 +11,6 @@ namespace saltus::model {
 ///
 /// A norm in other places, as in the drag -|w| w, is left alone, and so is a model with contacts. Dynamics and initial
 /// values of the states are known.
-[[nodiscard]] std::optional<Error> state_written_friction(Recognition& recognition, Statement& statement);
+void state_written_friction(Recognition& recognition, Statement& statement);
 
 }  // namespace saltus::model

@@ -317,9 +317,9 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
 
 Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
                                   const Observers& observers, KernelStore* kernels) {
-  const auto& frozen = system.frozen;
-  if (by_elements(options) && frozen && frozen->system && !frozen->system->freezing) {
-    return simulate(*frozen->system, options, observers, kernels);
+  const auto& other = system.frozen;
+  if (options.method != Method::event && other && other->system && !other->system->freezing) {
+    return simulate(*other->system, options, observers, kernels);
   }
   auto result = simulated(system, options, observers, kernels);
   if (result) add_bodies(system, *result);

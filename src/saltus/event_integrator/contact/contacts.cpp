@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 constexpr double small_velocity =
     1e-9;  ///< relative size of velocities that count as none at an event: location and projection
 
-/// Of the speed at which a slip in a plane is looked at again: located to its rounding.
-constexpr double ends_below = 1.0 + 1e-3;
+/// Of the speed at which a slip in a plane is looked at again: small speeds are located to the rounding of t.
+constexpr double ends_below = 1.1;
 
 }  // namespace
 
@@ -114,7 +114,8 @@ double Contacts::fastest(const ContactMoment& moment, const ContactPoint& point,
 double Contacts::slowest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
   const double speed = fastest(moment, point, x);
   constexpr double part = 0.01, rounded = 1e-13, least = 1e-40;
-  return std::max({moment.tolerances.atol + part * moment.tolerances.rtol * speed, rounded * speed, least});
+  const double in_time = 256.0 * rounding_unit * std::abs(moment.t) * point.terms;
+  return std::max({moment.tolerances.atol + part * moment.tolerances.rtol * speed, rounded * speed, in_time, least});
 }
 
 /// Whether what ends at a point is not a slip in a plane, but the range of speeds in which it is followed.
@@ -124,7 +125,16 @@ bool Contacts::reaches_a_speed(const ContactMoment& moment, int contact, const C
   const double speed = point.along(point.velocity, contact).norm();
   const auto bounds = at(contacts_[at(contact)].speeds);
   const bool at_bound = speed <= ends_below * std::sqrt(x[bounds]) || ends_below * speed >= std::sqrt(x[bounds + 1]);
-  return at_bound && speed > ends_below * slowest(moment, point, x);
+  if (!at_bound || speed <= ends_below * slowest(moment, point, x)) return false;
+  ContactForces forces;
+  std::vector<int> closed;
+  std::vector<ContactMode> modes;
+  for (int i = 0; i < point.contacts(); ++i) {
+    modes.push_back(mode_of(i, x));
+    if (modes.back() != ContactMode::open) closed.push_back(i);
+  }
+  constexpr double holds = 1e-9;
+  return forces_in(point, closed, modes, forces) && forces.margin > holds;
 }
 
 /// Of slips in a plane. Where the velocity vanishes the force has no direction, and two functions would have to be 0 at
@@ -254,6 +264,11 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
   for (Eigen::Index row = 0; row < point.velocity.size(); ++row) {
     if (std::abs(point.velocity(row)) <= small_velocity * small_velocity * size + 64.0 * rounding_unit * size)
       point.velocity(row) = 0.0;
+  }
+  constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
+  for (int i = 0; i < m; ++i) {
+    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * size) continue;
+    for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
   }
   return true;
 }
@@ -407,6 +422,7 @@ void Contacts::correct_velocities(std::vector<double>& x) const {
   const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
   const Eigen::MatrixXd normal = values_.rows(rows, Eigen::all);
   const VectorXd change = response * (normal * response).ldlt().solve(values_.velocity(rows));
+  const auto before = x;
   for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
     x[at(system_.velocities[k])] -= change(static_cast<Eigen::Index>(k));
   }
@@ -416,7 +432,8 @@ void Contacts::correct_velocities(std::vector<double>& x) const {
     if (rows[r] < static_cast<int>(contacts_.size()) || (normal.row(row).array() != 0.0).count() != 1) continue;
     Eigen::Index only = 0;
     static_cast<void>(normal.row(row).cwiseAbs().maxCoeff(&only));
-    x[at(system_.velocities[static_cast<std::size_t>(only)])] = 0.0;
+    const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
+    if (std::abs(x[k]) <= 64.0 * rounding_unit * std::abs(before[k])) x[k] = 0.0;
   }
 }
 

@@ -65,7 +65,12 @@ void check_contacts(JsonReader& reader, const std::string& path, const result::R
     const auto here = fmt::format("{}/events/{}", path, i);
     check_length(reader, here + "/contact_modes_before", event.contact_modes_before, contacts);
     check_length(reader, here + "/contact_modes_after", event.contact_modes_after, contacts);
-    if (event.impulse) check_length(reader, here + "/impulse", *event.impulse, contacts);
+    if (!event.impulse) continue;
+    check_length(reader, here + "/impulse", *event.impulse, contacts);
+    for (const auto& one : *event.impulse) {
+      if (one.size() != 2 && one.size() != 3)
+        reader.fail(here + "/impulse", fmt::format("expected 2 or 3 entries, found {}", one.size()));
+    }
   }
 }
 
