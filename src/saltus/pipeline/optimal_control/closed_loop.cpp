@@ -61,8 +61,10 @@ Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, cons
         kept->kernel, system, resimulation_options(path.times[k], path.times[k + 1], rows_of_interval), observer);
     kernels.give_back(std::move(*kept));
     auto& rows = whole.run.trajectory;
-    rows.t.insert(rows.t.end(), run.trajectory.t.begin(), run.trajectory.t.end());
-    rows.x.insert(rows.x.end(), run.trajectory.x.begin(), run.trajectory.x.end());
+    for (std::size_t i = 0; i < run.trajectory.t.size(); ++i) {
+      rows.t.push_back(run.trajectory.t[i]);
+      rows.x.push_back(run.trajectory.x[i]);
+    }
     x = run.final.x;
     whole.run.final = std::move(run.final);
     whole.run.status = std::move(run.status);
