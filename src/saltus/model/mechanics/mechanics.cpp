@@ -139,7 +139,8 @@ class MechanicsBuild {
 
   [[nodiscard]] std::optional<Error> take_drawing() {
     for (const auto& [shape, location] : mechanics_.draw) {
-      for (const SXElem& e : SX::densify(shape.points).nonzeros()) {
+      const SX points = SX::densify(shape.points);
+      for (const SXElem& e : points.nonzeros()) {
         if (auto error = check_reach(e, "what is drawn", location)) return error;
       }
       if (!shape.radius.is_empty()) {
