@@ -189,6 +189,13 @@ class TimeFreezing(tool.ToolTest):
             rows, drawn = result["trajectory"]["x"], result["drawing"]["rows"]
             self.assertEqual(drawn, [[0, x[0] + 0.1, 0.1] for x in rows])
 
+    def test_the_closed_loop_goes_through_an_impact(self):
+        result = self.optimised(LANDING.replace("horizon", "closed_loop = true\nhorizon"))
+        closed_loop = result["verification"]["closed_loop"]
+        self.assertEqual(closed_loop["termination"], "completed")
+        self.assertLess(closed_loop["end_state_error"], 1e-3)
+        self.assertAlmostEqual(closed_loop["x"][-1][0], 0.0, delta=1e-9)
+
     def test_hysteresis_of_a_car_is_optimised(self):
         text = (tool.SOURCE / "examples/contacts/turbo-hysteresis.toml").read_text(encoding="utf-8")
         self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
