@@ -177,10 +177,11 @@ class TimeFreezing(tool.ToolTest):
 
     def test_a_stabilisation_that_is_followed_down_leaves_the_problem_as_it_is(self):
         plain = self.optimised(LANDING)
-        followed = self.optimised(LANDING.replace("a_n = 20", "a_n = 20\nstabilisation = { initial = 10, final = 0 }"))
+        followed = self.optimised(LANDING.replace("a_n = 20", "a_n = 20\nstabilisation = { initial = 3, final = 0 }"))
         self.assertAlmostEqual(plain["objective"], followed["objective"], delta=1e-6)
         self.assertEqual(followed["model"]["parameters"], {})
-        self.assertNotEqual(plain["homotopy"][0]["iterations"], followed["homotopy"][0]["iterations"])
+        iterations = lambda result: [step["iterations"] for step in result["homotopy"]]
+        self.assertNotEqual(iterations(plain), iterations(followed))
         for result in (plain, followed):
             self.assertEqual(result["events"][0]["kind"], "impact")
             self.assertEqual(set(result["verification"]["penetration"]), {"solution", "simulation"})
