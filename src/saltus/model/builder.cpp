@@ -131,12 +131,8 @@ struct Builder::Parts {
     for (const auto& [points, radius] : shapes) {
       const bool is_disc = !radius.is_empty();
       if (points.size1() != 2 || points.size2() < 1 || is_disc != (points.size2() == 1)) {
-        fail({ErrorCode::invalid_model,
-              fmt::format("what is drawn has {} x {} coordinates and {} radius", points.size1(), points.size2(),
-                          is_disc ? "a" : "no"),
-              "a line has 2 x n of them, n >= 2, and no radius; a disc 2 x 1 and a radius",
-              {},
-              {}});
+        const std::string remedy = "a line has 2 x n coordinates, n >= 2, and no radius; a disc 2 x 1 and a radius";
+        fail({ErrorCode::invalid_model, fmt::format("what is drawn has {} coordinates", points.dim()), remedy, {}, {}});
         return false;
       }
       DrawnStatement drawn{.shape = {SX::densify(points), SX()}};

@@ -245,7 +245,7 @@ result::Result frame(const model::System& system, const SimulateOptions& options
 
 /// Of a mechanical system what is drawn of it, and how deep its bodies are in each other.
 void add_bodies(const model::System& system, result::Result& result) {
-  result.drawing = drawing_of(system, system.parameter_values, result.trajectory.x);
+  result.drawing = drawing_of(system, system.parameter_values, result.trajectory);
   if (!system.contacts.empty()) {
     const SymbolicLock lock;
     result.penetration = Gaps(system, system.parameter_values).depth(result.trajectory);

@@ -15,7 +15,7 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-constexpr double regularisation = 1e-9;
+constexpr double diagonal_shift = 1e-9;
 /// Of the size of a bound: what is nearer is on it.
 constexpr double on_bound = 1e-7;
 
@@ -157,7 +157,7 @@ class Conditions {
       if (const int column = unknown_[at(entry.col())]; column >= 0) entries.emplace_back(row, column, entry.value());
       if (const int state = state_[at(entry.col())]; state >= 0) right(row, state) -= entry.value();
     }
-    for (int i = 0; i < unknowns_; ++i) entries.emplace_back(i, i, regularisation);
+    for (int i = 0; i < unknowns_; ++i) entries.emplace_back(i, i, diagonal_shift);
   }
 
   /// Those that speak of unknowns, of the node and of what is held only. @return the size of the conditions
@@ -174,7 +174,7 @@ class Conditions {
           right(next, state_[place]) -= entry.value();
         }
       }
-      entries.emplace_back(next, next, -regularisation);
+      entries.emplace_back(next, next, -diagonal_shift);
       ++next;
     }
     return next;

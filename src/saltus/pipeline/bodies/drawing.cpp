@@ -11,7 +11,7 @@ namespace saltus::pipeline {
 using casadi::SX;
 
 std::optional<result::Drawing> drawing_of(const model::System& system, const std::vector<double>& parameters,
-                                          const result::Table<double>& states) {
+                                          const result::Trajectory& trajectory) {
   if (system.drawing.empty()) return std::nullopt;
   const SymbolicLock lock;
   result::Drawing drawing;
@@ -23,7 +23,8 @@ std::optional<result::Drawing> drawing_of(const model::System& system, const std
   }
   model::ModelFunction function("saltus_drawing", {system.x, system.p}, {SX::vertcat(numbers)});
   std::vector<double> x(system.state_names.size(), 0.0);
-  for (const auto& row : states) {
+  for (std::size_t i = 0; i < trajectory.t.size(); ++i) {
+    const std::vector<double> row = trajectory.x[i];
     std::copy_n(row.begin(), std::min(row.size(), x.size()), x.begin());
     auto& values = drawing.rows.emplace_back(drawing.width());
     const double* const from = x.data();

@@ -61,9 +61,13 @@ Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, cons
         kept->kernel, system, resimulation_options(path.times[k], path.times[k + 1], rows_of_interval), observer);
     kernels.give_back(std::move(*kept));
     auto& rows = whole.run.trajectory;
-    rows.t.insert(rows.t.end(), run.trajectory.t.begin(), run.trajectory.t.end());
-    for (const auto row : run.trajectory.x) rows.x.push_back(row);
+    for (std::size_t i = 0; i < run.trajectory.t.size(); ++i) {
+      rows.t.push_back(run.trajectory.t[i]);
+      rows.x.push_back(run.trajectory.x[i]);
+    }
     x = run.final.x;
+    // Modes of contacts are not in a result: the engine takes them from gaps and velocities.
+    x.resize(system.state_names.size(), 0.0);
     whole.run.final = std::move(run.final);
     whole.run.status = std::move(run.status);
     const bool is_at_end = whole.run.status.time_reached >= path.times[k + 1] &&

@@ -237,7 +237,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   for (std::size_t i = 0; i < result.states.size() && !result.trajectory.x.empty(); ++i) {
     result.model.initial_state.emplace_back(result.states[i], result.trajectory.x.front()[i]);
   }
-  result.drawing = drawing_of(ocp.system, read.parameters, result.trajectory.x);
+  result.drawing = drawing_of(ocp.system, read.parameters, result.trajectory);
   result.events = std::move(run->events);
   result.final = std::move(run->final);
   result.elements = std::move(run->elements);
