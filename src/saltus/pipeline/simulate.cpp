@@ -266,7 +266,8 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   if (!kept) return tl::unexpected(kept.error());
 
   auto integration = *integration_or;
-  const bool passes_on = observers.on_part && options.method == Method::event && options.event.trajectories == 1;
+  const bool passes_on = observers.on_part && options.method == Method::event && options.event.trajectories == 1 &&
+                         system.contacts.empty();
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
     const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;
