@@ -9,7 +9,7 @@ import time
 
 import tool
 
-# A relay with a sampled measurement: events, a sliding phase, outputs.
+# Events, sliding phases, an output.
 MODEL = """
 [model]
 name = "relay"
@@ -28,13 +28,13 @@ until = 300
 """
 LONG = """
 [model]
-name = "oscillator"
+name = "driven"
 [states]
 x = 1
 v = 0
 [dynamics]
 x = "v"
-v = "-x - 0.01*sign(v)"
+v = "-x - 0.01*sign(v) + 0.1*sin(0.7*t)"
 [simulate]
 until = UNTIL
 max_steps = 1000000000

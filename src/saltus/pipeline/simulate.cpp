@@ -281,7 +281,8 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
   if (!kept) return tl::unexpected(kept.error());
 
   auto integration = *integration_or;
-  const bool passes_on = observers.on_part && options.method == Method::event && options.event.trajectories == 1;
+  const bool passes_on = observers.on_part && options.method == Method::event && options.event.trajectories == 1 &&
+                         system.contacts.empty();
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
     const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;
