@@ -244,7 +244,9 @@ class SteadyTable {
     for (std::size_t k = 0; k < columns_.size(); ++k) columns_[k].set(rows_, static_cast<Number>(row[k]));
     ++rows_;
   }
-  void push_back(std::initializer_list<Number> row) { push_back(RowVector<Number>(row.begin(), row.end())); }
+  void push_back(std::initializer_list<typename RowVector<Number>::value_type> row) {
+    push_back(RowVector<Number>(row));
+  }
   /// Appends the last row once more; without one a row that may not be read.
   void repeat() { ++rows_; }
   void pop_back() {
