@@ -205,7 +205,7 @@ TEST(Degenerate, BothBeltsReversedAreSlidOnBackwards) {
                  [](const Result& result) {
                    expect_completed(result);
                    EXPECT_TRUE(switches_of(result).empty());
-                   EXPECT_EQ(result.events.at(0).unique, false);
+                   EXPECT_EQ(result.events.front().unique, false);
                    EXPECT_EQ(result.final.mode, (std::vector<int>{0, 0}));
                    EXPECT_NEAR(dwell(result.final.x[0], 0.8), 4.0, 1e-6);
                    EXPECT_NEAR(result.final.alpha[0], (1 - result.final.x[0]) / 2, 1e-12);

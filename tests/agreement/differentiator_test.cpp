@@ -2,6 +2,7 @@
 // observers, whose psi is no more than rounding of its terms long before its laps are over.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,11 @@ until = {}
                      gains, start, signal, until);
 }
 
-const Event* accumulation(const Result& result) {
+std::optional<Event> accumulation(const Result& result) {
   const auto found = std::find_if(result.events.begin(), result.events.end(),
                                   [](const Event& event) { return event.kind == EventKind::accumulation; });
-  return found == result.events.end() ? nullptr : &*found;
+  if (found == result.events.end()) return std::nullopt;
+  return *found;
 }
 
 // z0 - (c + b t) and z1 - b are an autonomous super-twisting system, which is at rest after (1 + r)/(k2 (1 - r)).
@@ -60,7 +62,7 @@ TEST(Differentiator, OfARampIsExactAfterTheTimeOfSuperTwisting) {
       const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << level << ' ' << result.status.message;
       const bool is_dop853 = accuracy.integrator == pipeline::Integrator::dop853;
-      ASSERT_NE(accumulation(result), nullptr);
+      ASSERT_TRUE(accumulation(result).has_value());
       EXPECT_NEAR(accumulation(result)->t, limit, is_dop853 ? rounded : loose) << level;
       EXPECT_LE(result.events.size(), 12U) << level;
       EXPECT_EQ(result.final.mode, (std::vector<int>{0}));
@@ -82,7 +84,7 @@ TEST(Differentiator, FollowsASignalThatCurves) {
          {standard, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, fine, fine_explicit, implicit}) {
       const Result result = simulate_text(text, accuracy);
       ASSERT_EQ(result.status.termination, Termination::completed) << start << result.status.message;
-      ASSERT_NE(accumulation(result), nullptr);
+      ASSERT_TRUE(accumulation(result).has_value());
       EXPECT_EQ(result.final.mode, (std::vector<int>{0}));
       EXPECT_NEAR(result.final.x[0], std::sin(6.0), 1e-14);
       EXPECT_NEAR(result.final.x[1], std::cos(6.0), 1e-14);
@@ -142,7 +144,7 @@ until = 8
   for (const auto& accuracy : {standard, Accuracy{pipeline::Integrator::dop853, 1e-8, 1e-10}, fine}) {
     const Result result = simulate_text(plant(observer, "xh = 0\nvh = 0"), accuracy);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
-    ASSERT_NE(accumulation(result), nullptr);
+    ASSERT_TRUE(accumulation(result).has_value());
     EXPECT_NEAR(result.final.x[0], alone.final.x[0], 1e-6);
     EXPECT_NEAR(result.final.x[2], result.final.x[0], 1e-15);
     EXPECT_NEAR(result.final.x[3], result.final.x[1], 1e-15);

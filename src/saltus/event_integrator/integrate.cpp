@@ -38,8 +38,7 @@ Integration integrate(evaluation::ModelKernel& kernel, const model::System& syst
     integration.trajectory = {};
     integration.events = {};
   };
-  CompactIntegration run =
-      Run(kernel, system, options).to_end(observer, take ? std::function<void(Recording)>(pass_on) : nullptr);
+  CompactIntegration run = Run(kernel, system, options).to_end(observer, take ? TakeRecording(pass_on) : nullptr);
   auto& recording = run.recording;
   integration.status = std::move(run.status);
   integration.statistics = run.statistics;

@@ -34,6 +34,10 @@ struct Builder::Parts {
     if (!error) error = std::move(mistake);
   }
 
+  void refuse(std::string message, std::string remedy) {
+    fail({ErrorCode::invalid_model, std::move(message), std::move(remedy), {}, {}});
+  }
+
   bool declare(const std::string& name, NameKind kind, std::size_t index) {
     auto mistake = names.declare(name, {kind, static_cast<int>(index), {}});
     if (mistake) fail(*mistake);
@@ -42,11 +46,8 @@ struct Builder::Parts {
 
   SXElem entry(const SX& expression, const std::string& where) {
     if (const auto e = scalar(expression)) return *e;
-    fail({ErrorCode::invalid_model,
-          fmt::format("{}: expected a scalar, found a {} x {} matrix", where, expression.size1(), expression.size2()),
-          "state the entries one by one",
-          {},
-          {}});
+    refuse(fmt::format("{}: expected a scalar, found a {} x {} matrix", where, expression.size1(), expression.size2()),
+           "state the entries one by one");
     return SXElem(0.0);
   }
 
@@ -58,7 +59,7 @@ struct Builder::Parts {
       if (result) return SX(*result);
       fail(result.error());
     } catch (const std::exception& exception) {
-      fail({ErrorCode::invalid_model, fmt::format("CasADi refused an expression: {}", exception.what()), "", {}, {}});
+      refuse(fmt::format("CasADi refused an expression: {}", exception.what()), "");
     }
     return SX(0.0);
   }
@@ -110,17 +111,10 @@ struct Builder::Parts {
     if (mode.indicator && mode.name.empty()) mode.name = fmt::format("mode{}", known->modes.size() + 1);
     for (const auto& other : known->modes) {
       if (other.indicator.has_value() != mode.indicator.has_value()) {
-        fail({ErrorCode::invalid_model,
-              fmt::format("the group '{}' has modes with conditions and regions by indicator", group),
-              "give all modes of a group the same form, or another group",
-              {},
-              {}});
+        refuse(fmt::format("the group '{}' has modes with conditions and regions by indicator", group),
+               "give all modes of a group the same form, or another group");
       } else if (mode.indicator && other.name == mode.name) {
-        fail({ErrorCode::invalid_model,
-              fmt::format("two modes are named '{}'", mode.name),
-              "rename one of them",
-              {},
-              {}});
+        refuse(fmt::format("two modes are named '{}'", mode.name), "rename one of them");
       }
     }
     known->modes.push_back(std::move(mode));
@@ -131,8 +125,8 @@ struct Builder::Parts {
     for (const auto& [points, radius] : shapes) {
       const bool is_disc = !radius.is_empty();
       if (points.size1() != 2 || points.size2() < 1 || is_disc != (points.size2() == 1)) {
-        const std::string remedy = "a line has 2 x n coordinates, n >= 2, and no radius; a disc 2 x 1 and a radius";
-        fail({ErrorCode::invalid_model, fmt::format("what is drawn has {} coordinates", points.dim()), remedy, {}, {}});
+        refuse(fmt::format("what is drawn has {} coordinates", points.dim()),
+               "a line has 2 x n coordinates, n >= 2, and no radius; a disc 2 x 1 and a radius");
         return false;
       }
       DrawnStatement drawn{.shape = {SX::densify(points), SX()}};
@@ -180,11 +174,7 @@ struct Builder::Parts {
                                          const std::optional<PointMistake>& mistake, FunctionRef<CellTable()> make) {
     if (!mistake) return std::make_shared<const CellTable>(make());
     const std::string point = mistake->point ? fmt::format(", point {}", *mistake->point + 1) : "";
-    fail({ErrorCode::invalid_model,
-          fmt::format("{} '{}'{}: {}", kind, name, point, mistake->message),
-          mistake->remedy,
-          {},
-          {}});
+    refuse(fmt::format("{} '{}'{}: {}", kind, name, point, mistake->message), mistake->remedy);
     return nullptr;
   }
 
@@ -219,11 +209,8 @@ SX Builder::parameter(const std::string& name, double value) {
   auto& parameters = parts_->statement.parameters;
   if (!parts_->declare(name, NameKind::parameter, parameters.size())) return SX(0.0);
   if (!std::isfinite(value)) {
-    parts_->fail({ErrorCode::invalid_model,
-                  fmt::format("the parameter '{}' is {}, not a finite number", name, value),
-                  "check where its value comes from",
-                  {},
-                  {}});
+    parts_->refuse(fmt::format("the parameter '{}' is {}, not a finite number", name, value),
+                   "check where its value comes from");
   }
   const SX symbol = parts_->symbol(
       name, {.kind = VariableKind::parameter, .index = static_cast<int>(parameters.size()), .value = value});
@@ -339,18 +326,14 @@ void Builder::dynamics(const std::string& state, const SX& rate) {
   auto* entry = parts_->find(parts_->statement.states, state, NameKind::state);
   if (entry == nullptr) return;
   if (entry->dynamics) {
-    parts_->fail({ErrorCode::invalid_model,
-                  fmt::format("the state '{}' has two right-hand sides", state),
-                  "keep one of them, or add their sum",
-                  {},
-                  {}});
+    parts_->refuse(fmt::format("the state '{}' has two right-hand sides", state), "keep one of them, or add their sum");
   }
   entry->dynamics = e;
 }
 
 void Builder::mechanics(const Mechanics& mechanics) {
   if (parts_->mechanics) {
-    parts_->fail({ErrorCode::invalid_model, "mechanics() was called twice", "state one mechanical system", {}, {}});
+    parts_->refuse("mechanics() was called twice", "state one mechanical system");
     return;
   }
   MechanicsStatement stated{.mass = mechanics.mass,
@@ -367,12 +350,9 @@ void Builder::mechanics(const Mechanics& mechanics) {
   const auto n = static_cast<casadi_int>(stated.positions.size());
   if (mechanics.mass.is_empty()) stated.mass = SX::eye(n);
   if (stated.velocities.size() != stated.positions.size() || stated.mass.size1() != n || stated.mass.size2() != n) {
-    parts_->fail({ErrorCode::invalid_model,
-                  fmt::format("{} positions, {} velocities and a mass matrix of {} x {}", n, stated.velocities.size(),
-                              stated.mass.size1(), stated.mass.size2()),
-                  "every position has a velocity, and the mass matrix a row and a column for each",
-                  {},
-                  {}});
+    parts_->refuse(fmt::format("{} positions, {} velocities and a mass matrix of {} x {}", n, stated.velocities.size(),
+                               stated.mass.size1(), stated.mass.size2()),
+                   "every position has a velocity, and the mass matrix a row and a column for each");
     return;
   }
   stated.force = SX::zeros(n, 1);

@@ -282,7 +282,7 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
 
   auto integration = *integration_or;
   const bool passes_on = observers.on_part && options.method == Method::event && options.event.trajectories == 1 &&
-                         system.contacts.empty();
+                         system.contacts.empty() && system.drawing.empty();
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
     const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -84,5 +85,7 @@ struct Recording {
   /// The last row; there must be one.
   [[nodiscard]] result::Final last(const model::System& system) const;
 };
+
+using TakeRecording = std::function<void(Recording)>;
 
 }  // namespace saltus::event_integrator

@@ -189,7 +189,7 @@ bool Run::begin() {
   return true;
 }
 
-CompactIntegration Run::to_end(const StepObserver& observer, const std::function<void(Recording)>& take) {
+CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording& take) {
   if (begin()) {
     while (outcome_.running && here_.t < options_.until) {
       contacts_.forget_impulses(here_.x);

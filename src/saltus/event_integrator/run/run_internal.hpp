@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -65,7 +64,7 @@ class Run {
 
   /// Runs to the end, or until the observer, which is called behind every step, asks to stop.
   /// @param take  gets rows and events when there are many; the result has the last ones. May be empty.
-  CompactIntegration to_end(const StepObserver& observer, const std::function<void(Recording)>& take = {});
+  CompactIntegration to_end(const StepObserver& observer, const TakeRecording& take = {});
 
  private:
   enum class Step { taken, shortened, failed };
