@@ -50,6 +50,7 @@ class Builder:
         self._hysteresis: list[dict[str, typing.Any]] = []
         self._contacts: list[dict[str, typing.Any]] = []
         self._mechanics: dict[str, typing.Any] = {}
+        self._optimize: dict[str, typing.Any] = {}
 
     # Names ---------------------------------------------------------------------------------------------------------
 
@@ -57,9 +58,18 @@ class Builder:
         """A constant that ``set`` may change."""
         return self._declare("parameters", name, self._own(value))
 
-    def state(self, name: str, initial: Operand, *, lower: Operand = None, upper: Operand = None) -> Expression:
-        """A state with its initial value; bounds matter to optimisation only."""
-        return self._declare("states", name, self._bounded(initial, lower, upper))
+    def state(
+        self,
+        name: str,
+        initial: Operand,
+        *,
+        lower: Operand = None,
+        upper: Operand = None,
+        unit: str | None = None,
+        label: str | None = None,
+    ) -> Expression:
+        """A state with its initial value; bounds matter to optimisation only. `unit` and `label` are for axes."""
+        return self._declare("states", name, self._bounded(initial, lower, upper, _given({"unit": unit, "label": label})))
 
     def control(self, name: str, initial: Operand = 0, *, lower: Operand = None, upper: Operand = None) -> Expression:
         """A control, constant unless it has an :meth:`input`."""
@@ -236,6 +246,26 @@ class Builder:
         }
         self._contacts.append(_given(entry))
 
+    def optimal_control(self, **problem: typing.Any) -> None:
+        """What is to be optimised, with the keys of [optimize]: expressions, conditions, lists and dicts of them.
+
+        >>> m = saltus.Builder("car")
+        >>> q, v, u = m.state("q", 0), m.state("v", 0), m.control("u", lower=-1, upper=1)
+        >>> m.rate(q, v)
+        >>> m.rate(v, u)
+        >>> m.optimal_control(
+        ...     horizon={"free": True, "initial": 2.5, "lower": 1, "upper": 5}, minimize_time=True, control_intervals=4,
+        ...     terminal_constraints=[q == 1, v == 0],
+        ... )
+        >>> round(m.optimize().optimization["objective"], 6)
+        2.0
+        """
+        if self._optimize:
+            raise refuse("the problem of optimal control is stated twice", "state all of its keys at once")
+        if not problem:
+            raise refuse("the problem of optimal control has no keys", "e.g. horizon=1, objective=x**2")
+        self._optimize = {name: self._own_all(value) for name, value in problem.items()}
+
     # What becomes of it --------------------------------------------------------------------------------------------
 
     def to_toml(self) -> str:
@@ -260,6 +290,8 @@ class Builder:
         parts.extend(f"[tables.{name}]\n{_lines(table)}" for name, table in self._parts["tables"].items())
         if self._inputs:
             parts.append(f"[simulate]\n{_lines({'inputs': self._inputs})}")
+        if self._optimize:
+            parts.append(f"[optimize]\n{_lines(self._optimize)}")
         return "\n".join(parts)
 
     def model(self) -> Model:
@@ -274,6 +306,12 @@ class Builder:
     def simulate(self, until: float | None = None, **options: typing.Any) -> Result:
         """:meth:`Model.simulate` of :meth:`model`."""
         return self.model().simulate(until, **options)
+
+    def optimize(self, **options: typing.Any) -> Result:
+        """:meth:`Model.optimize` of :meth:`model`, whose problem is :meth:`optimal_control`."""
+        if not self._optimize:
+            raise refuse("no problem of optimal control is stated", "state it: m.optimal_control(horizon=…, …)")
+        return self.model().optimize(**options)
 
     def sweep(self, **arguments: typing.Any) -> Sweep:
         """:meth:`Model.sweep` of :meth:`model`."""
@@ -313,11 +351,20 @@ class Builder:
         owner_of(Expression("", owner=self), made)
         return made
 
-    def _bounded(self, initial: Operand, lower: Operand, upper: Operand) -> typing.Any:
-        if lower is None and upper is None:
+    def _bounded(
+        self, initial: Operand, lower: Operand, upper: Operand, words: typing.Mapping[str, str] = {}
+    ) -> typing.Any:
+        if lower is None and upper is None and not words:
             return self._own(initial)
         given = _given({"initial": initial, "lower": lower, "upper": upper})
-        return {name: self._own(value) for name, value in given.items()}
+        return {**{name: self._own(value) for name, value in given.items()}, **words}
+
+    def _own_all(self, value: typing.Any) -> typing.Any:
+        if isinstance(value, typing.Mapping):
+            return {name: self._own_all(entry) for name, entry in value.items()}
+        if isinstance(value, (list, tuple)):
+            return [self._own_all(entry) for entry in value]
+        return self._own(value) if isinstance(value, Expression) else value
 
     def _name_in(self, part: str, name: Expression | str) -> str:
         text = name.text if isinstance(name, Expression) else name

@@ -25,6 +25,9 @@ class Event:
     alpha_after: Floats | None
     regions_before: list[list[str]] | None
     regions_after: list[list[str]] | None
+    contact_modes_before: list[str]
+    contact_modes_after: list[str]
+    impulse: list[list[float]] | None
     x: Floats
     x_after: Floats
     unique: bool | None

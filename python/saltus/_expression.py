@@ -138,7 +138,7 @@ class Expression:
             raise refuse(
                 f"Python cannot decide whether {self.text} holds: that changes during the simulation",
                 "write saltus.if_(condition, a, b) for `if`, & | ~ for `and or not`, (a < x) & (x < b) for a < x < b, "
-                "saltus.max and saltus.min for max and min",
+                "saltus.max, saltus.min and saltus.sign for those of Python and numpy",
             )
         raise refuse(f"{self.text} is no condition", "compare it: x > 0")
 
@@ -263,6 +263,7 @@ exp = _function("exp", 1, "The exponential.")
 log = _function("log", 1, "The natural logarithm.")
 log10 = _function("log10", 1, "The logarithm to base 10.")
 sqrt = _function("sqrt", 1, "The square root.")
+pow = _function("pow", 2, "The first to the power of the second.")
 hypot = _function("hypot", 2, "sqrt(a^2 + b^2).")
 step = _function("step", 1, "1 where e > 0, 0 where e < 0, between them on the surface e = 0.")
 sign = _function("sign", 1, "1 where e > 0, -1 where e < 0, between them on the surface e = 0.")

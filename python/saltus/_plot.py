@@ -17,7 +17,12 @@ MARKS = {
     "leave_sliding": ("<", SLIDING),
     "change_sliding": ("D", SLIDING),
     "jump": ("o", "#7570b3"),
+    "impact": ("v", "#7570b3"),
     "accumulation": ("*", "#e7298a"),
+    "contact": ("_", "#666666"),
+    "lift_off": ("x", "#666666"),
+    "stick": ("s", SLIDING),
+    "slip": ("P", SLIDING),
     "user": ("^", "#1b9e77"),
 }
 
@@ -31,15 +36,18 @@ def _matplotlib() -> typing.Any:
 
 def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typing.Any:
     """A row of axes for every name; sliding is shaded, every event marked at its value."""
+    _need_rows(r)
     pyplot = _matplotlib()
     wanted = list(names) if names is not None else [*r.states, *r.controls, *r.output_names]
     columns = {name: r[name] for name in wanted}
+    if axes is not None and len(getattr(axes, "flat", axes if isinstance(axes, (list, tuple)) else [axes])) != len(wanted):
+        raise ValueError(f"axes: expected {len(wanted)} of matplotlib, one for each of {', '.join(wanted)}")
     if axes is None:
         _, axes = pyplot.subplots(
             len(wanted), 1, sharex=True, squeeze=False, figsize=(8, 1.2 + 1.4 * len(wanted)), layout="constrained"
         )
         axes = axes[:, 0]
-    axes = list(getattr(axes, "flat", [axes]))
+    axes = list(getattr(axes, "flat", axes if isinstance(axes, (list, tuple)) else [axes]))
     for axis, (name, column) in zip(axes, columns.items(), strict=True):
         for begin, end in sliding_spans(r):
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
@@ -50,6 +58,14 @@ def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typ
     axes[0].set_title(r.model)
     axes[-1].set_xlabel("t")
     return axes
+
+
+def _need_rows(r: Result) -> None:
+    if len(r.t) < 2:
+        raise ValueError(
+            'this result has no trajectory to draw: of a sweep ask for it with keep="trajectory", or simulate its '
+            "parameters once more"
+        )
 
 
 def _mark_events(axis: typing.Any, r: Result, column: typing.Any) -> None:
@@ -65,6 +81,7 @@ def _row_before(r: Result, t: float) -> int:
 
 def phase(r: Result, x: str, y: str, axis: typing.Any) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
+    _need_rows(r)
     pyplot = _matplotlib()
     if axis is None:
         _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")

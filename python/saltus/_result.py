@@ -179,6 +179,8 @@ class Result:
     def __getitem__(self, name: str) -> Array:
         """A column by its name: ``"t"``, a state, a control, an output, ``"alpha(slip)"`` or ``"mode(slip)"``."""
         columns = self._columns
+        if not isinstance(name, str):
+            raise TypeError(f"r[{name!r}]: a column is taken by its name, e.g. r['t']; a row of all states is r.x[i]")
         if name not in columns:
             raise _unknown(name, list(columns))
         block, index = columns[name]

@@ -34,13 +34,15 @@ def text_of(value: Value) -> str:
         return repr(float(value))
     if isinstance(value, np.ndarray) and value.ndim == 0:
         return text_of(value.item())
-    if isinstance(value, (list, tuple, np.ndarray)):
+    if is_list(value) or isinstance(value, np.ndarray):
         return "[" + ", ".join(text_of(entry) for entry in value) + "]"
     raise TypeError(f"a number, a text or a list of numbers is expected, found {type(value).__name__}")
 
 
 def settings_of(values: typing.Mapping[str, Value] | None) -> list[str]:
     """NAME=VALUE of `set`; tables inside become dotted names."""
+    if values is not None and not isinstance(values, typing.Mapping):
+        raise TypeError(f'set={values!r}: expected a dict, e.g. set={{"mu": 0.5}}')
     return [f"{name}={text_of(value)}" for name, value in _flat(values or {})]
 
 
@@ -87,7 +89,9 @@ def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], l
 
 def is_list(value: Value) -> bool:
     """Whether a keyword has several values."""
-    return isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim == 1)
+    if isinstance(value, (str, bytes, typing.Mapping)) or np.ndim(value) != 1:
+        return False
+    return isinstance(value, (typing.Sequence, np.ndarray)) or hasattr(value, "__array__")
 
 
 def sweep_name(name: str, method: str) -> str:

@@ -10,11 +10,13 @@ if typing.TYPE_CHECKING:
     from ._result import Result
 
 Array = np.ndarray
+#: Kinds of events at which states may jump.
+JUMPS = frozenset({"jump", "impact", "accumulation"})
 
 
 def broken_at_jumps(r: Result, *columns: Array) -> list[Array]:
     """The columns with a NaN between the two rows of every jump, so that no line joins them."""
-    jumps = sorted({event.t for event in r.events if event.kind == "jump"})
+    jumps = sorted({event.t for event in r.events if event.kind in JUMPS})
     if not jumps:
         return list(columns)
     # Behind the first row of a time: the other rows of it lie on the other side.

@@ -75,6 +75,12 @@ nb::object array_of(const std::optional<std::vector<double>>& values) {
 
 std::string text_of(std::string_view view) { return std::string(view); }
 
+std::vector<std::string> words_of(const std::vector<result::ContactMode>& modes) {
+  std::vector<std::string> words;
+  for (const auto mode : modes) words.emplace_back(result::name(mode));
+  return words;
+}
+
 void add_event(nb::module_& module) {
   nb::class_<result::Alternative>(module, "Alternative", "A continuation that was possible at an event.")
       .def_ro("mode", &result::Alternative::mode)
@@ -91,6 +97,9 @@ void add_event(nb::module_& module) {
       .def_prop_ro("alpha_after", [](const Event& self) { return array_of(self.alpha_after); })
       .def_ro("regions_before", &Event::regions_before)
       .def_ro("regions_after", &Event::regions_after)
+      .def_prop_ro("contact_modes_before", [](const Event& self) { return words_of(self.contact_modes_before); })
+      .def_prop_ro("contact_modes_after", [](const Event& self) { return words_of(self.contact_modes_after); })
+      .def_ro("impulse", &Event::impulse)
       .def_prop_ro("x", [](const Event& self) { return array_of(self.x); })
       .def_prop_ro("x_after", [](const Event& self) { return array_of(self.x_after); })
       .def_ro("unique", &Event::unique)

@@ -261,3 +261,25 @@ def test_a_builder_is_a_model_in_all_it_does():
     assert m.sweep(k=[1, 2], until=1).results[1].final["x"] == pytest.approx(np.exp(-2), rel=1e-6)
     assert "x' = -k*x" in m.check()
     assert "dot{x}" in m._repr_html_()
+
+
+def test_a_problem_of_optimal_control():
+    m = saltus.Builder("car")
+    q, v = m.state("q", 0, unit="m", label="way"), m.state("v", 0)
+    u = m.control("u", lower=-1, upper=1)
+    m.rate(q, v)
+    m.rate(v, u)
+    refused(m.optimize, "no problem", "m.optimal_control")
+    refused(m.optimal_control, "no keys")
+    horizon = {"free": True, "initial": 2.5, "lower": 1, "upper": 5}
+    m.optimal_control(horizon=horizon, minimize_time=True, control_intervals=4, terminal_constraints=[q == 1, v == 0])
+    refused(lambda: m.optimal_control(horizon=1), "twice")
+    refused(lambda: saltus.Builder("other").optimal_control(objective=q), "another builder")
+    found = m.optimize().require()
+    assert abs(found.optimization["horizon"] - 2) < 1e-6
+    assert 'unit = "m"' in m.to_toml()
+
+
+def test_powers_are_the_language_s(m):
+    x = saltus.Expression("x", owner=m)
+    assert saltus.pow(x, 3).text == "pow(x,3)"

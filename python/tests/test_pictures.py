@@ -110,3 +110,23 @@ def test_what_is_not_installed_is_told(slip, monkeypatch):
     monkeypatch.setattr(importlib, "import_module", without)
     with pytest.raises(ImportError, match=r"pip install 'saltus\[data\]'"):
         slip.frame()
+
+
+def test_contacts_are_seen():
+    r = saltus.catalogue("sliding-ball").simulate()
+    impact = next(event for event in r.events if event.kind == "impact")
+    assert impact.contact_modes_before != impact.contact_modes_after
+    assert len(impact.impulse) == len(impact.contact_modes_after) and impact.impulse[0][0] > 0
+    curve = r.plot(["vz"])[0].lines[0]
+    assert np.isnan(curve.get_ydata()).any()
+
+
+def test_a_result_without_rows_is_told(slip):
+    run = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5, keep="events").results[0]
+    for draw in (run.plot, lambda: run.phase("q", "v")):
+        with pytest.raises(ValueError, match='keep="trajectory"'):
+            draw()
+    with pytest.raises(ValueError, match="one for each of"):
+        slip.plot(axes=[1])
+    with pytest.raises(TypeError, match="by its name"):
+        slip[0]

@@ -232,3 +232,9 @@ def test_the_page_of_a_sweep(tool, tmp_path):
     assert data["command"] == "saltus simulate stick-slip --until 2"
     assert not re.search(r"(src|href)=", page)
     assert ".html" in run_tool(tool, tmp_path, "stick-slip", "--over", "belt=1,2", "--report", "p.txt", code=2)
+
+
+def test_lists_of_any_kind_are_swept(slip):
+    assert slip.sweep(until=range(1, 4)).table["run"].tolist() == [1, 2, 3]
+    with pytest.raises(TypeError, match="expected a dict"):
+        slip.simulate(set=[("belt", 1)])

@@ -240,6 +240,13 @@ until = 9
             _, err = self.run_tool("simulate", "m.toml", code=2)
             self.assertIn(words, err)
 
+    def test_check_says_how_bodies_move_and_touch(self):
+        (self.folder / "m.toml").write_text(BALL, encoding="utf-8")
+        out, _ = self.run_tool("check", "m.toml", code=0)
+        self.assertIn("vz' = -d(10 * z)/dz", out)
+        self.assertIn("contacts (1)", out)
+        self.assertIn("ground: gap z, tangent { x = 1 }, friction mu, restitution 0", out)
+
     def test_a_slip_that_turns_around_is_told(self):
         """Times of a Taylor series of degree 40 that shares nothing with the engine."""
         rod = (pathlib.Path(__file__).parents[2] / "models/falling-rod.toml").read_text(encoding="utf-8")

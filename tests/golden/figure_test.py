@@ -32,6 +32,7 @@ class Figure(tool.ToolTest):
                                 (["--figure", "a.svg", "--phase", "q,w"], "no column 'w'"),
                                 (["--figure", "a.svg", "--phase", "q"], "two columns"),
                                 (["--figure", "none/a.svg"], "none"),
+                                (["r.json", "--figure", "a.svg"], "draws one result"),
                                 (["--phase", "q,v"], "--figure")):
             _, err = self.run_tool("report", "r.json", *arguments, code=2)
             self.assertIn(part, err)

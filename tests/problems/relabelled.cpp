@@ -82,7 +82,8 @@ void relabel(io::ModelFile& file, const std::vector<model::Override>& overrides,
 
 result::Result in_original_words(result::Result result, const Relabelling& relabelling,
                                  const std::vector<std::string>& surfaces) {
-  for (result::Event& event : result.events) {
+  std::vector<result::Event> events = result.events;
+  for (result::Event& event : events) {
     for (std::string& surface : event.surfaces) {
       if (surface.rfind(prefix, 0) == 0) surface = surfaces.at(std::stoul(surface.substr(std::string(prefix).size())));
     }
@@ -101,6 +102,7 @@ result::Result in_original_words(result::Result result, const Relabelling& relab
       arrange_alpha(other.alpha, relabelling);
     }
   }
+  result.events = events;
   arrange(result.final.x, relabelling.states);
   arrange_mode(result.final.mode, relabelling);
   arrange_alpha(result.final.alpha, relabelling);

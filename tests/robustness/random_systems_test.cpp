@@ -158,7 +158,7 @@ TEST(RandomSystemsJudge, FindsEventsThatAreFoundTwice) {
       const auto here = static_cast<std::ptrdiff_t>(row) + 1;
       const State alpha = good.trajectory.alpha[like];
       const result::Mode mode = good.trajectory.mode[like];
-      const auto put = [&](const auto& row) { return [&](auto& list) { list.insert(list.begin() + here, row); }; };
+      const auto put = [&](const auto& one) { return [&](auto& list) { list.insert(list.begin() + here, one); }; };
       rows.t.insert(rows.t.begin() + here, t);
       change_rows<State>(rows.x, put(at));
       change_rows<result::Mode>(rows.mode, put(mode));

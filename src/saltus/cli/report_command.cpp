@@ -82,6 +82,13 @@ ExitCode run_report(const ReportArguments& arguments) {
                    {},
                    {}});
   }
+  if (!arguments.figures.empty() && arguments.results.size() > 1) {
+    return refuse({ErrorCode::invalid_option,
+                   fmt::format("--figure draws one result, and {} are given", arguments.results.size()),
+                   "leave --figure out: the page lays results over each other",
+                   {},
+                   {}});
+  }
   const auto result = io::read_result(arguments.results.front());
   if (!result) return refuse(result.error());
   if (auto drawn = write_figures(arguments, *result); !drawn) return refuse(drawn.error());

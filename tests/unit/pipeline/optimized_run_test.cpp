@@ -29,7 +29,7 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& ex
 template <class Rows>
 std::vector<double> column(const Rows& rows, std::size_t number) {
   std::vector<double> values;
-  for (const auto& row : rows) values.push_back(row.at(number));
+  for (const auto& row : rows) values.push_back(row[number]);
   return values;
 }
 

@@ -131,10 +131,10 @@ TEST(Restate, ModesOfNestedFunctionsFollowTheSideTheSolutionIsOn) {
   const auto regular = regularise(built(builder), epsilon);
   ASSERT_TRUE(regular);
   ASSERT_EQ(regular->system.columns.size(), 6u);  // inner: lower, upper; outer for inner = 0, then 1
-  const auto mode_of = [&](const result::Mode& edges) {
+  const auto mode_of = [&](const result::Mode& edges) -> result::Mode {
     result::Trajectory rows{
         .t = {0.0}, .x = {{0, 0}}, .u = {{}}, .alpha = {{}}, .mode = {edges}, .outputs = {{0.5, 0.5}}};
-    std::vector<result::Event> none;
+    result::Events none;
     result::Status status;
     restate(*regular, none, rows, status);
     EXPECT_TRUE(rows.outputs.front().empty());

@@ -159,6 +159,10 @@ std::string overview_text(const ModelOverview& overview, const std::string& path
   text += heading("equations", overview.equations.size()) + equations_text(overview.equations, "'");
   text +=
       modes_text(overview) + named_text("definitions", overview.definitions) + named_text("outputs", overview.outputs);
+  for (std::size_t i = 0; i < overview.contacts.size(); ++i) {
+    if (i == 0) text += heading("contacts", overview.contacts.size());
+    text += fmt::format("  {}: {}\n", overview.contacts[i].name, overview.contacts[i].text);
+  }
   return text + surfaces_text(overview) + cells_text(overview) + events_text(overview) + jumps_text(overview) +
          inclusion_text(overview);
 }

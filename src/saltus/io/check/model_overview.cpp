@@ -26,19 +26,38 @@ std::vector<OverviewEquation> equations_of(const std::vector<model::NamedExpress
   return equations;
 }
 
-/// q' = v, and for the velocities the forces beside M v'.
+/// q' = v, and for the velocities what is beside M v'.
 void add_motion(const model::MechanicsDescription& mechanics, std::vector<OverviewEquation>& equations) {
-  for (std::size_t i = 0; i < mechanics.positions.size() && i < mechanics.velocities.size(); ++i) {
+  const std::size_t n = std::min(mechanics.positions.size(), mechanics.velocities.size());
+  for (std::size_t i = 0; i < n; ++i) {
     equations.push_back({mechanics.positions[i].name, mechanics.velocities[i].name, {}});
   }
-  for (const auto& velocity : mechanics.velocities) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& velocity = mechanics.velocities[i].name;
     const auto stated = std::find_if(mechanics.force.begin(), mechanics.force.end(),
-                                     [&](const auto& force) { return force.velocity == velocity.name; });
-    const auto force = stated == mechanics.force.end() ? "0" : to_spaced_text(*stated->force);
-    const char* potential = mechanics.potential ? " - grad potential" : "";
-    equations.push_back(
-        {velocity.name, fmt::format("(M^-1 F)[{}], F[{}] = {}{}", velocity.name, velocity.name, force, potential), {}});
+                                     [&](const auto& force) { return force.velocity == velocity; });
+    std::string force = stated == mechanics.force.end() ? "" : to_spaced_text(*stated->force);
+    if (mechanics.potential) {
+      force += fmt::format("{}d({})/d{}", force.empty() ? "-" : " - ", to_spaced_text(*mechanics.potential),
+                           mechanics.positions[i].name);
+    }
+    if (force.empty()) force = "0";
+    const bool has_mass = !mechanics.mass.empty();
+    equations.push_back({velocity, has_mass ? fmt::format("(M^-1 F)[{0}], F[{0}] = {1}", velocity, force) : force, {}});
   }
+}
+
+std::string contact_text(const model::ContactDescription& contact) {
+  std::string text = fmt::format("gap {}", to_spaced_text(*contact.gap));
+  for (const auto& tangent : contact.tangents) {
+    std::vector<std::string> entries;
+    for (const auto& entry : tangent) {
+      entries.push_back(fmt::format("{} = {}", entry.position, to_spaced_text(*entry.value)));
+    }
+    text += fmt::format(", tangent {{ {} }}", fmt::join(entries, ", "));
+  }
+  if (contact.friction) text += fmt::format(", friction {}", to_spaced_text(*contact.friction));
+  return text + fmt::format(", restitution {}", contact.restitution ? to_spaced_text(*contact.restitution) : "0");
 }
 
 std::string remark_of(const model::System& system, std::size_t state) {
@@ -175,6 +194,9 @@ ModelOverview overview_of(const model::Description& description, const model::Sy
   take_quantities(system, captions, overview);
   overview.equations = equations_of(description.dynamics);
   if (description.mechanics) add_motion(*description.mechanics, overview.equations);
+  for (const auto& contact : description.contacts) {
+    overview.contacts.push_back({contact.name, contact_text(contact), {}});
+  }
   overview.modes = modes_of(description);
   overview.definitions = equations_of(description.definitions);
   overview.outputs = equations_of(description.outputs, captions);

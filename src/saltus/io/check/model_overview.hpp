@@ -67,7 +67,8 @@ struct OverviewForm {
 struct ModelOverview {
   std::string name, description;
   std::vector<OverviewQuantity> states, parameters, controls;
-  std::vector<OverviewEquation> equations;  ///< of [dynamics]
+  std::vector<OverviewEquation> equations;  ///< of [dynamics] and [mechanics]
+  std::vector<OverviewEquation> contacts;   ///< gap, tangents, friction, restitution
   std::vector<OverviewMode> modes;
   std::vector<OverviewEquation> definitions, outputs;
   std::vector<OverviewSurface> surfaces;  ///< the columns of a result first and in their order
