@@ -61,7 +61,8 @@ void change_event(result::Result& result, std::size_t number, Change change) {
 
 inline void finish(result::Result& result) {
   const auto& trajectory = result.trajectory;
-  const std::vector<double> outputs = trajectory.outputs.empty() ? std::vector<double>{} : trajectory.outputs.back();
+  std::vector<double> outputs;
+  if (!trajectory.outputs.empty()) outputs = trajectory.outputs.back();
   result.final = {trajectory.t.back(), trajectory.x.back(), trajectory.mode.back(), trajectory.alpha.back(), outputs};
   result.status.time_reached = trajectory.t.back();
   result.statistics = {812, 37, 5904, 0.0031};

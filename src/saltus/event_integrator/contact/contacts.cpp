@@ -44,11 +44,12 @@ double Contacts::force_terms(const ContactPoint& point, double t, const std::vec
   std::vector<double> magnitude(guards_.size()), slope(guards_.size());
   kernel_.scales(t, x.data(), alpha.data(), magnitude.data(), slope.data());
   double largest = 0.0;
-  for (int i = 0; i < point.contacts(); ++i) {
-    const auto& contact = contacts_[at(i)];
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const auto& contact = contacts_[i];
     if (!contact.has_gap || x[at(contact.active)] == 0.0) continue;
     const double force = magnitude[at(kernel_.jump_guard(contact.jump, 0))];
-    if (std::isfinite(force)) largest = std::max(largest, force * point.influence(i, i));
+    const auto row = static_cast<Eigen::Index>(i);
+    if (std::isfinite(force)) largest = std::max(largest, force * point.influence(row, row));
   }
   return largest;
 }
