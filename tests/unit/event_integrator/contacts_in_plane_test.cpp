@@ -85,7 +85,7 @@ TEST(ContactsInPlane, AThrownBallMovesAsInThePlane) {
       EXPECT_EQ(space.final.x[3], 0.0);
       EXPECT_EQ(space.final.x[4], 0.0);
       EXPECT_EQ(space.final.contact_modes, std::vector<ContactMode>{ContactMode::stick});
-      const auto& impulse = space.events[0].impulse->front();
+      const auto impulse = space.events[0].impulse->front();
       ASSERT_EQ(impulse.size(), 3U);
       EXPECT_NEAR(impulse[1], c * plane.events[0].impulse->front()[1], 1e-9);
       EXPECT_NEAR(impulse[2], s * plane.events[0].impulse->front()[1], 1e-9);

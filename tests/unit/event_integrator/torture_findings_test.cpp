@@ -204,7 +204,7 @@ TEST(TortureFindings, LapsOfOneStepEachEndOnTheirSurface) {
     ASSERT_EQ(result.events.size(), 20000U) << result.status.message;
     double largest = 0.0;
     for (std::size_t i = 1; i < result.events.size(); ++i) {
-      const auto& x = result.events[i].x;
+      const auto x = result.events[i].x;
       largest = std::max(largest, std::abs(0.6 * x[0] + 0.8 * x[1] - 0.3));
     }
     // A handful of roundings of terms of 0.3 to 0.8; added up over 20 000 events they were 13 to 790.

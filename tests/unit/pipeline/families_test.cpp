@@ -227,7 +227,7 @@ TEST(Families, OfThreeSurfacesBeginAndEndWhereAModeIsAdmissible) {
   // Of the two roots the one with x' = 0 and y' = 0 for sign(x) = sign(y) = 0.
   const Result* found = nullptr;
   for (const Result& branch : root.branches) {
-    const auto& alpha = branch.events[0].alpha_after;
+    const auto alpha = branch.events[0].alpha_after;
     if (branch.events[0].mode_after == Mode{0, 0, 0} && alpha && std::abs((*alpha)[0] - 0.5) < 1e-6) found = &branch;
   }
   if (root.trajectory.mode[1] == Mode{0, 0, 0}) found = &root;
