@@ -209,7 +209,9 @@ class Contacts(tool.ToolTest):
 
     def test_a_body_that_is_pulled_up_again_and_again_leaves_each_time(self):
         """The force that presses it vanishes where its terms cancel: lift-off is where 20 sin(3 t) = 9.81."""
-        pulled = """[states]
+        pulled = """[model]
+name = "pulled up"
+[states]
 z = 0
 vz = 0
 [mechanics]
@@ -243,7 +245,7 @@ until = 9
     def test_check_says_how_bodies_move_and_touch(self):
         (self.folder / "m.toml").write_text(BALL, encoding="utf-8")
         out, _ = self.run_tool("check", "m.toml", code=0)
-        self.assertIn("vz' = -d(10 * z)/dz", out)
+        self.assertIn("vz' = -d(10*z)/dz", out)
         self.assertIn("contacts (1)", out)
         self.assertIn("ground: gap z, tangent { x = 1 }, friction mu, restitution 0", out)
 

@@ -183,7 +183,7 @@ class TimeFreezing(tool.ToolTest):
         iterations = lambda result: [step["iterations"] for step in result["homotopy"]]
         self.assertNotEqual(iterations(plain), iterations(followed))
         for result in (plain, followed):
-            self.assertEqual(result["events"][0]["kind"], "impact")
+            self.assertIn(result["events"][0]["kind"], ("impact", "contact"))  # it may land softly
             self.assertEqual(set(result["verification"]["penetration"]), {"solution", "simulation"})
             self.assertLess(result["verification"]["penetration"]["solution"], 1e-3)
             self.assertLess(result["verification"]["penetration"]["simulation"], 1e-9)

@@ -22,7 +22,7 @@ using result::Result;
 class ModeCheck {
  public:
   ModeCheck(const RandomSystem& system, const std::vector<bool>& listed, const result::Mode& mode, double rtol)
-      : listed_(listed), mode_(mode), field_(system, mode), rtol_(rtol) {}
+      : listed_(listed), mode_(mode), field_(system, mode_), rtol_(rtol) {}
 
   /// A row of the result: on its surfaces to rounding, with the selections of its own field.
   [[nodiscard]] std::string row(double t, const State& x, const State& alpha) const {
@@ -180,7 +180,7 @@ class ModeCheck {
   }
 
   const std::vector<bool>& listed_;
-  const result::Mode& mode_;
+  const result::Mode mode_;
   OwnField field_;
   double rtol_;
 };

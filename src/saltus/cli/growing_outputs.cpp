@@ -1,6 +1,7 @@
 #include "saltus/cli/growing_outputs.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <utility>
 
@@ -44,7 +45,9 @@ bool GrowingOutputs::add(const result::Result& part) {
   if (files_.empty()) begin();
   bool good = true;
   for (auto& file : files_) {
+    const bool was_good = file->good;
     file->good = file->good && file->parts->add(part);
+    if (was_good && !file->good && file->file) file->file->spoil(errno);
     good = good && file->good;
   }
   const auto& events = part.events;
@@ -69,16 +72,14 @@ Expected<void> GrowingOutputs::finish(const result::Result& rest,
   Expected<void> outcome;
   watch_ = watch;
   for (auto& file : files_) {
+    const bool was_good = file->good;
     file->good = file->good && file->parts->finish(rest);
+    if (was_good && !file->good && file->file) file->file->spoil(errno);
     const bool is_ended = watch_ && !watch_(file->name, file->bytes);
     if (is_ended && file->file) file->file->remove();
     if (is_ended) break;
     if (!file->file) continue;
     auto done = file->file->complete();
-    if (done && !file->good) {
-      done = tl::unexpected(
-          Error{ErrorCode::io_failure, "cannot write all of " + file->name, "is the disk full?", {}, {}});
-    }
     if (!done && outcome) outcome = std::move(done);
   }
   return outcome;

@@ -156,9 +156,7 @@ Expected<void> stream_file(const fs::path& path, Writer writer) {
                  "an earlier file of that name is as it was");
 }
 
-GrowingFile::GrowingFile(const fs::path& path) : target_(target_of(path)), part_(target_) {
-  part_ += ".part";
-}
+GrowingFile::GrowingFile(const fs::path& path) : target_(target_of(path)), part_(target_) { part_ += ".part"; }
 
 bool GrowingFile::is_open() {
   if (number_ < 0 && error_number_ == 0) {
@@ -177,6 +175,10 @@ bool GrowingFile::write(std::string_view piece) {
   return error_number_ == 0;
 }
 
+void GrowingFile::spoil(int error_number) {
+  if (error_number_ == 0) error_number_ = error_number != 0 ? error_number : EIO;
+}
+
 Expected<void> GrowingFile::complete() {
   struct stat old {};
   const bool exists = ::stat(target_.c_str(), &old) == 0;
@@ -186,8 +188,9 @@ Expected<void> GrowingFile::complete() {
     error_number_ = errno;
   }
   if (error_number_ == 0) return {};
+  const std::string part = number_ < 0 ? "" : fmt::format("what was written is in {}; ", part_.string());
   return failure(target_, fmt::format("cannot write: {}", reason(error_number_)),
-                 fmt::format("what was written is in {}; an earlier file of that name is as it was", part_.string()));
+                 part + "an earlier file of that name is as it was");
 }
 
 void GrowingFile::remove() { ::unlink(part_.c_str()); }
@@ -195,25 +198,27 @@ void GrowingFile::remove() { ::unlink(part_.c_str()); }
 SpoolFile::SpoolFile(const fs::path& folder) {
   std::string path = (folder / ".saltus-XXXXXX.tmp").string();
   number_ = ::mkostemps(path.data(), 4, O_CLOEXEC);
-  good_ = number_ >= 0;
-  if (good_) ::unlink(path.c_str());
+  if (number_ < 0) error_number_ = errno;
+  if (number_ >= 0) ::unlink(path.c_str());
 }
 
-SpoolFile::SpoolFile(SpoolFile&& other) noexcept : number_(std::exchange(other.number_, -1)), good_(other.good_) {}
+SpoolFile::SpoolFile(SpoolFile&& other) noexcept
+    : number_(std::exchange(other.number_, -1)), error_number_(other.error_number_) {}
 
 SpoolFile::~SpoolFile() {
   if (number_ >= 0) ::close(number_);
 }
 
 bool SpoolFile::write(std::string_view piece) {
-  good_ = good_ && write_all(number_, piece) == 0;
-  return good_;
+  if (error_number_ == 0) error_number_ = write_all(number_, piece);
+  if (error_number_ != 0) errno = error_number_;
+  return error_number_ == 0;
 }
 
 bool SpoolFile::copy_to(Sink sink) const {
   std::string buffer(std::size_t{1} << 18, '\0');
   off_t place = 0;
-  while (good_) {
+  while (error_number_ == 0) {
     const auto count = ::pread(number_, buffer.data(), buffer.size(), place);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return count == 0;

@@ -25,8 +25,8 @@ using Writer = FunctionRef<bool(Sink)>;
 /// As write_file, of what is written a piece after the other. Of a writer that returns false nothing is left: an
 /// earlier file of that name is as it was.
 [[nodiscard]] Expected<void> stream_file(const std::filesystem::path& path, Writer writer);
-/// A file that grows beside its place, as NAME.part from its first bytes on, and is put there when it is complete: whoever ends the program
-/// before finds in NAME.part what was written.
+/// A file that grows beside its place, as NAME.part from its first bytes on, and is put there when it is complete:
+/// whoever ends the program before finds in NAME.part what was written.
 class GrowingFile {
  public:
   explicit GrowingFile(const std::filesystem::path& path);
@@ -35,6 +35,8 @@ class GrowingFile {
   ~GrowingFile();
   /// False if it could not be written, which complete() tells.
   bool write(std::string_view piece);
+  /// Something of it was lost elsewhere, for the reason of this errno: complete() tells, and puts nothing in its place.
+  void spoil(int error_number);
   /// Flushes it to disk and renames it over its place.
   [[nodiscard]] Expected<void> complete();
   /// Removes it; an earlier file of that name is as it was.
@@ -56,13 +58,14 @@ class SpoolFile {
   SpoolFile(SpoolFile&& other) noexcept;
   SpoolFile& operator=(SpoolFile&&) = delete;
   ~SpoolFile();
+  /// False if it could not be written; errno says why, of the first failure.
   bool write(std::string_view piece);
   /// Hands all of it to a sink, in pieces; false if the sink, or the disk, did not.
   bool copy_to(Sink sink) const;
 
  private:
   int number_ = -1;
-  bool good_ = true;
+  int error_number_ = 0;
 };
 
 /// The whole content of a file, device or pipe; more than `limit` bytes are an error (a device has no end).
