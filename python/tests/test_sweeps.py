@@ -235,6 +235,6 @@ def test_the_page_of_a_sweep(tool, tmp_path):
 
 
 def test_lists_of_any_kind_are_swept(slip):
-    assert slip.sweep(until=range(1, 4)).table["run"].tolist() == [1, 2, 3]
+    assert slip.sweep(belt=range(1, 4), until=1).table["belt"].tolist() == [1, 2, 3]
     with pytest.raises(TypeError, match="expected a dict"):
         slip.simulate(set=[("belt", 1)])

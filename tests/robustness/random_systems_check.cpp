@@ -197,8 +197,19 @@ bool same_state(const State& a, const State& b, double tolerance) {
 /// The same state to the rounding that projection onto a new sliding surface leaves.
 bool same_state(const State& a, const State& b) { return same_state(a, b, 1e-13); }
 
+/// A result with its events as a list: those of a result are made one by one.
+struct ListedResult {
+  explicit ListedResult(const Result& result)
+      : whole(result), events(result.events), trajectory(result.trajectory), status(result.status) {}
+
+  const Result& whole;
+  const std::vector<Event> events;
+  const result::Trajectory& trajectory;
+  const result::Status& status;
+};
+
 /// Rows at an event's time: one with the mode before and one with the mode after it, both with its state.
-std::string rows_of(const Event& event, const Result& result) {
+std::string rows_of(const Event& event, const ListedResult& result) {
   const auto& rows = result.trajectory;
   bool before = !event.mode_before;
   bool after = false;
@@ -211,11 +222,11 @@ std::string rows_of(const Event& event, const Result& result) {
   return before && after ? "" : fmt::format("the event at t = {} has no rows of its modes", event.t);
 }
 
-std::string surfaces_of(const Event& event, const Result& result, const std::vector<bool>& listed) {
+std::string surfaces_of(const Event& event, const ListedResult& result, const std::vector<bool>& listed) {
   if (!event.mode_before) return "";
   for (std::size_t j = 0; j < listed.size(); ++j) {
     const auto& names = event.surfaces;
-    const bool named = std::find(names.begin(), names.end(), result.switching_functions[j]) != names.end();
+    const bool named = std::find(names.begin(), names.end(), result.whole.switching_functions[j]) != names.end();
     const bool changes = listed[j] && (*event.mode_before)[j] != (*event.mode_after)[j];
     if (named != changes) return fmt::format("the event at t = {} is not about s{}", event.t, j);
   }
@@ -254,13 +265,13 @@ Remaining remaining_before(const std::vector<Event>& events, std::size_t k) {
 }
 
 /// The limit of a sequence of switches at t, where they do follow each other faster than any bound.
-bool has_limit(const Result& result, double t) {
+bool has_limit(const ListedResult& result, double t) {
   return std::any_of(result.events.begin(), result.events.end(),
                      [&](const Event& event) { return event.kind == result::EventKind::accumulation && event.t == t; });
 }
 
 /// The same near t, or behind it by what has been extrapolated.
-bool is_near_limit(const Result& result, double t) {
+bool is_near_limit(const ListedResult& result, double t) {
   for (std::size_t k = 1; k < result.events.size(); ++k) {
     if (result.events[k].kind != result::EventKind::accumulation) continue;
     const double after = result.events[k].t - t;
@@ -271,8 +282,8 @@ bool is_near_limit(const Result& result, double t) {
 }
 
 /// The first lap of a solution that spirals out of an intersection is passed in one step, from its closed form.
-bool begins_to_spiral(const Result& result, double t) {
-  const std::vector<Event> events = result.events;
+bool begins_to_spiral(const ListedResult& result, double t) {
+  const auto& events = result.events;
   const auto first =
       std::lower_bound(events.begin(), events.end(), t, [](const Event& e, double at) { return e.t < at; });
   for (auto event = first; event != events.end() && event->t == t; ++event) {
@@ -283,7 +294,7 @@ bool begins_to_spiral(const Result& result, double t) {
 
 /// Whether the switches of a surface at t are part of an accumulation that the run passes, or in which it ends. One
 /// whose laps shrink fast is over where two surfaces are met together: sliding on both.
-bool in_accumulation(const Result& result, double t, std::size_t surface) {
+bool in_accumulation(const ListedResult& result, double t, std::size_t surface) {
   if (is_near_limit(result, t)) return true;
   const auto ends_it = [&](const Event& event) {
     if (!event.mode_after || event.t < t || event.t - t > 1e-9 || (*event.mode_after)[surface] != 0) return false;
@@ -324,8 +335,8 @@ std::string repetition(const std::vector<Event>& events, std::size_t i) {
   return "";
 }
 
-std::string events_of(const RandomSystem& system, const Result& result, const std::vector<bool>& listed) {
-  const std::vector<Event> events = result.events;
+std::string events_of(const RandomSystem& system, const ListedResult& result, const std::vector<bool>& listed) {
+  const auto& events = result.events;
   std::vector<std::optional<std::size_t>> last(listed.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
@@ -343,7 +354,7 @@ std::string events_of(const RandomSystem& system, const Result& result, const st
       }
       if (from == to) continue;
       if (last[j] && event.t - events[*last[j]].t < 1e-9 && !in_accumulation(result, event.t, j) &&
-          !shrinks_from_lap_to_lap(events, *last[j], i) && !is_unresolved(system, listed, result, *last[j], i)) {
+          !shrinks_from_lap_to_lap(events, *last[j], i) && !is_unresolved(system, listed, result.whole, *last[j], i)) {
         const bool back = *events[*last[j]].mode_before == *event.mode_after;
         return fmt::format("s{} changes {} at t = {}", j, back ? "there and back" : "twice", event.t);
       }
@@ -361,7 +372,7 @@ bool same_where_listed(const result::Mode& a, const result::Mode& b, const std::
 }
 
 /// What the state may move by at a time: nothing, or from the last computed lap to the limit that is extrapolated.
-double step_at(const Result& result, double t) {
+double step_at(const ListedResult& result, double t) {
   double step = 1e-13;
   for (std::size_t k = 1; k < result.events.size(); ++k) {
     if (result.events[k].kind != result::EventKind::accumulation || result.events[k].t != t) continue;
@@ -370,7 +381,7 @@ double step_at(const Result& result, double t) {
   return step;
 }
 
-std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& listed, const Result& result,
+std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& listed, const ListedResult& result,
                           double rtol) {
   const auto& rows = result.trajectory;
   // Once for all rows: there may be a hundred thousand events.
@@ -442,8 +453,9 @@ std::string complaint(const RandomSystem& system, const std::vector<bool>& liste
   if (result.status.termination == Termination::completed && result.trajectory.t.back() != result.final.t) {
     return "the last row is not the end";
   }
-  if (auto problem = events_of(system, result, listed); !problem.empty()) return problem;
-  return trajectory_of(system, listed, result, rtol);
+  const ListedResult run(result);
+  if (auto problem = events_of(system, run, listed); !problem.empty()) return problem;
+  return trajectory_of(system, listed, run, rtol);
 }
 
 }  // namespace saltus::robustness
