@@ -15,7 +15,9 @@ namespace saltus::model {
   for (std::size_t i = 0; i < point.size(); ++i) {
     const auto& variable = tape.variables()[i];
     const bool is_state = variable.kind == VariableKind::state || variable.kind == VariableKind::discrete;
-    if (is_state) point[i] = statement.states[at(variable.index)].initial;
+    // The tape of a Builder that is built again has states of contacts that this statement has not made yet.
+    const bool is_stated = is_state && at(variable.index) < statement.states.size();
+    if (is_stated) point[i] = statement.states[at(variable.index)].initial;
   }
   TapeValues values;
   evaluate(tape, tape.cone(std::span(&node, 1), Links::through_alpha), point, values);
