@@ -40,14 +40,14 @@ def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typ
     pyplot = _matplotlib()
     wanted = list(names) if names is not None else [*r.states, *r.controls, *r.output_names]
     columns = {name: r[name] for name in wanted}
-    if axes is not None and len(getattr(axes, "flat", axes if isinstance(axes, (list, tuple)) else [axes])) != len(wanted):
-        raise ValueError(f"axes: expected {len(wanted)} of matplotlib, one for each of {', '.join(wanted)}")
     if axes is None:
         _, axes = pyplot.subplots(
             len(wanted), 1, sharex=True, squeeze=False, figsize=(8, 1.2 + 1.4 * len(wanted)), layout="constrained"
         )
         axes = axes[:, 0]
     axes = list(getattr(axes, "flat", axes if isinstance(axes, (list, tuple)) else [axes]))
+    if len(axes) != len(wanted):
+        raise ValueError(f"axes: expected {len(wanted)} of matplotlib, one for each of {', '.join(wanted)}")
     for axis, (name, column) in zip(axes, columns.items(), strict=True):
         for begin, end in sliding_spans(r):
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)

@@ -41,13 +41,17 @@ void GrowingOutputs::begin() {
   }
 }
 
+/// What was just written of a file; errno says why not all of it was.
+void GrowingOutputs::note(File& file, bool good) {
+  file.good = good;
+  if (!good && file.file) file.file->spoil(errno);
+}
+
 bool GrowingOutputs::add(const result::Result& part) {
   if (files_.empty()) begin();
   bool good = true;
   for (auto& file : files_) {
-    const bool was_good = file->good;
-    file->good = file->good && file->parts->add(part);
-    if (was_good && !file->good && file->file) file->file->spoil(errno);
+    if (file->good) note(*file, file->parts->add(part));
     good = good && file->good;
   }
   const auto& events = part.events;
@@ -72,9 +76,7 @@ Expected<void> GrowingOutputs::finish(const result::Result& rest,
   Expected<void> outcome;
   watch_ = watch;
   for (auto& file : files_) {
-    const bool was_good = file->good;
-    file->good = file->good && file->parts->finish(rest);
-    if (was_good && !file->good && file->file) file->file->spoil(errno);
+    if (file->good) note(*file, file->parts->finish(rest));
     const bool is_ended = watch_ && !watch_(file->name, file->bytes);
     if (is_ended && file->file) file->file->remove();
     if (is_ended) break;

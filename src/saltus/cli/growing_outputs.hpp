@@ -51,6 +51,7 @@ class GrowingOutputs {
   };
   void begin();
   bool pass(File& file, std::string_view piece);
+  static void note(File& file, bool good);
 
   std::vector<std::string> names_;
   std::string format_;

@@ -11,6 +11,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/root_limits_internal.hpp"
+#include "saltus/model/graph/interpret.hpp"
 
 // Needs names that only the headers above bring.
 #include <casadi/core/calculus.hpp>
@@ -139,26 +140,14 @@ class Limiter {
 
   /// f at a point with the roots that were found left out, on one side of a surface.
   [[nodiscard]] std::vector<double> without_roots(std::size_t point, std::size_t surface, double selection) const {
-    std::vector<double> work(work_.size()), f(column_.size());
-    for (casadi_int k = 0; k < tape_.n_instructions(); ++k) {
-      const auto operation = tape_.instruction_id(k);
-      const auto in = tape_.instruction_input(k);
-      const auto out = tape_.instruction_output(k);
-      if (operation == casadi::OP_OUTPUT) {
-        f[at(out[1])] = work[at(in[0])];
-      } else if (operation == casadi::OP_CONST) {
-        work[at(out[0])] = tape_.instruction_constant(k);
-      } else if (operation == casadi::OP_INPUT) {
-        const bool is_it = in[0] == 3 && at(in[1]) == surface;
-        work[at(out[0])] = is_it ? selection : numbers_[at(in[0])][at(in[1])][point];
-      } else {
-        const double a = work[at(in.front())], b = work[at(in.back())];
-        double value = 0.0;
-        casadi::casadi_math<double>::fun(static_cast<unsigned char>(operation), a, b, value);
-        work[at(out[0])] = std::binary_search(roots_.begin(), roots_.end(), k) ? 0.0 : value;
-      }
-    }
-    return f;
+    const auto input = [&](casadi_int argument, casadi_int entry) {
+      const bool is_it = argument == 3 && at(entry) == surface;
+      return is_it ? selection : numbers_[at(argument)][at(entry)][point];
+    };
+    const auto operate = [&](casadi_int k, casadi_int operation, double a, double b) {
+      return std::binary_search(roots_.begin(), roots_.end(), k) ? 0.0 : model::operated(operation, a, b);
+    };
+    return model::interpret<double>(tape_, input, operate);
   }
 
   /// Of each of the functions that have roots, whether d psi_j/dt jumps on its surface and is zero on neither side.

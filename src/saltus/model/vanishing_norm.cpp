@@ -3,45 +3,36 @@
 #include <cmath>
 #include <set>
 
-#include <casadi/core/calculus.hpp>
-#include <casadi/core/function.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/graph/interpret.hpp"
 
 namespace saltus::model {
 namespace {
 
 struct NormValue {
   double value = 0.0;
-  std::set<int> states;  ///< those in its argument
+  std::set<int> states = {};  ///< those in its argument
 };
 
 /// hypot and sqrt of states in the right-hand side, in the order of its evaluation.
 std::vector<NormValue> norms_at(const casadi::Function& rate, const std::vector<std::vector<double>>& arguments) {
-  std::vector<NormValue> work(rate.sz_w()), norms;
-  for (casadi_int k = 0; k < rate.n_instructions(); ++k) {
-    const casadi_int operation = rate.instruction_id(k);
-    if (operation == casadi::OP_OUTPUT) continue;
-    const auto in = rate.instruction_input(k);
-    auto& out = work[at(rate.instruction_output(k)[0])];
-    NormValue result;
-    if (operation == casadi::OP_CONST) {
-      result.value = rate.instruction_constant(k);
-    } else if (operation == casadi::OP_INPUT) {
-      result.value = arguments[at(in[0])][at(in[1])];
-      if (in[0] == 1) result.states.insert(static_cast<int>(in[1]));
-    } else {
-      const NormValue &first = work[at(in[0])], &second = work[at(in.back())];
-      casadi::casadi_math<double>::fun(static_cast<unsigned char>(operation), first.value, second.value, result.value);
-      result.states = first.states;
-      result.states.insert(second.states.begin(), second.states.end());
-      const bool is_norm = operation == casadi::OP_HYPOT || operation == casadi::OP_SQRT;
-      if (is_norm && result.states.size() > 1) norms.push_back(result);
-    }
-    out = std::move(result);
-  }
+  std::vector<NormValue> norms;
+  const auto input = [&](casadi_int argument, casadi_int entry) {
+    NormValue value{arguments[at(argument)][at(entry)], {}};
+    if (argument == 1) value.states.insert(static_cast<int>(entry));
+    return value;
+  };
+  const auto operate = [&](casadi_int, casadi_int operation, const NormValue& first, const NormValue& second) {
+    NormValue result{operated(operation, first.value, second.value), first.states};
+    result.states.insert(second.states.begin(), second.states.end());
+    const bool is_norm = operation == casadi::OP_HYPOT || operation == casadi::OP_SQRT;
+    if (is_norm && result.states.size() > 1) norms.push_back(result);
+    return result;
+  };
+  static_cast<void>(interpret<NormValue>(rate, input, operate));
   return norms;
 }
 

@@ -8,6 +8,7 @@
 #include <casadi/core/function.hpp>
 #include <fmt/format.h>
 
+#include "saltus/model/graph/interpret.hpp"
 #include "saltus/model/mechanics/contacts_internal.hpp"
 #include "saltus/model/statement/start_values_internal.hpp"
 #include "saltus/model/written_friction_internal.hpp"
@@ -56,23 +57,10 @@ bool have_roots(std::vector<SXElem> open) {
 class NormsReplaced {
  public:
   explicit NormsReplaced(const SX& f) : symbols_(SX::vertcat(SX::symvar(f))) {
-    const casadi::Function function("f", {symbols_}, {f});
-    std::vector<SXElem> work(function.sz_w());
-    std::vector<SXElem> result(static_cast<std::size_t>(f.numel()), 0.0);
-    for (casadi_int k = 0; k < function.n_instructions(); ++k) {
-      const casadi_int operation = function.instruction_id(k);
-      const auto in = function.instruction_input(k);
-      const auto out = function.instruction_output(k);
-      if (operation == casadi::OP_OUTPUT) {
-        result[at(out[1])] = work[at(in[0])];
-      } else if (operation == casadi::OP_CONST) {
-        work[at(out[0])] = function.instruction_constant(k);
-      } else if (operation == casadi::OP_INPUT) {
-        work[at(out[0])] = symbols_(in[1]).scalar();
-      } else {
-        work[at(out[0])] = value_of(operation, work[at(in[0])], work[at(in.back())]);
-      }
-    }
+    const casadi::Function function("f", {symbols_}, {SX::densify(f)});
+    const auto result = interpret<SXElem>(
+        function, [&](casadi_int, casadi_int entry) { return symbols_(entry).scalar(); },
+        [&](casadi_int, casadi_int operation, const SXElem& a, const SXElem& b) { return value_of(operation, a, b); });
     rates_ = SX(casadi::Sparsity::dense(f.size1(), 1), result);
   }
 
@@ -86,9 +74,7 @@ class NormsReplaced {
       const auto a = root_of_square(first.dep(0)), b = root_of_square(first.dep(1));
       if (a && b) return norm_of(*a, *b);
     }
-    SXElem value;
-    casadi::casadi_math<SXElem>::fun(static_cast<unsigned char>(operation), first, second, value);
-    return value;
+    return operated(operation, first, second);
   }
 
   SXElem norm_of(const SXElem& a, const SXElem& b) {

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
+#include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/passed_on_internal.hpp"
 
 namespace saltus::pipeline {
@@ -45,19 +47,16 @@ void PassingOn::widen(std::span<const double> x) {
   }
 }
 
-/// As leave_out_event_rows for the whole run.
+/// The last row is kept back: whether it stays is known with the one behind it.
 result::Trajectory PassingOn::without_event_rows(const result::Trajectory& rows) {
-  result::Trajectory kept;
-  const auto look_at = [&](const result::Trajectory& of, std::size_t row, double next) {
-    if (next == of.t[row]) return;
-    if (times_->empty() || std::binary_search(times_->begin(), times_->end(), of.t[row])) kept.append(of, row);
-  };
-  if (rows.t.empty()) return kept;
-  if (!last_.t.empty()) look_at(last_, 0, rows.t.front());
-  const std::size_t last = rows.t.size() - 1;
-  for (std::size_t row = 0; row < last; ++row) look_at(rows, row, rows.t[row + 1]);
-  last_ = {};
-  last_.append(rows, last);
+  result::Trajectory kept = std::exchange(last_, {});
+  for (std::size_t row = 0; row < rows.t.size(); ++row) kept.append(rows, row);
+  if (kept.t.empty()) return kept;
+  last_.append(kept, kept.t.size() - 1);
+  leave_out_event_rows(*times_, kept);
+  std::vector<std::size_t> all_but_last(kept.t.size() - 1);
+  std::iota(all_but_last.begin(), all_but_last.end(), std::size_t{0});
+  kept.keep(all_but_last);
   return kept;
 }
 

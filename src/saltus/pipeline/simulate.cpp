@@ -1,5 +1,6 @@
 #include "saltus/pipeline/simulate.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -13,8 +14,6 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
-#include "saltus/pipeline/bodies/drawing.hpp"
-#include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -243,14 +242,18 @@ result::Result frame(const model::System& system, const SimulateOptions& options
   return result;
 }
 
-/// Of a mechanical system what is drawn of it, and how deep its bodies are in each other.
-void add_bodies(const model::System& system, result::Result& result) {
-  result.drawing = drawing_of(system, system.parameter_values, result.trajectory);
-  if (!system.contacts.empty()) {
-    const SymbolicLock lock;
-    result.penetration = Gaps(system, system.parameter_values).depth(result.trajectory);
+/// How deep bodies are in each other, by the outputs that contacts have.
+void add_penetration(const model::System& system, result::Result& result) {
+  if (system.contacts.empty()) return;
+  double deepest = 0.0;
+  for (const auto& contact : system.contacts.contacts) {
+    const auto gap = std::find(result.outputs.begin(), result.outputs.end(), fmt::format("gap({})", contact.name));
+    if (gap == result.outputs.end()) continue;
+    const auto column = static_cast<std::size_t>(gap - result.outputs.begin());
+    for (const auto row : result.trajectory.outputs) deepest = std::max(deepest, -row[column]);
   }
-  for (auto& branch : result.branches) add_bodies(system, branch);
+  result.penetration = deepest;
+  for (auto& branch : result.branches) add_penetration(system, branch);
 }
 
 bool by_elements(const SimulateOptions& options) {
@@ -323,7 +326,7 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
     return simulate(*other->system, options, observers, kernels);
   }
   auto result = simulated(system, options, observers, kernels);
-  if (result) add_bodies(system, *result);
+  if (result) add_penetration(system, *result);
   return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/surfaces.hpp"
 
 namespace saltus::pipeline {
@@ -209,7 +210,18 @@ std::optional<result::VectorField> vector_field(const model::System& system, con
   return arrows;
 }
 
+namespace {
+
+/// An optimum has them already: its parameters are its own.
+void add_bodies(const model::System& system, result::Result& result) {
+  if (!result.drawing) result.drawing = drawing_of(system, system.parameter_values, result.trajectory);
+  for (auto& branch : result.branches) add_bodies(system, branch);
+}
+
+}  // namespace
+
 void add_drawings(const model::System& system, result::Result& result) {
+  add_bodies(system, result);
   result.surfaces = surfaces(system, result);
   result.vector_field = vector_field(system, result);
 }

@@ -19,7 +19,7 @@ inline constexpr int field_cells = 20;
 [[nodiscard]] std::optional<result::VectorField> vector_field(const model::System& system,
                                                               const result::Result& result);
 
-/// Surfaces and vector field, into `result`.
+/// Bodies, surfaces and vector field, into `result`.
 void add_drawings(const model::System& system, result::Result& result);
 
 }  // namespace saltus::pipeline
