@@ -24,6 +24,7 @@ target_compile_options(saltus_warnings INTERFACE -ffp-contract=off)
 if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(SALTUS_CCACHE ccache)
   if(SALTUS_CCACHE)
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${SALTUS_CCACHE})
+    # Paths below the tree are hashed as relative ones: another clone of the tree finds what this one compiled.
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true ${SALTUS_CCACHE})
   endif()
 endif()

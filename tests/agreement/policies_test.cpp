@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "problems/simulator.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::problems {
 namespace {
@@ -19,7 +20,7 @@ using result::Result;
 using result::Termination;
 
 std::vector<json> ambiguous_entries() {
-  std::ifstream file(SALTUS_SOURCE_DIR "/tests/data/switching_cases.json");
+  std::ifstream file(tests::source_folder("tests/data/switching_cases.json"));
   const json document = json::parse(file);
   std::vector<json> found;
   for (const json& instance : document.at("cases")) {

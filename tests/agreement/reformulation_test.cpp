@@ -13,6 +13,7 @@
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/reformulation/dcs.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::problems {
 namespace {
@@ -22,7 +23,7 @@ using reformulation::ReformulationOptions;
 
 std::vector<std::filesystem::path> model_files() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(SALTUS_SOURCE_DIR "/models")) {
+  for (const auto& entry : std::filesystem::directory_iterator(tests::source_folder("models"))) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "problems/simulator.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::problems {
 namespace {
@@ -43,7 +44,7 @@ std::string model(const json& f1, const json& f2, const json& rate1, const json&
 json no_rate() { return {{"--", 0.0}, {"+-", 0.0}, {"-+", 0.0}, {"++", 0.0}}; }
 
 json cases(const std::string& situation) {
-  std::ifstream file(SALTUS_SOURCE_DIR "/tests/data/switching_cases.json");
+  std::ifstream file(tests::source_folder("tests/data/switching_cases.json"));
   const json data = json::parse(file);
   json result = json::array();
   for (const auto& one : data.at("cases")) {

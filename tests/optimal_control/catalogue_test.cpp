@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::ocp_tests {
 namespace {
@@ -21,7 +22,7 @@ struct Shipped {
 void PrintTo(const Shipped& shipped, std::ostream* out) { *out << shipped.model; }
 
 result::Result optimum_of(const std::string& model) {
-  const auto file = std::filesystem::path(SALTUS_SOURCE_DIR "/models") / (model + ".toml");
+  const auto file = tests::source_folder("models") / (model + ".toml");
   auto read = io::read_model(file);
   EXPECT_TRUE(read) << (read ? "" : to_text(read.error()));
   auto ocp = model::build_ocp(read->description);
@@ -94,7 +95,7 @@ TEST(OcpFrozenTime, HysteresisCar) {
 
 /// Sliding begins and ends inside intervals here.
 TEST(OcpDefect, FallsWithTheOrderOfTheScheme) {
-  const auto file = std::filesystem::path(SALTUS_SOURCE_DIR "/models/slide-and-hide-rates.toml");
+  const auto file = tests::source_folder("models/slide-and-hide-rates.toml");
   auto read = io::read_model(file);
   ASSERT_TRUE(read);
   auto ocp = model::build_ocp(read->description);

@@ -8,12 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::ocp_tests {
 namespace {
 
 pipeline::StatedProblem cart_pole(long intervals) {
-  auto read = io::read_model(SALTUS_SOURCE_DIR "/models/cart-pole.toml");
+  auto read = io::read_model(tests::source_folder("models/cart-pole.toml"));
   EXPECT_TRUE(read) << (read ? "" : to_text(read.error()));
   auto ocp = model::build_ocp(read->description);
   EXPECT_TRUE(ocp) << (ocp ? "" : to_text(ocp.error()));

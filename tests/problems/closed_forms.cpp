@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "source_folder.hpp"
+
 namespace saltus::problems {
 namespace {
 
@@ -59,7 +61,7 @@ double integral(const std::function<double(double)>& rate, double from, double t
 }  // namespace
 
 json stored_closed_forms() {
-  std::ifstream file(SALTUS_SOURCE_DIR "/tests/data/switching_cases.json");
+  std::ifstream file(tests::source_folder("tests/data/switching_cases.json"));
   return json::parse(file).at("problems");
 }
 

@@ -10,6 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "source_folder.hpp"
+
 namespace saltus::problems {
 namespace {
 
@@ -67,7 +69,7 @@ ReferenceProblem problem_of(const json& entry) {
 }
 
 std::vector<ReferenceProblem> read() {
-  std::ifstream file(SALTUS_SOURCE_DIR "/tests/problems/references.json");
+  std::ifstream file(tests::source_folder("tests/problems/references.json"));
   if (!file) throw std::runtime_error("cannot open tests/problems/references.json");
   std::vector<ReferenceProblem> problems;
   const json document = json::parse(file);
@@ -100,7 +102,7 @@ void PrintTo(const ReferenceProblem& problem, std::ostream* out) { *out << test_
 
 std::vector<std::string> catalogue() {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(SALTUS_SOURCE_DIR "/models")) {
+  for (const auto& entry : std::filesystem::directory_iterator(tests::source_folder("models"))) {
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());

@@ -10,12 +10,13 @@
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/simulate.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::problems {
 namespace {
 
 io::ModelFile read_from_catalogue(const std::string& name) {
-  return value_or_throw(io::read_model(std::filesystem::path(SALTUS_SOURCE_DIR "/models") / (name + ".toml")));
+  return value_or_throw(io::read_model(tests::source_folder("models") / (name + ".toml")));
 }
 
 }  // namespace

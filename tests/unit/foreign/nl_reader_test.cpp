@@ -6,6 +6,7 @@
 #include "../mpcc/derivative_check.hpp"
 #include "nl_text.hpp"
 #include "saltus/mpcc/residuals.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::foreign {
 namespace {
@@ -125,7 +126,7 @@ TEST(NlReader, ALastLineWithoutEndIsNoted) {
 TEST(NlReader, ShippedExamples) {
   namespace fs = std::filesystem;
   int files = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(SALTUS_SOURCE_DIR) / "examples" / "mpcc")) {
+  for (const auto& entry : fs::directory_iterator(tests::source_folder() / "examples" / "mpcc")) {
     if (entry.path().extension() != ".nl") continue;
     ++files;
     std::ifstream stream(entry.path());

@@ -7,13 +7,14 @@
 
 #include "../mpcc/derivative_check.hpp"
 #include "saltus/foreign/parse.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::foreign {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path folder = fs::path(SALTUS_SOURCE_DIR) / ".." / "shared" / "data" / "mpcc";
+const fs::path folder = tests::source_folder() / ".." / "shared" / "data" / "mpcc";
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);

@@ -12,6 +12,7 @@
 #include "saltus/report/packing_internal.hpp"
 #include "sample_optimization.hpp"
 #include "sample_results.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::report {
 namespace {
@@ -42,7 +43,7 @@ TEST(Html, IsOneDocumentWithTheLibraryTheDataAndTheScript) {
 TEST(Html, APageOfAnEmptyRunIsSmall) {
   // What is beside plotly; the small plotly that scripts/make_plotly.sh makes with npm is 0.8 MB more.
   EXPECT_LT(to_html(report_samples::nothing(), plotly).size(), 300000U);
-  std::ifstream stream(SALTUS_SOURCE_DIR "/.venv/plotly/plotly.min.js", std::ios::binary);
+  std::ifstream stream(tests::source_folder(".venv/plotly/plotly.min.js"), std::ios::binary);
   const std::string source{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_LT(to_html(report_samples::nothing(), source).size(), 1200000U);
 }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plane_frames.hpp"
+#include "source_folder.hpp"
 
 namespace saltus::switching {
 
@@ -31,7 +32,7 @@ struct SwitchingCase {
 inline constexpr std::array<const char*, 4> corner_keys{"--", "+-", "-+", "++"};
 
 inline nlohmann::json all_cases() {
-  std::ifstream file(std::string(SALTUS_SOURCE_DIR) + "/tests/data/switching_cases.json");
+  std::ifstream file(tests::source_folder("tests/data/switching_cases.json"));
   return nlohmann::json::parse(file)["cases"];
 }
 
