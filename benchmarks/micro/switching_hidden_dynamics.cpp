@@ -1,4 +1,4 @@
-// What does a decision by the hidden dynamics cost, for coupled surfaces and for many that do not feel each other?
+// What does a decision by the hidden dynamics cost, for coupled surfaces and for many that do not depend on each other?
 #include <algorithm>
 #include <cstddef>
 #include <ctime>

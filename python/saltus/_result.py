@@ -320,7 +320,7 @@ class Result:
         raise Stopped(f"stopped early: {self.status}{place}{reason}", self)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the result: ``.json`` all of it, ``.csv`` the trajectory."""
+        """Writes the result: ``.json`` all of it, ``.csv`` the trajectory, ``.events.csv`` the events, ``.npz`` both."""
         self._run.save(os.fspath(path))
 
     def report(self, path: str | os.PathLike[str] | None = None) -> Page | None:

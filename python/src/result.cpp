@@ -157,16 +157,16 @@ std::string page_of(Run& run) {
 }
 
 void save(Run& run, const std::string& path) {
-  const bool csv = path.ends_with(".csv");
-  if (!csv && !path.ends_with(".json")) {
+  const bool json = path.ends_with(".json");
+  if (!json && !path.ends_with(".csv") && !path.ends_with(".npz")) {
     raise({ErrorCode::io_failure,
-           path + ": the name must end in .json or .csv",
+           path + ": the name must end in .json, .csv, .events.csv or .npz",
            "the suffix says what is written",
            {},
            {}});
   }
-  if (!csv) want_surfaces(run);
-  value_or_raise(io::write_file(path, csv ? io::to_csv(*run.result) : io::to_json(*run.result)));
+  if (json) want_surfaces(run);
+  value_or_raise(io::stream_file(path, [&](io::Sink sink) { return io::write_as(path, *run.result, sink); }));
 }
 
 Run load(const std::string& path) {

@@ -57,8 +57,11 @@ def test_it_is_what_the_tool_writes(source, tool, tmp_path):
         r = saltus.catalogue(name).simulate()
         r.save(tmp_path / "p.json")
         r.save(tmp_path / "p.csv")
+        r.save(tmp_path / "p.npz")
         assert without_clock((tmp_path / "p.json").read_text()) == without_clock((tmp_path / "r.json").read_text())
         assert (tmp_path / "p.csv").read_bytes() == (tmp_path / "r.csv").read_bytes()
+        with np.load(tmp_path / "p.npz") as columns:
+            assert columns["t"].tolist() == r.t.tolist()
         header, *rows = (tmp_path / "r.csv").read_text().splitlines()
         assert len(rows) == len(r.t)
         assert [float(row.split(",")[0]) for row in rows] == r.t.tolist()

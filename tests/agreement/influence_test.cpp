@@ -1,4 +1,5 @@
-// Surfaces that meet where some of them do not feel the others: who feels nobody is decided first. Closed forms.
+// Surfaces that meet where some of them do not depend on the others: who depends on nobody is decided first. Closed
+// forms.
 #include <cmath>
 #include <string>
 
@@ -52,8 +53,8 @@ until = 1.3
                       });
 }
 
-// Three regions meet on x = 0 while z slides on z = x/5, which feels them and which they do not feel. A and B meet from
-// t = 1 on with weights 4/9 and 5/9, C joins them at y = -5/12, where all three hold the solution.
+// Three regions meet on x = 0 while z slides on z = x/5, which depends on them and which they do not depend on. A and B
+// meet from t = 1 on with weights 4/9 and 5/9, C joins them at y = -5/12, where all three hold the solution.
 TEST(Influence, ASurfaceThatFeelsRegionsWhereTheyMeet) {
   in_every_integrator(R"toml(
 [model]

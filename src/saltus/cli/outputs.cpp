@@ -40,13 +40,6 @@ struct Output {
 
 constexpr std::string_view standard_output = "-";
 
-/// Writes what the end of the name says.
-bool write_as(std::string_view name, const result::Result& result, io::Sink sink) {
-  if (name.ends_with("events.csv")) return io::write_events_csv(result, sink);
-  if (name.ends_with("csv")) return io::write_csv(result, sink);
-  return name.ends_with("npz") ? io::write_npz(result, sink) : io::write_json(result, sink);
-}
-
 Expected<void> check_suffix(const Output& output) {
   const auto suffix = fs::path(output.file).extension().string();
   const auto& known = output.suffixes;
@@ -111,7 +104,7 @@ Expected<void> write_one(const std::string& file, const std::string& format, con
                          ShowProgress show) {
   WatchedWriting watched(file, show);
   const auto write_into = [&](std::string_view name, io::Sink sink) {
-    return write_as(name, result, [&](std::string_view piece) { return watched.pass(piece, sink); });
+    return io::write_as(name, result, [&](std::string_view piece) { return watched.pass(piece, sink); });
   };
   Expected<void> written;
   if (file == standard_output) {

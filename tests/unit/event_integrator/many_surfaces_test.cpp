@@ -80,7 +80,7 @@ TEST(ManySurfaces, ThoseThatFeelTheirNeighboursKeepTheirBalance) {
 TEST(ManySurfaces, WhatFeelsOthersMoreThanItselfIsNotDecided) {
   const auto run = run_chain({16, 0.9, 0.9, true});
   ASSERT_EQ(run.status.termination, Termination::outside_class);
-  EXPECT_NE(run.status.message.find("16 of them feel each other, more than themselves"), std::string::npos)
+  EXPECT_NE(run.status.message.find("16 of them depend on each other, more than themselves"), std::string::npos)
       << run.status.message;
 }
 

@@ -47,8 +47,8 @@ TEST(Nested, BesideSeveralSlidingSurfacesAFunctionWithoutAJumpIsCrossed) {
 
 TEST(Nested, AFunctionThatJumpsInEveryLapIsNotHeldAtItsLimit) {
   // (x, y) spirals into the origin, to a quarter from lap to lap: x' = -sign(y)(1 + s/3), y' = sign(x)(1 - s/3), with
-  // s = sign(x) sign(y). w = z + sign(y) has the sign of y, and jumps with it; z, which is 0.2 - 0.1 t, does not feel
-  // it.
+  // s = sign(x) sign(y). w = z + sign(y) has the sign of y, and jumps with it; z, which is 0.2 - 0.1 t, does not depend
+  // on it.
   Builder b("laps");
   const SX x = b.state("x", {0});
   const SX y = b.state("y", {1});
@@ -67,8 +67,8 @@ TEST(Nested, AFunctionThatJumpsInEveryLapIsNotHeldAtItsLimit) {
 }
 
 TEST(Nested, WhatOnlyAFunctionThatJumpsAwayHasHeldIsLeftWithIt) {
-  // Slides on x + sign(y)/2 = 1/2 and on z = 0, with det G = 1: z' = sign(x + sign(y)/2 - 1/2) - 1/2 feels the first
-  // selection only. y = 1 - t changes its sign at t = 1, behind which x - 1 is -1, and z' = -3/2.
+  // Slides on x + sign(y)/2 = 1/2 and on z = 0, with det G = 1: z' = sign(x + sign(y)/2 - 1/2) - 1/2 depends on the
+  // first selection only. y = 1 - t changes its sign at t = 1, behind which x - 1 is -1, and z' = -3/2.
   Builder b("held by another");
   const SX x = b.state("x", {0});
   const SX y = b.state("y", {1});

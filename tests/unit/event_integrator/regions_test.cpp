@@ -151,7 +151,7 @@ TEST(Regions, HysteresisByFourRegionsHasItsPeriod) {
 }
 
 TEST(Regions, TwoGroupsAndAStepBesideThem) {
-  // Each of the three holds its own state at 0 from |x_i| on; none feels the others.
+  // Each of the three holds its own state at 0 from |x_i| on; none depends on the others.
   Builder b("groups");
   const SX x = b.state("x", {0.5}), y = b.state("y", {0.75}), z = b.state("z", {1.0});
   b.region(x, {{"x", SX(1.0)}}, "", "first");

@@ -32,7 +32,7 @@ struct Scene {
   const model::System system;
   const IntegrationOptions options;
   evaluation::ModelKernel kernel;
-  const Surroundings surroundings{kernel, system, true, {}, {}};
+  const SwitchingContext switching_context{kernel, system, true, {}, {}};
   ModeField field{kernel, true};
   Position here{options.from, system.initial_state};
   StepTolerances tolerances{options.tolerances};
@@ -117,7 +117,7 @@ TEST(ZeroApproach, FindsASurfaceThatTheStateIsOnOnTheWayThereOnly) {
   testing::add_surface(system, "x", system.x(0) - 1);
   testing::set_field(system, {0.5 - (2 * system.alpha(0) - 1)}, {1.0});
   Scene scene(system);
-  ZeroApproach zeros(scene.surroundings, scene.here, scene.field, scene.search);
+  ZeroApproach zeros(scene.switching_context, scene.here, scene.field, scene.search);
   const auto located = zeros.within_rounding();
   ASSERT_TRUE(located.has_value());
   EXPECT_EQ(located->x.front(), 1.0);
@@ -130,7 +130,7 @@ TEST(ZeroApproach, FindsASurfaceThatTheStateIsOnOnTheWayThereOnly) {
 
 TEST(SwitchAccumulation, FollowsCyclesToTheirLimit) {
   Scene scene(testing::friction_blocks());
-  SwitchAccumulation switches(scene.surroundings, scene.here, 10.0, scene.tolerances);
+  SwitchAccumulation switches(scene.switching_context, scene.here, 10.0, scene.tolerances);
   // Two surfaces in turn, at t = 1 - 2^-k: the limit is 1.
   std::optional<SeriesLimit> limit;
   double share = 1.0;
@@ -159,7 +159,7 @@ TEST(SwitchAccumulation, FollowsCyclesToTheirLimit) {
 
 TEST(SwitchAccumulation, EndsWhereLimitsFollowEachOtherAtOnce) {
   Scene scene(testing::friction_blocks());
-  SwitchAccumulation switches(scene.surroundings, scene.here, 10.0, scene.tolerances);
+  SwitchAccumulation switches(scene.switching_context, scene.here, 10.0, scene.tolerances);
   for (int k = 1; k < 8; ++k) EXPECT_FALSE(switches.limits_repeat(1.0)) << k;
   EXPECT_TRUE(switches.limits_repeat(1.0));
   EXPECT_FALSE(switches.limits_repeat(2.0));

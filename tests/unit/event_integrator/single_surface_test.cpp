@@ -43,13 +43,13 @@ model::System random_fields(std::mt19937& random, bool with_tangent_field) {
   return s;
 }
 
-Occasion at_origin(const std::vector<double>& origin) {
-  Occasion occasion;
-  occasion.x = origin.data();
-  occasion.at_zero = {0};
-  occasion.touched = {0};
-  occasion.time_scale = 0.1;
-  return occasion;
+SwitchingPoint at_origin(const std::vector<double>& origin) {
+  SwitchingPoint switching_point;
+  switching_point.x = origin.data();
+  switching_point.at_zero = {0};
+  switching_point.touched = {0};
+  switching_point.time_scale = 0.1;
+  return switching_point;
 }
 
 TEST(SingleSurface, DecidesCrossingsAndEntriesLikeTheGeneralDecision) {
@@ -62,18 +62,18 @@ TEST(SingleSurface, DecidesCrossingsAndEntriesLikeTheGeneralDecision) {
     const auto system = random_fields(random, false);
     auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
-    const Surroundings surroundings{*kernel, system, true, {}, {}};
-    SingleSurface single(surroundings);
+    const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+    SingleSurface single(switching_context);
     Transition transition;
     for (const int side : {-1, 1}) {
       const ModeState before{{side}, {side > 0 ? 1.0 : 0.0}, {}, {}};
-      const auto occasion = at_origin(origin);
-      if (!single.decide(before, occasion, transition)) {
+      const auto switching_point = at_origin(origin);
+      if (!single.decide(before, switching_point, transition)) {
         ++left;
         continue;
       }
       ++(transition.state.mode[0] == 0 ? entries : crossings);
-      expect_same(transition, decide_mode(surroundings, before, occasion));
+      expect_same(transition, decide_mode(switching_context, before, switching_point));
     }
   }
   // A quarter of all pairs of fields each way: crossing up and down, sliding, repelling.
@@ -90,18 +90,18 @@ TEST(SingleSurface, DecidesExitsLikeTheGeneralDecision) {
     const auto system = random_fields(random, true);
     auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
-    const Surroundings surroundings{*kernel, system, true, {}, {}};
-    SingleSurface single(surroundings);
+    const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+    SingleSurface single(switching_context);
     Transition transition;
     ModeState before{{0}, {1.0}, {0}, {}};
     before.corner_alpha = {std::vector<double>{0.0}, std::vector<double>{1.0}};
-    auto occasion = at_origin(origin);
-    occasion.exit_above = {0};
-    if (!single.decide(before, occasion, transition)) continue;
+    auto switching_point = at_origin(origin);
+    switching_point.exit_above = {0};
+    if (!single.decide(before, switching_point, transition)) continue;
     ++exits;
     EXPECT_EQ(transition.state.mode[0], 1);
     EXPECT_EQ(transition.zero_order[0], 2);
-    expect_same(transition, decide_mode(surroundings, before, occasion));
+    expect_same(transition, decide_mode(switching_context, before, switching_point));
   }
   EXPECT_GT(exits, 8);  // an eighth of 60: the lower field points up, the upper one gets there
 }
@@ -125,17 +125,17 @@ TEST(SingleSurface, DecidesBesideAnotherSurfaceOnWhichTheSolutionSlides) {
     testing::set_field(s, {f(0), f(1), f(2), s.x(0) + s.alpha(1), 0.6 - 2 * s.alpha(1) + 0.7 + s.x(3)}, origin);
     auto kernel = evaluation::ModelKernel::compile(s);
     ASSERT_TRUE(kernel.has_value());
-    const Surroundings surroundings{*kernel, s, true, {}, {}};
-    SingleSurface single(surroundings);
+    const SwitchingContext switching_context{*kernel, s, true, {}, {}};
+    SingleSurface single(switching_context);
     Transition transition;
     ModeState before{{leaves ? 0 : -1, 0}, {leaves ? 1.0 : 0.0, 0.65}, {1}, {}};
     if (leaves) before.sliding = {0, 1};
-    auto occasion = at_origin(origin);
-    occasion.at_zero = {0, 1};
-    if (leaves) occasion.exit_above = {0};
-    if (!single.decide(before, occasion, transition)) continue;
+    auto switching_point = at_origin(origin);
+    switching_point.at_zero = {0, 1};
+    if (leaves) switching_point.exit_above = {0};
+    if (!single.decide(before, switching_point, transition)) continue;
     ++decided;
-    expect_same(transition, decide_mode(surroundings, before, occasion));
+    expect_same(transition, decide_mode(switching_context, before, switching_point));
   }
   EXPECT_GT(decided, 8);
 }
@@ -148,20 +148,20 @@ TEST(SingleSurface, LeavesWhatIsNotSimpleToTheGeneralDecision) {
   testing::set_field(s, {SX(1), SX(1), s.alpha(1)}, {0, 0, 0});
   auto kernel = evaluation::ModelKernel::compile(s);
   ASSERT_TRUE(kernel.has_value());
-  const Surroundings surroundings{*kernel, s, true, {}, {}};
-  SingleSurface single(surroundings);
+  const SwitchingContext switching_context{*kernel, s, true, {}, {}};
+  SingleSurface single(switching_context);
   Transition transition;
   const ModeState before{{-1, -1}, {0.0, 0.0}, {}, {}};
-  auto occasion = at_origin(origin);
-  EXPECT_FALSE(single.decide(before, occasion, transition)) << "a function is nested around it";
-  occasion.at_zero = {1};
-  occasion.touched = {1};
-  EXPECT_TRUE(single.decide(before, occasion, transition));
-  occasion.start = true;
-  EXPECT_FALSE(single.decide(before, occasion, transition)) << "a start";
-  occasion.start = false;
-  occasion.at_zero = {0, 1};
-  EXPECT_FALSE(single.decide(before, occasion, transition)) << "two surfaces";
+  auto switching_point = at_origin(origin);
+  EXPECT_FALSE(single.decide(before, switching_point, transition)) << "a function is nested around it";
+  switching_point.at_zero = {1};
+  switching_point.touched = {1};
+  EXPECT_TRUE(single.decide(before, switching_point, transition));
+  switching_point.start = true;
+  EXPECT_FALSE(single.decide(before, switching_point, transition)) << "a start";
+  switching_point.start = false;
+  switching_point.at_zero = {0, 1};
+  EXPECT_FALSE(single.decide(before, switching_point, transition)) << "two surfaces";
 }
 
 /// x'' = -x, which crosses x = 0 and turns on something that does not matter.

@@ -42,15 +42,15 @@ model::System random_meeting(std::mt19937& random) {
   return s;
 }
 
-Occasion meeting_from(const ModeState& before) {
-  Occasion occasion;
-  occasion.x = origin.data();
-  occasion.at_zero = {0, 1};
+SwitchingPoint meeting_from(const ModeState& before) {
+  SwitchingPoint switching_point;
+  switching_point.x = origin.data();
+  switching_point.at_zero = {0, 1};
   for (const int j : {0, 1}) {
-    if (before.mode[static_cast<std::size_t>(j)] != 0) occasion.touched.push_back(j);
+    if (before.mode[static_cast<std::size_t>(j)] != 0) switching_point.touched.push_back(j);
   }
-  occasion.time_scale = 0.1;
-  return occasion;
+  switching_point.time_scale = 0.1;
+  return switching_point;
 }
 
 ModeState state_of(std::array<int, 2> mode) {
@@ -71,17 +71,17 @@ TEST(SurfacePair, DecidesLikeTheGeneralDecision) {
     const auto system = random_meeting(random);
     auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
-    const Surroundings surroundings{*kernel, system, true, {}, {}};
-    SurfacePair pair(surroundings);
+    const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+    SurfacePair pair(switching_context);
     Transition transition;
     for (const std::array<int, 2> mode : {std::array{0, -1}, {0, 1}, {-1, 0}, {1, 0}, {-1, -1}, {1, 1}}) {
       const ModeState before = state_of(mode);
-      const auto occasion = meeting_from(before);
-      if (!pair.decide(before, occasion, transition)) {
+      const auto switching_point = meeting_from(before);
+      if (!pair.decide(before, switching_point, transition)) {
         ++other;
         continue;
       }
-      expect_same(transition, decide_mode(surroundings, before, occasion));
+      expect_same(transition, decide_mode(switching_context, before, switching_point));
       const auto slides = transition.state.sliding.size();
       ++(slides == 2 ? entered : slides == 0 ? left : crossed);
       both += before.sliding.empty() ? 1 : 0;
@@ -103,17 +103,17 @@ TEST(SurfacePair, SlidesAcrossWithTheSelectionsOfTheGeneralDecision) {
     const auto system = random_meeting(random);
     auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
-    const Surroundings surroundings{*kernel, system, true, {}, {}};
-    SurfacePair pair(surroundings);
+    const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+    SurfacePair pair(switching_context);
     ModeField field(*kernel, true);
     for (const std::array<int, 2> mode : {std::array{0, -1}, {0, 1}, {-1, 0}, {1, 0}}) {
       const ModeState before = state_of(mode);
-      const auto occasion = meeting_from(before);
+      const auto switching_point = meeting_from(before);
       field.enter(before);
-      field(occasion.t, occasion.x, slope.data());
+      field(switching_point.t, switching_point.x, slope.data());
       std::optional<switching::PlaneAlpha> alpha;
-      if (pair.look(before, occasion, &field)) alpha = pair.across(before, occasion);
-      const Transition general = decide_mode(surroundings, before, occasion);
+      if (pair.look(before, switching_point, &field)) alpha = pair.across(before, switching_point);
+      const Transition general = decide_mode(switching_context, before, switching_point);
       if (!alpha) {
         ++other;
         continue;
@@ -124,7 +124,7 @@ TEST(SurfacePair, SlidesAcrossWithTheSelectionsOfTheGeneralDecision) {
       EXPECT_EQ(general.state.mode, (std::vector<int>{-mode[0], -mode[1]}));
       EXPECT_EQ(general.state.alpha, (std::vector<double>{(*alpha)[0], (*alpha)[1]}));
       ASSERT_TRUE(general.meeting.has_value());
-      const Meeting meeting = pair.meeting(before, occasion);
+      const Meeting meeting = pair.meeting(before, switching_point);
       EXPECT_EQ(meeting.surfaces, general.meeting->surfaces);
       EXPECT_EQ(meeting.velocities, general.meeting->velocities);
       EXPECT_EQ(meeting.alpha, general.meeting->alpha);
@@ -143,21 +143,26 @@ TEST(SurfacePair, LeavesWhatIsNotSimpleToTheGeneralDecision) {
     for (int k = 0; k < 20; ++k) {
       const auto system = random_meeting(same);
       auto kernel = evaluation::ModelKernel::compile(system);
-      const Surroundings surroundings{*kernel, system, true, {}, {}};
-      SurfacePair pair(surroundings);
+      const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+      SurfacePair pair(switching_context);
       Transition transition;
       const ModeState before = state_of({0, -1});
-      auto occasion = meeting_from(before);
-      change(occasion);
-      decided += pair.decide(before, occasion, transition) ? 1 : 0;
+      auto switching_point = meeting_from(before);
+      change(switching_point);
+      decided += pair.decide(before, switching_point, transition) ? 1 : 0;
     }
     return decided;
   };
-  EXPECT_GT(decides([](Occasion&) {}), 0);
-  EXPECT_EQ(decides([](Occasion& occasion) { occasion.start = true; }), 0);
-  EXPECT_EQ(decides([](Occasion& occasion) { occasion.exit_above = {0}; }), 0) << "a selection is at its bound";
-  EXPECT_EQ(decides([](Occasion& occasion) { occasion.touched = {0, 1}; }), 0) << "the surface slid on has a kink";
-  EXPECT_EQ(decides([](Occasion& occasion) { occasion.at_zero = {1}; }), 0) << "one surface";
+  EXPECT_GT(decides([](SwitchingPoint&) {}), 0);
+  EXPECT_EQ(decides([](SwitchingPoint& switching_point) { switching_point.start = true; }), 0);
+  EXPECT_EQ(decides([](SwitchingPoint& switching_point) { switching_point.exit_above = {0}; }), 0)
+      << "a selection is at its bound";
+  EXPECT_EQ(decides([](SwitchingPoint& switching_point) {
+              switching_point.touched = {0, 1};
+            }),
+            0)
+      << "the surface slid on has a kink";
+  EXPECT_EQ(decides([](SwitchingPoint& switching_point) { switching_point.at_zero = {1}; }), 0) << "one surface";
 }
 
 }  // namespace

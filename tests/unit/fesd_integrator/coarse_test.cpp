@@ -193,7 +193,7 @@ TEST(Coarse, ResolvedStepsAreNotDivided) {
   EXPECT_EQ(with.statistics.rejected, 0);
 }
 
-/// Sliding on x = sin(t) / 2 and y = 0 from t = 0 on; z feels the weight that Stewart's form leaves free.
+/// Sliding on x = sin(t) / 2 and y = 0 from t = 0 on; z depends on the weight that Stewart's form leaves free.
 TEST(Coarse, SolutionsThatAreOneOfManyAreToldAndNotDivided) {
   model::Builder builder("free weight");
   const SX x = builder.state("x", {0.0});

@@ -25,15 +25,15 @@ CornerTable affine_table(const std::vector<std::vector<double>>& weight) {
 using Parts = std::vector<std::vector<int>>;
 
 TEST(Influence, WhoFeelsNobodyComesFirst) {
-  // 1 feels itself, 2 feels 1, 0 feels 2.
+  // 1 depends on itself, 2 depends on 1, 0 depends on 2.
   EXPECT_EQ(parts_by_influence(affine_table({{0.4, 0.0, 0.2}, {0.0, -0.5, 0.0}, {0.0, 0.1, -0.7}})),
             (Parts{{1}, {2}, {0}}));
-  // 0 and 2 feel each other, through 3; 1 feels them.
+  // 0 and 2 depend on each other, through 3; 1 depends on them.
   EXPECT_EQ(parts_by_influence(affine_table(
                 {{-1.0, 0.0, 0.2, 0.0}, {0.3, -1.0, 0.0, 0.0}, {0.0, 0.0, -1.0, 0.4}, {0.5, 0.0, 0.0, -1.0}})),
             (Parts{{0, 2, 3}, {1}}));
   EXPECT_EQ(parts_by_influence(affine_table({{-1.0, 0.2}, {0.3, -1.0}})), (Parts{{0, 1}}));
-  // Neither feels the other, though they were met together.
+  // Neither depends on the other, though they were met together.
   EXPECT_EQ(parts_by_influence(affine_table({{-1.0, 0.0}, {0.0, -1.0}})), (Parts{{0}, {1}}));
 }
 
@@ -44,7 +44,7 @@ TEST(Influence, WhereASurfaceIsTangentItsNextDerivativeCounts) {
   }
   EXPECT_EQ(parts_by_influence(table), (Parts{{0}, {1}}));
   for (std::size_t corner = 0; corner < 4; ++corner) table.sides[corner] = {0.0, Drift::stays};
-  table.sides[0].drift = table.sides[1].drift = Drift::up;  // surface 0 feels 1
+  table.sides[0].drift = table.sides[1].drift = Drift::up;  // surface 0 depends on 1
   EXPECT_EQ(parts_by_influence(table), (Parts{{0, 1}}));
 }
 

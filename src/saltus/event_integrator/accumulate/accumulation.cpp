@@ -132,39 +132,39 @@ std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
 
 /// Whether so much time remains that limit_of would say nothing, whatever the ratio that it would find. That one is a
 /// mean of successive ratios over some laps, which shrink: at least the last of them over all of them together.
-bool EventSeries::is_far_from_limit(std::size_t period, double drowning) const {
+bool EventSeries::is_far_from_limit(std::size_t period, double resolved_to) const {
   const double t = back(0).t;
   const double resolution = rounding_unit * std::abs(t);
   const double last = t - back(period).t;
-  if (!(last > std::max(16.0 * resolution, drowning))) return false;
+  if (!(last > std::max(16.0 * resolution, resolved_to))) return false;
   const double before = back(period).t - back(2 * period).t;
   if (!(last < before)) return true;
-  if (last * (last / before) <= drowning) return false;
+  if (last * (last / before) <= resolved_to) return false;
   const auto laps = static_cast<std::size_t>(std::min(std::ceil(before / (before - last)), double{most_laps})) + 2;
   const double others = back(period).t - back(std::min(laps * period, entries_.size() - 1)).t;
   // With twice what they are compared with the roundings of the ratio do not matter.
   return last * last > 2.0 * others * std::max(1e-8 * (t - start_[period]), 100.0 * resolution);
 }
 
-/// @param drowning  how long the laps are that drown in roundings
-std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double drowning) const {
+/// @param resolved_to  how long the laps are that are lost in roundings
+std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double resolved_to) const {
   const auto now = durations(period, 0, fewest_laps);
   const double t = back(0).t;
   const double resolution = rounding_unit * std::abs(t);
-  if (now.count >= 2 && now.of[0] <= std::max(16.0 * resolution, hundredth * drowning)) {
+  if (now.count >= 2 && now.of[0] <= std::max(16.0 * resolution, hundredth * resolved_to)) {
     // Laps that shrink fast leave little, but not nothing. Long ones are here because psi leaves its surface
     // tangentially, with no rate: their limit is where they are.
     const double fast = now.of[0] / now.of[1];
     if (!(fast <= 0.5 && now.of[0] <= 1e-6 * (t - start_[period]))) {
-      return SeriesLimit{t, last_state(), last_jumps(period), now.of[0], false};
+      return SeriesLimit{t, last_state(), last_jumps(period), now.of[0]};
     }
     const double left = now.of[0] * fast / (1.0 - fast);
-    return SeriesLimit{t + left, extrapolated(period, fast), last_jumps(period), now.of[0], false};
+    return SeriesLimit{t + left, extrapolated(period, fast), last_jumps(period), now.of[0]};
   }
-  // Of laps that shrink to a tenth each the next one may drown before there were four.
+  // Of laps that shrink to a tenth each the next one may be unresolved before there were four.
   const bool is_fast = now.count >= 3 && now.of[0] <= 0.1 * now.of[1] && now.of[1] <= 0.1 * now.of[2] &&
-                       now.of[0] * (now.of[0] / now.of[1]) <= drowning;
-  const bool drowns = is_fast || now.of[0] <= drowning;
+                       now.of[0] * (now.of[0] / now.of[1]) <= resolved_to;
+  const bool is_unresolved = is_fast || now.of[0] <= resolved_to;
   const std::size_t fewest = is_fast ? fewest_laps - 1 : fewest_laps;
   // The first of several laps does not count among those that have shrunk.
   if (laps_[period] < (is_fast ? fewest - 1 : fewest) * period || now.count < fewest) return std::nullopt;
@@ -172,7 +172,7 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double drow
   if (!(ratio_now < 1.0)) return std::nullopt;
   const double remaining = now.of[0] * ratio_now / (1.0 - ratio_now);
   const double taken = t - start_[period];
-  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && !drowns) return std::nullopt;
+  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && !is_unresolved) return std::nullopt;
   const double ratio_before = ratio(period, 1);
   if (!(ratio_before < 1.0)) return std::nullopt;
   const double remaining_before = now.of[1] * ratio_before / (1.0 - ratio_before);
@@ -181,10 +181,10 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double drow
   const double expected = is_fast ? 0.25 * now.of[0] : 0.02 * remaining;
   const double difference = (t + remaining) - (back(period).t + remaining_before);
   if (std::abs(difference) > expected + 4.0 * resolution) return std::nullopt;
-  return SeriesLimit{t + remaining, extrapolated(period, ratio_now), last_jumps(period), now.of[0], false};
+  return SeriesLimit{t + remaining, extrapolated(period, ratio_now), last_jumps(period), now.of[0]};
 }
 
-std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double>& shortest) const {
+std::optional<SeriesLimit> EventSeries::end_of_chattering(const std::vector<double>& shortest) const {
   if (recent_.size() < many || entries_.empty()) return std::nullopt;
   const double t = recent_.back(0).t;
   const double taken = t - recent_.front().t;
@@ -195,11 +195,11 @@ std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double
       return std::nullopt;
     }
   }
-  double drowning = 0.0;
+  double resolved_to = 0.0;
   for (std::size_t k = 0; k < recent_.size(); ++k) {
-    drowning = std::max(drowning, recent_.back(k).executed.largest(shortest));
+    resolved_to = std::max(resolved_to, recent_.back(k).executed.largest(shortest));
   }
-  const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * drowning);
+  const double resolved = std::max(16.0 * rounding_unit * std::abs(t), hundredth * resolved_to);
   if (taken > static_cast<double>(many) * resolved) return std::nullopt;
   std::vector<int> jumps;
   for (std::size_t k = 0; k < recent_.size(); ++k) {
@@ -207,18 +207,18 @@ std::optional<SeriesLimit> EventSeries::end_of_rattling(const std::vector<double
   }
   std::sort(jumps.begin(), jumps.end());
   jumps.erase(std::unique(jumps.begin(), jumps.end()), jumps.end());
-  return SeriesLimit{t, last_state(), std::move(jumps), resolved, true};
+  return SeriesLimit{t, last_state(), std::move(jumps), resolved, SeriesKind::chattering};
 }
 
 std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortest) const {
-  double drowning = 0.0;
+  double resolved_to = 0.0;
   for (std::size_t period = 1; is_sequence_ && period <= longest_period && entries_.size() > 2 * period; ++period) {
-    drowning = std::max(drowning, back(period - 1).executed.largest(shortest));
+    resolved_to = std::max(resolved_to, back(period - 1).executed.largest(shortest));
     // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
-    if (laps_[period] < 2 * period || is_far_from_limit(period, drowning)) continue;
-    if (auto found = limit_of(period, drowning)) return found;
+    if (laps_[period] < 2 * period || is_far_from_limit(period, resolved_to)) continue;
+    if (auto found = limit_of(period, resolved_to)) return found;
   }
-  return end_of_rattling(shortest);
+  return end_of_chattering(shortest);
 }
 
 std::optional<SeriesLimit> EventSeries::nearly() const {
@@ -232,7 +232,7 @@ std::optional<SeriesLimit> EventSeries::nearly() const {
     if (!(lap <= hundredth * before)) return std::nullopt;
     // What would remain.
     if (lap * (lap / before) <= 1e-7 * (back(0).t - entries_.front().t)) {
-      return SeriesLimit{back(0).t, last_state(), last_jumps(period), lap, false};
+      return SeriesLimit{back(0).t, last_state(), last_jumps(period), lap};
     }
   }
   return std::nullopt;

@@ -9,14 +9,20 @@
 
 namespace saltus::event_integrator {
 
+/// How the events of a sequence with a limit follow each other.
+enum class SeriesKind {
+  laps,        ///< one and the same list of events again and again
+  chattering,  ///< jumps in any order, faster than their guards are resolved
+  unresolved   ///< functions that are zero together, as far as they are resolved
+};
+
 /// The limit of a sequence of events: of jumps, or of switches.
 struct SeriesLimit {
   double t = 0.0;
   std::vector<double> x;
   std::vector<int> events;  ///< numbers of those of one lap, ascending, each once
   double lap = 0.0;         ///< duration of the last one
-  bool rattling = false;    ///< no laps: jumps in any order, faster than their guards are resolved
-  bool drowned = false;     ///< no laps: functions that are zero together, as far as they are resolved
+  SeriesKind kind = SeriesKind::laps;
 };
 
 /// The last items of a sequence, at most `capacity`. The storage of those that are gone is used again.
@@ -62,9 +68,9 @@ class EventSeries {
   /// Jumps executed at t in this order, and the state behind them.
   void add(double t, const std::vector<int>& jumps, const std::vector<double>& x);
   /// Whether the last event has closed a lap that was shorter than the one before: only then there may be a limit, but
-  /// for rattling.
+  /// for chattering.
   [[nodiscard]] bool shrinks() const { return shrinks_; }
-  /// @param shortest  by jump: laps not longer than this drown in the rounding of its guard; their sequence is
+  /// @param shortest  by jump: laps not longer than this are lost in the rounding of its guard; their sequence is
   ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
   ///                  hundredth of it, in any order, have their limit where they are.
   [[nodiscard]] std::optional<SeriesLimit> limit(const std::vector<double>& shortest) const;
@@ -116,9 +122,9 @@ class EventSeries {
   [[nodiscard]] bool repeats(std::size_t steps, std::size_t earlier) const {
     return back(steps).executed == back(earlier).executed;
   }
-  [[nodiscard]] bool is_far_from_limit(std::size_t period, double drowning) const;
-  [[nodiscard]] std::optional<SeriesLimit> limit_of(std::size_t period, double drowning) const;
-  [[nodiscard]] std::optional<SeriesLimit> end_of_rattling(const std::vector<double>& shortest) const;
+  [[nodiscard]] bool is_far_from_limit(std::size_t period, double resolved_to) const;
+  [[nodiscard]] std::optional<SeriesLimit> limit_of(std::size_t period, double resolved_to) const;
+  [[nodiscard]] std::optional<SeriesLimit> end_of_chattering(const std::vector<double>& shortest) const;
   [[nodiscard]] std::vector<double> extrapolated(std::size_t period, double ratio) const;
   [[nodiscard]] std::vector<int> last_jumps(std::size_t entries) const;
   /// Laps that must shrink before a sequence is believed to have a limit.
@@ -136,7 +142,7 @@ class EventSeries {
   LastItems<Entry, longest_period*(most_laps + 2)> entries_;
   std::size_t n_x_ = 0;
   std::vector<double> states_;                    ///< behind the entries, n_x_ numbers each
-  LastItems<Recent, many> recent_;                ///< for rattling
+  LastItems<Recent, many> recent_;                ///< for chattering
   std::array<int, longest_period + 1> lately_{};  ///< Executed::only of the last entries, the last one first
   double start_[longest_period + 1] = {};         ///< of the shrinking sequence of each period
   std::size_t laps_[longest_period + 1] = {};     ///< in it

@@ -56,11 +56,11 @@ void SwitchSeries::note(double t, std::size_t surface, int before) {
 }
 
 bool SwitchSeries::shrinks(double t) const {
-  // Two laps within a few digits of t are what a sequence leaves that has drowned in its rounding.
+  // Two laps within a few digits of t are what a sequence leaves that is lost in its rounding.
   constexpr double unresolved = 128.0 * rounding_unit;
   if (switches_ > 4 && t - times_[4] <= unresolved * std::abs(t)) return true;
-  // The last terms of a geometric series drown in the rounding of t: a fast one is over after a few, and with more in a
-  // lap a slow one shrinks by half from lap to lap.
+  // The last terms of a geometric series are lost in the rounding of t: a fast one is over after a few, and with more
+  // in a lap a slow one shrinks by half from lap to lap.
   for (const std::size_t lap : {std::size_t{2}, std::size_t{4}}) {
     if (switches_ <= 2 * lap || t - times_[lap] > 1e-9 * span_) continue;
     if (times_[0] - times_[lap] <= 0.5 * (times_[lap] - times_[2 * lap])) return true;

@@ -17,9 +17,9 @@ bool NestedZeroApproach::begin_mode() {
   for (const int j : here_.state.sliding) {
     for (const int i : kernel_.inner(j)) {
       if (here_.state.mode[at(i)] == 0 || !kernel_.has_root_inside(j, i)) continue;
-      const auto is_it = [i](const Nearing& other) { return other.function == i; };
+      const auto is_it = [i](const Approaching& other) { return other.function == i; };
       auto place = std::find_if(functions_.begin(), functions_.end(), is_it);
-      if (place == functions_.end()) place = functions_.insert(place, Nearing{i, {}});
+      if (place == functions_.end()) place = functions_.insert(place, Approaching{i, {}});
       place->around.push_back(j);
     }
   }
@@ -46,9 +46,9 @@ void NestedZeroApproach::limit(ode::Tolerances& parts) {
   // Where g is a difference of states, its rounding moves the selection, which is of the size of |g'|^2 / g, by a part
   // of u / g: less than this could not be reached any more before g is as small as it may get.
   const double smallest = 1e-12 / tolerances_.mode().rtol;
-  for (const Nearing& nearing : functions_) {
-    const Rate rate = rates_.here(nearing.function);
-    const double wanted = tolerances_.mode().rtol * std::abs(values_[at(nearing.function)]);
+  for (const Approaching& approaching : functions_) {
+    const Rate rate = rates_.here(approaching.function);
+    const double wanted = tolerances_.mode().rtol * std::abs(values_[at(approaching.function)]);
     if (!(wanted > 0.0)) continue;
     atol = std::min(atol, wanted / (rate.slope * tolerances_.mode().atol));
     rtol = std::min(rtol, std::max(smallest, wanted / (rate.magnitude * tolerances_.mode().rtol)));
@@ -58,24 +58,24 @@ void NestedZeroApproach::limit(ode::Tolerances& parts) {
 /// When g is 0, once that is known far better than the tolerance asks for and little is left until then: g goes like
 /// (T - t)^p, so that |g / g'| = (T - t)/p, less what is of higher order in T - t. p follows from where it has halved;
 /// that T is right from the one that the halving before has given.
-std::optional<double> NestedZeroApproach::end_of(Nearing& nearing) {
+std::optional<double> NestedZeroApproach::end_of(Approaching& approaching) {
   constexpr double little = 1e-3;  // of the time since the mode began: exits and other events are looked for until then
   constexpr double agree = 0.1;    // of the tolerance of a step, over that time; the error itself is a third of it
   constexpr double bent = 1.02;    // of zeros that are crossed p is 1, to `little`
-  const double g = values_[at(nearing.function)];
-  const Rate rate = rates_.here(nearing.function);
+  const double g = values_[at(approaching.function)];
+  const Rate rate = rates_.here(approaching.function);
   const double ratio = g == 0.0 ? 0.0 : -g / rate.value;
   const double since = here_.t - since_;
   const double resolved = 16.0 * here_.smallest_step();
-  const Nearing last = nearing;
+  const Approaching last = approaching;
   const double power = (here_.t - last.t) / (last.ratio - ratio);
   const double left = power * ratio;
   const bool turns = !(ratio >= 0.0) || ratio > last.ratio || !std::isfinite(last.ratio);
   const bool halved = !turns && ratio <= 0.5 * last.ratio;
   if (turns || halved) {
-    nearing.t = here_.t;
-    nearing.ratio = ratio;
-    nearing.end = turns ? std::numeric_limits<double>::quiet_NaN() : here_.t + left;
+    approaching.t = here_.t;
+    approaching.ratio = ratio;
+    approaching.end = turns ? std::numeric_limits<double>::quiet_NaN() : here_.t + left;
   }
   if (turns || !(power > bent)) return std::nullopt;
   const bool agrees =
@@ -140,8 +140,8 @@ std::optional<Located> NestedZeroApproach::at_zeros(double end, const std::vecto
 std::optional<Located> NestedZeroApproach::ahead(double until) {
   find_values();
   std::optional<double> first;
-  for (Nearing& nearing : functions_) {
-    const auto end = end_of(nearing);
+  for (Approaching& approaching : functions_) {
+    const auto end = end_of(approaching);
     if (end && (!first || *end < *first)) first = end;
   }
   if (!first || *first >= until) return std::nullopt;

@@ -35,7 +35,7 @@ class NestedZeroApproach {
 
  private:
   /// A function g inside ones that are slid on, which have a root of it: where |g / g'| was last seen to have halved.
-  struct Nearing {
+  struct Approaching {
     int function = 0;
     std::vector<int> around;
     double t = 0.0;
@@ -44,7 +44,7 @@ class NestedZeroApproach {
   };
 
   void find_values();
-  [[nodiscard]] std::optional<double> end_of(Nearing& nearing);
+  [[nodiscard]] std::optional<double> end_of(Approaching& approaching);
   [[nodiscard]] std::optional<Located> at_zeros(double end, const std::vector<std::size_t>& reached);
 
   const evaluation::ModelKernel& kernel_;
@@ -53,7 +53,7 @@ class NestedZeroApproach {
   const StepTolerances& tolerances_;
   ZeroApproach& zeros_;
   FieldRates rates_;
-  std::vector<Nearing> functions_;
+  std::vector<Approaching> functions_;
   double since_ = 0.0;
   std::vector<double> last_slope_;  ///< a step before
   double last_step_ = 0.0;

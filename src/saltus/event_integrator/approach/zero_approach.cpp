@@ -15,10 +15,10 @@ constexpr double rate_rounding = 1e-12;
 
 }  // namespace
 
-ZeroApproach::ZeroApproach(const Surroundings& surroundings, const Position& here, ModeField& field,
+ZeroApproach::ZeroApproach(const SwitchingContext& switching_context, const Position& here, ModeField& field,
                            EventSearch& search)
-    : surroundings_(surroundings),
-      kernel_(surroundings.kernel),
+    : switching_context_(switching_context),
+      kernel_(switching_context.kernel),
       here_(here),
       field_(field),
       search_(search),
@@ -159,7 +159,7 @@ int ZeroApproach::root_here() {
   each_near(1.0, [&](std::size_t i, double) {
     const int surface = search_.functions()[i].index;
     if (here_.state.mode[at(surface)] == 0) return false;
-    RootedExit exit(kernel_, surroundings_.affine_in_alpha, here_.state, surface);
+    RootedExit exit(kernel_, switching_context_.affine_in_alpha, here_.state, surface);
     if (exit.has_root(here_.t, here_.x)) root = surface;
     return root >= 0;
   });

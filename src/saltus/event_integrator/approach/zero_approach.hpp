@@ -17,7 +17,7 @@ namespace saltus::event_integrator {
 /// ZeroApproach asks for the functions of the mode at the position itself, where steps get too short to be searched.
 class ZeroApproach {
  public:
-  ZeroApproach(const Surroundings& surroundings, const Position& here, ModeField& field, EventSearch& search);
+  ZeroApproach(const SwitchingContext& switching_context, const Position& here, ModeField& field, EventSearch& search);
 
   /// The values of all functions that are searched; valid until the next call of anything here.
   const std::vector<double>& functions(double t, const double* x);
@@ -55,7 +55,7 @@ class ZeroApproach {
   void each_near(double roundings, Take take);
   [[nodiscard]] Located onto(std::size_t function, double left) const;
 
-  const Surroundings& surroundings_;
+  const SwitchingContext& switching_context_;
   const evaluation::ModelKernel& kernel_;
   const Position& here_;
   ModeField& field_;

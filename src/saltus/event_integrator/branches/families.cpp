@@ -41,8 +41,8 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-Families::Families(const Surroundings& surroundings)
-    : s_(surroundings),
+Families::Families(const SwitchingContext& switching_context)
+    : s_(switching_context),
       alpha_(at(s_.kernel.switching_functions())),
       f_(at(s_.kernel.states())),
       row_(f_.size()),
@@ -142,12 +142,12 @@ void Families::add_spirals(double t, std::size_t event, const Transition& transi
 
 /// If the run could go on so, from the place where it is.
 void Families::add(const Point& point, std::vector<GivenMode> given, double from) {
-  Occasion occasion;
-  occasion.t = point.t;
-  occasion.x = point.x;
-  occasion.time_scale = point.time_scale;
-  occasion.at_zero = occasion.touched = state_.sliding;
-  const auto left = decide_with(s_, state_, occasion, given);
+  SwitchingPoint switching_point;
+  switching_point.t = point.t;
+  switching_point.x = point.x;
+  switching_point.time_scale = point.time_scale;
+  switching_point.at_zero = switching_point.touched = state_.sliding;
+  const auto left = decide_with(s_, state_, switching_point, given);
   if (!left) return;
   Recording::Family family;
   family.event = event_;
@@ -159,15 +159,15 @@ void Families::add(const Point& point, std::vector<GivenMode> given, double from
 }
 
 void Families::watch_singles(const Point& point) {
-  Occasion occasion;
-  occasion.t = point.t;
-  occasion.x = point.x;
+  SwitchingPoint switching_point;
+  switching_point.t = point.t;
+  switching_point.x = point.x;
   for (const int j : state_.sliding) {
     const bool known = std::any_of(open_.begin(), open_.end(), [&](const Open& family) {
       return family.given.size() == 1 && family.given.front().surface == j;
     });
     if (known || !is_watched(j) || !is_alone(j)) continue;
-    const ProjectedFields fields(s_.kernel, occasion);
+    const ProjectedFields fields(s_.kernel, switching_point);
     const double below = fields.velocities(fields.corner_alpha(state_.alpha, {j}, 0), {j}).front();
     const double above = fields.velocities(fields.corner_alpha(state_.alpha, {j}, 1), {j}).front();
     if (!(below < 0.0 && above > 0.0)) continue;

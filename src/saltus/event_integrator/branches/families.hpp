@@ -33,7 +33,7 @@ class Families {
     double time_scale = 1.0;
   };
 
-  explicit Families(const Surroundings& surroundings);
+  explicit Families(const SwitchingContext& switching_context);
 
   /// A mode, or another root of it, that begins at the last event; `unique` says that no single surface of it can
   /// repel.
@@ -78,7 +78,7 @@ class Families {
   double change(double t_begin, double t_end, const Group& group, const std::vector<int>& mode,
                 FunctionRef<void(double t, double* x)> state_at);
 
-  const Surroundings& s_;
+  const SwitchingContext& s_;
   ModeState state_;
   std::size_t event_ = 0;
   std::vector<Group> groups_;

@@ -42,8 +42,8 @@ void JumpCascade::begin(const Located& located) {
 void JumpCascade::note_guards() {
   auto& slope = slope_;
   kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
-  for (std::size_t k = 0; k < surroundings_.system.jumps.size(); ++k) {
-    const int guards = static_cast<int>(surroundings_.system.jumps[k].guards.numel());
+  for (std::size_t k = 0; k < switching_context_.system.jumps.size(); ++k) {
+    const int guards = static_cast<int>(switching_context_.system.jumps[k].guards.numel());
     for (int g = 0; g < guards; ++g) {
       const int function = kernel_.jump_guard(static_cast<int>(k), g);
       const Rate rate = rates_.along(function, slope);
@@ -94,12 +94,12 @@ Motion JumpCascade::motion_of(int function) {
   return *known;
 }
 
-Occasion JumpCascade::at_this_time() const {
-  Occasion occasion;
-  occasion.t = here_.t;
-  occasion.x = here_.x.data();
-  occasion.time_scale = here_.time_scale;
-  return occasion;
+SwitchingPoint JumpCascade::at_this_time() const {
+  SwitchingPoint switching_point;
+  switching_point.t = here_.t;
+  switching_point.x = here_.x.data();
+  switching_point.time_scale = here_.time_scale;
+  return switching_point;
 }
 
 Motion JumpCascade::find_motion(int function) {
@@ -118,8 +118,8 @@ Motion JumpCascade::find_motion(int function) {
     return {{0.0, bend > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
   }
   if (const auto motion = ProjectedFields::motion_by_velocity(rate.value, scale)) return *motion;
-  const Occasion occasion = at_this_time();
-  const ProjectedFields fields(kernel_, occasion);
+  const SwitchingPoint switching_point = at_this_time();
+  const ProjectedFields fields(kernel_, switching_point);
   return fields.motion(here_.state.alpha, function, rate.value, scale);
 }
 
@@ -143,7 +143,8 @@ void JumpCascade::give_directions() {
       continue;
     }
     // What is left of a rate that was held at 0, and of its derivative where holding ends, is rounding.
-    const int ahead = motion.order > 1 ? side_ahead(surroundings_, here_.state, at_this_time(), here_.x, function) : 0;
+    const int ahead =
+        motion.order > 1 ? side_ahead(switching_context_, here_.state, at_this_time(), here_.x, function) : 0;
     if (ahead != 0) signs[user] = ahead;
     orders[user] = std::clamp(motion.order, 1, 2);  // as many as the search divides out
     // A jump that leaves it here leaves it this sign.
@@ -181,9 +182,9 @@ std::vector<HeldGuard> JumpCascade::guards_kept_by_sliding(const RestingGuards& 
   std::vector<int> surfaces;
   if (here_.state.sliding.empty() || !holding_.guards().empty()) return kept;
   const auto& vanish = search_.user_zeros();
-  for (int jump = 0; jump < static_cast<int>(surroundings_.system.jumps.size()); ++jump) {
+  for (int jump = 0; jump < static_cast<int>(switching_context_.system.jumps.size()); ++jump) {
     if (contacts_.owns(jump)) continue;
-    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+    for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       if (!vanish[at(function - kernel_.switching_functions())] || jumps_.is_discrete_guard(function)) continue;
       const Motion motion = motion_of(function);
@@ -201,7 +202,7 @@ std::vector<HeldGuard> JumpCascade::guards_kept_by_sliding(const RestingGuards& 
   auto x = here_.x;
   const bool held = !holding_.hold(std::move(guards), others.loose, here_.t, here_.state.alpha, x);
   const auto resting =
-      held ? find_resting_surfaces(surroundings_, holding_, here_.t, here_.state.alpha, x) : RestingSurfaces{};
+      held ? find_resting_surfaces(switching_context_, holding_, here_.t, here_.state.alpha, x) : RestingSurfaces{};
   holding_.release_all();
   const bool kept_by_guards =
       std::all_of(surfaces.begin(), surfaces.end(), [&](int j) { return contains(resting.surfaces, j); });
@@ -221,7 +222,7 @@ JumpCascade::RestingGuards JumpCascade::pressed_guards() {
   const auto& vanish = search_.user_zeros();
   for (const int jump : jumps) {
     if (contacts_.owns(jump)) continue;
-    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+    for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const bool at_zero = vanish[at(function - kernel_.switching_functions())];
       if (!at_zero || jumps_.is_discrete_guard(function)) continue;
@@ -243,13 +244,13 @@ void JumpCascade::leave_guards(const std::vector<int>& zero_order) {
   auto vanish = search_.user_zeros();
   std::vector<int> orders(signs.size(), 1);
   bool any = false;
-  for (int jump = 0; jump < static_cast<int>(surroundings_.system.jumps.size()); ++jump) {
+  for (int jump = 0; jump < static_cast<int>(switching_context_.system.jumps.size()); ++jump) {
     if (contacts_.owns(jump)) continue;
-    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+    for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const auto user = at(function - kernel_.switching_functions());
       if (signs[user] != 0 || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
-      const int side = side_ahead(surroundings_, here_.state, at_this_time(), here_.x, function);
+      const int side = side_ahead(switching_context_, here_.state, at_this_time(), here_.x, function);
       if (side == 0) continue;
       add_zero(function);
       signs[user] = side;

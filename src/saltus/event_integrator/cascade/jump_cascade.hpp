@@ -23,10 +23,10 @@ namespace saltus::event_integrator {
 /// behind. Its storage is used again by the next one.
 class JumpCascade {
  public:
-  JumpCascade(const Surroundings& surroundings, const Position& here, ModeField& field, EventSearch& search,
+  JumpCascade(const SwitchingContext& switching_context, const Position& here, ModeField& field, EventSearch& search,
               const Jumps& jumps, const Contacts& contacts, Holding& holding)
-      : surroundings_(surroundings),
-        kernel_(surroundings.kernel),
+      : switching_context_(switching_context),
+        kernel_(switching_context.kernel),
         here_(here),
         field_(field),
         search_(search),
@@ -85,7 +85,7 @@ class JumpCascade {
 
  private:
   [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
-  [[nodiscard]] Occasion at_this_time() const;
+  [[nodiscard]] SwitchingPoint at_this_time() const;
   void find_values();
   [[nodiscard]] double size_at(int function);
   [[nodiscard]] Motion motion_of(int function);
@@ -97,7 +97,7 @@ class JumpCascade {
     std::vector<double> value, magnitude, slope;
   };
 
-  const Surroundings& surroundings_;
+  const SwitchingContext& switching_context_;
   const evaluation::ModelKernel& kernel_;
   const Position& here_;
   ModeField& field_;

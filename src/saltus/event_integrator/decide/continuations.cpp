@@ -19,10 +19,10 @@ bool is_same(const ModeState& a, const ModeState& b) {
 
 }  // namespace
 
-std::optional<Transition> decide_with(const Surroundings& surroundings, const ModeState& before,
-                                      const Occasion& occasion, const std::vector<GivenMode>& given) {
+std::optional<Transition> decide_with(const SwitchingContext& switching_context, const ModeState& before,
+                                      const SwitchingPoint& switching_point, const std::vector<GivenMode>& given) {
   ModeState fixed = before;
-  Occasion rest = occasion;
+  SwitchingPoint rest = switching_point;
   for (const auto& [surface, mode, alpha] : given) {
     set_surface(fixed, surface, mode, mode > 0 ? 1.0 : mode < 0 ? 0.0 : std::isfinite(alpha) ? alpha : 0.5);
     for (auto* surfaces :
@@ -31,24 +31,24 @@ std::optional<Transition> decide_with(const Surroundings& surroundings, const Mo
     }
   }
   std::string problem;
-  if (rest.at_zero.empty() && slides_on_dependent(surroundings, fixed, occasion)) {
-    return check_dependent(surroundings, fixed, occasion, problem);
+  if (rest.at_zero.empty() && slides_on_dependent(switching_context, fixed, switching_point)) {
+    return check_dependent(switching_context, fixed, switching_point, problem);
   }
   // What the given modes change may concern every other surface here.
   rest.touched = rest.at_zero;
-  Transition decided = decide_mode(surroundings, fixed, rest);
+  Transition decided = decide_mode(switching_context, fixed, rest);
   if (decided.termination != result::Termination::completed) return std::nullopt;
-  Transition checked = check_forced_mode(surroundings, decided.state, occasion);
+  Transition checked = check_forced_mode(switching_context, decided.state, switching_point);
   if (checked.termination != result::Termination::completed) return std::nullopt;
   checked.reason = std::move(decided.reason);
   checked.unique = decided.unique;
   return checked;
 }
 
-void other_continuations(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion,
-                         Transition& transition) {
+void other_continuations(const SwitchingContext& switching_context, const ModeState& before,
+                         const SwitchingPoint& switching_point, Transition& transition) {
   for (const auto& choice : transition.other_choices) {
-    auto other = decide_with(surroundings, before, occasion, choice);
+    auto other = decide_with(switching_context, before, switching_point, choice);
     if (!other || is_same(other->state, transition.state)) continue;
     const bool known = std::any_of(transition.alternatives.begin(), transition.alternatives.end(),
                                    [&](const Transition& t) { return is_same(other->state, t.state); });

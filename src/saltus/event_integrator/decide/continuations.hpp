@@ -9,17 +9,18 @@
 
 namespace saltus::event_integrator {
 
-/// The mode behind an occasion with the modes of some surfaces at zero given and the rest decided for them.
+/// The mode behind a switching point with the modes of some surfaces at zero given and the rest decided for them.
 /// @return nullopt if it does not continue the solution: the rest has no mode, or one of the given ones does not move
 /// to
 ///         where it says.
-[[nodiscard]] std::optional<Transition> decide_with(const Surroundings& surroundings, const ModeState& before,
-                                                    const Occasion& occasion, const std::vector<GivenMode>& given);
+[[nodiscard]] std::optional<Transition> decide_with(const SwitchingContext& switching_context, const ModeState& before,
+                                                    const SwitchingPoint& switching_point,
+                                                    const std::vector<GivenMode>& given);
 
 /// Fills `alternatives` from `other_choices`: every other choice with the rest decided for it; those that are
 /// admissible, each once.
-void other_continuations(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion,
-                         Transition& transition);
+void other_continuations(const SwitchingContext& switching_context, const ModeState& before,
+                         const SwitchingPoint& switching_point, Transition& transition);
 
 /// The transition to one of the alternatives; what was decided is the first among its alternatives then.
 /// @param alternative  below the number of decided.alternatives

@@ -21,11 +21,11 @@ Motion along_velocity(double velocity) {
 
 }  // namespace
 
-ProjectedFields::ProjectedFields(const evaluation::ModelKernel& kernel, const Occasion& occasion)
-    : kernel_(kernel), occasion_(occasion), noise_(at(kernel.event_functions())), slope_(noise_.size()) {
+ProjectedFields::ProjectedFields(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point)
+    : kernel_(kernel), switching_point_(switching_point), noise_(at(kernel.event_functions())), slope_(noise_.size()) {
   // Any selections do: scales only bound rounding.
   const std::vector<double> alpha(at(kernel.switching_functions()), 0.5);
-  kernel.scales(occasion.t, occasion.x, alpha.data(), noise_.data(), slope_.data());
+  kernel.scales(switching_point.t, switching_point.x, alpha.data(), noise_.data(), slope_.data());
   // A handful of roundings of terms as large as the magnitude.
   for (double& value : noise_) value = std::isfinite(value) ? 8.0 * rounding_unit * value : 0.0;
 }
@@ -38,11 +38,11 @@ std::vector<double> ProjectedFields::corner_alpha(const std::vector<double>& bas
   // Inner functions have smaller indices: one ascending pass reads every nested sign with its inner ones settled.
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     const auto& inner = kernel_.inner(j);
-    if (inner.empty() || contains(occasion_.at_zero, j)) continue;
+    if (inner.empty() || contains(switching_point_.at_zero, j)) continue;
     const auto in_group = [&](int i) { return contains(group, i); };
     if (std::none_of(inner.begin(), inner.end(), in_group)) continue;
     values.resize(at(kernel_.event_functions()));
-    kernel_.functions(occasion_.t, occasion_.x, alpha.data(), values.data());
+    kernel_.functions(switching_point_.t, switching_point_.x, alpha.data(), values.data());
     if (std::abs(values[at(j)]) > noise_[at(j)]) alpha[at(j)] = values[at(j)] > 0.0 ? 1.0 : 0.0;
   }
   return alpha;
@@ -50,15 +50,15 @@ std::vector<double> ProjectedFields::corner_alpha(const std::vector<double>& bas
 
 std::vector<double> ProjectedFields::point_beside(const std::vector<double>& alpha) const {
   const auto n = at(kernel_.states());
-  std::vector<double> x(occasion_.x, occasion_.x + n);
+  std::vector<double> x(switching_point_.x, switching_point_.x + n);
   std::vector<double> row(n);
   std::vector<double> values(at(kernel_.event_functions()));
   double largest = 0.0;
   for (const double value : x) largest = std::max(largest, std::abs(value));
-  for (const int j : occasion_.at_zero) {
-    kernel_.functions(occasion_.t, x.data(), alpha.data(), values.data());
+  for (const int j : switching_point_.at_zero) {
+    kernel_.functions(switching_point_.t, x.data(), alpha.data(), values.data());
     double rate = 0.0;
-    kernel_.gradient(j, occasion_.t, occasion_.x, alpha.data(), row.data(), &rate);
+    kernel_.gradient(j, switching_point_.t, switching_point_.x, alpha.data(), row.data(), &rate);
     double square = 0.0;
     for (const double d : row) square += d * d;
     if (!(square > 0.0) || !std::isfinite(square)) continue;
@@ -78,18 +78,18 @@ std::vector<double> ProjectedFields::velocities(const std::vector<double>& alpha
   std::vector<double> f(n);
   std::vector<double> row(n);
   std::vector<double> beside;
-  const double* x = occasion_.x;
-  kernel_.field(occasion_.t, x, alpha.data(), f.data());
+  const double* x = switching_point_.x;
+  kernel_.field(switching_point_.t, x, alpha.data(), f.data());
   if (!is_finite(f)) {
     beside = point_beside(alpha);
     x = beside.data();
-    kernel_.field(occasion_.t, x, alpha.data(), f.data());
+    kernel_.field(switching_point_.t, x, alpha.data(), f.data());
   }
   std::vector<double> result;
   result.reserve(group.size());
   for (const int j : group) {
     double velocity = 0.0;
-    kernel_.gradient(j, occasion_.t, x, alpha.data(), row.data(), &velocity);
+    kernel_.gradient(j, switching_point_.t, x, alpha.data(), row.data(), &velocity);
     for (std::size_t i = 0; i < n; ++i) velocity += row[i] == 0.0 ? 0.0 : row[i] * f[i];
     result.push_back(velocity);
   }
@@ -102,18 +102,20 @@ std::optional<Motion> ProjectedFields::motion_by_velocity(double velocity, doubl
 }
 
 Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const {
-  const double tau = occasion_.time_scale;
+  const double tau = switching_point_.time_scale;
   // Where all fields are nearly tangent the scale says nothing: what a velocity moves psi by has to be more than
   // rounding.
   const bool moves = std::abs(velocity) * tau > noise_[at(surface)];
   if (const auto motion = motion_by_velocity(velocity, scale); motion && moves) return *motion;
-  if (!kernel_.inner(surface).empty() && moves_along(kernel_, alpha, surface, occasion_.t, occasion_.x, scale))
+  if (!kernel_.inner(surface).empty() &&
+      moves_along(kernel_, alpha, surface, switching_point_.t, switching_point_.x, scale))
     return {};
   const double threshold = std::max(noise_[at(surface)], std::abs(velocity) * tau);
   double weight = tau;  // tau^k / k!
   for (int order = 2; order <= most_derivatives; ++order) {
     weight *= tau / order;
-    const double derivative = kernel_.lie_derivative(surface, order, occasion_.t, occasion_.x, alpha.data());
+    const double derivative =
+        kernel_.lie_derivative(surface, order, switching_point_.t, switching_point_.x, alpha.data());
     if (std::abs(derivative) * weight > threshold) {
       return {{0.0, derivative > 0.0 ? switching::Drift::up : switching::Drift::down}, order};
     }
@@ -132,8 +134,8 @@ bool ProjectedFields::nearly_two_fold(const std::vector<double>& alpha, int surf
   for (const std::size_t corner : {std::size_t{0}, std::size_t{1}}) {
     const auto selections = corner_alpha(alpha, {surface}, corner);
     double velocity = 0.0;
-    kernel_.field(occasion_.t, occasion_.x, selections.data(), f.data());
-    kernel_.gradient(surface, occasion_.t, occasion_.x, selections.data(), row.data(), &velocity);
+    kernel_.field(switching_point_.t, switching_point_.x, selections.data(), f.data());
+    kernel_.gradient(surface, switching_point_.t, switching_point_.x, selections.data(), row.data(), &velocity);
     const double rate = velocity;
     double row_square = 0.0;
     double f_square = 0.0;
@@ -150,10 +152,10 @@ bool ProjectedFields::nearly_two_fold(const std::vector<double>& alpha, int surf
 bool ProjectedFields::gradient_vanishes(const std::vector<double>& alpha, int surface) const {
   const auto n = at(kernel_.states());
   std::vector<double> row(n);
-  std::vector<double> x(occasion_.x, occasion_.x + n);
+  std::vector<double> x(switching_point_.x, switching_point_.x + n);
   double rate = 0.0;
   const auto size = [&] {
-    kernel_.gradient(surface, occasion_.t, x.data(), alpha.data(), row.data(), &rate);
+    kernel_.gradient(surface, switching_point_.t, x.data(), alpha.data(), row.data(), &rate);
     double sum = 0.0;
     for (const double d : row) sum += std::abs(d);
     return sum;
@@ -163,8 +165,8 @@ bool ProjectedFields::gradient_vanishes(const std::vector<double>& alpha, int su
   // Close by: a thousandth of the state and of what a step changes. A square is located to a relative 1e-8, where its
   // gradient is 1e-5 of that.
   std::vector<double> f(n);
-  kernel_.field(occasion_.t, occasion_.x, alpha.data(), f.data());
-  for (std::size_t i = 0; i < n; ++i) x[i] += 1e-3 * (std::abs(x[i]) + occasion_.time_scale * std::abs(f[i]));
+  kernel_.field(switching_point_.t, switching_point_.x, alpha.data(), f.data());
+  for (std::size_t i = 0; i < n; ++i) x[i] += 1e-3 * (std::abs(x[i]) + switching_point_.time_scale * std::abs(f[i]));
   return here <= 1e-4 * size();
 }
 
@@ -173,7 +175,7 @@ bool ProjectedFields::gradients_depend(const std::vector<double>& alpha, const s
   for (const int j : surfaces) functions.push_back({j, 0});
   HeldFunctions held(kernel_);
   held.set(std::move(functions), alpha);
-  held.differentiate(occasion_.t, occasion_.x);
+  held.differentiate(switching_point_.t, switching_point_.x);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (held.independent_part(i) <= switching::dependent_part) return true;
   }
@@ -201,15 +203,15 @@ switching::CornerTable ProjectedFields::table(const ModeState& before, const std
       // An exit was located to rounding on this field's tangency: its velocity is 0 whatever its last bits say. Of
       // coupled surfaces no single field need be tangent.
       const bool above = (corner >> j & 1U) != 0;
-      if (group.size() == 1 && contains(above ? occasion_.exit_above : occasion_.exit_below, surface))
+      if (group.size() == 1 && contains(above ? switching_point_.exit_above : switching_point_.exit_below, surface))
         side.velocity = 0.0;
       side = motion(alphas[corner], surface, side.velocity, scale).side;
     }
     const int mode = before.mode[at(surface)];
-    table.arrival.push_back(occasion_.start ? switching::Arrival::at_start
-                            : mode < 0      ? switching::Arrival::from_below
-                            : mode > 0      ? switching::Arrival::from_above
-                                            : switching::Arrival::along);
+    table.arrival.push_back(switching_point_.start ? switching::Arrival::at_start
+                            : mode < 0             ? switching::Arrival::from_below
+                            : mode > 0             ? switching::Arrival::from_above
+                                                   : switching::Arrival::along);
   }
   return table;
 }
@@ -219,9 +221,10 @@ bool ProjectedFields::fields_agree(const ModeState& before, const std::vector<in
   std::vector<double> first(n);
   std::vector<double> other(n);
   const std::size_t corners = std::size_t{1} << group.size();
-  kernel_.field(occasion_.t, occasion_.x, corner_alpha(before.alpha, group, 0).data(), first.data());
+  kernel_.field(switching_point_.t, switching_point_.x, corner_alpha(before.alpha, group, 0).data(), first.data());
   for (std::size_t corner = 1; corner < corners; ++corner) {
-    kernel_.field(occasion_.t, occasion_.x, corner_alpha(before.alpha, group, corner).data(), other.data());
+    kernel_.field(switching_point_.t, switching_point_.x, corner_alpha(before.alpha, group, corner).data(),
+                  other.data());
     for (std::size_t i = 0; i < n; ++i) {
       const double size = std::max(std::abs(first[i]), std::abs(other[i]));
       if (!(std::abs(first[i] - other[i]) <= 1e-12 * size)) return false;

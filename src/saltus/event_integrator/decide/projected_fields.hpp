@@ -22,11 +22,11 @@ inline constexpr double sign_tolerance = 1e-10;
 /// Velocities below this fraction of their scale are rounding.
 inline constexpr double velocity_rounding = 1e-14;
 
-/// All values are at one point (occasion.t, occasion.x); not finite where a field is undefined there and also just
-/// beside the surfaces, on the side that belongs to the selections.
+/// All values are at one point (switching_point.t, switching_point.x); not finite where a field is undefined there and
+/// also just beside the surfaces, on the side that belongs to the selections.
 class ProjectedFields {
  public:
-  ProjectedFields(const evaluation::ModelKernel& kernel, const Occasion& occasion);
+  ProjectedFields(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point);
 
   /// Selections of one corner: `base` with the bits of `corner` for the surfaces of `group`, and the functions nested
   /// around those read anew in that region.
@@ -35,7 +35,7 @@ class ProjectedFields {
   /// Normal components of f(alpha) on the surfaces of `group`.
   [[nodiscard]] std::vector<double> velocities(const std::vector<double>& alpha, const std::vector<int>& group) const;
   /// Where psi_surface goes along f(alpha). A velocity up to 1e-10 `scale` gives way to the first higher derivative
-  /// that moves psi further than it does, and further than rounding, over the occasion's time scale.
+  /// that moves psi further than it does, and further than rounding, over the switching point's time scale.
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
   /// The same where the velocity alone says it; nullopt where it gives way. Cost: one comparison.
   [[nodiscard]] static std::optional<Motion> motion_by_velocity(double velocity, double scale);
@@ -65,7 +65,7 @@ class ProjectedFields {
 
  private:
   const evaluation::ModelKernel& kernel_;
-  const Occasion& occasion_;
+  const SwitchingPoint& switching_point_;
   std::vector<double> noise_;  ///< per event function
   std::vector<double> slope_;
 };

@@ -16,7 +16,7 @@ namespace {
 
 /// psi_j, or where it holds signs that are not decided yet, and that it depends on, the value in one of their regions:
 /// 0 at a selection of 1/2 means nothing.
-double value_in_a_region(const Surroundings& s, double t, const double* x, const ModeState& state, int j,
+double value_in_a_region(const SwitchingContext& s, double t, const double* x, const ModeState& state, int j,
                          double noise) {
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
@@ -34,7 +34,7 @@ double value_in_a_region(const Surroundings& s, double t, const double* x, const
 
 /// A switching function of discrete states: its selection pointwise, as written where it is 0. It is in no mode, so
 /// that nothing looks for a zero of it or slides on it.
-void read_discrete(const Surroundings& s, double t, const double* x, int j, ModeState& state) {
+void read_discrete(const SwitchingContext& s, double t, const double* x, int j, ModeState& state) {
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   const double psi = values[at(j)];
@@ -44,7 +44,7 @@ void read_discrete(const Surroundings& s, double t, const double* x, int j, Mode
 
 /// Whether psi_j, exactly 0 here, is 0 whatever moves: n x while the discrete state n is 0. Such a function is decided
 /// as written until a jump changes that.
-bool vanishes_until_a_jump(const Surroundings& s, double t, const double* x, int j, const ModeState& state) {
+bool vanishes_until_a_jump(const SwitchingContext& s, double t, const double* x, int j, const ModeState& state) {
   const auto& discrete = s.system.discrete_states;
   if (s.system.switching[at(j)].alpha_at_zero == 0.5) return false;
   std::vector<double> row(discrete.size());
@@ -58,8 +58,8 @@ bool vanishes_until_a_jump(const Surroundings& s, double t, const double* x, int
 
 /// The regions of a group by `indicator` at its minimum: the first of them is the reference, the others are at zero.
 /// With `held` ones the reference they are measured against and they are at the minimum.
-void read_regions(const Surroundings& s, double t, const double* x, const ProjectedFields& fields, std::size_t group,
-                  const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
+void read_regions(const SwitchingContext& s, double t, const double* x, const ProjectedFields& fields,
+                  std::size_t group, const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
   const auto& range = s.kernel.region_groups()[group];
   std::vector<double> values(at(s.kernel.event_functions()));
   const auto is_held = [&](int j) { return std::find(held.begin(), held.end(), j) != held.end(); };
@@ -85,7 +85,7 @@ void read_regions(const Surroundings& s, double t, const double* x, const Projec
 }
 
 /// Signs of all switching functions, inner ones first; those at zero get 0.
-void read_signs(const Surroundings& s, double t, const double* x, const ProjectedFields& fields,
+void read_signs(const SwitchingContext& s, double t, const double* x, const ProjectedFields& fields,
                 const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
@@ -116,7 +116,8 @@ void read_signs(const Surroundings& s, double t, const double* x, const Projecte
 }
 
 /// A selection that is not finite marks a switching function that is undefined at the start.
-bool finite_at_start(const Surroundings& s, double t, const double* x, const ModeState& state, Transition& transition) {
+bool finite_at_start(const SwitchingContext& s, double t, const double* x, const ModeState& state,
+                     Transition& transition) {
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
@@ -168,21 +169,21 @@ std::optional<Transition> with_given_modes(const evaluation::ModelKernel& kernel
 }
 
 struct Point {
-  Occasion occasion;
+  SwitchingPoint switching_point;
   ModeState state;
 };
 
 /// A point as one at which the solution starts: the surfaces through it, and the sides of the others that it is on.
 /// `held` are taken to pass through it, `resting` to stay there.
-Point read_point(const Surroundings& s, double t, const double* x, double time_scale, const std::vector<int>& held,
+Point read_point(const SwitchingContext& s, double t, const double* x, double time_scale, const std::vector<int>& held,
                  const RestingSurfaces& resting = {}) {
   Point point;
-  auto& [occasion, state] = point;
-  occasion.t = t;
-  occasion.x = x;
-  occasion.start = true;
-  occasion.time_scale = time_scale;
-  const ProjectedFields fields(s.kernel, occasion);
+  auto& [switching_point, state] = point;
+  switching_point.t = t;
+  switching_point.x = x;
+  switching_point.start = true;
+  switching_point.time_scale = time_scale;
+  const ProjectedFields fields(s.kernel, switching_point);
   const auto n_psi = at(s.kernel.switching_functions());
   state.mode.assign(n_psi, 1);
   state.alpha.assign(n_psi, 1.0);
@@ -191,14 +192,14 @@ Point read_point(const Surroundings& s, double t, const double* x, double time_s
     state.mode[at(resting.surfaces[i])] = 0;
     state.alpha[at(resting.surfaces[i])] = resting.alpha[i];
   }
-  read_signs(s, t, x, fields, held, state, occasion.at_zero);
-  note_ties(s.kernel, state, occasion);
+  read_signs(s, t, x, fields, held, state, switching_point.at_zero);
+  note_ties(s.kernel, state, switching_point);
   return point;
 }
 
 /// Whether nothing is at zero that would have to be decided, nor read anew behind a decision.
-bool signs_say_it_all(const Surroundings& s, const Occasion& occasion) {
-  if (!occasion.at_zero.empty() || !s.kernel.region_groups().empty()) return false;
+bool signs_say_it_all(const SwitchingContext& s, const SwitchingPoint& switching_point) {
+  if (!switching_point.at_zero.empty() || !s.kernel.region_groups().empty()) return false;
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     if (!s.kernel.inner(j).empty()) return false;
   }
@@ -207,13 +208,13 @@ bool signs_say_it_all(const Surroundings& s, const Occasion& occasion) {
 
 using GivenModes = std::vector<std::pair<int, int>>;
 
-bool is_of_region(const Surroundings& s, int j) {
+bool is_of_region(const SwitchingContext& s, int j) {
   return s.system.switching[at(j)].role == model::SwitchingRole::region;
 }
 
 /// Why modes that are given contradict the signs at the start; nothing where they do not.
-std::optional<std::string> contradiction(const Surroundings& s, const ModeState& state, const std::vector<int>& at_zero,
-                                         const GivenModes& forced) {
+std::optional<std::string> contradiction(const SwitchingContext& s, const ModeState& state,
+                                         const std::vector<int>& at_zero, const GivenModes& forced) {
   for (const auto& [surface, mode] : forced) {
     if (is_of_region(s, surface)) continue;
     const bool is_zero = std::find(at_zero.begin(), at_zero.end(), surface) != at_zero.end();
@@ -233,10 +234,10 @@ bool is_as_given(const Transition& transition, const std::vector<GivenMode>& giv
 }
 
 /// A continuation with the given modes, other than the one that was decided without them; nullopt if there is none.
-std::optional<Transition> continue_as_given(const Surroundings& s, const Point& point,
+std::optional<Transition> continue_as_given(const SwitchingContext& s, const Point& point,
                                             const std::vector<GivenMode>& given, const GivenModes& forced,
                                             const Transition& decided) {
-  auto chosen = given.empty() ? std::nullopt : decide_with(s, point.state, point.occasion, given);
+  auto chosen = given.empty() ? std::nullopt : decide_with(s, point.state, point.switching_point, given);
   if (!chosen) {
     // Selections of three and more surfaces are looked for from the middle, where there may be no way to a root.
     const auto fits = [&](const Transition& transition) { return is_as_given(transition, given, forced); };
@@ -266,18 +267,18 @@ void note_given(Transition& transition) {
 
 }  // namespace
 
-Start decide_start(const Surroundings& s, double t, const double* x, double time_scale,
+Start decide_start(const SwitchingContext& s, double t, const double* x, double time_scale,
                    const std::vector<std::pair<int, int>>& forced) {
   Start start;
   const Point point = read_point(s, t, x, time_scale, {});
-  const auto& [occasion, state] = point;
-  start.at_zero = occasion.at_zero;
-  for (const int j : occasion.tied) {
+  const auto& [switching_point, state] = point;
+  start.at_zero = switching_point.at_zero;
+  for (const int j : switching_point.tied) {
     if (std::find(start.at_zero.begin(), start.at_zero.end(), j) == start.at_zero.end()) start.at_zero.push_back(j);
   }
   if (!finite_at_start(s, t, x, state, start.transition)) return start;
-  start.transition = decide_mode(s, state, occasion);
-  other_continuations(s, state, occasion, start.transition);
+  start.transition = decide_mode(s, state, switching_point);
+  other_continuations(s, state, switching_point, start.transition);
   if (forced.empty()) return start;
 
   const auto refuse = [&start](std::string message) {
@@ -302,32 +303,32 @@ Start decide_start(const Surroundings& s, double t, const double* x, double time
   return start;
 }
 
-Transition decide_behind_jump(const Surroundings& s, const ModeState& before, double t, const double* x,
+Transition decide_behind_jump(const SwitchingContext& s, const ModeState& before, double t, const double* x,
                               double time_scale, const std::vector<int>& held, const RestingSurfaces& resting) {
   Transition transition;
   if (s.kernel.switching_functions() == 0) {  // nothing to decide
     transition.beside.assign(x, x + s.kernel.states());
     return transition;
   }
-  auto [occasion, state] = read_point(s, t, x, time_scale, held, resting);
+  auto [switching_point, state] = read_point(s, t, x, time_scale, held, resting);
   // Selections of the sliding motion before are where a search for the new ones starts.
   for (const int j : held) {
     const bool rests = std::binary_search(state.resting.begin(), state.resting.end(), j);
     if (!rests) state.alpha[at(j)] = before.alpha[at(j)];
   }
   if (!finite_at_start(s, t, x, state, transition)) return transition;
-  if (signs_say_it_all(s, occasion)) {
+  if (signs_say_it_all(s, switching_point)) {
     transition.zero_order.assign(state.mode.size(), 0);
     transition.beside.assign(x, x + s.kernel.states());
     transition.state = std::move(state);
     return transition;
   }
-  transition = decide_mode(s, state, occasion);
-  other_continuations(s, state, occasion, transition);
+  transition = decide_mode(s, state, switching_point);
+  other_continuations(s, state, switching_point, transition);
   return transition;
 }
 
-std::vector<double> selections_at(const Surroundings& s, double t, const double* x, std::vector<double> alpha) {
+std::vector<double> selections_at(const SwitchingContext& s, double t, const double* x, std::vector<double> alpha) {
   const auto n = at(s.kernel.event_functions());
   std::vector<double> values(n), noise(n), slope(n);
   s.kernel.scales(t, x, alpha.data(), noise.data(), slope.data());

@@ -17,18 +17,18 @@ struct Start {
 /// Decides the mode at the start by the same switching as at an event; `forced` modes override it.
 /// psi within rounding of 0 counts as 0. A forced mode that contradicts the sign of psi, or does not continue the
 /// solution, ends with no_admissible_mode.
-[[nodiscard]] Start decide_start(const Surroundings& surroundings, double t, const double* x, double time_scale,
-                                 const std::vector<std::pair<int, int>>& forced);
+[[nodiscard]] Start decide_start(const SwitchingContext& switching_context, double t, const double* x,
+                                 double time_scale, const std::vector<std::pair<int, int>>& forced);
 
 /// The mode behind a jump of the model or of the state at (t, x): as at a start, but surfaces of `held` (located here,
 /// or sliding, and still at zero) are at zero whatever is left of their psi. Those of `resting` are not decided.
-[[nodiscard]] Transition decide_behind_jump(const Surroundings& surroundings, const ModeState& before, double t,
-                                            const double* x, double time_scale, const std::vector<int>& held,
+[[nodiscard]] Transition decide_behind_jump(const SwitchingContext& switching_context, const ModeState& before,
+                                            double t, const double* x, double time_scale, const std::vector<int>& held,
                                             const RestingSurfaces& resting = {});
 
 /// Selections read pointwise at (t, x), inner functions first; those at zero keep what they have in `alpha`, functions
 /// of discrete states have what is written.
-[[nodiscard]] std::vector<double> selections_at(const Surroundings& surroundings, double t, const double* x,
+[[nodiscard]] std::vector<double> selections_at(const SwitchingContext& switching_context, double t, const double* x,
                                                 std::vector<double> alpha);
 
 }  // namespace saltus::event_integrator

@@ -13,14 +13,14 @@ namespace saltus::event_integrator {
 using evaluation::ModelKernel;
 using evaluation::RegionRange;
 
-void note_ties(const ModelKernel& kernel, const ModeState& before, Occasion& occasion) {
-  occasion.tied.clear();
+void note_ties(const ModelKernel& kernel, const ModeState& before, SwitchingPoint& switching_point) {
+  switching_point.tied.clear();
   for (const auto& group : kernel.region_groups()) {
-    const auto first = occasion.tied.size();
-    for (const int j : occasion.at_zero) {
-      if (group.holds(j)) occasion.tied.push_back(j);
+    const auto first = switching_point.tied.size();
+    for (const int j : switching_point.at_zero) {
+      if (group.holds(j)) switching_point.tied.push_back(j);
     }
-    if (occasion.tied.size() > first) occasion.tied.push_back(reference_of(before, group));
+    if (switching_point.tied.size() > first) switching_point.tied.push_back(reference_of(before, group));
   }
 }
 
@@ -41,8 +41,8 @@ double fastest(const ProjectedFields& fields, const RegionRange& group, const Mo
 }  // namespace
 
 std::optional<std::pair<int, int>> same_indicators(const ModelKernel& kernel, const ModeState& state,
-                                                   const Occasion& occasion) {
-  const auto& tied = occasion.tied;
+                                                   const SwitchingPoint& switching_point) {
+  const auto& tied = switching_point.tied;
   std::vector<std::pair<int, int>> same;
   for (std::size_t a = 0; a < tied.size(); ++a) {
     for (std::size_t b = a + 1; b < tied.size(); ++b) {
@@ -54,8 +54,8 @@ std::optional<std::pair<int, int>> same_indicators(const ModelKernel& kernel, co
   std::vector<double> values(n), magnitude(n), slope(n);
   for (const unsigned pattern : {0U, 1U, 2U}) {
     constexpr double step = 0x1p-10;
-    const double t = occasion.t + step * (1.0 + std::abs(occasion.t));
-    std::vector<double> x(occasion.x, occasion.x + kernel.states());
+    const double t = switching_point.t + step * (1.0 + std::abs(switching_point.t));
+    std::vector<double> x(switching_point.x, switching_point.x + kernel.states());
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += displacement(i, x[i], step, pattern);
     kernel.functions(t, x.data(), state.alpha.data(), values.data());
     kernel.scales(t, x.data(), state.alpha.data(), magnitude.data(), slope.data());
@@ -70,14 +70,14 @@ std::optional<std::pair<int, int>> same_indicators(const ModelKernel& kernel, co
   return same.front();
 }
 
-void complete_ties(const ModelKernel& kernel, const ModeState& before, Occasion& occasion) {
-  const auto located = occasion.at_zero;
+void complete_ties(const ModelKernel& kernel, const ModeState& before, SwitchingPoint& switching_point) {
+  const auto located = switching_point.at_zero;
   for (const auto& group : kernel.region_groups()) {
     const auto holds = [&](int j) { return group.holds(j); };
     if (group.count < 3 || std::none_of(located.begin(), located.end(), holds)) continue;
-    const ProjectedFields fields(kernel, occasion);
+    const ProjectedFields fields(kernel, switching_point);
     std::vector<double> values(at(kernel.event_functions()));
-    kernel.functions(occasion.t, occasion.x, before.alpha.data(), values.data());
+    kernel.functions(switching_point.t, switching_point.x, before.alpha.data(), values.data());
     // What two times next to each other differ by, as where events are located. Laps of a spiral get shorter by a
     // factor of up to ten: with one of its regions within rounding, the next ones are the same point.
     double reach = 8.0;
@@ -86,18 +86,18 @@ void complete_ties(const ModelKernel& kernel, const ModeState& before, Occasion&
     for (bool more = true; more && reach <= farthest; reach *= lap) {
       more = false;
       for (int j = group.first; j < group.first + group.count; ++j) {
-        if (before.mode[at(j)] == 0 ||
-            std::find(occasion.at_zero.begin(), occasion.at_zero.end(), j) != occasion.at_zero.end()) {
+        if (before.mode[at(j)] == 0 || std::find(switching_point.at_zero.begin(), switching_point.at_zero.end(), j) !=
+                                           switching_point.at_zero.end()) {
           continue;
         }
-        const double unit = rounding_unit * std::abs(occasion.t) * fastest(fields, group, before, j);
+        const double unit = rounding_unit * std::abs(switching_point.t) * fastest(fields, group, before, j);
         if (!(std::abs(values[at(j)]) <= std::max(fields.noise(j), reach * unit))) continue;
-        occasion.at_zero.push_back(j);
+        switching_point.at_zero.push_back(j);
         more = true;
       }
     }
   }
-  std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
+  std::sort(switching_point.at_zero.begin(), switching_point.at_zero.end());
 }
 
 }  // namespace saltus::event_integrator

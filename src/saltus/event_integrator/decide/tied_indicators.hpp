@@ -10,16 +10,17 @@
 
 namespace saltus::event_integrator {
 
-/// Regions of one group that are at its minimum where an occasion is: those at zero, and their references.
-void note_ties(const evaluation::ModelKernel& kernel, const ModeState& before, Occasion& occasion);
+/// Regions of one group that are at its minimum where a switching point is: those at zero, and their references.
+void note_ties(const evaluation::ModelKernel& kernel, const ModeState& before, SwitchingPoint& switching_point);
 
 /// Two of the regions at the minimum (`tied`) whose indicators are one and the same function, near by and as time goes,
 /// too: nothing says which of them is active.
 [[nodiscard]] std::optional<std::pair<int, int>> same_indicators(const evaluation::ModelKernel& kernel,
-                                                                 const ModeState& state, const Occasion& occasion);
+                                                                 const ModeState& state,
+                                                                 const SwitchingPoint& switching_point);
 
 /// Adds to those at zero of a group the regions that are so to rounding of psi or of the time: where several reach the
 /// minimum within a few roundings, as at the end of a spiral, which one is located there means nothing.
-void complete_ties(const evaluation::ModelKernel& kernel, const ModeState& before, Occasion& occasion);
+void complete_ties(const evaluation::ModelKernel& kernel, const ModeState& before, SwitchingPoint& switching_point);
 
 }  // namespace saltus::event_integrator

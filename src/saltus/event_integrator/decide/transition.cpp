@@ -12,10 +12,10 @@
 namespace saltus::event_integrator {
 
 void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
-                   const ModeState& before, const Occasion& occasion, std::string& reason) {
+                   const ModeState& before, const SwitchingPoint& switching_point, std::string& reason) {
   const auto& function = system.switching[at(surface)];
   if (function.role != model::SwitchingRole::listed && function.role != model::SwitchingRole::region) return;
-  if (decision.mode == before.mode[at(surface)] && !occasion.start) return;
+  if (decision.mode == before.mode[at(surface)] && !switching_point.start) return;
   if (!reason.empty()) reason += "; ";
   reason += function.name;
   reason += ": ";
@@ -38,7 +38,8 @@ void append_meeting(const model::System& system, const std::array<int, 2>& surfa
   append_leaf(leaf, why, reason);
 }
 
-void begin_transition(const ModeState& before, const Occasion& occasion, std::size_t states, Transition& transition) {
+void begin_transition(const ModeState& before, const SwitchingPoint& switching_point, std::size_t states,
+                      Transition& transition) {
   auto& state = transition.state;
   state.mode = before.mode;
   state.alpha = before.alpha;
@@ -48,7 +49,7 @@ void begin_transition(const ModeState& before, const Occasion& occasion, std::si
   transition.termination = result::Termination::completed;
   transition.message.clear();
   // Both fields are finite here; where they are not behind the projection onto the surface, this point is as good.
-  transition.beside.assign(occasion.x, occasion.x + states);
+  transition.beside.assign(switching_point.x, switching_point.x + states);
   transition.zero_order.assign(state.mode.size(), 0);
   transition.unique = true;
   transition.other_choices.clear();
@@ -67,7 +68,7 @@ bool Decider::fail(result::Termination termination, std::string message) {
 
 Transition Decider::run() {
   base_ = before_;
-  const auto groups = groups_of(s_.kernel, occasion_, occasion_.at_zero);
+  const auto groups = groups_of(s_.kernel, switching_point_, switching_point_.at_zero);
   // Nested functions that flip change the fields for everything else: decide again until nothing flips.
   for (int pass = 0; pass < 8; ++pass) {
     decisions_.clear();
@@ -81,8 +82,8 @@ Transition Decider::run() {
     for (const auto& group : groups) {
       // Sliding that nothing has touched goes on, also where it was forced on a repelling surface.
       const bool touched =
-          std::any_of(group.begin(), group.end(), [&](int j) { return contains(occasion_.touched, j); });
-      if ((touched || pass > 0 || occasion_.start) && !decide(group)) return transition_;
+          std::any_of(group.begin(), group.end(), [&](int j) { return contains(switching_point_.touched, j); });
+      if ((touched || pass > 0 || switching_point_.start) && !decide(group)) return transition_;
     }
     for (const auto& [surface, decision] : decisions_) {
       set_surface(transition_.state, surface, decision.mode, decision.alpha);
@@ -90,12 +91,12 @@ Transition Decider::run() {
     apply_regions();
     if (!read_nested_anew()) break;
     base_ = transition_.state;
-    for (const int j : occasion_.at_zero) set_surface(base_, j, before_.mode[at(j)], before_.alpha[at(j)]);
+    for (const int j : switching_point_.at_zero) set_surface(base_, j, before_.mode[at(j)], before_.alpha[at(j)]);
   }
   for (const auto& [surface, decision] : decisions_) {
     if (contains(standing_, surface)) continue;
     if (!decision.reason.empty()) {
-      append_reason(s_.system, surface, decision, before_, occasion_, transition_.reason);
+      append_reason(s_.system, surface, decision, before_, switching_point_, transition_.reason);
     }
     for (const int other : decision.other_modes) {
       transition_.unique = false;
@@ -123,63 +124,66 @@ ModeState with_exact_selections(ModeState state) {
   return state;
 }
 
-Transition undecided(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+Transition undecided(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point,
                      const std::string& problem) {
   Transition transition;
   transition.state = before;
   transition.termination = result::Termination::outside_class;
   transition.message = fmt::format("at t = {} the surfaces {} meet, whose gradients depend on each other: {}",
-                                   occasion.t, names(s.system, occasion.at_zero), problem);
+                                   switching_point.t, names(s.system, switching_point.at_zero), problem);
   return transition;
 }
 
 /// Whether surfaces that were not all slid on before are at zero here, and their gradients depend on each other.
-bool dependent_are_met(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+bool dependent_are_met(const SwitchingContext& s, const ModeState& state, const SwitchingPoint& switching_point) {
   // Two are dependent only where they touch, and those that were slid on before are not.
-  if (occasion.at_zero.size() < 3) return false;
-  const auto surfaces = acting_surfaces(s, state, occasion);
-  return surfaces.size() > 2 && (occasion.start || surfaces != state.sliding) &&
-         ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, surfaces);
+  if (switching_point.at_zero.size() < 3) return false;
+  const auto surfaces = acting_surfaces(s, state, switching_point);
+  return surfaces.size() > 2 && (switching_point.start || surfaces != state.sliding) &&
+         ProjectedFields(s.kernel, switching_point).gradients_depend(state.alpha, surfaces);
 }
 
 }  // namespace
 
-Transition decide_mode(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion) {
-  if (before.higher && !occasion.start) return decide_from_higher_order(surroundings, before, occasion);
-  const ReferenceScope references(surroundings.kernel, before);
+Transition decide_mode(const SwitchingContext& switching_context, const ModeState& before,
+                       const SwitchingPoint& switching_point) {
+  if (before.higher && !switching_point.start)
+    return decide_from_higher_order(switching_context, before, switching_point);
+  const ReferenceScope references(switching_context.kernel, before);
   const ModeState exact = with_exact_selections(before);
-  if (auto rests = rest_where_nested_meet(surroundings, exact, occasion)) return std::move(*rests);
-  if (auto crossed = cross_with_jump(surroundings, exact, occasion)) return std::move(*crossed);
-  if (occasion.limit) {
+  if (auto rests = rest_where_nested_meet(switching_context, exact, switching_point)) return std::move(*rests);
+  if (auto crossed = cross_with_jump(switching_context, exact, switching_point)) return std::move(*crossed);
+  if (switching_point.limit) {
     // Rounding of the limit decides what the fields do there one by one.
-    if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
+    if (auto held = hold_with_higher_order(switching_context, exact, switching_point)) return std::move(*held);
   }
   std::string problem;
-  if (dependent_are_met(surroundings, exact, occasion)) {
-    if (auto decided = decide_dependent(surroundings, exact, occasion, problem)) return std::move(*decided);
+  if (dependent_are_met(switching_context, exact, switching_point)) {
+    if (auto decided = decide_dependent(switching_context, exact, switching_point, problem)) return std::move(*decided);
     // The corners of more are not enumerated.
     constexpr std::size_t most_enumerated = 10;
-    if (!problem.empty() && occasion.at_zero.size() > most_enumerated) {
-      return undecided(surroundings, exact, occasion, problem);
+    if (!problem.empty() && switching_point.at_zero.size() > most_enumerated) {
+      return undecided(switching_context, exact, switching_point, problem);
     }
   }
-  Transition transition = Decider(surroundings, exact, occasion).run();
+  Transition transition = Decider(switching_context, exact, switching_point).run();
   if (transition.termination == result::Termination::outside_class) {
-    set_references(surroundings.kernel, before);
+    set_references(switching_context.kernel, before);
     // The codimension of a kink and a surface is 2, but the kink itself does not hold the solution.
-    if (auto crossed = cross_kinks(surroundings, exact, occasion)) return std::move(*crossed);
+    if (auto crossed = cross_kinks(switching_context, exact, switching_point)) return std::move(*crossed);
   }
   if (transition.termination == result::Termination::outside_class ||
       transition.termination == result::Termination::no_admissible_mode) {
-    if (auto held = hold_with_higher_order(surroundings, exact, occasion)) return std::move(*held);
-    if (auto left = leave_where_nested_meet(surroundings, exact, occasion)) return std::move(*left);
+    if (auto held = hold_with_higher_order(switching_context, exact, switching_point)) return std::move(*held);
+    if (auto left = leave_where_nested_meet(switching_context, exact, switching_point)) return std::move(*left);
   }
   if (transition.termination == result::Termination::no_admissible_mode) {
-    if (auto other = borderline_mode(surroundings, exact, occasion, transition.state)) return std::move(*other);
+    if (auto other = borderline_mode(switching_context, exact, switching_point, transition.state))
+      return std::move(*other);
   }
   // Also where weights that soft minima leave open have been found for them: what keeps their difference at 0, a
   // gradient of roundings, does not last.
-  const auto same = same_indicators(surroundings.kernel, exact, occasion);
+  const auto same = same_indicators(switching_context.kernel, exact, switching_point);
   const bool decided = transition.termination == result::Termination::completed;
   if (same &&
       (!decided || (transition.state.mode[at(same->first)] == 0 && transition.state.mode[at(same->second)] == 0))) {
@@ -187,22 +191,23 @@ Transition decide_mode(const Surroundings& surroundings, const ModeState& before
     transition.message = fmt::format(
         "the regions '{}' and '{}' have the same indicator, and both are active at t = {}: nothing says which of them "
         "the solution is in; make one region of them",
-        surroundings.system.switching[at(same->first)].name, surroundings.system.switching[at(same->second)].name,
-        occasion.t);
+        switching_context.system.switching[at(same->first)].name,
+        switching_context.system.switching[at(same->second)].name, switching_point.t);
   }
   if (transition.termination != result::Termination::completed && !problem.empty()) {
-    return undecided(surroundings, exact, occasion, problem);
+    return undecided(switching_context, exact, switching_point, problem);
   }
   return transition;
 }
 
-Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced, const Occasion& occasion) {
-  const ReferenceScope references(surroundings.kernel, forced);
+Transition check_forced_mode(const SwitchingContext& switching_context, const ModeState& forced,
+                             const SwitchingPoint& switching_point) {
+  const ReferenceScope references(switching_context.kernel, forced);
   std::string problem;
-  if (slides_on_dependent(surroundings, forced, occasion)) {
-    if (auto held = check_dependent(surroundings, forced, occasion, problem)) return std::move(*held);
+  if (slides_on_dependent(switching_context, forced, switching_point)) {
+    if (auto held = check_dependent(switching_context, forced, switching_point, problem)) return std::move(*held);
   }
-  return Decider(surroundings, forced, occasion).run_forced();
+  return Decider(switching_context, forced, switching_point).run_forced();
 }
 
 }  // namespace saltus::event_integrator

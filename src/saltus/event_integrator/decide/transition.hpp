@@ -19,7 +19,7 @@
 namespace saltus::event_integrator {
 
 /// Why the mode is decided afresh.
-struct Occasion {
+struct SwitchingPoint {
   double t = 0.0;
   const double* x = nullptr;      ///< n_x, on all surfaces of `at_zero`
   std::vector<int> at_zero;       ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
@@ -75,7 +75,7 @@ struct Transition {
 };
 
 /// What the switching needs to know of the system besides its functions.
-struct Surroundings {
+struct SwitchingContext {
   evaluation::ModelKernel& kernel;
   const model::System& system;
   bool affine_in_alpha = true;
@@ -85,7 +85,7 @@ struct Surroundings {
 
 /// Adds what decided about a surface, unless its mode stays, or it is not one that the result lists (a kink, a time).
 void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
-                   const ModeState& before, const Occasion& occasion, std::string& reason);
+                   const ModeState& before, const SwitchingPoint& switching_point, std::string& reason);
 
 /// Behind the names of two surfaces: what a tree decided about them, and why.
 void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason);
@@ -96,7 +96,8 @@ void append_meeting(const model::System& system, const std::array<int, 2>& surfa
 /// Makes of `transition`, whose storage is used again, the only one there is, with the mode as it was before: what is
 /// decided without detours starts from it.
 /// @param states  n_x
-void begin_transition(const ModeState& before, const Occasion& occasion, std::size_t states, Transition& transition);
+void begin_transition(const ModeState& before, const SwitchingPoint& switching_point, std::size_t states,
+                      Transition& transition);
 
 /// The mode behind an event, or a start, at one point.
 /// Surfaces that do not influence each other are decided one by one, the others in groups; switching functions nested
@@ -104,27 +105,27 @@ void begin_transition(const ModeState& before, const Occasion& occasion, std::si
 /// switching/intersection.hpp; more, and what no tree decides, by the hidden dynamics. The new mode is checked along
 /// its own field: it must move to where it says. Terminations: outside_class (two-fold, psi stays 0, hidden dynamics
 /// without a limit), no_admissible_mode (the check failed), evaluation_failed (fields undefined at the point).
-[[nodiscard]] Transition decide_mode(const Surroundings& surroundings, const ModeState& before,
-                                     const Occasion& occasion);
+[[nodiscard]] Transition decide_mode(const SwitchingContext& switching_context, const ModeState& before,
+                                     const SwitchingPoint& switching_point);
 
 /// A mode that the user forces at the start: only the check along its own field.
-[[nodiscard]] Transition check_forced_mode(const Surroundings& surroundings, const ModeState& forced,
-                                           const Occasion& occasion);
+[[nodiscard]] Transition check_forced_mode(const SwitchingContext& switching_context, const ModeState& forced,
+                                           const SwitchingPoint& switching_point);
 
 /// The side of an event function that is zero at `start` to which the motion of a mode goes from there, by Runge-Kutta
 /// steps over a hundredth of the time scale; 0 where they do not agree.
-[[nodiscard]] int side_ahead(const Surroundings& surroundings, const ModeState& state, const Occasion& occasion,
-                             const std::vector<double>& start, int function);
+[[nodiscard]] int side_ahead(const SwitchingContext& switching_context, const ModeState& state,
+                             const SwitchingPoint& switching_point, const std::vector<double>& start, int function);
 
 /// What to say where sliding on several surfaces that influence each other has run into a point at which its equations
 /// are singular to half of the digits, so that its selections, and the motion, are roundings; nullopt if it has not.
-[[nodiscard]] std::optional<std::string> lost_selections(const Surroundings& surroundings, const ModeState& state,
-                                                         double t, const double* x);
+[[nodiscard]] std::optional<std::string> lost_selections(const SwitchingContext& switching_context,
+                                                         const ModeState& state, double t, const double* x);
 
 /// What to say where sliding has lost its selections, or has run into a point at which both fields are tangent to the
 /// surface (two-fold), so that its selection has no limit, or at which the gradient of the surface vanishes; nullopt if
 /// there is none near by.
-[[nodiscard]] std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state,
-                                                          double t, const double* x);
+[[nodiscard]] std::optional<std::string> two_fold_message(const SwitchingContext& switching_context,
+                                                          const ModeState& state, double t, const double* x);
 
 }  // namespace saltus::event_integrator

@@ -12,16 +12,16 @@
 
 namespace saltus::event_integrator {
 
-std::optional<Transition> borderline_mode(const Surroundings& s, const ModeState& before, const Occasion& occasion,
-                                          const ModeState& failed) {
-  const auto& surfaces = occasion.at_zero;
+std::optional<Transition> borderline_mode(const SwitchingContext& s, const ModeState& before,
+                                          const SwitchingPoint& switching_point, const ModeState& failed) {
+  const auto& surfaces = switching_point.at_zero;
   if (!s.affine_in_alpha || !s.kernel.region_groups().empty()) return std::nullopt;
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     const auto& inner = s.kernel.inner(j);
     if (std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(surfaces, i); })) return std::nullopt;
   }
   if (surfaces.empty() || surfaces.size() > at(switching::largest_enumerated)) return std::nullopt;
-  const ProjectedFields fields(s.kernel, occasion);
+  const ProjectedFields fields(s.kernel, switching_point);
   auto modes = switching::admissible_modes(fields.table(before, surfaces), switching::Borderline::kept);
   // Selections at their bounds come last: where a region beside them is left, too, they end at once.
   const auto rank = [&](const switching::GroupMode& candidate) {
@@ -35,7 +35,7 @@ std::optional<Transition> borderline_mode(const Surroundings& s, const ModeState
   };
   std::stable_sort(modes.begin(), modes.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   // Which field was located as tangent says nothing about modes with other selections.
-  Occasion here = occasion;
+  SwitchingPoint here = switching_point;
   for (auto* surfaces_left : {&here.exit_below, &here.exit_above, &here.coalesced, &here.destabilised}) {
     surfaces_left->clear();
   }

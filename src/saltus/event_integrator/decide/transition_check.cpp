@@ -58,7 +58,7 @@ bool Decider::set_corners() {
       if (!contains(state.sliding, j) && alpha[at(j)] != state.alpha[at(j)]) {
         return fail(result::Termination::outside_class,
                     fmt::format("at t = {} the sign of '{}' depends on the selections of several sliding surfaces ({})",
-                                occasion_.t, s_.system.switching[at(j)].name, names(s_.system, state.sliding)));
+                                switching_point_.t, s_.system.switching[at(j)].name, names(s_.system, state.sliding)));
       }
     }
   }
@@ -68,22 +68,25 @@ bool Decider::set_corners() {
 /// The field of the new mode here, in xdot, and the point beside it.
 bool Decider::check_field(ModeField& field, std::vector<double>& xdot) {
   const auto& state = transition_.state;
-  field(occasion_.t, occasion_.x, xdot.data());
+  field(switching_point_.t, switching_point_.x, xdot.data());
   // Regions whose indicators depend on each other follow those that do not.
   const auto held = field.independent();
   if (held.size() > 1 && fields_.gradients_depend(state.alpha, held)) return fail_where_surfaces_touch(held);
   transition_.beside = fields_.point_beside(state.alpha);
   const auto is_number = [](double value) { return std::isfinite(value); };
-  if (!std::all_of(xdot.begin(), xdot.end(), is_number)) field(occasion_.t, transition_.beside.data(), xdot.data());
+  if (!std::all_of(xdot.begin(), xdot.end(), is_number))
+    field(switching_point_.t, transition_.beside.data(), xdot.data());
   if (!std::all_of(xdot.begin(), xdot.end(), is_number)) {
     // A field may be undefined on the far side of its own surface; the step loop finds out on its own side.
     for (const int j : state.sliding) {
       if (!fields_.gradient_vanishes(state.alpha, j) && !fields_.nearly_two_fold(state.alpha, j)) continue;
-      return fail(result::Termination::outside_class, undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
+      return fail(result::Termination::outside_class,
+                  undetermined_at(fields_, s_.system, state.alpha, j, switching_point_.t));
     }
     if (!state.sliding.empty()) {
-      return fail(result::Termination::evaluation_failed, fmt::format("the sliding field on {} is not finite at t = {}",
-                                                                      names(s_.system, state.sliding), occasion_.t));
+      return fail(result::Termination::evaluation_failed,
+                  fmt::format("the sliding field on {} is not finite at t = {}", names(s_.system, state.sliding),
+                              switching_point_.t));
     }
   }
   return true;
@@ -98,13 +101,14 @@ bool Decider::take_selections(const ModeField& field) {
     if (!(selection >= -1e-9 && selection <= 1.0 + 1e-9)) {
       const auto& name = s_.system.switching[at(j)].name;
       // Behind an exit located on one field the selection is at its bound, unless the other field vanishes with it.
-      const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
+      const bool at_exit = contains(switching_point_.exit_below, j) || contains(switching_point_.exit_above, j);
       if (at_exit || fields_.nearly_two_fold(state.alpha, j)) {
         return fail(result::Termination::outside_class,
-                    undetermined_at(fields_, s_.system, state.alpha, j, occasion_.t));
+                    undetermined_at(fields_, s_.system, state.alpha, j, switching_point_.t));
       }
-      return fail(result::Termination::no_admissible_mode,
-                  fmt::format("sliding on '{}' at t = {} would need the selection {}", name, occasion_.t, selection));
+      return fail(
+          result::Termination::no_admissible_mode,
+          fmt::format("sliding on '{}' at t = {} would need the selection {}", name, switching_point_.t, selection));
     }
     state.alpha[at(j)] = std::clamp(selection, 0.0, 1.0);
   }
@@ -123,7 +127,7 @@ bool Decider::take_selections(const ModeField& field) {
 Motion Decider::motion_from(int j, ModeField& field, const std::vector<double>& xdot) {
   const auto& state = transition_.state;
   double velocity = fields_.velocities(state.alpha, {j}).front();
-  const auto& tangent = state.mode[at(j)] > 0 ? occasion_.exit_above : occasion_.exit_below;
+  const auto& tangent = state.mode[at(j)] > 0 ? switching_point_.exit_above : switching_point_.exit_below;
   if (contains(tangent, j) && keeps_selections()) velocity = 0.0;
   // The fields of all regions that meet: those on both sides of this surface may be tangent to it together.
   const double scale =
@@ -181,8 +185,8 @@ bool Decider::check() {
   std::vector<double> xdot(at(s_.kernel.states()));
   if (!check_field(field, xdot) || !take_selections(field)) return false;
   // Regions are measured against the reference of the new mode: the one before may be at zero, too.
-  std::vector<int> at_zero = occasion_.at_zero;
-  for (const int j : occasion_.tied) {
+  std::vector<int> at_zero = switching_point_.at_zero;
+  for (const int j : switching_point_.tied) {
     if (!contains(at_zero, j)) at_zero.push_back(j);
   }
   return std::all_of(at_zero.begin(), at_zero.end(), [&](int j) { return check_side(j, field, xdot); });
@@ -194,15 +198,17 @@ bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
       fmt::format("the surfaces {} touch at t = {}: their gradients depend on each other there, so that sliding "
                   "on all of them does not determine the selections; state surfaces that coincide by one "
                   "switching function",
-                  names(s_.system, surfaces), occasion_.t));
+                  names(s_.system, surfaces), switching_point_.t));
 }
 
 /// Whether the new field has an infinite derivative on a surface, which it leaves all the same: no derivative says so.
 bool Decider::leaves_by_root(int j) {
   if (transition_.rooted >= 0 || s_.system.switching[at(j)].role != model::SwitchingRole::listed) return false;
-  const std::vector<double> x(occasion_.x, occasion_.x + s_.kernel.states());
+  const std::vector<double> x(switching_point_.x, switching_point_.x + s_.kernel.states());
   RootedExit exit(s_.kernel, s_.affine_in_alpha, transition_.state, j);
-  if (!exit.has_root(occasion_.t, x) || !exit.leads_away(occasion_.t, x, 1e-2 * occasion_.time_scale)) return false;
+  if (!exit.has_root(switching_point_.t, x) ||
+      !exit.leads_away(switching_point_.t, x, 1e-2 * switching_point_.time_scale))
+    return false;
   transition_.rooted = j;
   return true;
 }
@@ -219,13 +225,13 @@ bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
         fmt::format("at t = {} more regions meet than their indicators tell apart, for an instant or with too many "
                     "sides: that of '{}' follows from those of the others, and their weights are not determined; "
                     "state these regions by conditions (when) of switching functions, or perturb a parameter",
-                    occasion_.t, name));
+                    switching_point_.t, name));
   }
   if (motion.side.drift == switching::Drift::stays) {
     return fail(result::Termination::outside_class,
                 fmt::format("behind t = {} the field of the new mode does not leave '{}', to any order (boundary "
                             "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
-                            occasion_.t, name));
+                            switching_point_.t, name));
   }
   std::array<switching::Side, 2> sides;
   for (const std::size_t corner : {std::size_t{0}, std::size_t{1}}) {
@@ -238,13 +244,14 @@ bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
     return fail(result::Termination::outside_class,
                 fmt::format("from t = {} on the fields on both sides of '{}' are tangent to it and turn towards it: "
                             "sliding on which the derivative of '{}' is 0 for every selection (of second order)",
-                            occasion_.t, name, name));
+                            switching_point_.t, name, name));
   }
-  if (tangent) return fail(result::Termination::outside_class, two_fold_at(name, occasion_.t));
-  if (fields_.gradients_depend(state.alpha, occasion_.at_zero)) return fail_where_surfaces_touch(occasion_.at_zero);
+  if (tangent) return fail(result::Termination::outside_class, two_fold_at(name, switching_point_.t));
+  if (fields_.gradients_depend(state.alpha, switching_point_.at_zero))
+    return fail_where_surfaces_touch(switching_point_.at_zero);
   return fail(result::Termination::no_admissible_mode,
-              fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not", occasion_.t,
-                          mode > 0 ? "the positive side" : "the negative side", name));
+              fmt::format("behind t = {} the solution should move to {} of '{}', but its field does not",
+                          switching_point_.t, mode > 0 ? "the positive side" : "the negative side", name));
 }
 
 /// Whether the new field is the sliding one of before at this point: selections were lost at their bounds only. Then
@@ -253,30 +260,31 @@ bool Decider::keeps_selections() const {
   for (std::size_t j = 0; j < before_.mode.size(); ++j) {
     if (before_.mode[j] != 0 || transition_.state.mode[j] == 0) continue;
     const int surface = static_cast<int>(j);
-    if (!contains(occasion_.exit_below, surface) && !contains(occasion_.exit_above, surface)) return false;
+    if (!contains(switching_point_.exit_below, surface) && !contains(switching_point_.exit_above, surface))
+      return false;
   }
   return true;
 }
 
 /// Normal component of the mode's own field on a surface, a little later along it.
 double Decider::velocity_ahead(ModeField& field, const std::vector<double>& xdot, int surface) {
-  const double time = 1e-2 * occasion_.time_scale;
-  std::vector<double> x(occasion_.x, occasion_.x + xdot.size());
+  const double time = 1e-2 * switching_point_.time_scale;
+  std::vector<double> x(switching_point_.x, switching_point_.x + xdot.size());
   std::vector<double> later(xdot.size()), row(xdot.size());
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * xdot[i];
-  field(occasion_.t + time, x.data(), later.data());
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = occasion_.x[i] + 0.5 * time * (xdot[i] + later[i]);
-  field(occasion_.t + time, x.data(), later.data());
+  field(switching_point_.t + time, x.data(), later.data());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = switching_point_.x[i] + 0.5 * time * (xdot[i] + later[i]);
+  field(switching_point_.t + time, x.data(), later.data());
   double velocity = 0.0;
-  s_.kernel.gradient(surface, occasion_.t + time, x.data(), field.alpha().data(), row.data(), &velocity);
+  s_.kernel.gradient(surface, switching_point_.t + time, x.data(), field.alpha().data(), row.data(), &velocity);
   for (std::size_t i = 0; i < x.size(); ++i) velocity += row[i] == 0.0 ? 0.0 : row[i] * later[i];
   return velocity;
 }
 
-std::optional<std::string> lost_selections(const Surroundings& surroundings, const ModeState& state, double t,
+std::optional<std::string> lost_selections(const SwitchingContext& switching_context, const ModeState& state, double t,
                                            const double* x) {
   if (state.sliding.size() < 2 || state.higher) return std::nullopt;
-  ModeField field(surroundings.kernel, surroundings.affine_in_alpha);
+  ModeField field(switching_context.kernel, switching_context.affine_in_alpha);
   field.enter(state);
   // Selections are known to 1e-16 over this.
   constexpr double parallel = 1e-8;
@@ -285,20 +293,20 @@ std::optional<std::string> lost_selections(const Surroundings& surroundings, con
       "the selections of sliding on {} have no limit at t = {:.17g}: det G, of the derivatives of the velocities of "
       "these functions with respect to them, vanishes there (the fields that hold the solution are parallel, or two "
       "roots meet), so that they do not determine what follows; end the simulation before, or perturb a parameter",
-      names(surroundings.system, state.sliding), t);
+      names(switching_context.system, state.sliding), t);
 }
 
-std::optional<std::string> two_fold_message(const Surroundings& surroundings, const ModeState& state, double t,
+std::optional<std::string> two_fold_message(const SwitchingContext& switching_context, const ModeState& state, double t,
                                             const double* x) {
-  if (auto lost = lost_selections(surroundings, state, t, x)) return lost;
-  Occasion occasion;
-  occasion.t = t;
-  occasion.x = x;
-  occasion.at_zero = state.sliding;
-  const ProjectedFields fields(surroundings.kernel, occasion);
+  if (auto lost = lost_selections(switching_context, state, t, x)) return lost;
+  SwitchingPoint switching_point;
+  switching_point.t = t;
+  switching_point.x = x;
+  switching_point.at_zero = state.sliding;
+  const ProjectedFields fields(switching_context.kernel, switching_point);
   for (const int j : state.sliding) {
     if (fields.nearly_two_fold(state.alpha, j) || fields.gradient_vanishes(state.alpha, j)) {
-      return undetermined_at(fields, surroundings.system, state.alpha, j, t);
+      return undetermined_at(fields, switching_context.system, state.alpha, j, t);
     }
   }
   return std::nullopt;

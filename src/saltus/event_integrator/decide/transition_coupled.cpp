@@ -72,7 +72,7 @@ double largest(const switching::MultiAffine& g) {
 /// The tree for a situation of two surfaces; nullopt if there is none for it.
 std::optional<PlaneDecision> Decider::ask_tree(const std::vector<int>& group,
                                                const switching::CornerTable& table) const {
-  if (occasion_.start || group.size() != 2 || !s_.affine_in_alpha) return std::nullopt;
+  if (switching_point_.start || group.size() != 2 || !s_.affine_in_alpha) return std::nullopt;
   for (const int j : group) {
     const auto role = s_.system.switching[at(j)].role;
     if (role != model::SwitchingRole::listed && role != model::SwitchingRole::region) return std::nullopt;
@@ -81,8 +81,8 @@ std::optional<PlaneDecision> Decider::ask_tree(const std::vector<int>& group,
   const PlaneMode incoming{before_.mode[at(group[0])], before_.mode[at(group[1])]};
   PlaneMode leaves{};
   for (std::size_t k = 0; k < 2; ++k) {
-    if (contains(occasion_.exit_above, group[k])) leaves[k] = 1;
-    if (contains(occasion_.exit_below, group[k])) leaves[k] = -1;
+    if (contains(switching_point_.exit_above, group[k])) leaves[k] = 1;
+    if (contains(switching_point_.exit_below, group[k])) leaves[k] = -1;
   }
   const bool exit = leaves != PlaneMode{};
   if (incoming == PlaneMode{0, 0}) {
@@ -90,8 +90,8 @@ std::optional<PlaneDecision> Decider::ask_tree(const std::vector<int>& group,
     if (exit)
       return switching::decide_exit_edge(
           plane, leaves[0] != 0 ? switching::SquareEdge{0, leaves[0]} : switching::SquareEdge{1, leaves[1]});
-    if (contains(occasion_.coalesced, group[0])) return switching::decide_exit_fold(plane);
-    if (contains(occasion_.destabilised, group[0])) return switching::decide_exit_unstable(plane);
+    if (contains(switching_point_.coalesced, group[0])) return switching::decide_exit_fold(plane);
+    if (contains(switching_point_.destabilised, group[0])) return switching::decide_exit_unstable(plane);
     return std::nullopt;
   }
   if (exit) return std::nullopt;
@@ -111,7 +111,7 @@ void Decider::note_meeting(const std::vector<int>& group, const switching::Corne
       meeting.velocities[k][corner] = table.side(static_cast<int>(k), corner).velocity;
     }
   }
-  if (!occasion_.start) meeting.alpha = alpha;
+  if (!switching_point_.start) meeting.alpha = alpha;
   transition_.meeting = meeting;
 }
 
@@ -139,7 +139,8 @@ bool Decider::is_vanishing(const std::vector<int>& group, const auto& mode) cons
   const auto on_its_root = [&](std::size_t k) {
     return mode.mode[k] == 0 && std::abs(mode.alpha[k] - before_.alpha[at(group[k])]) <= near;
   };
-  bool vanishes = std::any_of(group.begin(), group.end(), [&](int j) { return contains(occasion_.coalesced, j); });
+  bool vanishes =
+      std::any_of(group.begin(), group.end(), [&](int j) { return contains(switching_point_.coalesced, j); });
   for (std::size_t k = 0; k < group.size(); ++k) vanishes = vanishes && on_its_root(k);
   return vanishes;
 }
@@ -174,15 +175,17 @@ bool Decider::spiral_out(const std::vector<int>& group, const PlaneTable& table,
   if (!lap || !(lap->lap_ratio > 1.0)) return false;
   // Any size is as good as another; the fields are constant to a millionth of it over this one, and the surface on
   // which the lap ends is far above its rounding.
-  double delta = 1e-6 * occasion_.time_scale / lap->duration();
+  double delta = 1e-6 * switching_point_.time_scale / lap->duration();
   for (const int j : group) delta = std::max(delta, 1e5 * fields_.noise(j) / (lap->lap_ratio - 1.0));
   const std::size_t crossed = (lap->corners[3] ^ lap->corners[0]) >> 1U;
-  transition_.beyond_spiral = SpiralStart{
-      delta * lap->duration(), {occasion_.x, occasion_.x + s_.kernel.states()}, group[crossed], lap->lap_ratio};
+  transition_.beyond_spiral = SpiralStart{delta * lap->duration(),
+                                          {switching_point_.x, switching_point_.x + s_.kernel.states()},
+                                          group[crossed],
+                                          lap->lap_ratio};
   std::vector<double> f(at(s_.kernel.states()));
   for (std::size_t k = 0; k < lap->corners.size(); ++k) {
-    s_.kernel.field(occasion_.t, occasion_.x, fields_.corner_alpha(base_.alpha, group, lap->corners[k]).data(),
-                    f.data());
+    s_.kernel.field(switching_point_.t, switching_point_.x,
+                    fields_.corner_alpha(base_.alpha, group, lap->corners[k]).data(), f.data());
     for (std::size_t i = 0; i < f.size(); ++i) transition_.beyond_spiral->x[i] += delta * lap->durations[k] * f[i];
   }
   const std::size_t first = lap->corners[0];
@@ -197,7 +200,7 @@ bool Decider::spiral_out(const std::vector<int>& group, const PlaneTable& table,
 /// A start on the intersection of two surfaces, or the limit of a spiral there.
 bool Decider::accept_start(const std::vector<int>& group, const switching::CornerTable& table) {
   const PlaneTable plane = switching::plane_table(table);
-  if (occasion_.limit) {
+  if (switching_point_.limit) {
     const PlaneDecision limit = switching::decide_spiral_in(plane);
     if (limit.undecided.empty()) return accept(group, limit);
   }
@@ -213,9 +216,9 @@ switching::HiddenDecision Decider::follow_hidden(const std::vector<int>& group, 
   bool leaves = false;
   for (const int j : group) {
     situation.alpha.push_back(std::clamp(before_.alpha[at(j)], 0.0, 1.0));
-    for (const auto* surfaces :
-         {&occasion_.exit_below, &occasion_.exit_above, &occasion_.coalesced, &occasion_.destabilised}) {
-      leaves = leaves || (!occasion_.start && contains(*surfaces, j));
+    for (const auto* surfaces : {&switching_point_.exit_below, &switching_point_.exit_above,
+                                 &switching_point_.coalesced, &switching_point_.destabilised}) {
+      leaves = leaves || (!switching_point_.start && contains(*surfaces, j));
     }
   }
   switching::HiddenOptions options;
@@ -227,10 +230,10 @@ switching::HiddenDecision Decider::follow_hidden(const std::vector<int>& group, 
   ModeField field(s_.kernel, s_.affine_in_alpha);
   field.enter(before_);
   std::vector<double> ahead(at(s_.kernel.states()));
-  field(occasion_.t, occasion_.x, ahead.data());
-  const double time = 1e-4 * occasion_.time_scale;
-  for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] = occasion_.x[i] + time * ahead[i];
-  Occasion later = occasion_;
+  field(switching_point_.t, switching_point_.x, ahead.data());
+  const double time = 1e-4 * switching_point_.time_scale;
+  for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] = switching_point_.x[i] + time * ahead[i];
+  SwitchingPoint later = switching_point_;
   later.t += time;
   later.x = ahead.data();
   const auto here = corner_velocities(fields_, base_, group);
@@ -263,7 +266,7 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
     return fail(result::Termination::outside_class,
                 fmt::format("the surfaces {} meet at t = {} and influence each other: no mode could be found that "
                             "continues the solution ({}); start beside them or perturb a parameter",
-                            names(s_.system, group), occasion_.t,
+                            names(s_.system, group), switching_point_.t,
                             hidden.reason.empty() ? "the fields are not finite" : hidden.reason));
   }
   take(group, hidden.mode, hidden.alpha);
@@ -290,7 +293,7 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   return true;
 }
 
-/// Groups one after the other, each with what was decided for those before it; none may feel a later one.
+/// Groups one after the other, each with what was decided for those before it; none may depend on a later one.
 bool Decider::decide_parts(const std::vector<std::vector<int>>& parts) {
   const ModeState kept = base_;
   bool decided = true;
@@ -309,8 +312,8 @@ bool Decider::decide_parts(const std::vector<std::vector<int>>& parts) {
   return decided;
 }
 
-/// A group of which some surfaces do not feel others: the table of all corners knows first derivatives only, while
-/// those who feel nobody decide how the others move.
+/// A group of which some surfaces do not depend on others: the table of all corners knows first derivatives only, while
+/// those who depend on nobody decide how the others move.
 bool Decider::decide_parts(const std::vector<int>& group, const switching::CornerTable& table) {
   auto parts = switching::parts_by_influence(table);
   if (parts.size() < 2) return false;
@@ -321,7 +324,7 @@ bool Decider::decide_parts(const std::vector<int>& group, const switching::Corne
 }
 
 bool Decider::decide_coupled(const std::vector<int>& group, const switching::CornerTable& table) {
-  if (occasion_.start && group.size() == 2 && accept_start(group, table)) return true;
+  if (switching_point_.start && group.size() == 2 && accept_start(group, table)) return true;
   return resolve(group, table);
 }
 

@@ -20,30 +20,30 @@ constexpr std::size_t largest_group = 12;
 
 }  // namespace
 
-std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, const Occasion& occasion) {
+std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point) {
   std::vector<int> nested;
   for (int j = 0; j < kernel.switching_functions(); ++j) {
-    if (!kernel.inner(j).empty() && !contains(occasion.at_zero, j)) nested.push_back(j);
+    if (!kernel.inner(j).empty() && !contains(switching_point.at_zero, j)) nested.push_back(j);
   }
   return nested;
 }
 
-bool feels(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j) {
+bool depends_on(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j) {
   return kernel.depends(i, j) || same_group(kernel, i, j) || std::any_of(nested.begin(), nested.end(), [&](int around) {
            return contains(kernel.inner(around), j) && kernel.depends(i, around);
          });
 }
 
-std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion,
+std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point,
                                         std::vector<int> open) {
-  const std::vector<int> nested = nested_away_from_zero(kernel, occasion);
+  const std::vector<int> nested = nested_away_from_zero(kernel, switching_point);
   std::vector<std::vector<int>> groups;
   while (!open.empty()) {
     std::vector<int> group{open.front()};
     open.erase(open.begin());
     for (std::size_t k = 0; k < group.size(); ++k) {
       for (std::size_t other = 0; other < open.size();) {
-        if (feels(kernel, nested, group[k], open[other]) || feels(kernel, nested, open[other], group[k])) {
+        if (depends_on(kernel, nested, group[k], open[other]) || depends_on(kernel, nested, open[other], group[k])) {
           group.push_back(open[other]);
           open.erase(open.begin() + static_cast<std::ptrdiff_t>(other));
         } else {
@@ -90,7 +90,7 @@ void Decider::note_scales(const std::vector<int>& group, const switching::Corner
 bool Decider::passes_kink(const std::vector<int>& group, const switching::GroupDecision& decision) {
   const int j = group.front();
   const int arrived = before_.mode[at(j)];
-  if (group.size() > 1 || arrived == 0 || occasion_.start) return false;
+  if (group.size() > 1 || arrived == 0 || switching_point_.start) return false;
   if (!s_.system.switching[at(j)].is_kink()) return false;
   const auto& surface = decision.surfaces.front();
   if (decision.verdict == Verdict::decided && surface.mode != 0 && surface.other_modes.empty()) return false;
@@ -126,7 +126,7 @@ bool Decider::regions_meet(const std::vector<int>& group) const {
 /// A surface of the group that is left where both its fields are tangent to it, or -1.
 int Decider::lost_at_exit(const std::vector<int>& group) const {
   const auto found = std::find_if(group.begin(), group.end(), [&](int j) {
-    const bool at_exit = contains(occasion_.exit_below, j) || contains(occasion_.exit_above, j);
+    const bool at_exit = contains(switching_point_.exit_below, j) || contains(switching_point_.exit_above, j);
     // An exit is located where one field is tangent: its selection is at its bound to rounding over the other field,
     // unless that vanishes, too. Ten times less or more makes no difference: it is 1e-9 or of the order of one. Between
     // these it depends on what is left of the other field.
@@ -141,21 +141,22 @@ int Decider::lost_at_exit(const std::vector<int>& group) const {
 bool Decider::decide(const std::vector<int>& group) {
   if (regions_meet(group)) return decide_regions(group);
   if (const int j = lost_at_exit(group); j >= 0) {
-    return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, occasion_.t));
+    return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, switching_point_.t));
   }
   if (const auto large = decide_large(group)) return *large;
   if (group.size() > largest_group && s_.affine_in_alpha) {
     return fail(
         result::Termination::outside_class,
-        fmt::format("{} surfaces that influence each other meet at t = {}; {}; covered are parts of up to {} that "
-                    "feel each other, and larger ones in which each surface feels itself more than the others",
-                    group.size(), occasion_.t, undecided_part_, largest_group));
+        fmt::format(
+            "{} surfaces that influence each other meet at t = {}; {}; covered are parts of up to {} that "
+            "depend on each other, and larger ones in which each surface depends on itself more than the others",
+            group.size(), switching_point_.t, undecided_part_, largest_group));
   }
   if (group.size() > largest_group || (!s_.affine_in_alpha && group.size() > 1)) {
     return fail(result::Termination::outside_class,
                 fmt::format("{} surfaces that influence each other meet at t = {}: {}; covered are up to {} with every "
                             "selection entering affinely",
-                            group.size(), occasion_.t, names(s_.system, group), largest_group));
+                            group.size(), switching_point_.t, names(s_.system, group), largest_group));
   }
   const auto table = fields_.table(base_, group);
   note_scales(group, table);
@@ -173,30 +174,32 @@ bool Decider::decide(const std::vector<int>& group) {
   return take_separate(group, decision);
 }
 
-/// What was decided about surfaces each of which feels only itself.
+/// What was decided about surfaces each of which depends on only itself.
 bool Decider::take_separate(const std::vector<int>& group, const switching::GroupDecision& decision) {
   const int culprit = group[at(std::max(decision.culprit, 0))];
   if (decision.verdict == Verdict::two_fold) {
     return fail(result::Termination::outside_class,
-                undetermined_at(fields_, s_.system, base_.alpha, culprit, occasion_.t));
+                undetermined_at(fields_, s_.system, base_.alpha, culprit, switching_point_.t));
   }
   // Where a surface stands nothing depends on the selection: any side continues the same solution.
   if (decision.verdict == Verdict::stands && !standing_fields_agree(group, decision)) {
     return fail(result::Termination::outside_class,
                 fmt::format("'{}' does not leave 0 at t = {} under either field, which differ there (boundary "
                             "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
-                            s_.system.switching[at(culprit)].name, occasion_.t));
+                            s_.system.switching[at(culprit)].name, switching_point_.t));
   }
   for (std::size_t k = 0; k < group.size(); ++k) {
     SurfaceDecision surface = decision.surfaces[k];
     // One field has turned away from the surface, the other one moves along it: the solution can go on there and leave
     // at any later time.
-    const bool turned = contains(occasion_.exit_below, group[k]) || contains(occasion_.exit_above, group[k]);
+    const bool turned =
+        contains(switching_point_.exit_below, group[k]) || contains(switching_point_.exit_above, group[k]);
     if (turned && surface.verdict == Verdict::decided && surface.mode == 0 && group.size() == 1) {
-      return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(group[k])].name, occasion_.t));
+      return fail(result::Termination::outside_class,
+                  two_fold_at(s_.system.switching[at(group[k])].name, switching_point_.t));
     }
     if (surface.verdict == Verdict::stands) {
-      const int kept = before_.mode[at(group[k])] != 0 && !occasion_.start ? before_.mode[at(group[k])] : 1;
+      const int kept = before_.mode[at(group[k])] != 0 && !switching_point_.start ? before_.mode[at(group[k])] : 1;
       surface = {Verdict::decided, kept, kept > 0 ? 1.0 : 0.0, {}, "psi stays 0 and the fields agree"};
       standing_.push_back(group[k]);
     }

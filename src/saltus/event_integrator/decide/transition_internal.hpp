@@ -37,20 +37,20 @@ std::string undetermined_at(const ProjectedFields& fields, const model::System& 
 
 /// Where no rule decides: all surfaces at zero held there, together with their derivatives that no selection enters, if
 /// some selections do. `alternatives` are the regions that the solution can leave into.
-std::optional<Transition> hold_with_higher_order(const Surroundings& s, const ModeState& before,
-                                                 const Occasion& occasion);
+std::optional<Transition> hold_with_higher_order(const SwitchingContext& s, const ModeState& before,
+                                                 const SwitchingPoint& switching_point);
 
 /// Where `failed` does not move to where it says: the modes of the surfaces at zero of which an inequality is an
 /// equality (fields tangent to several surfaces at once, selections at their bounds) by the check along their own
 /// fields. The first one that it passes, those with fewer surfaces in other modes than `failed` before the others;
 /// nullopt if there is none. Not for regions, functions nested around the surfaces, or more surfaces than are
 /// enumerated. Cost: milliseconds.
-std::optional<Transition> borderline_mode(const Surroundings& s, const ModeState& before, const Occasion& occasion,
-                                          const ModeState& failed);
+std::optional<Transition> borderline_mode(const SwitchingContext& s, const ModeState& before,
+                                          const SwitchingPoint& switching_point, const ModeState& failed);
 
 /// Whether x moves from a common zero of these surfaces into the region of `state` along its own field: no derivative
 /// of psi decides alone where several vanish together. By Runge-Kutta steps over a hundredth of the time scale.
-bool leads_into_its_region(const Surroundings& s, const ModeState& state, const Occasion& occasion,
+bool leads_into_its_region(const SwitchingContext& s, const ModeState& state, const SwitchingPoint& switching_point,
                            const std::vector<double>& start, const std::vector<int>& surfaces);
 
 /// A transition to this state, whose selections hold on both sides of its surfaces.
@@ -58,52 +58,57 @@ Transition transition_to(ModeState state);
 
 /// The state with all its sliding surfaces, which depend on each other or are held with higher order; nullopt where
 /// they cannot be.
-std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occasion& occasion, std::vector<double>& x,
-                               std::string& problem);
+std::optional<Transition> hold(const SwitchingContext& s, ModeState state, const SwitchingPoint& switching_point,
+                               std::vector<double>& x, std::string& problem);
 
 /// The same, or with selections that are determined: what is left of surfaces that depended on each other.
-std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
-                                         std::vector<double>& x, std::string& problem);
+std::optional<Transition> hold_dependent(const SwitchingContext& s, ModeState state,
+                                         const SwitchingPoint& switching_point, std::vector<double>& x,
+                                         std::string& problem);
 
 /// Whether surfaces are listed ones, none of them nested around others or inside them.
-bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces);
+bool are_plain_surfaces(const SwitchingContext& s, const std::vector<int>& surfaces);
 
 /// Whether the gradients of the surfaces that a state slides on depend on each other.
-bool slides_on_dependent(const Surroundings& s, const ModeState& state, const Occasion& occasion);
+bool slides_on_dependent(const SwitchingContext& s, const ModeState& state, const SwitchingPoint& switching_point);
 
 /// A mode of surfaces that depend on each other, checked along its own field: those slid on can be held, the others at
 /// zero are left to their sides. nullopt where that is not so, and why.
-std::optional<Transition> check_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
-                                          std::string& problem);
+std::optional<Transition> check_dependent(const SwitchingContext& s, ModeState state,
+                                          const SwitchingPoint& switching_point, std::string& problem);
 
 /// The surfaces at zero on which f jumps: neither kinks nor functions of outputs.
-std::vector<int> acting_surfaces(const Surroundings& s, const ModeState& state, const Occasion& occasion);
+std::vector<int> acting_surfaces(const SwitchingContext& s, const ModeState& state,
+                                 const SwitchingPoint& switching_point);
 
 /// The mode where surfaces are at zero whose gradients depend on each other, and whose selections enter additively: the
 /// solution of a complementarity problem, checked along its own field; nullopt where that fails, and why. `unique` is
 /// true where the problem is monotone up to scaling, else not decided.
-std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
-                                           std::string& problem);
+std::optional<Transition> decide_dependent(const SwitchingContext& s, const ModeState& before,
+                                           const SwitchingPoint& switching_point, std::string& problem);
 
 /// The same where functions meet others inside them that rest: both are at zero, and stay so whatever the selections,
 /// or are held there (the origin of terminal sliding modes, and of time-optimal feedback). Derivatives on one side of
 /// such a point say nothing about what follows. nullopt elsewhere, and where nothing holds them.
-std::optional<Transition> rest_where_nested_meet(const Surroundings& s, const ModeState& before,
-                                                 const Occasion& occasion);
+std::optional<Transition> rest_where_nested_meet(const SwitchingContext& s, const ModeState& before,
+                                                 const SwitchingPoint& switching_point);
 
 /// Where nothing holds them: the regions that the solution leaves such a point into, if no rule has found one.
-std::optional<Transition> leave_where_nested_meet(const Surroundings& s, const ModeState& before,
-                                                  const Occasion& occasion);
+std::optional<Transition> leave_where_nested_meet(const SwitchingContext& s, const ModeState& before,
+                                                  const SwitchingPoint& switching_point);
 
 /// The mode behind an event of a state that is held so.
-Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion);
+Transition decide_from_higher_order(const SwitchingContext& s, const ModeState& before,
+                                    const SwitchingPoint& switching_point);
 
 /// The mode where functions jump away from zero on surfaces inside them that are crossed; nullopt if none does.
-std::optional<Transition> cross_with_jump(const Surroundings& s, const ModeState& before, const Occasion& occasion);
+std::optional<Transition> cross_with_jump(const SwitchingContext& s, const ModeState& before,
+                                          const SwitchingPoint& switching_point);
 
 /// Sliding on functions that have a kink on the touched surfaces: goes on, or ends, with their new gradients behind the
 /// kinks. nullopt if other surfaces are touched, or if the new motion does not lead away from the kinks.
-std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& before, const Occasion& occasion);
+std::optional<Transition> cross_kinks(const SwitchingContext& s, const ModeState& before,
+                                      const SwitchingPoint& switching_point);
 
 /// What was decided where three or more regions of a group by `indicator` meet.
 struct RegionChoice {
@@ -121,21 +126,24 @@ struct MeetingRegions {
 };
 
 /// Functions away from zero that are nested around others: through them surfaces influence each other, too.
-std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, const Occasion& occasion);
+std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point);
 
 /// Whether the decision about surface i can depend on the selection of surface j, directly or through one of the
 /// functions nested around j. Cost: O(nested), usually none.
-bool feels(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j);
+bool depends_on(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j);
 
 /// Connected groups of those `open` surfaces that influence each other, each ascending.
-std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const Occasion& occasion,
+std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point,
                                         std::vector<int> open);
 
 /// One pass over all groups with the selections of `state` for everything else.
 class Decider {
  public:
-  Decider(const Surroundings& surroundings, const ModeState& before, const Occasion& occasion)
-      : s_(surroundings), before_(before), occasion_(occasion), fields_(surroundings.kernel, occasion) {
+  Decider(const SwitchingContext& switching_context, const ModeState& before, const SwitchingPoint& switching_point)
+      : s_(switching_context),
+        before_(before),
+        switching_point_(switching_point),
+        fields_(switching_context.kernel, switching_point) {
     transition_.state = before;
     transition_.zero_order.assign(before.mode.size(), 0);
     scale_.assign(before.mode.size(), 0.0);
@@ -211,9 +219,9 @@ class Decider {
   bool keeps_selections() const;
   bool fail(result::Termination termination, std::string message);
 
-  const Surroundings& s_;
+  const SwitchingContext& s_;
   const ModeState& before_;
-  const Occasion& occasion_;
+  const SwitchingPoint& switching_point_;
   ProjectedFields fields_;
   ModeState base_;  ///< selections held while a group is decided
   Transition transition_;

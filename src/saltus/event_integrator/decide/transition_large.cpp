@@ -1,4 +1,4 @@
-// Many surfaces of which each feels few others: part after part, in the order of influence.
+// Many surfaces of which each depends on few others: part after part, in the order of influence.
 #include <algorithm>
 #include <cmath>
 
@@ -17,40 +17,45 @@ using switching::Verdict;
 /// The point at which parts are decided: that of the event, or, where selections have reached their bounds, a little
 /// later along the sliding that ends, as no field moves away at the event itself.
 struct LaterPoint {
-  Occasion occasion;
+  SwitchingPoint switching_point;
   std::vector<double> x;
 };
 
-LaterPoint point_to_decide(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
-  LaterPoint later{occasion, {}};
-  if (occasion.start || (occasion.exit_below.empty() && occasion.exit_above.empty())) return later;
+LaterPoint point_to_decide(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point) {
+  LaterPoint later{switching_point, {}};
+  if (switching_point.start || (switching_point.exit_below.empty() && switching_point.exit_above.empty())) return later;
   ModeField field(s.kernel, s.affine_in_alpha);
   field.enter(before);
   later.x.resize(at(s.kernel.states()));
-  field(occasion.t, occasion.x, later.x.data());
-  const double time = 1e-4 * occasion.time_scale;
-  for (std::size_t i = 0; i < later.x.size(); ++i) later.x[i] = occasion.x[i] + time * later.x[i];
-  later.occasion.t += time;
-  later.occasion.exit_below.clear();
-  later.occasion.exit_above.clear();
+  field(switching_point.t, switching_point.x, later.x.data());
+  const double time = 1e-4 * switching_point.time_scale;
+  for (std::size_t i = 0; i < later.x.size(); ++i) later.x[i] = switching_point.x[i] + time * later.x[i];
+  later.switching_point.t += time;
+  later.switching_point.exit_below.clear();
+  later.switching_point.exit_above.clear();
   return later;
 }
 
 /// Decides the parts of one group at one point.
 class PartDecider {
  public:
-  PartDecider(const Surroundings& s, const ModeState& before, const ModeState& base, const Occasion& occasion,
-              const ProjectedFields& fields)
-      : s_(s), before_(before), base_(base), occasion_(occasion), fields_(fields), moved_(before.mode.size(), false) {}
+  PartDecider(const SwitchingContext& s, const ModeState& before, const ModeState& base,
+              const SwitchingPoint& switching_point, const ProjectedFields& fields)
+      : s_(s),
+        before_(before),
+        base_(base),
+        switching_point_(switching_point),
+        fields_(fields),
+        moved_(before.mode.size(), false) {}
 
   [[nodiscard]] ModeState& base() { return base_; }
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
   /// Whether a part has to be decided at all.
-  [[nodiscard]] bool is_touched(const std::vector<int>& part, const switching::Influence& feels,
+  [[nodiscard]] bool is_touched(const std::vector<int>& part, const switching::Influence& depends_on,
                                 const std::vector<int>& group, const std::vector<int>& touched) const {
-    return occasion_.start || std::any_of(part.begin(), part.end(), [&](int k) {
-             const auto& felt = feels[at(k)];
+    return switching_point_.start || std::any_of(part.begin(), part.end(), [&](int k) {
+             const auto& felt = depends_on[at(k)];
              return contains(touched, group[at(k)]) ||
                     std::any_of(felt.begin(), felt.end(), [&](int i) { return moved_[at(group[at(i)])]; });
            });
@@ -59,11 +64,13 @@ class PartDecider {
   void note(int surface, int mode, double alpha) {
     const double before = std::clamp(before_.alpha[at(surface)], 0.0, 1.0);
     // Selections are carried along to about 1e-8.
-    moved_[at(surface)] = occasion_.start || mode != before_.mode[at(surface)] || std::abs(alpha - before) > 1e-7;
+    moved_[at(surface)] =
+        switching_point_.start || mode != before_.mode[at(surface)] || std::abs(alpha - before) > 1e-7;
     set_surface(base_, surface, mode, alpha);
   }
 
-  /// One surface that feels nobody later. Behind a transient of those it feels, only what has no choice is decided.
+  /// One surface that depends on nobody later. Behind a transient of those it depends on, only what has no choice is
+  /// decided.
   std::optional<SurfaceDecision> decide_one(int surface, bool behind_transient, double& scale) {
     const auto table = fields_.table(base_, {surface});
     scale = std::max(std::abs(table.side(0, 0).velocity), std::abs(table.side(0, 1).velocity));
@@ -75,7 +82,7 @@ class PartDecider {
     }
     if (behind_transient && !decision.other_modes.empty()) {
       problem_ = fmt::format(
-          "the fields beside '{}' point away from it once the surfaces that it feels have changed, "
+          "the fields beside '{}' point away from it once the surfaces that it depends on have changed, "
           "so that their transient would decide",
           name);
       return std::nullopt;
@@ -83,8 +90,8 @@ class PartDecider {
     return decision;
   }
 
-  /// Several that feel each other, if each of them feels itself more than the others.
-  std::optional<switching::BoundedRoot> decide_several(const switching::Influence& feels,
+  /// Several that depend on each other, if each of them depends on itself more than the others.
+  std::optional<switching::BoundedRoot> decide_several(const switching::Influence& depends_on,
                                                        const std::vector<int>& surfaces, std::vector<double>& scale) {
     std::vector<double> alpha = base_.alpha;
     for (const int j : surfaces) scale[at(j)] = 0.0;
@@ -96,25 +103,25 @@ class PartDecider {
         scale[at(surfaces[k])] = std::max(scale[at(surfaces[k])], std::abs(g[k]));
       }
     };
-    const auto comparison = switching::comparison_in_cube(feels, velocities);
+    const auto comparison = switching::comparison_in_cube(depends_on, velocities);
     if (comparison) {
       std::vector<double> start;
       for (const int j : surfaces) start.push_back(std::clamp(base_.alpha[at(j)], 0.0, 1.0));
-      const auto root = switching::bounded_root(feels, velocities, *comparison, start);
+      const auto root = switching::bounded_root(depends_on, velocities, *comparison, start);
       if (root && !root->is_borderline) return root;
     }
     problem_ = fmt::format(
-        "{} of them feel each other, more than themselves or tangent to one: {}", surfaces.size(),
+        "{} of them depend on each other, more than themselves or tangent to one: {}", surfaces.size(),
         names(s_.system, {surfaces.begin(), surfaces.begin() + std::min<std::ptrdiff_t>(3, std::ssize(surfaces))}) +
             ", …");
     return std::nullopt;
   }
 
  private:
-  const Surroundings& s_;
+  const SwitchingContext& s_;
   const ModeState& before_;
   ModeState base_;
-  const Occasion& occasion_;
+  const SwitchingPoint& switching_point_;
   const ProjectedFields& fields_;
   std::vector<bool> moved_;  ///< by surface: its selection is another one than before
   std::string problem_;
@@ -127,25 +134,26 @@ SurfaceDecision decision_of(const switching::BoundedRoot& root, std::size_t k) {
 
 /// Of the surfaces of a group, by their places in it.
 switching::Influence influence_in(const evaluation::ModelKernel& kernel, const std::vector<int>& group) {
-  switching::Influence feels(group.size());
+  switching::Influence depends_on(group.size());
   for (std::size_t i = 0; i < group.size(); ++i) {
     for (const int j : kernel.neighbours(group[i])) {
       const auto place = std::lower_bound(group.begin(), group.end(), j);
       if (place == group.end() || *place != j || !kernel.depends(group[i], j)) continue;
-      feels[i].push_back(static_cast<int>(place - group.begin()));
+      depends_on[i].push_back(static_cast<int>(place - group.begin()));
     }
   }
-  return feels;
+  return depends_on;
 }
 
-/// The surfaces that are touched and all that feel them, directly or through others: places in the group, ascending.
-std::vector<int> affected_by(const std::vector<int>& touched, const switching::Influence& feels,
+/// The surfaces that are touched and all that depend on them, directly or through others: places in the group,
+/// ascending.
+std::vector<int> affected_by(const std::vector<int>& touched, const switching::Influence& depends_on,
                              const std::vector<int>& group) {
-  std::vector<std::vector<int>> felt_by(feels.size());
-  for (std::size_t i = 0; i < feels.size(); ++i) {
-    for (const int j : feels[i]) felt_by[at(j)].push_back(static_cast<int>(i));
+  std::vector<std::vector<int>> felt_by(depends_on.size());
+  for (std::size_t i = 0; i < depends_on.size(); ++i) {
+    for (const int j : depends_on[i]) felt_by[at(j)].push_back(static_cast<int>(i));
   }
-  std::vector<bool> is_affected(feels.size(), false);
+  std::vector<bool> is_affected(depends_on.size(), false);
   std::vector<int> open;
   const auto affect = [&](int k) {
     if (is_affected[at(k)]) return;
@@ -180,16 +188,17 @@ std::vector<int> members(const std::vector<int>& group, const std::vector<int>& 
 std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
   undecided_part_.clear();
   if (!is_large(group.size()) || !s_.affine_in_alpha) return std::nullopt;
-  const auto nested = nested_away_from_zero(s_.kernel, occasion_);
-  if (!nested.empty() || !occasion_.coalesced.empty() || !occasion_.destabilised.empty() || !occasion_.tied.empty()) {
+  const auto nested = nested_away_from_zero(s_.kernel, switching_point_);
+  if (!nested.empty() || !switching_point_.coalesced.empty() || !switching_point_.destabilised.empty() ||
+      !switching_point_.tied.empty()) {
     undecided_part_ = "their root has ended, or functions are nested around them";
     return std::nullopt;
   }
-  const auto feels = influence_in(s_.kernel, group);
-  LaterPoint point = point_to_decide(s_, before_, occasion_);
-  if (!point.x.empty()) point.occasion.x = point.x.data();
-  const ProjectedFields fields(s_.kernel, point.occasion);
-  PartDecider parts(s_, before_, base_, point.occasion, fields);
+  const auto depends_on = influence_in(s_.kernel, group);
+  LaterPoint point = point_to_decide(s_, before_, switching_point_);
+  if (!point.x.empty()) point.switching_point.x = point.x.data();
+  const ProjectedFields fields(s_.kernel, point.switching_point);
+  PartDecider parts(s_, before_, base_, point.switching_point, fields);
   const std::size_t decided_before = decisions_.size();
   const auto give_up = [&]() -> std::optional<bool> {
     decisions_.resize(decided_before);
@@ -198,7 +207,7 @@ std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
   };
   const auto decide_at_once = [&](const std::vector<int>& places) {
     const std::vector<int> surfaces = members(group, places);
-    const auto root = parts.decide_several(switching::restricted_to(feels, places), surfaces, scale_);
+    const auto root = parts.decide_several(switching::restricted_to(depends_on, places), surfaces, scale_);
     for (std::size_t k = 0; root && k < surfaces.size(); ++k) {
       decisions_.emplace_back(surfaces[k], decision_of(*root, k));
       parts.note(surfaces[k], root->mode[k], root->alpha[k]);
@@ -206,14 +215,14 @@ std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
     return root.has_value();
   };
   // The certificate holds for one-way influence, too, and costs no more for many surfaces than for few.
-  const auto affected = affected_by(occasion_.start ? group : occasion_.touched, feels, group);
+  const auto affected = affected_by(switching_point_.start ? group : switching_point_.touched, depends_on, group);
   if (is_large(affected.size()) && decide_at_once(affected)) return true;
-  for (const auto& part : switching::ordered_parts(feels)) {
-    if (!parts.is_touched(part, feels, group, occasion_.touched)) continue;
+  for (const auto& part : switching::ordered_parts(depends_on)) {
+    if (!parts.is_touched(part, depends_on, group, switching_point_.touched)) continue;
     const std::vector<int> surfaces = members(group, part);
     if (surfaces.size() == 1) {
       const int j = surfaces.front();
-      const bool behind = !feels[at(part.front())].empty() && parts.is_touched(part, feels, group, {});
+      const bool behind = !depends_on[at(part.front())].empty() && parts.is_touched(part, depends_on, group, {});
       const auto decision = parts.decide_one(j, behind, scale_[at(j)]);
       if (!decision) return give_up();
       decisions_.emplace_back(j, *decision);

@@ -14,8 +14,8 @@
 
 namespace saltus::event_integrator {
 
-struct Occasion;
-struct Surroundings;
+struct SwitchingPoint;
+struct SwitchingContext;
 
 /// grad c . f(t, x, alpha) + d c/dt = 0 for one of the held functions (numbers in HigherOrderSet::functions), or
 /// several that share selections (rows of the sliding set). Into several functions selections enter additively.
@@ -113,7 +113,7 @@ class HigherOrderField {
 /// none: the gradients are dependent, a derivative that no selection enters does not vanish, no selection in [0, 1]
 /// holds the others, several balances share a selection, or the motion is not determined. Then `problem` says what.
 /// @param resolved  derivatives up to what their function changes by in this time are zero
-[[nodiscard]] std::optional<HigherOrderSet> find_higher_order_set(const Surroundings& surroundings,
+[[nodiscard]] std::optional<HigherOrderSet> find_higher_order_set(const SwitchingContext& switching_context,
                                                                   const ModeState& state, double t,
                                                                   std::vector<double>& x, double resolved,
                                                                   std::string& problem);
@@ -121,7 +121,8 @@ class HigherOrderField {
 /// The same for surfaces whose gradients depend on each other all along the set where they vanish, such as x1 - x2,
 /// x2 - x3, x1 - x3: selections enter additively, and all that hold the set give the same motion. nullopt with an empty
 /// `problem` if the gradients are independent.
-[[nodiscard]] std::optional<HigherOrderSet> find_dependent_set(const Surroundings& surroundings, const ModeState& state,
-                                                               double t, std::vector<double>& x, std::string& problem);
+[[nodiscard]] std::optional<HigherOrderSet> find_dependent_set(const SwitchingContext& switching_context,
+                                                               const ModeState& state, double t, std::vector<double>& x,
+                                                               std::string& problem);
 
 }  // namespace saltus::event_integrator

@@ -75,20 +75,21 @@ void ModeField::find_large_groups() {
   find_parts(rows);
 }
 
-/// A group whose surfaces are decided by parts: events of surfaces that feel nobody later are those of single ones.
+/// A group whose surfaces are decided by parts: events of surfaces that depend on nobody later are those of single
+/// ones.
 void ModeField::find_parts(const std::vector<std::size_t>& group) {
-  switching::Influence feels(group.size());
+  switching::Influence influence(group.size());
   std::vector<int> place(sliding_.size(), -1);
   for (std::size_t k = 0; k < group.size(); ++k) place[group[k]] = static_cast<int>(k);
   for (std::size_t k = 0; k < group.size(); ++k) {
     const int i = sliding_[group[k]];
     for (const int j : kernel_.neighbours(i)) {
       const int row = groups_.row_of[at(j)];
-      if (row >= 0 && kernel_.depends(i, j)) feels[k].push_back(place[at(row)]);
+      if (row >= 0 && kernel_.depends(i, j)) influence[k].push_back(place[at(row)]);
     }
-    std::sort(feels[k].begin(), feels[k].end());
+    std::sort(influence[k].begin(), influence[k].end());
   }
-  LargeGroup large{group, switching::ordered_parts(feels), std::make_unique<switching::SparseNewton>(feels)};
+  LargeGroup large{group, switching::ordered_parts(influence), std::make_unique<switching::SparseNewton>(influence)};
   for (const auto& part : large.parts) {
     for (const int k : part) groups_.size[group[at(k)]] = 0;
     groups_.size[group[at(part.front())]] = part.size();

@@ -1,4 +1,4 @@
-// Many sliding surfaces of which each feels few others: their parts, and what ends sliding on each.
+// Many sliding surfaces of which each depends on few others: their parts, and what ends sliding on each.
 #pragma once
 
 #include <cstddef>
@@ -21,13 +21,14 @@ namespace saltus::event_integrator {
 }
 
 struct LargeGroup {
-  std::vector<std::size_t> rows;        ///< of the sliding surfaces
-  std::vector<std::vector<int>> parts;  ///< places in `rows`: those that feel each other, in the order of influence
+  std::vector<std::size_t> rows;  ///< of the sliding surfaces
+  std::vector<std::vector<int>>
+      parts;  ///< places in `rows`: those that depend on each other, in the order of influence
   std::unique_ptr<switching::SparseNewton> newton;
 };
 
-/// Of several surfaces that feel each other, from the G of their group: a number that keeps its sign while their root
-/// exists (det G in the size of its rows, its root of the number of surfaces), and one that is positive while some
+/// Of several surfaces that depend on each other, from the G of their group: a number that keeps its sign while their
+/// root exists (det G in the size of its rows, its root of the number of surfaces), and one that is positive while some
 /// scaling is known that makes it stable, that of the certificate first.
 [[nodiscard]] std::pair<double, double> loss_and_stability(const Eigen::SparseMatrix<double>& effects,
                                                            const std::vector<int>& part);

@@ -23,9 +23,9 @@ class FollowedChoices {
     result::Statistics statistics;
   };
 
-  FollowedChoices(const Surroundings& surroundings, const IntegrationOptions& options, const Position& here,
+  FollowedChoices(const SwitchingContext& switching_context, const IntegrationOptions& options, const Position& here,
                   const Recorder& recorder)
-      : families_(surroundings), options_(options), here_(here), recorder_(recorder) {}
+      : families_(switching_context), options_(options), here_(here), recorder_(recorder) {}
 
   [[nodiscard]] Families& families() { return families_; }
   [[nodiscard]] const Families& families() const { return families_; }

@@ -25,27 +25,27 @@ bool is_affine(const model::System& system) {
 Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options, Way way)
     : kernel_(kernel),
       options_(options),
-      surroundings_{kernel, system, is_affine(system), options.selection, options.scaling},
-      field_(kernel, surroundings_.affine_in_alpha),
+      switching_context_{kernel, system, is_affine(system), options.selection, options.scaling},
+      field_(kernel, switching_context_.affine_in_alpha),
       here_(options.from, system.initial_state),
       tolerances_(options.tolerances),
       steps_(options, system, field_, here_, tolerances_),
       cells_(kernel),
       search_(kernel, field_, options.method, tolerances_.step()),
-      zeros_(surroundings_, here_, field_, search_),
+      zeros_(switching_context_, here_, field_, search_),
       nested_(kernel, here_, search_, tolerances_, zeros_),
-      switches_(surroundings_, here_, options.until - options.from, tolerances_),
+      switches_(switching_context_, here_, options.until - options.from, tolerances_),
       locator_(options.method, kernel.states(), steps_.stepper(), field_, search_, tolerances_.step()),
-      fast_(surroundings_),
+      fast_(switching_context_),
       user_events_(kernel, system),
       jumps_(kernel, system, options.from),
       contacts_(kernel, system),
       holding_(kernel, system),
-      cascade_(surroundings_, here_, field_, search_, jumps_, contacts_, holding_),
-      jump_accumulation_(surroundings_, here_),
+      cascade_(switching_context_, here_, field_, search_, jumps_, contacts_, holding_),
+      jump_accumulation_(switching_context_, here_),
       recorder_(kernel, system),
       rows_(kernel, options, here_, field_, holding_, recorder_),
-      choices_(surroundings_, options, here_, recorder_),
+      choices_(switching_context_, options, here_, recorder_),
       outcome_{.evaluations_before = kernel.field_evaluations()} {
   holding_.keep(&contacts_);
   fast_.applies = way == Way::short_where_ordinary && has_ordinary_switches();
@@ -54,13 +54,13 @@ Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const Int
 std::string Run::where() const {
   std::string text;
   for (const int j : here_.state.sliding) {
-    text += (text.empty() ? "" : ", ") + surroundings_.system.switching[at(j)].name;
+    text += (text.empty() ? "" : ", ") + switching_context_.system.switching[at(j)].name;
   }
   return fmt::format("t = {:.17g}{}", here_.t, text.empty() ? "" : " while sliding on " + text);
 }
 
 std::span<const double> Run::shown_state() const {
-  const auto& contacts = surroundings_.system.contacts;
+  const auto& contacts = switching_context_.system.contacts;
   const std::span<const double> all(here_.x);
   return contacts.empty() ? all : all.first(at(contacts.first_hidden));
 }
@@ -91,7 +91,7 @@ bool Run::enter(const Transition& transition) {
         Termination::evaluation_failed,
         fmt::format("the right-hand side of {} is not finite at {}; change the initial values, or guard the expression "
                     "with if(…)",
-                    undefined_states(surroundings_.system, here_.slope), where()));
+                    undefined_states(switching_context_.system, here_.slope), where()));
     return false;
   }
   search_.enter(here_.state, transition.zero_order, here_.t, here_.x.data());
@@ -138,7 +138,7 @@ bool Run::begin() {
   here_.time_scale = 1e-3 * span();
   if (!is_finite(here_.x)) {
     fail(Termination::evaluation_failed,
-         fmt::format("the initial value of {} is not finite", undefined_states(surroundings_.system, here_.x)));
+         fmt::format("the initial value of {} is not finite", undefined_states(switching_context_.system, here_.x)));
     return false;
   }
   if (!cells_.empty())
@@ -149,7 +149,7 @@ bool Run::begin() {
     return false;
   }
   const auto decided = [&] {
-    return decide_start(surroundings_, here_.t, here_.x.data(), here_.time_scale, options_.initial_mode);
+    return decide_start(switching_context_, here_.t, here_.x.data(), here_.time_scale, options_.initial_mode);
   };
   auto start = decided();
   // At a break the field says into which cell the solution moves, and the cells say what the field is.
@@ -194,8 +194,9 @@ CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording
     while (outcome_.running && here_.t < options_.until) {
       contacts_.forget_impulses(here_.x);
       if (outcome_.result.statistics.steps + outcome_.result.statistics.rejected >= options_.max_steps) {
-        fail(Termination::iteration_limit, fmt::format("max_steps = {} reached at {}{}", options_.max_steps, where(),
-                                                       model::vanishing_norm(surroundings_.system, here_.t, here_.x)));
+        fail(Termination::iteration_limit,
+             fmt::format("max_steps = {} reached at {}{}", options_.max_steps, where(),
+                         model::vanishing_norm(switching_context_.system, here_.t, here_.x)));
         break;
       }
       if (event_.spiral) begin_spiral();

@@ -49,11 +49,11 @@ bool Run::jump_with_cells() {
   RestingSurfaces resting;
   if (!find_resting(resting)) return false;
   Transition& transition = event_.transition;
-  transition = decide_behind_jump(surroundings_, before, here_.t, here_.x.data(), here_.time_scale, held, resting);
+  transition = decide_behind_jump(switching_context_, before, here_.t, here_.x.data(), here_.time_scale, held, resting);
   if (transition.termination == Termination::completed && transition.state.mode != before.mode) {
     transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the " +
                         (event_.cell_change == CellChange::jump ? "jump of " : "kink of ") +
-                        cells_.moved_names(surroundings_.system);
+                        cells_.moved_names(switching_context_.system);
   }
   search_.forget_user_zeros();
   return go_on();

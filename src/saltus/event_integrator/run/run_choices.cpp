@@ -17,20 +17,20 @@ Run::Step Run::leave_later() {
   if (family == nullptr) return Step::taken;
   const Arrival arrival =
       arrive(recorder_.ends_at(here_.t) ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
-  Occasion& occasion = event_.occasion;
-  occasion = Occasion{};
-  occasion.t = here_.t;
-  occasion.x = here_.x.data();
-  occasion.time_scale = here_.time_scale;
-  occasion.at_zero = here_.state.sliding;
-  for (const auto& given : family->given) occasion.touched.push_back(given.surface);
-  auto left = decide_with(surroundings_, event_.before, occasion, family->given);
+  SwitchingPoint& switching_point = event_.switching_point;
+  switching_point = SwitchingPoint{};
+  switching_point.t = here_.t;
+  switching_point.x = here_.x.data();
+  switching_point.time_scale = here_.time_scale;
+  switching_point.at_zero = here_.state.sliding;
+  for (const auto& given : family->given) switching_point.touched.push_back(given.surface);
+  auto left = decide_with(switching_context_, event_.before, switching_point, family->given);
   if (!left) return Step::taken;
   left->alternatives.emplace_back();
   left->alternatives.back().state = event_.before;
   for (const auto& other : choices_.families().open()) {
     if (&other == family) continue;
-    if (auto also = decide_with(surroundings_, event_.before, occasion, other.given)) {
+    if (auto also = decide_with(switching_context_, event_.before, switching_point, other.given)) {
       left->alternatives.push_back(std::move(*also));
     }
   }

@@ -1,7 +1,7 @@
 // The ordinary switch: one surface is reached from beside it, in a region or while the solution slides on another one,
 // or left where one of its fields is tangent, and nothing else happens there. What other switches need is left out:
-// most copies of modes, occasions and transitions. The answers are those of the general way, bit for bit; where one is
-// not clear that way is taken.
+// most copies of modes, switching points and transitions. The answers are those of the general way, bit for bit; where
+// one is not clear that way is taken.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,11 +13,11 @@ namespace saltus::event_integrator {
 /// Whether nothing but switching functions that hold no selections depends on modes, and nobody has asked for more
 /// than one solution.
 bool Run::has_ordinary_switches() const {
-  const auto& system = surroundings_.system;
+  const auto& system = switching_context_.system;
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     if (!kernel_.inner(j).empty()) return false;
   }
-  return surroundings_.affine_in_alpha && kernel_.event_functions() == kernel_.switching_functions() &&
+  return switching_context_.affine_in_alpha && kernel_.event_functions() == kernel_.switching_functions() &&
          kernel_.region_groups().empty() && system.events.empty() && jumps_.none() && options_.choices.empty() &&
          options_.layers.empty();
 }
@@ -36,7 +36,7 @@ bool Run::is_ordinary(const Located& located) const {
 }
 
 /// Goes on behind an ordinary switch; otherwise nothing has happened.
-bool Run::switch_shortly(const Located& located) {
+bool Run::switch_fast(const Located& located) {
   const auto& function = search_.functions()[located.functions.front()];
   if (function.kind != FunctionKind::surface) return leave(located, function);
   return here_.state.sliding.empty() ? meet(located, function.index) : pass(located, function.index);
@@ -79,14 +79,14 @@ bool Run::pass(const Located& located, int surface) {
   if (!is_finite(here_.slope) || !std::isfinite(selection)) return false;
   here_.state.alpha[at(slid)] = selection;
   look_at_both(located, slid, surface);
-  const bool is_pair = fast_.pair.look(here_.state, event_.occasion, &field_);
+  const bool is_pair = fast_.pair.look(here_.state, event_.switching_point, &field_);
   if (is_pair) {
-    if (const auto alpha = fast_.pair.across(here_.state, event_.occasion))
+    if (const auto alpha = fast_.pair.across(here_.state, event_.switching_point))
       return pass_across(located, surface, *alpha);
   }
   event_.before = here_.state;
-  const bool decided = is_pair ? fast_.pair.conclude(event_.before, event_.occasion, event_.transition)
-                               : fast_.single.decide(event_.before, event_.occasion, event_.transition);
+  const bool decided = is_pair ? fast_.pair.conclude(event_.before, event_.switching_point, event_.transition)
+                               : fast_.single.decide(event_.before, event_.switching_point, event_.transition);
   if (!decided) return false;
   const auto& next = event_.transition.state;
   // The usual way: the solution goes on sliding across it.
@@ -123,13 +123,13 @@ bool Run::pass(const Located& located, int surface) {
 }
 
 /// The same where the two surfaces influence each other and the solution goes on sliding across the one that it
-/// reaches, with these selections, in the order of the occasion.
+/// reaches, with these selections, in the order of the switching point.
 bool Run::pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha) {
   const auto j = at(surface);
   const int slid = here_.state.sliding.front();
-  const std::size_t place = event_.occasion.at_zero[0] == surface ? 0 : 1;
+  const std::size_t place = event_.switching_point.at_zero[0] == surface ? 0 : 1;
   const SlidAcross across{slid, here_.state.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
-                          fast_.pair.meeting(here_.state, event_.occasion)};
+                          fast_.pair.meeting(here_.state, event_.switching_point)};
   const SurfaceSwitch change{surface,
                              here_.state.mode[j],
                              -here_.state.mode[j],
@@ -162,15 +162,15 @@ bool Run::begin_at(const Located& located) {
   return false;
 }
 
-/// Fills the occasion.
+/// Fills the switching point.
 void Run::look_at_both(const Located& located, int slid, int reached) {
-  event_.occasion.t = located.t;
-  event_.occasion.x = located.x.data();
-  event_.occasion.time_scale = here_.time_scale;
-  event_.occasion.at_zero = {std::min(slid, reached), std::max(slid, reached)};
-  event_.occasion.touched.assign(1, reached);
-  for (auto* none : {&event_.occasion.exit_below, &event_.occasion.exit_above, &event_.occasion.coalesced,
-                     &event_.occasion.destabilised}) {
+  event_.switching_point.t = located.t;
+  event_.switching_point.x = located.x.data();
+  event_.switching_point.time_scale = here_.time_scale;
+  event_.switching_point.at_zero = {std::min(slid, reached), std::max(slid, reached)};
+  event_.switching_point.touched.assign(1, reached);
+  for (auto* none : {&event_.switching_point.exit_below, &event_.switching_point.exit_above,
+                     &event_.switching_point.coalesced, &event_.switching_point.destabilised}) {
     none->clear();
   }
 }

@@ -22,13 +22,13 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
   auto fired = user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs());
   std::erase_if(fired, [&](std::size_t event) {
     const bool again = std::find(before_jumps.begin(), before_jumps.end(), event) != before_jumps.end();
-    return again && !model::rule_of(surroundings_.system.events[event]).condition;
+    return again && !model::rule_of(switching_context_.system.events[event]).condition;
   });
   for (const std::size_t event : fired) {
     recorder_.user(here_.t, {x_before, here_.x, before, here_.state}, static_cast<int>(event));
     if (user_events_.stops(event) && outcome_.running) {
       fail(Termination::stopped_by_event,
-           fmt::format("stopped by the event '{}'", surroundings_.system.events[event].name));
+           fmt::format("stopped by the event '{}'", switching_context_.system.events[event].name));
     }
   }
   return fired;
@@ -36,7 +36,7 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
 
 bool Run::too_many_events() {
   if (recorder_.events() >= options_.max_events) {
-    const std::string laps = ContractingCycles(surroundings_, here_, recorder_).describe();
+    const std::string laps = ContractingCycles(switching_context_, here_, recorder_).describe();
     const std::string advice = "see in the table of events what switches ever faster";
     fail(Termination::iteration_limit,
          fmt::format("max_events = {} reached at {}; raise simulate.max_events if they are meant, or {}",
@@ -65,7 +65,7 @@ bool Run::jumps_while_sliding(int surface) {
                         here_.time_scale)) {
     return false;
   }
-  const auto name = [&](int j) { return surroundings_.system.switching[at(j)].name; };
+  const auto name = [&](int j) { return switching_context_.system.switching[at(j)].name; };
   fail(Termination::outside_class,
        fmt::format("'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
                    "it at t = {:.17g}: rewrite the nested term with named switching functions",
@@ -77,13 +77,13 @@ bool Run::change_mode(const Located& located) {
   event_.cell_change = leave_cells(located);
   if (event_.cell_change == CellChange::jump || change_resting_with_cells())
     return outcome_.running && jump_with_cells();
-  Occasion& occasion = event_.occasion;
-  occasion.t = here_.t;
-  occasion.x = here_.x.data();
-  occasion.time_scale = here_.time_scale;
-  occasion.at_zero = here_.state.sliding;
-  for (auto* surfaces :
-       {&occasion.touched, &occasion.exit_below, &occasion.exit_above, &occasion.coalesced, &occasion.destabilised}) {
+  SwitchingPoint& switching_point = event_.switching_point;
+  switching_point.t = here_.t;
+  switching_point.x = here_.x.data();
+  switching_point.time_scale = here_.time_scale;
+  switching_point.at_zero = here_.state.sliding;
+  for (auto* surfaces : {&switching_point.touched, &switching_point.exit_below, &switching_point.exit_above,
+                         &switching_point.coalesced, &switching_point.destabilised}) {
     surfaces->clear();
   }
   bool any = false;
@@ -92,42 +92,43 @@ bool Run::change_mode(const Located& located) {
     const bool is_surface = function.kind != FunctionKind::user && function.kind != FunctionKind::release;
     if (!is_surface || is_cell_end(function.kind)) continue;
     any = true;
-    if (function.kind == FunctionKind::exit_below) occasion.exit_below.push_back(function.index);
-    if (function.kind == FunctionKind::exit_above) occasion.exit_above.push_back(function.index);
+    if (function.kind == FunctionKind::exit_below) switching_point.exit_below.push_back(function.index);
+    if (function.kind == FunctionKind::exit_above) switching_point.exit_above.push_back(function.index);
     if (function.kind == FunctionKind::loss) {
-      occasion.coalesced.push_back(function.index);
+      switching_point.coalesced.push_back(function.index);
       // Towards a root that is lost steps shrink to nothing, over which no field changes.
-      occasion.time_scale = std::max(occasion.time_scale, steps_.longest());
+      switching_point.time_scale = std::max(switching_point.time_scale, steps_.longest());
     }
-    if (function.kind == FunctionKind::instability) occasion.destabilised.push_back(function.index);
+    if (function.kind == FunctionKind::instability) switching_point.destabilised.push_back(function.index);
     if (function.kind == FunctionKind::nested && jumps_while_sliding(function.index)) return false;
-    occasion.at_zero.push_back(function.index);
-    occasion.touched.push_back(function.index);
+    switching_point.at_zero.push_back(function.index);
+    switching_point.touched.push_back(function.index);
   }
-  const ModeState& from = event_.freed.empty() ? event_.before : slid_on_freed(occasion);
+  const ModeState& from = event_.freed.empty() ? event_.before : slid_on_freed(switching_point);
   for (const int j : here_.state.sliding) {
     // Sliding goes on with the new gradient, or ends, behind a kink of its own psi.
-    if (event_.cell_change != CellChange::none && cells_.moved_in(j)) occasion.touched.push_back(j);
+    if (event_.cell_change != CellChange::none && cells_.moved_in(j)) switching_point.touched.push_back(j);
   }
-  if (!any && occasion.touched.empty()) {
+  if (!any && switching_point.touched.empty()) {
     if (event_.cell_change == CellChange::none) return true;
     event_.transition = Transition{};
     event_.transition.state = here_.state;
     event_.transition.zero_order = zeros_at(kernel_, here_.state, here_.t, here_.x.data());
     return enter(event_.transition);
   }
-  std::sort(occasion.at_zero.begin(), occasion.at_zero.end());
-  occasion.at_zero.erase(std::unique(occasion.at_zero.begin(), occasion.at_zero.end()), occasion.at_zero.end());
-  if (!kernel_.region_groups().empty()) complete_ties(kernel_, here_.state, occasion);
-  note_ties(kernel_, here_.state, occasion);
+  std::sort(switching_point.at_zero.begin(), switching_point.at_zero.end());
+  switching_point.at_zero.erase(std::unique(switching_point.at_zero.begin(), switching_point.at_zero.end()),
+                                switching_point.at_zero.end());
+  if (!kernel_.region_groups().empty()) complete_ties(kernel_, here_.state, switching_point);
+  note_ties(kernel_, here_.state, switching_point);
   Transition& transition = event_.transition;
   const bool slope_holds = cells_.empty() && jumps_.none();  // no cell was left, and no guard released, here
-  if (!fast_.single.decide(from, occasion, transition, slope_holds ? &here_.slope : nullptr) &&
-      !fast_.pair.decide(from, occasion, transition)) {
-    transition = decide_mode(surroundings_, from, occasion);
+  if (!fast_.single.decide(from, switching_point, transition, slope_holds ? &here_.slope : nullptr) &&
+      !fast_.pair.decide(from, switching_point, transition)) {
+    transition = decide_mode(switching_context_, from, switching_point);
   }
   if (transition.termination == Termination::completed) {
-    other_continuations(surroundings_, from, occasion, transition);
+    other_continuations(switching_context_, from, switching_point, transition);
   }
   return go_on();
 }
@@ -138,7 +139,7 @@ bool Run::go_on() {
   if (transition.termination != Termination::completed) {
     event_.unresolved = unresolved_here();
     if (event_.unresolved) return false;
-    if (auto lost = lost_selections(surroundings_, event_.before, here_.t, here_.x.data())) {
+    if (auto lost = lost_selections(switching_context_, event_.before, here_.t, here_.x.data())) {
       fail(Termination::outside_class, std::move(*lost));
       return false;
     }
@@ -200,7 +201,7 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
   zeros_.forget();
-  if (is_ordinary(located) && switch_shortly(located)) return outcome_.running ? Step::taken : Step::failed;
+  if (is_ordinary(located) && switch_fast(located)) return outcome_.running ? Step::taken : Step::failed;
   const bool ended_here = located.t == here_.t && recorder_.ends_at(here_.t) && here_.t != event_.last_time;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
   if (located.t > here_.t) search_.forget_user_zeros();
@@ -208,7 +209,7 @@ Run::Step Run::handle(const Located& located) {
   here_.t = located.t;
   here_.x = located.x;
   static_cast<void>(holding_.project(here_.t, here_.state.alpha, here_.x));
-  settle_on_roots(located);
+  project_onto_roots(located);
   // A step may be as long as the mode.
   if (choices_.families().watches() && here_.t > t_begin) choices_.look(t_begin, steps_);
   // A step that ended exactly here has written the row before the event.
@@ -246,7 +247,7 @@ Run::Step Run::handle(const Located& located) {
 /// Whether a selection is another one than before that is no kink: one of time only, which makes no event.
 bool Run::selections_jumped() const {
   for (std::size_t j = 0; j < here_.state.mode.size() && j < event_.before.mode.size(); ++j) {
-    if (here_.state.mode[j] != event_.before.mode[j] && !surroundings_.system.switching[j].is_kink()) return true;
+    if (here_.state.mode[j] != event_.before.mode[j] && !switching_context_.system.switching[j].is_kink()) return true;
   }
   return false;
 }

@@ -90,7 +90,7 @@ class Run {
   Step handle(const Located& located);
   [[nodiscard]] bool has_ordinary_switches() const;
   [[nodiscard]] bool is_ordinary(const Located& located) const;
-  bool switch_shortly(const Located& located);
+  bool switch_fast(const Located& located);
   bool meet(const Located& located, int surface);
   bool pass(const Located& located, int surface);
   bool pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha);
@@ -119,7 +119,7 @@ class Run {
   }
   bool jumps_while_sliding(int surface);
   bool change_mode(const Located& located);
-  const ModeState& slid_on_freed(Occasion& occasion);
+  const ModeState& slid_on_freed(SwitchingPoint& switching_point);
   CellChange leave_cells(const Located& located);
   Located breaks_here();
   bool change_resting_with_cells();
@@ -132,7 +132,7 @@ class Run {
   /// Where x and f are both 0 the step that was proposed says nothing.
   [[nodiscard]] double root_step() const { return std::max(1e-2 * here_.time_scale, 1e-8 * span()); }
   bool take_side_of_root();
-  void settle_on_roots(const Located& located);
+  void project_onto_roots(const Located& located);
   Step arrive_at_nested_roots(const Located& located);
   void leave_nested_root();
   void note_time_scale(double h);
@@ -204,7 +204,7 @@ class Run {
     CellChange cell_change = CellChange::none;
     bool jumped = false;
     std::vector<int> freed;  ///< surfaces that a guard has kept at zero, which it has released
-    Occasion occasion;
+    SwitchingPoint switching_point;
     Transition transition;
     std::optional<SeriesLimit> unresolved;  ///< the limit that its switch is
     std::optional<SpiralStart> spiral;      ///< of the mode that it begins: time and state jump over the first cycle
@@ -219,11 +219,11 @@ class Run {
   };
   /// What decides and enters ordinary switches without detours.
   struct FastSwitch {
-    explicit FastSwitch(const Surroundings& surroundings)
-        : single(surroundings),
-          pair(surroundings),
-          fields(surroundings.kernel),
-          slope_beyond(at(surroundings.kernel.states())) {}
+    explicit FastSwitch(const SwitchingContext& switching_context)
+        : single(switching_context),
+          pair(switching_context),
+          fields(switching_context.kernel),
+          slope_beyond(at(switching_context.kernel.states())) {}
     SingleSurface single;
     SurfacePair pair;
     bool applies = false;  ///< the model and the options have nothing that a switch of one surface might concern
@@ -234,7 +234,7 @@ class Run {
 
   evaluation::ModelKernel& kernel_;
   const IntegrationOptions& options_;
-  Surroundings surroundings_;
+  SwitchingContext switching_context_;
   ModeField field_;
   Position here_;
   StepTolerances tolerances_;

@@ -20,7 +20,8 @@ constexpr std::size_t most_rounds = 10000;
 
 std::string Run::jump_names(const std::vector<int>& jumps) const {
   std::string text;
-  for (const int jump : jumps) text += (text.empty() ? "'" : ", '") + surroundings_.system.jumps[at(jump)].name + "'";
+  for (const int jump : jumps)
+    text += (text.empty() ? "'" : ", '") + switching_context_.system.jumps[at(jump)].name + "'";
   return text;
 }
 
@@ -52,7 +53,7 @@ bool Run::execute_jump() {
     event_.cell_change = std::max(event_.cell_change, cells_.locate(here_.t, here_.x.data(), here_.state.alpha));
   cascade_.drop_zeros();
   if (!here_.state.alpha.empty())
-    here_.state.alpha = selections_at(surroundings_, here_.t, here_.x.data(), here_.state.alpha);
+    here_.state.alpha = selections_at(switching_context_, here_.t, here_.x.data(), here_.state.alpha);
   cascade_.read_user_signs();
   jumps_.update(jump_point());
   return !jumps_have_problem();
@@ -72,7 +73,7 @@ bool Run::decide_behind_jumps() {
   RestingSurfaces resting;
   if (!find_resting(resting)) return false;
   cascade_.transition() =
-      decide_behind_jump(surroundings_, here_.state, here_.t, here_.x.data(), here_.time_scale, surfaces, resting);
+      decide_behind_jump(switching_context_, here_.state, here_.t, here_.x.data(), here_.time_scale, surfaces, resting);
   if (cascade_.transition().termination != Termination::completed) {
     fail(cascade_.transition().termination, cascade_.transition().message);
     return false;
@@ -146,7 +147,7 @@ bool Run::begin_jumps() {
   if (jumps_.none()) return true;
   here_.state.mode.assign(at(kernel_.switching_functions()), 0);
   here_.state.alpha.assign(here_.state.mode.size(), 0.5);
-  here_.state.alpha = selections_at(surroundings_, here_.t, here_.x.data(), here_.state.alpha);
+  here_.state.alpha = selections_at(switching_context_, here_.t, here_.x.data(), here_.state.alpha);
   if (!begin_contacts()) return false;
   cascade_.read_user_signs();
   jumps_.begin(jump_point());

@@ -56,7 +56,7 @@ bool Run::change_nothing(const std::vector<int>& jumps) {
   kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
   std::vector<bool> vanish = search_.user_zeros();
   for (const int jump : jumps) {
-    const auto& targets = surroundings_.system.jumps[at(jump)].targets;
+    const auto& targets = switching_context_.system.jumps[at(jump)].targets;
     std::vector<double> values(targets.size());
     kernel_.jump_values(jump, here_.t, here_.x.data(), here_.state.alpha.data(), values.data());
     for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -65,7 +65,7 @@ bool Run::change_nothing(const std::vector<int>& jumps) {
       slope[at(targets[i])] = 0.0;
     }
     bool comes_true = false;
-    for (int g = 0; g < static_cast<int>(surroundings_.system.jumps[at(jump)].guards.numel()); ++g) {
+    for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const Rate rate = rates.along(function, slope);
       const double resolved = tolerances_.step().atol * rate.slope + tolerances_.step().rtol * rate.magnitude;
@@ -111,7 +111,7 @@ void Run::follow_limit(const SeriesLimit& limit) {
   cascade_.begin();
   const auto accumulated = [&] {
     recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},
-                          limit.rattling
+                          limit.kind == SeriesKind::chattering
                               ? "these jumps follow each other faster than their guards are resolved"
                               : "the intervals of these jumps shrink geometrically: the state is their limit");
     row(here_.t, here_.x);

@@ -18,7 +18,7 @@ using result::Termination;
 
 /// The surfaces that the held guards keep at zero; false if these cannot be followed, with the status set.
 bool Run::find_resting(RestingSurfaces& resting) {
-  resting = find_resting_surfaces(surroundings_, holding_, here_.t, here_.state.alpha, here_.x);
+  resting = find_resting_surfaces(switching_context_, holding_, here_.t, here_.state.alpha, here_.x);
   if (resting.problem.empty()) return true;
   fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", here_.t, resting.problem));
   return false;
@@ -88,14 +88,14 @@ bool Run::change_resting_with_cells() {
 
 /// Surfaces that a released guard has kept at zero: the motion leaves them where it would if it had slid on them, to
 /// the side with whose selection nothing presses on the guard any more.
-const ModeState& Run::slid_on_freed(Occasion& occasion) {
+const ModeState& Run::slid_on_freed(SwitchingPoint& switching_point) {
   event_.slid = event_.before;
   for (const int j : event_.freed) {
     set_surface(event_.slid, j, 0, event_.before.alpha[at(j)]);
     std::erase(event_.slid.resting, j);
-    occasion.at_zero.push_back(j);
-    occasion.touched.push_back(j);
-    (event_.before.alpha[at(j)] > 0.5 ? occasion.exit_above : occasion.exit_below).push_back(j);
+    switching_point.at_zero.push_back(j);
+    switching_point.touched.push_back(j);
+    (event_.before.alpha[at(j)] > 0.5 ? switching_point.exit_above : switching_point.exit_below).push_back(j);
   }
   set_corner_alpha(event_.slid);
   return event_.slid;

@@ -13,7 +13,7 @@ namespace saltus::event_integrator {
 
 /// Onto all surfaces that meet, where f has a root of one of them: what is left of psi when another one is put to zero,
 /// 1e-15, has a root of 3e-8, or none.
-void Run::settle_on_roots(const Located& located) {
+void Run::project_onto_roots(const Located& located) {
   if (!kernel_.region_groups().empty()) return;
   std::vector<int> surfaces = here_.state.sliding;
   for (const std::size_t i : located.functions) {
@@ -52,9 +52,9 @@ void Run::note_time_scale(double h) {
 /// A state at rest on a kink is on either side of it; the root says into which one it goes. False where the run ends.
 bool Run::take_side_of_root() {
   const auto j = at(event_.rooted);
-  if (surroundings_.system.switching[j].role != model::SwitchingRole::kink) return true;
+  if (switching_context_.system.switching[j].role != model::SwitchingRole::kink) return true;
   const auto leads_away = [&](const ModeState& state) {
-    return RootedExit(kernel_, surroundings_.affine_in_alpha, state, event_.rooted)
+    return RootedExit(kernel_, switching_context_.affine_in_alpha, state, event_.rooted)
         .leads_away(here_.t, here_.x, root_step());
   };
   Transition other;
@@ -71,7 +71,7 @@ bool Run::take_side_of_root() {
 void Run::leave_root() {
   const int surface = std::exchange(event_.rooted, -1);
   if (!kernel_.has_root(surface)) return leave_nested_root();
-  RootedExit exit(kernel_, surroundings_.affine_in_alpha, here_.state, surface);
+  RootedExit exit(kernel_, switching_context_.affine_in_alpha, here_.state, surface);
   const double begin = here_.t;
   const double limit = next_stop();
   double h = root_step();

@@ -18,7 +18,8 @@ namespace {
 /// inside them.
 /// @param limit  of the laps
 /// @param time_scale  a step of the integrator
-void put_on(const evaluation::ModelKernel& kernel, const SeriesLimit& limit, double time_scale, ModeState& state) {
+void hold_at_zero(const evaluation::ModelKernel& kernel, const SeriesLimit& limit, double time_scale,
+                  ModeState& state) {
   const auto& labels = limit.events;
   const auto is_nested = [&](int j) { return !kernel.inner(j).empty(); };
   std::vector<std::vector<ActiveRegion>> active(kernel.region_groups().size());
@@ -50,8 +51,8 @@ void put_on(const evaluation::ModelKernel& kernel, const SeriesLimit& limit, dou
 /// Functions inside those that are put on, which the laps shrink with them: they vanish there, too. Returns whether
 /// there are any.
 /// @param lap_change  of each function: what a lap changes it by
-bool put_on_inner(const evaluation::ModelKernel& kernel, const SeriesLimit& limit,
-                  const std::vector<double>& lap_change, ModeState& state) {
+bool hold_inner_at_zero(const evaluation::ModelKernel& kernel, const SeriesLimit& limit,
+                        const std::vector<double>& lap_change, ModeState& state) {
   std::vector<double> values(at(kernel.event_functions()));
   kernel.functions(limit.t, limit.x.data(), state.alpha.data(), values.data());
   const std::vector<int> around = state.sliding;
@@ -98,7 +99,8 @@ void Run::accumulate_switches() {
   if (const auto nearly = limit ? std::nullopt : switches_.nearly(); nearly && nearly->t < options_.until) {
     if (follow_spiral(*nearly, Behind::higher_order)) return switches_.clear();
   }
-  if (!limit || limit->rattling || limit->t > std::min(options_.until, jumps_.next_time())) return;
+  if (!limit || limit->kind == SeriesKind::chattering || limit->t > std::min(options_.until, jumps_.next_time()))
+    return;
   const bool repeats = switches_.limits_repeat(limit->t);
   switches_.clear();
   if (repeats || !follow_spiral(*limit, Behind::any)) accumulates();
@@ -107,8 +109,8 @@ void Run::accumulate_switches() {
 /// The current switch cannot be decided, in a cycle beside a root that is not resolved, nor are the rates of the fields
 /// there: cycles have their limit where they are. nullopt where it is none of such cycles.
 std::optional<SeriesLimit> Run::unresolved_here() const {
-  if (event_.occasion.touched.size() != 1) return std::nullopt;
-  const int surface = event_.occasion.touched.front();
+  if (event_.switching_point.touched.size() != 1) return std::nullopt;
+  const int surface = event_.switching_point.touched.front();
   if (!zeros_.ends_at(surface)) return std::nullopt;
   return switches_.unresolved(surface, event_.before.mode[at(surface)], here_.t - event_.last_time);
 }
@@ -125,7 +127,7 @@ void Run::go_on_from_unresolved() {
 /// with their derivatives (controllers with roots of several states, which reach their origin faster than laps shrink).
 /// Returns whether the run has gone on.
 bool Run::hold_unresolved() {
-  SeriesLimit limit{here_.t, here_.x, {}, here_.smallest_step(), false, true};
+  SeriesLimit limit{here_.t, here_.x, {}, here_.smallest_step(), SeriesKind::unresolved};
   for (const auto* function : zeros_.unresolved()) limit.events.push_back(label_of(function->index, function->sign));
   return limit.events.size() > 1 && follow_spiral(limit, Behind::higher_order);
 }
@@ -134,7 +136,8 @@ bool Run::hold_unresolved() {
 /// Returns whether they have one all the same, and the run has gone on from there.
 bool Run::follow_dense_laps() {
   const auto limit = switches_.dense_limit();
-  if (!limit || limit->rattling || limit->t > std::min(options_.until, jumps_.next_time())) return false;
+  if (!limit || limit->kind == SeriesKind::chattering || limit->t > std::min(options_.until, jumps_.next_time()))
+    return false;
   switches_.clear();
   return follow_spiral(*limit, Behind::any);
 }
@@ -144,34 +147,34 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   FieldRates rates(kernel_, here_);
   ModeState on = here_.state;
   on.higher.reset();
-  put_on(kernel_, limit, here_.time_scale, on);
+  hold_at_zero(kernel_, limit, here_.time_scale, on);
   std::vector<double> x = limit.x;
-  Occasion occasion;
+  SwitchingPoint switching_point;
   std::vector<double> lap_change(at(kernel_.event_functions()));
   for (const int j : on.sliding) {
     for (const int i : kernel_.inner(j)) {
       lap_change[at(i)] = limit.lap * std::abs(rates.here(i).value);
     }
   }
-  if (put_on_inner(kernel_, limit, lap_change, on)) {
+  if (hold_inner_at_zero(kernel_, limit, lap_change, on)) {
     put_onto_nested(kernel_, on, limit.t, x);
   } else {
     const ReferenceScope references(kernel_, on);
-    ModeField field(kernel_, surroundings_.affine_in_alpha);
+    ModeField field(kernel_, switching_context_.affine_in_alpha);
     field.enter(on);
     field.project(limit.t, x.data());
   }
-  occasion.t = limit.t;
-  occasion.x = x.data();
-  occasion.at_zero = occasion.touched = on.sliding;
-  occasion.start = occasion.limit = true;  // no side is the one it comes from
+  switching_point.t = limit.t;
+  switching_point.x = x.data();
+  switching_point.at_zero = switching_point.touched = on.sliding;
+  switching_point.start = switching_point.limit = true;  // no side is the one it comes from
   // What the last lap changes is at rest behind it, and what t does not resolve.
-  occasion.time_scale = std::max({here_.time_scale, limit.lap, 1e3 * rounding_unit * std::abs(limit.t)});
-  note_ties(kernel_, on, occasion);
-  Transition transition = decide_mode(surroundings_, on, occasion);
+  switching_point.time_scale = std::max({here_.time_scale, limit.lap, 1e3 * rounding_unit * std::abs(limit.t)});
+  note_ties(kernel_, on, switching_point);
+  Transition transition = decide_mode(switching_context_, on, switching_point);
   if (transition.termination != result::Termination::completed) return false;
   if (wanted == Behind::higher_order && !transition.state.higher) return false;
-  other_continuations(surroundings_, on, occasion, transition);
+  other_continuations(switching_context_, on, switching_point, transition);
 
   field_(here_.t, here_.x.data(), here_.slope.data());
   if (!here_.state.sliding.empty()) here_.state.alpha = field_.alpha();
@@ -179,8 +182,9 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   const std::vector<double> x_last = here_.x;
   pass_to(limit.t, std::move(x));
   if (!enter(transition)) return true;
-  const auto why = limit.drowned ? "these are zero together, as far as they can be told apart"
-                                 : "the intervals of these switches shrink geometrically: the state is their limit";
+  const auto why = limit.kind == SeriesKind::unresolved
+                       ? "these are zero together, as far as they can be told apart"
+                       : "the intervals of these switches shrink geometrically: the state is their limit";
   // What has been slid on through all laps may be left at their limit, too.
   std::vector<int> surfaces = on.sliding;
   for (const int label : limit.events) surfaces.push_back(surface_of(label));

@@ -43,8 +43,9 @@ bool Run::shorten(double factor) {
 
 /// Whether the steps got short because the sliding selection, or the right-hand side itself, has no limit here.
 bool Run::stopped_by_two_fold() {
-  auto message = two_fold_message(surroundings_, here_.state, here_.t, here_.x.data());
-  if (!message) message = without_limit(surroundings_, here_.t, here_.x, here_.state.alpha, tolerances_.mode().atol);
+  auto message = two_fold_message(switching_context_, here_.state, here_.t, here_.x.data());
+  if (!message)
+    message = without_limit(switching_context_, here_.t, here_.x, here_.state.alpha, tolerances_.mode().atol);
   if (message) fail(Termination::outside_class, *message);
   return message.has_value();
 }
@@ -62,7 +63,7 @@ std::string Run::undefined_beyond() {
   for (double h = here_.smallest_step(); h <= 1e6 * here_.smallest_step(); h *= 4.0) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = here_.x[i] + h * here_.slope[i];
     field_(here_.t + h, x.data(), slope.data());
-    if (!is_finite(slope)) return undefined_states(surroundings_.system, slope);
+    if (!is_finite(slope)) return undefined_states(switching_context_.system, slope);
   }
   return {};
 }
@@ -77,8 +78,9 @@ std::string Run::undefined_function_beyond() {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto& function = search_.functions()[i];
       if (std::isfinite(values[i]) || is_cell_end(function.kind)) continue;
-      const bool named = at(function.index) < surroundings_.system.switching.size();
-      return named ? fmt::format("the switching function '{}'", surroundings_.system.switching[at(function.index)].name)
+      const bool named = at(function.index) < switching_context_.system.switching.size();
+      return named ? fmt::format("the switching function '{}'",
+                                 switching_context_.system.switching[at(function.index)].name)
                    : std::string("an expression of [[events]] or [[jumps]]");
     }
   }

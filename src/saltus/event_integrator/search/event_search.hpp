@@ -145,7 +145,7 @@ class EventSearch {
   };
   void sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which, Nodes nodes);
   [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;
-  void bear_tangency(std::size_t i, double t, const double* x);
+  void limit_by_tangency(std::size_t i, double t, const double* x);
   void read_user_signs();
   void find_pressure(double t, const double* x);
   void enter_cells();

@@ -142,13 +142,13 @@ void EventSearch::read_start(double t, const double* x) {
     // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
     // zero of this start.
     if (function.zero_order > 0) function.offset = point_[i];
-    if (any_nesting_ && is_exit && function.kind != FunctionKind::release) bear_tangency(i, t, x);
+    if (any_nesting_ && is_exit && function.kind != FunctionKind::release) limit_by_tangency(i, t, x);
   }
 }
 
 /// The exit to a field that goes along the surface is 0 throughout the mode, but for its rounding and the errors of the
 /// dense output, which is not on the surface: it counts from where it is more than these.
-void EventSearch::bear_tangency(std::size_t i, double t, const double* x) {
+void EventSearch::limit_by_tangency(std::size_t i, double t, const double* x) {
   auto& function = mode_.functions[i];
   const bool is_below = function.kind == FunctionKind::exit_below;
   if (!nesting_[at(function.index)] || field_.solve() != SlidingSolve::decoupled) return;

@@ -13,9 +13,9 @@ namespace saltus::event_integrator {
 /// ContractingCycles looks at the events of a run that max_events has ended.
 class ContractingCycles {
  public:
-  ContractingCycles(const Surroundings& surroundings, const Position& here, const Recorder& recorder)
-      : surroundings_(surroundings),
-        kernel_(surroundings.kernel),
+  ContractingCycles(const SwitchingContext& switching_context, const Position& here, const Recorder& recorder)
+      : switching_context_(switching_context),
+        kernel_(switching_context.kernel),
         here_(here),
         recorder_(recorder),
         rates_(kernel_, here) {}
@@ -30,7 +30,7 @@ class ContractingCycles {
   [[nodiscard]] std::optional<double> exponent_of(long n) const;
   [[nodiscard]] bool has_one_rate(int surface);
 
-  const Surroundings& surroundings_;
+  const SwitchingContext& switching_context_;
   const evaluation::ModelKernel& kernel_;
   const Position& here_;
   const Recorder& recorder_;

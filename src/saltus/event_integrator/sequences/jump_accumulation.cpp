@@ -2,9 +2,9 @@
 
 namespace saltus::event_integrator {
 
-JumpAccumulation::JumpAccumulation(const Surroundings& surroundings, const Position& here)
-    : system_(surroundings.system),
-      kernel_(surroundings.kernel),
+JumpAccumulation::JumpAccumulation(const SwitchingContext& switching_context, const Position& here)
+    : system_(switching_context.system),
+      kernel_(switching_context.kernel),
       here_(here),
       last_guard_(system_.jumps.size()),
       last_rate_(system_.jumps.size(), 0.0),
@@ -35,7 +35,7 @@ void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps, cons
 }
 
 void JumpAccumulation::end(const SeriesLimit& limit) {
-  if (limit.rattling) {
+  if (limit.kind == SeriesKind::chattering) {
     series_.clear();
   } else {
     series_.clear_laps();

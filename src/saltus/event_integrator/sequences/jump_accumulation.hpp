@@ -12,7 +12,7 @@ namespace saltus::event_integrator {
 /// JumpAccumulation notes the jumps of a run behind each cascade.
 class JumpAccumulation {
  public:
-  JumpAccumulation(const Surroundings& surroundings, const Position& here);
+  JumpAccumulation(const SwitchingContext& switching_context, const Position& here);
 
   /// Notes the jumps of a cascade: when, where to, and which guards were at zero.
   void note(const JumpCascade& cascade, const Jumps& jumps, const std::vector<int>& user_signs);

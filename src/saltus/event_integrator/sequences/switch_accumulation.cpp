@@ -10,15 +10,15 @@ namespace saltus::event_integrator {
 
 using Reason = StepTolerances::Reason;
 
-SwitchAccumulation::SwitchAccumulation(const Surroundings& surroundings, const Position& here, double span,
+SwitchAccumulation::SwitchAccumulation(const SwitchingContext& switching_context, const Position& here, double span,
                                        StepTolerances& tolerances)
-    : surroundings_(surroundings),
-      kernel_(surroundings.kernel),
+    : switching_context_(switching_context),
+      kernel_(switching_context.kernel),
       here_(here),
       tolerances_(tolerances),
       rates_(kernel_, here),
       series_(span),
-      shortest_(3 * surroundings.system.switching.size(), 0.0),
+      shortest_(3 * switching_context.system.switching.size(), 0.0),
       slope_(here.x.size()) {}
 
 void SwitchAccumulation::note(const ModeState& before) {
@@ -26,7 +26,7 @@ void SwitchAccumulation::note(const ModeState& before) {
   bool holds = true;  // kinks do not hold a solution, and times pass
   labels_.clear();
   for_each_difference(before.mode, here_.state.mode, [&](std::size_t j) {
-    const auto role = surroundings_.system.switching[j].role;
+    const auto role = switching_context_.system.switching[j].role;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
     labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));
   });
@@ -106,7 +106,7 @@ std::optional<SeriesLimit> SwitchAccumulation::dense_limit() const {
 std::optional<SeriesLimit> SwitchAccumulation::unresolved(int surface, int mode, double duration) const {
   const double shortest = std::max(shortest_[at(label_of(surface, -1))], shortest_[at(label_of(surface, 1))]);
   if (empty() || !(duration <= shortest)) return std::nullopt;
-  return SeriesLimit{here_.t, here_.x, {label_of(surface, mode)}, duration, false};
+  return SeriesLimit{here_.t, here_.x, {label_of(surface, mode)}, duration};
 }
 
 bool SwitchAccumulation::limits_repeat(double t) {

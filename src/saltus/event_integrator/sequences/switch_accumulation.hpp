@@ -21,7 +21,8 @@ inline int surface_of(int label) { return label / 3; }
 /// each other faster and faster.
 class SwitchAccumulation {
  public:
-  SwitchAccumulation(const Surroundings& surroundings, const Position& here, double span, StepTolerances& tolerances);
+  SwitchAccumulation(const SwitchingContext& switching_context, const Position& here, double span,
+                     StepTolerances& tolerances);
 
   [[nodiscard]] SwitchSeries& series() { return series_; }
   [[nodiscard]] const SwitchSeries& series() const { return series_; }
@@ -63,7 +64,7 @@ class SwitchAccumulation {
   };
   void note_rates(const std::vector<double>& alpha_before);
 
-  const Surroundings& surroundings_;
+  const SwitchingContext& switching_context_;
   const evaluation::ModelKernel& kernel_;
   const Position& here_;
   StepTolerances& tolerances_;

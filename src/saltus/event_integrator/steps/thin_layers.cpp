@@ -10,10 +10,10 @@ namespace saltus::event_integrator {
 namespace {
 
 /// Lowers tolerances to what one layer after the other bears.
-class Bearing {
+class ToleranceLimits {
  public:
-  Bearing(const evaluation::ModelKernel& kernel, const ThinLayers& layers, const ode::Tolerances& wanted,
-          const ModeState& state, double t, const double* x)
+  ToleranceLimits(const evaluation::ModelKernel& kernel, const ThinLayers& layers, const ode::Tolerances& wanted,
+                  const ModeState& state, double t, const double* x)
       : kernel_(kernel),
         layers_(layers),
         state_(state),
@@ -29,21 +29,21 @@ class Bearing {
     for (const auto& layer : layers_.corners) {
       const double psi = 0.5 * (values_[at(layer.lower)] + values_[at(layer.upper)]);
       if (!(std::abs(psi) <= 2.0 * layers_.half_width)) continue;
-      bear_errors_of(layer.lower);
-      bear_rates_of(layer);
+      limit_by_errors_of(layer.lower);
+      limit_by_rates_of(layer);
     }
     for (const int weight : layers_.weights) {
       // Positive, but not that of a region that is alone: 1 to a part that does not matter either.
       const double psi = values_[at(weight)];
       const double alone = layers_.half_width * std::exp(-layers_.weight_range / layers_.half_width);
-      if (psi >= -layers_.half_width && psi < layers_.weight_range - alone) bear_errors_of(weight);
+      if (psi >= -layers_.half_width && psi < layers_.weight_range - alone) limit_by_errors_of(weight);
     }
     return result_;
   }
 
  private:
   /// Errors of the states in psi itself.
-  void bear_errors_of(int function) {
+  void limit_by_errors_of(int function) {
     // The relay of the catalogue, at epsilon from 1e-5 to 1e-9 and rtol from 1e-5 to 1e-10: a tenth of this is as
     // good, five times this misses sliding segments at the thin end.
     constexpr double share = 1e-4;
@@ -59,7 +59,7 @@ class Bearing {
 
   /// Errors of all states in psi' beside the layer: a solution that leaves it tangentially needs the time
   /// sqrt(2 epsilon / psi'') for that, at a speed of up to sqrt(2 epsilon psi'').
-  void bear_rates_of(const ThinLayers::Corners& layer) {
+  void limit_by_rates_of(const ThinLayers::Corners& layer) {
     constexpr double share = 1e-2;
     double speed = 0.0, slope = 0.0, size = 0.0;
     for (const double side : {0.0, 1.0}) {
@@ -104,7 +104,7 @@ class Bearing {
 
 ode::Tolerances within_layers(const evaluation::ModelKernel& kernel, const ThinLayers& layers,
                               const ode::Tolerances& wanted, const ModeState& state, double t, const double* x) {
-  ode::Tolerances result = Bearing(kernel, layers, wanted, state, t, x).run();
+  ode::Tolerances result = ToleranceLimits(kernel, layers, wanted, state, t, x).run();
   result.rtol = std::max(result.rtol, std::min(wanted.rtol, 4.0 * rounding_unit));
   return result;
 }

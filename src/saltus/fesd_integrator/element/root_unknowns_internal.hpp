@@ -24,7 +24,8 @@ class RootUnknowns {
   void evaluate(std::size_t stage, double t, const double* x, const double* selections, const double* held,
                 discretization::StageValues& values);
   /// Takes the step of the roots that belongs to this one of the state of the last evaluate().
-  /// @return the largest change of a root, relative to its largest value at the stages; 0 if nobody feels the stage
+  /// @return the largest change of a root, relative to its largest value at the stages; 0 if nobody depends on the
+  /// stage
   double update(std::size_t stage, const double* step, bool felt);
   /// f of a stage at its roots.
   void field(std::size_t stage, double t, const double* x, const double* selections, const double* held, double* f);

@@ -4,7 +4,7 @@ namespace saltus::fesd_integrator {
 
 void Tangents::set_time_event(double t, std::optional<std::size_t> changing) {
   event_ = t;
-  // At the end of the run nothing follows that could feel it.
+  // At the end of the run nothing follows that could depend on it.
   changing_ = t < context_.options.until ? changing : std::nullopt;
 }
 

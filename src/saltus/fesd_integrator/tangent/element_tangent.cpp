@@ -57,7 +57,7 @@ ElementTangent::ElementTangent(const discretization::TangentKernel& kernel, disc
 }
 
 /// Sliding step selections are moved off their bounds, where derivatives of guarded branches are missing; f is affine
-/// in each of them, so that its derivatives hardly feel it.
+/// in each of them, so that its derivatives hardly depend on it.
 void ElementTangent::evaluate(double t, const double* x, const double* selections, const ActiveSet& set,
                               const double* held, discretization::TangentValues& at) {
   constexpr double off = 1e-9;

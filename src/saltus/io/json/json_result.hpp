@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "saltus/base/error.hpp"
 #include "saltus/io/atomic_file.hpp"
@@ -50,5 +51,7 @@ class ResultParts {
 /// of the events with "events." before them. Numbers are float64, `side` and modes of rows int8, words unicode; what is
 /// not there is NaN, `unique` is 1, 0 or -1 (not decided).
 [[nodiscard]] bool write_npz(const result::Result& result, Sink sink);
+/// Writes what the end of a name says: .events.csv, .csv, .npz, else JSON.
+[[nodiscard]] bool write_as(std::string_view name, const result::Result& result, Sink sink);
 
 }  // namespace saltus::io

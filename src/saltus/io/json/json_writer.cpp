@@ -408,6 +408,12 @@ bool write_json(const result::Result& result, Sink sink) {
   return stream.flush();
 }
 
+bool write_as(std::string_view name, const result::Result& result, Sink sink) {
+  if (name.ends_with("events.csv")) return write_events_csv(result, sink);
+  if (name.ends_with("csv")) return write_csv(result, sink);
+  return name.ends_with("npz") ? write_npz(result, sink) : write_json(result, sink);
+}
+
 std::string to_json(const result::Result& result) {
   return collected([&](Sink sink) { return write_json(result, sink); });
 }

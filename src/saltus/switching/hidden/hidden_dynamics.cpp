@@ -21,7 +21,7 @@ namespace {
 /// the selection.
 double generic(int j) { return 0.3 + 0.4 * std::fmod(0.618033988749895 * (j + 1), 1.0); }
 
-/// Connected groups of surfaces that feel each other, each ascending.
+/// Connected groups of surfaces that depend on each other, each ascending.
 std::vector<std::vector<int>> groups_of(int surfaces, ProjectedField g) {
   const std::size_t m = at(surfaces);
   Components components(m);
@@ -71,7 +71,7 @@ std::vector<std::vector<double>> starts_of(const HiddenSituation& situation) {
     }
   }
   std::vector<std::vector<double>> starts{u};
-  // One surface ahead of the others: so far that they do not feel each other's layers.
+  // One surface ahead of the others: so far that they do not depend on each other's layers.
   constexpr double ahead = 1e3;
   if (arriving.size() > 1) {
     for (const std::size_t first : arriving) {
@@ -154,7 +154,7 @@ HiddenDecision decide_in_groups(int surfaces, ProjectedField g, const HiddenSitu
   return whole;
 }
 
-/// g of a group, the selections of the others held: it does not feel them.
+/// g of a group, the selections of the others held: it does not depend on them.
 class GroupField {
  public:
   GroupField(int surfaces, ProjectedField g, const std::vector<int>& group)

@@ -51,7 +51,7 @@ struct HiddenDecision {
 /// every order, one surface ahead of the rest, and a start on the surfaces is tried from the corners (the one with all
 /// selections 1 decides, as on one surface); where these disagree the decision is structurally unstable.
 ///
-/// Surfaces that do not feel each other, which differences of g tell, are decided group by group: the cost is
+/// Surfaces that do not depend on each other, which differences of g tell, are decided group by group: the cost is
 /// 2^(largest group), not 2^m. Exact where at most one selection varies, Dormand-Prince 5(4) or Radau IIA elsewhere.
 /// @param g  the velocities at the point; evaluated in [0, 1]^m, a little outside for groups of more than eight
 /// Cost: a few hundred to a few thousand evaluations; some 20 microseconds for two surfaces. Allocates.

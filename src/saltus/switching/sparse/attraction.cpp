@@ -40,8 +40,12 @@ double margin_of(const Eigen::VectorXd& weights) {
 /// One search for the selections in the cube.
 class BoundedSearch {
  public:
-  BoundedSearch(const Influence& feels, ProjectedField g, const SparseSquare& comparison, std::vector<double> start)
-      : feels_(feels), g_(g), comparison_(comparison), weights_(weights_of(comparison)), alpha_(std::move(start)) {
+  BoundedSearch(const Influence& influence, ProjectedField g, const SparseSquare& comparison, std::vector<double> start)
+      : influence_(influence),
+        g_(g),
+        comparison_(comparison),
+        weights_(weights_of(comparison)),
+        alpha_(std::move(start)) {
     velocity_.resize(index(alpha_.size()));
     largest_ = Eigen::VectorXd::Zero(velocity_.size());
   }
@@ -51,7 +55,7 @@ class BoundedSearch {
   std::optional<BoundedRoot> run() {
     // Most steps are Newton's; those that contract by themselves get there from everywhere.
     constexpr int iterations = 2000;
-    SparseEffects effects(feels_);
+    SparseEffects effects(influence_);
     evaluate(alpha_);
     for (int k = 0; k < iterations && velocity_.allFinite(); ++k) {
       const double before = distance(alpha_);
@@ -133,7 +137,7 @@ class BoundedSearch {
     return root;
   }
 
-  const Influence& feels_;
+  const Influence& influence_;
   ProjectedField g_;
   const SparseSquare& comparison_;
   Eigen::VectorXd weights_, velocity_, largest_, own_;
@@ -154,10 +158,10 @@ SparseSquare comparison_of(const SparseSquare& effects) {
   return comparison;
 }
 
-std::optional<SparseSquare> comparison_in_cube(const Influence& feels, ProjectedField g) {
-  SparseEffects effects(feels);
+std::optional<SparseSquare> comparison_in_cube(const Influence& influence, ProjectedField g) {
+  SparseEffects effects(influence);
   if (effects.colours() > most_colours) return std::nullopt;
-  const auto m = feels.size();
+  const auto m = influence.size();
   std::vector<double> alpha(m), velocity(m);
   SparseSquare least;
   for (unsigned corner = 0; corner < 1U << effects.colours(); ++corner) {
@@ -179,9 +183,9 @@ std::optional<SparseSquare> comparison_in_cube(const Influence& feels, Projected
   return least;
 }
 
-std::optional<BoundedRoot> bounded_root(const Influence& feels, ProjectedField g, const SparseSquare& comparison,
+std::optional<BoundedRoot> bounded_root(const Influence& influence, ProjectedField g, const SparseSquare& comparison,
                                         std::vector<double> start) {
-  BoundedSearch search(feels, g, comparison, std::move(start));
+  BoundedSearch search(influence, g, comparison, std::move(start));
   if (!search.applies()) return std::nullopt;
   return search.run();
 }

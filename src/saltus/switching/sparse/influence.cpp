@@ -11,11 +11,14 @@ namespace {
 /// Tarjan's search with a stack of its own: a chain may be as long as there are surfaces.
 class PartSearch {
  public:
-  explicit PartSearch(const Influence& feels)
-      : feels_(feels), number_(feels.size(), -1), low_(feels.size(), 0), is_open_(feels.size(), false) {}
+  explicit PartSearch(const Influence& influence)
+      : influence_(influence),
+        number_(influence.size(), -1),
+        low_(influence.size(), 0),
+        is_open_(influence.size(), false) {}
 
   std::vector<std::vector<int>> run() {
-    for (std::size_t first = 0; first < feels_.size(); ++first) {
+    for (std::size_t first = 0; first < influence_.size(); ++first) {
       if (number_[first] >= 0) continue;
       enter(static_cast<int>(first));
       while (!path_.empty()) advance();
@@ -38,7 +41,7 @@ class PartSearch {
 
   void advance() {
     auto& [surface, next] = path_.back();
-    const auto& felt = feels_[at(surface)];
+    const auto& felt = influence_[at(surface)];
     if (next < felt.size()) {
       const int other = felt[next++];
       if (number_[at(other)] < 0) return enter(other);
@@ -54,7 +57,7 @@ class PartSearch {
     if (low_[at(left)] == number_[at(left)]) close(left);
   }
 
-  /// What a surface feels has been closed before it.
+  /// What a surface depends on has been closed before it.
   void close(int first) {
     std::vector<int> part;
     int surface = -1;
@@ -68,7 +71,7 @@ class PartSearch {
     parts_.push_back(std::move(part));
   }
 
-  const Influence& feels_;
+  const Influence& influence_;
   int count_ = 0;
   std::vector<int> number_, low_, open_;
   std::vector<bool> is_open_;
@@ -78,13 +81,13 @@ class PartSearch {
 
 }  // namespace
 
-std::vector<std::vector<int>> ordered_parts(const Influence& feels) { return PartSearch(feels).run(); }
+std::vector<std::vector<int>> ordered_parts(const Influence& influence) { return PartSearch(influence).run(); }
 
-std::vector<int> selection_colours(const Influence& feels) {
-  const std::size_t m = feels.size();
+std::vector<int> selection_colours(const Influence& influence) {
+  const std::size_t m = influence.size();
   std::vector<std::vector<int>> felt_by(m);
   const auto row_of = [&](std::size_t i) {
-    auto row = feels[i];
+    auto row = influence[i];
     const auto place = std::lower_bound(row.begin(), row.end(), static_cast<int>(i));
     if (place == row.end() || *place != static_cast<int>(i)) row.insert(place, static_cast<int>(i));
     return row;
@@ -109,12 +112,12 @@ std::vector<int> selection_colours(const Influence& feels) {
   return colour;
 }
 
-Influence restricted_to(const Influence& feels, const std::vector<int>& part) {
-  std::vector<int> place(feels.size(), -1);
+Influence restricted_to(const Influence& influence, const std::vector<int>& part) {
+  std::vector<int> place(influence.size(), -1);
   for (std::size_t k = 0; k < part.size(); ++k) place[at(part[k])] = static_cast<int>(k);
   Influence result(part.size());
   for (std::size_t k = 0; k < part.size(); ++k) {
-    for (const int other : feels[at(part[k])]) {
+    for (const int other : influence[at(part[k])]) {
       if (place[at(other)] >= 0) result[k].push_back(place[at(other)]);
     }
   }

@@ -1,24 +1,25 @@
-// Which of many surfaces feel which: an order of deciding them, and which of them can be probed at once.
+// Which of many surfaces depend on which: an order of deciding them, and which of them can be probed at once.
 #pragma once
 
 #include <vector>
 
 namespace saltus::switching {
 
-/// feels[i] lists the surfaces whose selections change the normal component on surface i, ascending; with i itself or
-/// without it.
+/// influence[i] lists the surfaces whose selections change the normal component on surface i, ascending; with i itself
+/// or without it.
 using Influence = std::vector<std::vector<int>>;
 
-/// The surfaces in parts that feel each other, directly or through others, in an order in which none feels a later
-/// part; each part is ascending. Cost: the entries of `feels` (strongly connected components by Tarjan's search).
-[[nodiscard]] std::vector<std::vector<int>> ordered_parts(const Influence& feels);
+/// The surfaces in parts that depend on each other, directly or through others, in an order in which none depends on a
+/// later part; each part is ascending. Cost: the entries of `influence` (strongly connected components by Tarjan's
+/// search).
+[[nodiscard]] std::vector<std::vector<int>> ordered_parts(const Influence& influence);
 
-/// Colours 0, 1, … of the selections such that no surface feels two of one colour, or itself and another one of its
-/// own: all selections of a colour can be changed together, and every surface shows the effect of one. Greedy.
-/// Cost: for each surface the square of the number that it feels.
-[[nodiscard]] std::vector<int> selection_colours(const Influence& feels);
+/// Colours 0, 1, … of the selections such that no surface depends on two of one colour, or itself and another one of
+/// its own: all selections of a colour can be changed together, and every surface shows the effect of one. Greedy.
+/// Cost: for each surface the square of the number that it depends on.
+[[nodiscard]] std::vector<int> selection_colours(const Influence& influence);
 
 /// The rows and columns of `part` (ascending), numbered by their places in it.
-[[nodiscard]] Influence restricted_to(const Influence& feels, const std::vector<int>& part);
+[[nodiscard]] Influence restricted_to(const Influence& influence, const std::vector<int>& part);
 
 }  // namespace saltus::switching

@@ -10,15 +10,15 @@
 
 namespace saltus::switching {
 
-SparseEffects::SparseEffects(const Influence& feels)
-    : colour_(selection_colours(feels)), shifted_(feels.size()), here_(feels.size()) {
+SparseEffects::SparseEffects(const Influence& influence)
+    : colour_(selection_colours(influence)), shifted_(influence.size()), here_(influence.size()) {
   for (const int c : colour_) colours_ = std::max(colours_, c + 1);
-  const auto m = index(feels.size());
+  const auto m = index(influence.size());
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < feels.size(); ++i) {
+  for (std::size_t i = 0; i < influence.size(); ++i) {
     const int row = static_cast<int>(i);
     entries.emplace_back(row, row, 1.0);
-    for (const int j : feels[i]) entries.emplace_back(row, j, 1.0);
+    for (const int j : influence[i]) entries.emplace_back(row, j, 1.0);
   }
   matrix_.resize(m, m);
   matrix_.setFromTriplets(entries.begin(), entries.end());
@@ -43,8 +43,8 @@ void SparseEffects::find(ProjectedField field, double* alpha, const double* g) {
   }
 }
 
-SparseNewton::SparseNewton(const Influence& feels)
-    : effects_(feels), g_(index(feels.size())), step_(index(feels.size())) {}
+SparseNewton::SparseNewton(const Influence& influence)
+    : effects_(influence), g_(index(influence.size())), step_(index(influence.size())) {}
 
 bool SparseNewton::solve(ProjectedField g, double* alpha) {
   // As in SelectionNewton.

@@ -1,4 +1,4 @@
-// The selections of sliding on many surfaces of which each feels few others.
+// The selections of sliding on many surfaces of which each depends on few others.
 #pragma once
 
 #include <vector>
@@ -11,11 +11,11 @@
 
 namespace saltus::switching {
 
-/// G = dg/dalpha of multi-affine g with the entries that `feels` allows (the diagonal among them), by as many
+/// G = dg/dalpha of multi-affine g with the entries that `influence` allows (the diagonal among them), by as many
 /// evaluations as there are colours of selections.
 class SparseEffects {
  public:
-  explicit SparseEffects(const Influence& feels);
+  explicit SparseEffects(const Influence& influence);
 
   /// @param alpha  m selections; changed during the call and put back
   /// @param g      g(alpha), m
@@ -34,7 +34,7 @@ class SparseEffects {
 /// Newton's method for g(alpha) = 0 with a sparse G: SelectionNewton of many surfaces.
 class SparseNewton {
  public:
-  explicit SparseNewton(const Influence& feels);
+  explicit SparseNewton(const Influence& influence);
 
   /// As SelectionNewton::solve. Cost: colours + 1 evaluations of g and a sparse factorisation per iteration.
   bool solve(ProjectedField g, double* alpha);

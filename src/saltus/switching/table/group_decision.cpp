@@ -170,27 +170,27 @@ GroupDecision decide_group(const CornerTable& table) {
 std::vector<std::vector<int>> parts_by_influence(const CornerTable& table) {
   SALTUS_ASSERT(1 <= table.surfaces && table.surfaces <= 12);
   const auto m = static_cast<std::size_t>(table.surfaces);
-  std::vector<unsigned> feels(m);  // bit j: surface i feels surface j, at last through others
+  std::vector<unsigned> influence(m);  // bit j: surface i depends on surface j, at last through others
   for (std::size_t i = 0; i < m; ++i) {
     const int surface = static_cast<int>(i);
     const double scale = largest_velocity(table, surface);
-    feels[i] = 1U << i;
+    influence[i] = 1U << i;
     for (std::size_t corner = 0; corner < table.corners(); ++corner) {
       for (std::size_t j = 0; j < m; ++j) {
         const std::size_t other = corner ^ (std::size_t{1} << j);
-        if (!same_side(table.side(surface, corner), table.side(surface, other), scale)) feels[i] |= 1U << j;
+        if (!same_side(table.side(surface, corner), table.side(surface, other), scale)) influence[i] |= 1U << j;
       }
     }
   }
   for (std::size_t k = 0; k < m; ++k) {
     for (std::size_t i = 0; i < m; ++i) {
-      if ((feels[i] >> k & 1U) != 0) feels[i] |= feels[k];
+      if ((influence[i] >> k & 1U) != 0) influence[i] |= influence[k];
     }
   }
-  // Who feels fewer comes first; those of one part feel the same.
+  // Who depends on fewer comes first; those of one part depend on the same.
   std::vector<int> order(m);
   std::iota(order.begin(), order.end(), 0);
-  const auto felt = [&](int i) { return feels[at(i)]; };
+  const auto felt = [&](int i) { return influence[at(i)]; };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     const int fewer = std::popcount(felt(a)), more = std::popcount(felt(b));
     return fewer != more ? fewer < more : felt(a) < felt(b);

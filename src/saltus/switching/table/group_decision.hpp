@@ -33,13 +33,14 @@ struct GroupDecision {
 ///   each decision restricts the table (multi-affine interpolation in a sliding selection) and the rest is looked at
 ///   again.
 /// The hidden dynamics u_j' = g_j(pi(u)) confirms both: under (1) u_j leaves the cube monotonically, under (2) u_j does
-/// not feel the others. Where neither applies, or where a restricted surface turns out repelling so that the transient
-/// would decide, the verdict is `coupled`. Cost: O(m^2 2^m).
+/// not depend on the others. Where neither applies, or where a restricted surface turns out repelling so that the
+/// transient would decide, the verdict is `coupled`. Cost: O(m^2 2^m).
 [[nodiscard]] GroupDecision decide_group(const CornerTable& table);
 
-/// Parts of a group whose surfaces influence each other, in an order in which none feels a later one: numbers in the
-/// table, each part ascending. One part if every surface feels every other, directly or through others. A surface feels
-/// a selection that changes its normal component, or where that leads if it is zero. Cost: O(m^2 2^m).
+/// Parts of a group whose surfaces influence each other, in an order in which none depends on a later one: numbers in
+/// the table, each part ascending. One part if every surface depends on every other, directly or through others. A
+/// surface depends on a selection that changes its normal component, or where that leads if it is zero. Cost: O(m^2
+/// 2^m).
 [[nodiscard]] std::vector<std::vector<int>> parts_by_influence(const CornerTable& table);
 
 }  // namespace saltus::switching

@@ -36,44 +36,45 @@ switching::Arrival arrival_from(int side) {
 
 }  // namespace
 
-SingleSurface::SingleSurface(const Surroundings& surroundings)
-    : surroundings_(surroundings),
-      is_inner_(at(surroundings.kernel.switching_functions()), false),
-      f_(at(surroundings.kernel.states())),
+SingleSurface::SingleSurface(const SwitchingContext& switching_context)
+    : switching_context_(switching_context),
+      is_inner_(at(switching_context.kernel.switching_functions()), false),
+      f_(at(switching_context.kernel.states())),
       row_(f_.size()),
-      field_(surroundings.kernel, surroundings.affine_in_alpha) {
-  for (int j = 0; j < surroundings.kernel.switching_functions(); ++j) {
-    for (const int inner : surroundings.kernel.inner(j)) is_inner_[at(inner)] = true;
-    if (!surroundings.kernel.inner(j).empty()) between_.push_back(j);
+      field_(switching_context.kernel, switching_context.affine_in_alpha) {
+  for (int j = 0; j < switching_context.kernel.switching_functions(); ++j) {
+    for (const int inner : switching_context.kernel.inner(j)) is_inner_[at(inner)] = true;
+    if (!switching_context.kernel.inner(j).empty()) between_.push_back(j);
   }
-  for (const auto& group : surroundings.kernel.region_groups()) {
+  for (const auto& group : switching_context.kernel.region_groups()) {
     for (int j = group.first; j < group.first + group.count; ++j) between_.push_back(j);
   }
 }
 
-bool SingleSurface::applies(const ModeState& before, const Occasion& occasion) const {
-  if (!surroundings_.affine_in_alpha || occasion.start || before.higher) return false;
-  if (occasion.touched.size() != 1) return false;
-  const int j = occasion.touched.front();
+bool SingleSurface::applies(const ModeState& before, const SwitchingPoint& switching_point) const {
+  if (!switching_context_.affine_in_alpha || switching_point.start || before.higher) return false;
+  if (switching_point.touched.size() != 1) return false;
+  const int j = switching_point.touched.front();
   const bool arrives = before.mode[at(j)] != 0;
-  if (occasion.at_zero.size() != before.sliding.size() + (arrives ? 1 : 0)) return false;
+  if (switching_point.at_zero.size() != before.sliding.size() + (arrives ? 1 : 0)) return false;
   for (const int k : before.sliding) {
-    const auto& kernel = surroundings_.kernel;
+    const auto& kernel = switching_context_.kernel;
     if (k != j && (is_inner_[at(k)] || kernel.depends(j, k) || kernel.depends(k, j) || same_group(kernel, j, k)))
       return false;
   }
-  if (is_inner_[at(j)] || surroundings_.system.switching[at(j)].role == model::SwitchingRole::discrete) return false;
-  const auto exits = occasion.exit_below.size() + occasion.exit_above.size();
+  if (is_inner_[at(j)] || switching_context_.system.switching[at(j)].role == model::SwitchingRole::discrete)
+    return false;
+  const auto exits = switching_point.exit_below.size() + switching_point.exit_above.size();
   if (arrives) return exits == 0;
   return exits == 1 && is_within_bounds(before.alpha[at(j)]);
 }
 
 /// Normal component of the field of one side; not finite if the field is not.
-double SingleSurface::velocity(const Occasion& occasion, int surface, double selection) {
-  const auto& kernel = surroundings_.kernel;
+double SingleSurface::velocity(const SwitchingPoint& switching_point, int surface, double selection) {
+  const auto& kernel = switching_context_.kernel;
   alpha_[at(surface)] = selection;
-  kernel.field(occasion.t, occasion.x, alpha_.data(), f_.data());
-  return velocity(occasion.t, occasion.x, surface, alpha_, f_);
+  kernel.field(switching_point.t, switching_point.x, alpha_.data(), f_.data());
+  return velocity(switching_point.t, switching_point.x, surface, alpha_, f_);
 }
 
 /// The same with the field that belongs to `alpha`.
@@ -81,7 +82,7 @@ double SingleSurface::velocity(double t, const double* x, int surface, const std
                                const std::vector<double>& f) {
   if (!is_finite(f)) return std::numeric_limits<double>::quiet_NaN();
   double rate = 0.0;
-  surroundings_.kernel.gradient(surface, t, x, alpha.data(), row_.data(), &rate);
+  switching_context_.kernel.gradient(surface, t, x, alpha.data(), row_.data(), &rate);
   return along_row(f, rate);
 }
 
@@ -95,17 +96,17 @@ double SingleSurface::along_row(const std::vector<double>& f, double rate) const
 /// Whether both velocities, whose gradient is in row_, move psi by less than its rounding over the time scale: that
 /// decides nothing.
 bool SingleSurface::moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
-                                                const Occasion& occasion) const {
+                                                const SwitchingPoint& switching_point) const {
   double terms = 0.0;
-  for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * occasion.x[i]);
+  for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * switching_point.x[i]);
   const double fastest = std::max(std::abs(situation.below.velocity), std::abs(situation.above.velocity));
-  return fastest * occasion.time_scale <= 8.0 * rounding_unit * terms;
+  return fastest * switching_point.time_scale <= 8.0 * rounding_unit * terms;
 }
 
-bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Transition& transition,
+bool SingleSurface::decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
                            const std::vector<double>* slope) {
-  if (!applies(before, occasion)) return false;
-  const int j = occasion.touched.front();
+  if (!applies(before, switching_point)) return false;
+  const int j = switching_point.touched.front();
   alpha_ = before.alpha;
   for (const int i : between_) {
     if (before.mode[at(i)] != 0) alpha_[at(i)] = before.mode[at(i)] > 0 ? 1.0 : 0.0;
@@ -114,29 +115,33 @@ bool SingleSurface::decide(const ModeState& before, const Occasion& occasion, Tr
   auto& [below, above, arrival] = situation;
   // Outside of surfaces the side that the solution comes from is that of its own field.
   const int known = slope != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
-  below.velocity = known < 0 ? velocity(occasion.t, occasion.x, j, alpha_, *slope) : velocity(occasion, j, 0.0);
-  above.velocity = known > 0 ? velocity(occasion.t, occasion.x, j, alpha_, *slope) : velocity(occasion, j, 1.0);
-  if (!find_drifts(situation) || moves_no_more_than_rounding(situation, occasion)) return false;
+  below.velocity =
+      known < 0 ? velocity(switching_point.t, switching_point.x, j, alpha_, *slope) : velocity(switching_point, j, 0.0);
+  above.velocity =
+      known > 0 ? velocity(switching_point.t, switching_point.x, j, alpha_, *slope) : velocity(switching_point, j, 1.0);
+  if (!find_drifts(situation) || moves_no_more_than_rounding(situation, switching_point)) return false;
   arrival = arrival_from(before.mode[at(j)]);
   int exit = 0;  // to the side whose field ends the sliding
   if (before.mode[at(j)] == 0) {
-    if (surroundings_.kernel.has_root(j)) return false;  // explicit steps do not leave it
+    if (switching_context_.kernel.has_root(j)) return false;  // explicit steps do not leave it
     arrival = switching::Arrival::along;
-    exit = occasion.exit_above.empty() ? -1 : 1;
+    exit = switching_point.exit_above.empty() ? -1 : 1;
     // Located to rounding on this field's tangency: a later derivative says where it goes.
     alpha_[at(j)] = exit > 0 ? 1.0 : 0.0;
     auto& tangent = exit > 0 ? above : below;
     const auto& other = exit > 0 ? below : above;
-    tangent = ProjectedFields(surroundings_.kernel, occasion).motion(alpha_, j, 0.0, std::abs(other.velocity)).side;
+    tangent = ProjectedFields(switching_context_.kernel, switching_point)
+                  .motion(alpha_, j, 0.0, std::abs(other.velocity))
+                  .side;
   }
   if (below.drift == Drift::stays || above.drift == Drift::stays) return false;
   const auto decision = switching::decide_surface(situation);
   if (!is_plain(decision, before.mode[at(j)]) || (exit != 0 && decision.mode != exit)) return false;
   // Nothing slides on a kink: velocities that say so are rounding.
-  if (decision.mode == 0 && surroundings_.system.switching[at(j)].is_kink()) return false;
-  fill(before, occasion, decision, transition);
+  if (decision.mode == 0 && switching_context_.system.switching[at(j)].is_kink()) return false;
+  fill(before, switching_point, decision, transition);
   const bool alone = before.sliding.size() == (exit != 0 ? 1U : 0U);
-  return alone || select_others(occasion, transition.state);
+  return alone || select_others(switching_point, transition.state);
 }
 
 std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState& before, int surface, double t,
@@ -145,7 +150,7 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
   switching::SurfaceSituation situation;
   if (!is_finite(below) || !is_finite(above)) return std::nullopt;
   double rate = 0.0;
-  surroundings_.kernel.gradient(surface, t, x, before.alpha.data(), row_.data(), &rate);
+  switching_context_.kernel.gradient(surface, t, x, before.alpha.data(), row_.data(), &rate);
   situation.below.velocity = along_row(below, rate);
   situation.above.velocity = along_row(above, rate);
   if (!find_drifts(situation)) return std::nullopt;
@@ -153,14 +158,14 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
   situation.arrival = arrival_from(before.mode[at(surface)]);
   auto decision = switching::decide_surface(situation);
   if (!is_plain(decision, before.mode[at(surface)])) return std::nullopt;
-  if (decision.mode == 0 && surroundings_.system.switching[at(surface)].is_kink()) return std::nullopt;
+  if (decision.mode == 0 && switching_context_.system.switching[at(surface)].is_kink()) return std::nullopt;
   return decision;
 }
 
 std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeState& before, int surface,
                                                                      const Place& place, const Motions& motions,
                                                                      Region side) {
-  const auto& kernel = surroundings_.kernel;
+  const auto& kernel = switching_context_.kernel;
   if (kernel.has_root(surface)) return std::nullopt;  // explicit steps do not leave it
   const double* x = place.x;
   switching::SurfaceSituation situation;
@@ -188,9 +193,9 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeS
 }
 
 /// The selections of several surfaces, or of others than this one, from the new mode's own field.
-bool SingleSurface::select_others(const Occasion& occasion, ModeState& state) {
+bool SingleSurface::select_others(const SwitchingPoint& switching_point, ModeState& state) {
   field_.enter(state);
-  field_(occasion.t, occasion.x, f_.data());
+  field_(switching_point.t, switching_point.x, f_.data());
   if (!is_finite(f_)) return false;
   for (const int k : state.sliding) {
     const double selection = field_.alpha()[at(k)];
@@ -200,18 +205,18 @@ bool SingleSurface::select_others(const Occasion& occasion, ModeState& state) {
   return true;
 }
 
-void SingleSurface::fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
-                         Transition& transition) const {
-  const int j = occasion.touched.front();
-  begin_transition(before, occasion, f_.size(), transition);
+void SingleSurface::fill(const ModeState& before, const SwitchingPoint& switching_point,
+                         const switching::SurfaceDecision& decision, Transition& transition) const {
+  const int j = switching_point.touched.front();
+  begin_transition(before, switching_point, f_.size(), transition);
   auto& state = transition.state;
   state.alpha = alpha_;
   set_surface(state, j, decision.mode, decision.alpha);
   set_corner_alpha(state);
   if (decision.mode != 0) transition.zero_order[at(j)] = before.mode[at(j)] == 0 ? 2 : 1;
-  rebase(surroundings_.kernel, state, transition.zero_order);
-  complete_weights(surroundings_.kernel, state);
-  append_reason(surroundings_.system, j, decision, before, occasion, transition.reason);
+  rebase(switching_context_.kernel, state, transition.zero_order);
+  complete_weights(switching_context_.kernel, state);
+  append_reason(switching_context_.system, j, decision, before, switching_point, transition.reason);
 }
 
 }  // namespace saltus::event_integrator

@@ -21,12 +21,12 @@ namespace saltus::event_integrator {
 /// surfaces; at an exit a second derivative, too. Owns its work space.
 class SingleSurface {
  public:
-  explicit SingleSurface(const Surroundings& surroundings);
+  explicit SingleSurface(const SwitchingContext& switching_context);
 
   /// Fills `transition`, whose storage is used again.
-  /// @param slope  the field of the mode before at the occasion's point, if it is known
-  /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
-  [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition,
+  /// @param slope  the field of the mode before at the switching point, if it is known
+  /// @return whether the switching point is of this kind; if not, `transition` is in no particular state.
+  [[nodiscard]] bool decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
                             const std::vector<double>* slope = nullptr);
 
   /// The same answer where the solution slides on nothing, from the fields of both sides, f(alpha_surface = 0) and
@@ -61,17 +61,17 @@ class SingleSurface {
 
  private:
   [[nodiscard]] bool moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
-                                                 const Occasion& occasion) const;
-  [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
+                                                 const SwitchingPoint& switching_point) const;
+  [[nodiscard]] bool applies(const ModeState& before, const SwitchingPoint& switching_point) const;
   [[nodiscard]] double along_row(const std::vector<double>& f, double rate) const;
-  double velocity(const Occasion& occasion, int surface, double selection);
+  double velocity(const SwitchingPoint& switching_point, int surface, double selection);
   double velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
                   const std::vector<double>& f);
-  void fill(const ModeState& before, const Occasion& occasion, const switching::SurfaceDecision& decision,
+  void fill(const ModeState& before, const SwitchingPoint& switching_point, const switching::SurfaceDecision& decision,
             Transition& transition) const;
-  bool select_others(const Occasion& occasion, ModeState& state);
+  bool select_others(const SwitchingPoint& switching_point, ModeState& state);
 
-  const Surroundings& surroundings_;
+  const SwitchingContext& switching_context_;
   std::vector<bool> is_inner_;  ///< n_psi: a switching function is nested around it
   std::vector<int> between_;    ///< functions whose selection outside the mode may lie between 0 and 1
   std::vector<double> alpha_;   ///< n_psi

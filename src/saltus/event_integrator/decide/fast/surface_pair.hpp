@@ -23,38 +23,39 @@ namespace saltus::event_integrator {
 /// space.
 class SurfacePair {
  public:
-  explicit SurfacePair(const Surroundings& surroundings);
+  explicit SurfacePair(const SwitchingContext& switching_context);
 
   /// Fills `transition`, whose storage is used again.
-  /// @return whether the occasion is of this kind; if not, `transition` is in no particular state.
-  [[nodiscard]] bool decide(const ModeState& before, const Occasion& occasion, Transition& transition);
-  /// The same in two parts, so that what lies between can be asked. First: whether the occasion is of this kind, as far
-  /// as the fields tell.
-  /// @param field  of the mode before, behind an evaluation at the point of the occasion, where it slides on one
+  /// @return whether the switching point is of this kind; if not, `transition` is in no particular state.
+  [[nodiscard]] bool decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition);
+  /// The same in two parts, so that what lies between can be asked. First: whether the switching point is of this kind,
+  /// as far as the fields tell.
+  /// @param field  of the mode before, behind an evaluation at the switching point, where it slides on one
   ///               surface; nullptr if it is not at hand
   /// Cost: four evaluations of f, two with a field.
-  [[nodiscard]] bool look(const ModeState& before, const Occasion& occasion, const ModeField* field);
+  [[nodiscard]] bool look(const ModeState& before, const SwitchingPoint& switching_point, const ModeField* field);
   /// Behind it: where the solution goes on sliding on one surface across the other (switching::pass_across()), their
-  /// selections there, in the order of the occasion; nullopt where it does not, or not as clearly.
-  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before, const Occasion& occasion) const;
+  /// selections there, in the order of the switching point; nullopt where it does not, or not as clearly.
+  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before,
+                                                            const SwitchingPoint& switching_point) const;
   /// Second: the transition, by a tree.
-  [[nodiscard]] bool conclude(const ModeState& before, const Occasion& occasion, Transition& transition);
+  [[nodiscard]] bool conclude(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition);
   /// What the last decision was made from.
-  [[nodiscard]] Meeting meeting(const ModeState& before, const Occasion& occasion) const;
+  [[nodiscard]] Meeting meeting(const ModeState& before, const SwitchingPoint& switching_point) const;
 
  private:
-  [[nodiscard]] bool applies(const ModeState& before, const Occasion& occasion) const;
-  bool find_normals(const Occasion& occasion);
+  [[nodiscard]] bool applies(const ModeState& before, const SwitchingPoint& switching_point) const;
+  bool find_normals(const SwitchingPoint& switching_point);
   [[nodiscard]] bool project(const std::vector<double>& f, std::array<double, 2>& velocities) const;
   /// Of the four corners, n_x each; nullptr where they are not known.
   using KnownFields = std::array<const std::vector<double>*, 4>;
-  bool find_table(const Occasion& occasion, const KnownFields& known);
-  bool moves_there(const Occasion& occasion, ModeState& state);
-  bool slides_on_both(const Occasion& occasion, ModeState& state);
-  void describe(const ModeState& before, const Occasion& occasion, const switching::PlaneDecision& decision,
-                Transition& transition) const;
+  bool find_table(const SwitchingPoint& switching_point, const KnownFields& known);
+  bool moves_there(const SwitchingPoint& switching_point, ModeState& state);
+  bool slides_on_both(const SwitchingPoint& switching_point, ModeState& state);
+  void describe(const ModeState& before, const SwitchingPoint& switching_point,
+                const switching::PlaneDecision& decision, Transition& transition) const;
 
-  const Surroundings& surroundings_;
+  const SwitchingContext& switching_context_;
   bool any_ = false;                     ///< the system may have such meetings
   std::vector<double> alpha_;            ///< n_psi
   std::vector<double> f_;                ///< n_x

@@ -20,12 +20,12 @@ struct Continuation {
 /// The decision at one point, with the fields of both sides of the surface.
 class OnSurface {
  public:
-  OnSurface(const Surroundings& s, const ModeState& base, const Occasion& occasion, int surface,
+  OnSurface(const SwitchingContext& s, const ModeState& base, const SwitchingPoint& switching_point, int surface,
             const std::vector<int>& candidates)
-      : s_(s), base_(base), occasion_(occasion), surface_(surface), candidates_(candidates) {}
+      : s_(s), base_(base), switching_point_(switching_point), surface_(surface), candidates_(candidates) {}
 
   std::vector<Continuation> run() {
-    const auto here = point_at(occasion_.t, occasion_.x);
+    const auto here = point_at(switching_point_.t, switching_point_.x);
     for (const int side : {-1, 1}) leave(here, side);
     for (auto& slide : switching::admissible_region_slides(here, marginal_part)) {
       if (slide.regions.margin > marginal_part || goes_on(slide)) {
@@ -45,7 +45,7 @@ class OnSurface {
   }
 
   [[nodiscard]] switching::RegionsOnSurface point_at(double t, const double* x) const {
-    Occasion there = occasion_;
+    SwitchingPoint there = switching_point_;
     there.t = t;
     there.x = x;
     const ProjectedFields fields(s_.kernel, there);
@@ -68,12 +68,12 @@ class OnSurface {
 
   /// A little later along a motion that starts with these weights.
   [[nodiscard]] std::vector<double> ahead(const switching::RegionSet& set, double alpha) const {
-    std::vector<double> x(occasion_.x, occasion_.x + s_.kernel.states()), f(x.size());
-    s_.kernel.field(occasion_.t, occasion_.x, selections(set, alpha).data(), f.data());
+    std::vector<double> x(switching_point_.x, switching_point_.x + s_.kernel.states()), f(x.size());
+    s_.kernel.field(switching_point_.t, switching_point_.x, selections(set, alpha).data(), f.data());
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += time() * f[i];
     return x;
   }
-  [[nodiscard]] double time() const { return 1e-2 * occasion_.time_scale; }
+  [[nodiscard]] double time() const { return 1e-2 * switching_point_.time_scale; }
 
   static double velocity_of(const std::vector<double>& velocities, const switching::RegionSet& set) {
     double sum = 0.0;
@@ -92,7 +92,7 @@ class OnSurface {
       if (!(velocity >= -marginal_part * scale)) continue;
       if (set.margin <= marginal_part || velocity <= marginal_part * scale) {
         const auto x = ahead(set, alpha);
-        const auto later = point_at(occasion_.t + time(), x.data());
+        const auto later = point_at(switching_point_.t + time(), x.data());
         switching::RegionSet own;
         if (!switching::solve_region_set(side > 0 ? later.above : later.below, set.active, own)) continue;
         if (!(own.margin > 0.0)) continue;
@@ -105,14 +105,14 @@ class OnSurface {
   [[nodiscard]] bool goes_on(const switching::RegionSlide& slide) const {
     const auto x = ahead(slide.regions, slide.alpha);
     switching::RegionSlide later;
-    return switching::solve_region_slide(point_at(occasion_.t + time(), x.data()), slide.regions.active, slide.alpha,
-                                         later) &&
+    return switching::solve_region_slide(point_at(switching_point_.t + time(), x.data()), slide.regions.active,
+                                         slide.alpha, later) &&
            later.regions.margin > 0.0;
   }
 
-  const Surroundings& s_;
+  const SwitchingContext& s_;
   const ModeState& base_;
-  const Occasion& occasion_;
+  const SwitchingPoint& switching_point_;
   int surface_;
   const std::vector<int>& candidates_;
   std::vector<Continuation> found_;
@@ -129,18 +129,18 @@ bool Decider::decide_regions_on(int surface, const evaluation::RegionRange& rang
                 fmt::format("at t = {} the regions and the surface {} meet where their gradients depend on each other: "
                             "the selections depend on how wide the layer of the surface is beside theirs, which the "
                             "model does not say; perturb a parameter",
-                            occasion_.t, all));
+                            switching_point_.t, all));
   }
-  auto found = OnSurface(s_, base_, occasion_, surface, candidates).run();
+  auto found = OnSurface(s_, base_, switching_point_, surface, candidates).run();
   if (found.empty()) {
     return fail(result::Termination::no_admissible_mode,
                 fmt::format("the regions and the surface {} meet at t = {}, and no set of them continues the solution",
-                            all, occasion_.t));
+                            all, switching_point_.t));
   }
   const auto rank = [&](const Continuation& c) {
-    std::size_t kept = !occasion_.start && before_.mode[at(surface)] == c.surface.mode ? 1U : 0U;
+    std::size_t kept = !switching_point_.start && before_.mode[at(surface)] == c.surface.mode ? 1U : 0U;
     for (const int k : c.set.active) {
-      if (!occasion_.start && before_.mode[at(candidates[at(k)])] == 0) ++kept;
+      if (!switching_point_.start && before_.mode[at(candidates[at(k)])] == 0) ++kept;
     }
     return std::make_tuple(c.set.attracts, kept, c.set.active.size());
   };

@@ -21,7 +21,7 @@ std::vector<ActiveRegion> active_of(const std::vector<int>& candidates, const sw
 
 /// d/dt (g_i - g_r) of all candidates along the field of each; the first of them is the reference r.
 switching::RegionRates Decider::region_rates(const std::vector<int>& candidates, double t, const double* x) {
-  Occasion there = occasion_;
+  SwitchingPoint there = switching_point_;
   there.t = t;
   there.x = x;
   const ProjectedFields fields(s_.kernel, there);
@@ -41,17 +41,17 @@ switching::RegionRates Decider::region_rates(const std::vector<int>& candidates,
 /// x := a little later along the motion of a set (midpoint rule).
 void Decider::step_ahead(const MeetingRegions& meeting, const switching::RegionSet& set, std::vector<double>& x) {
   const auto& candidates = meeting.candidates;
-  const double time = 1e-2 * occasion_.time_scale;
-  x.assign(occasion_.x, occasion_.x + s_.kernel.states());
+  const double time = 1e-2 * switching_point_.time_scale;
+  x.assign(switching_point_.x, switching_point_.x + s_.kernel.states());
   std::vector<double> f(x.size());
   switching::RegionSet own = set;
   for (const double fraction : {0.5, 1.0}) {
     std::vector<double> alpha = base_.alpha;
     for (const int region : candidates) alpha[at(region)] = 0.0;
     for (std::size_t k = 0; k < own.active.size(); ++k) alpha[at(candidates[at(own.active[k])])] = own.weights[k];
-    s_.kernel.field(occasion_.t + 0.5 * (fraction > 0.5 ? time : 0.0), x.data(), alpha.data(), f.data());
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = occasion_.x[i] + fraction * time * f[i];
-    if (fraction < 1.0 && !solve_set(meeting, occasion_.t + 0.5 * time, x.data(), set, own)) return;
+    s_.kernel.field(switching_point_.t + 0.5 * (fraction > 0.5 ? time : 0.0), x.data(), alpha.data(), f.data());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = switching_point_.x[i] + fraction * time * f[i];
+    if (fraction < 1.0 && !solve_set(meeting, switching_point_.t + 0.5 * time, x.data(), set, own)) return;
   }
 }
 
@@ -62,7 +62,8 @@ bool Decider::goes_on(const MeetingRegions& meeting, switching::RegionSet& set) 
   std::vector<double> ahead;
   step_ahead(meeting, set, ahead);
   switching::RegionSet later;
-  if (!solve_set(meeting, occasion_.t + 1e-2 * occasion_.time_scale, ahead.data(), set, later)) return false;
+  if (!solve_set(meeting, switching_point_.t + 1e-2 * switching_point_.time_scale, ahead.data(), set, later))
+    return false;
   if (!(later.margin >= -rounding)) return false;
   if (later.margin <= rounding) {
     set.marginal = true;
@@ -79,10 +80,11 @@ bool Decider::solve_set(const MeetingRegions& meeting, double t, const double* x
 }
 
 std::vector<switching::RegionSet> Decider::sets_that_go_on(const MeetingRegions& meeting) {
-  auto admissible = meeting.basis
-                        ? switching::admissible_region_faces(tie_at(meeting, occasion_.t, occasion_.x), marginal_part)
-                        : switching::admissible_region_sets(region_rates(meeting.candidates, occasion_.t, occasion_.x),
-                                                            marginal_part);
+  auto admissible =
+      meeting.basis
+          ? switching::admissible_region_faces(tie_at(meeting, switching_point_.t, switching_point_.x), marginal_part)
+          : switching::admissible_region_sets(region_rates(meeting.candidates, switching_point_.t, switching_point_.x),
+                                              marginal_part);
   std::vector<switching::RegionSet> sets;
   for (auto& set : admissible) {
     if (meeting.basis && (is_lost(meeting, set) || !stays_tied(meeting, set))) continue;
@@ -96,10 +98,10 @@ std::vector<switching::RegionSet> Decider::sets_that_go_on(const MeetingRegions&
 bool Decider::passes(int surface) const {
   const auto role = s_.system.switching[at(surface)].role;
   const bool is_beside = role == model::SwitchingRole::kink || role == model::SwitchingRole::time_event;
-  return is_beside && !occasion_.start && before_.mode[at(surface)] != 0;
+  return is_beside && !switching_point_.start && before_.mode[at(surface)] != 0;
 }
 
-/// The regions that meet there feel its other side from here on.
+/// The regions that meet there depend on its other side from here on.
 void Decider::cross_beside(int surface) {
   const int mode = before_.mode[at(surface)];
   set_surface(base_, surface, -mode, mode > 0 ? 0.0 : 1.0);
@@ -138,11 +140,11 @@ bool Decider::decide_regions(const std::vector<int>& group) {
 /// Regions that meet on other surfaces, too, or more than can be decided.
 bool Decider::decide_regions_with(const std::vector<int>& others, const evaluation::RegionRange& range,
                                   const std::vector<int>& regions, const std::vector<int>& group) {
-  const auto is_felt = [&, nested = nested_away_from_zero(s_.kernel, occasion_)](int j) {
-    return std::any_of(regions.begin(), regions.end(), [&](int i) { return feels(s_.kernel, nested, i, j); });
+  const auto is_felt = [&, nested = nested_away_from_zero(s_.kernel, switching_point_)](int j) {
+    return std::any_of(regions.begin(), regions.end(), [&](int i) { return depends_on(s_.kernel, nested, i, j); });
   };
   if (!others.empty() && std::none_of(others.begin(), others.end(), is_felt)) {
-    auto parts = groups_of(s_.kernel, occasion_, others);
+    auto parts = groups_of(s_.kernel, switching_point_, others);
     parts.insert(parts.begin(), regions);
     return decide_parts(parts);
   }
@@ -154,7 +156,7 @@ bool Decider::decide_regions_with(const std::vector<int>& others, const evaluati
       fmt::format("at t = {} three or more regions by `indicator` meet on several other surfaces that influence "
                   "them ({}), or more than {} regions meet: that decision is not available; perturb a "
                   "parameter",
-                  occasion_.t, names(s_.system, group), most_meeting));
+                  switching_point_.t, names(s_.system, group), most_meeting));
 }
 
 /// Regions that meet, and no other surface: one of the sets that continue the solution.
@@ -162,16 +164,17 @@ bool Decider::decide_regions_alone(const MeetingRegions& meeting, const evaluati
   const auto& candidates = meeting.candidates;
   const auto sets = sets_that_go_on(meeting);
   if (sets.empty() && spiral_out(meeting, range)) return true;
-  if (sets.empty() && meeting.basis && switching::can_be_held(tie_at(meeting, occasion_.t, occasion_.x))) {
+  if (sets.empty() && meeting.basis &&
+      switching::can_be_held(tie_at(meeting, switching_point_.t, switching_point_.x))) {
     return fail(result::Termination::outside_class,
                 fmt::format("the regions {} meet at t = {}: some weights keep their indicators equal, but those that "
                             "follow the indicators come to rest nowhere, so that the weights are not determined",
-                            names(s_.system, candidates), occasion_.t));
+                            names(s_.system, candidates), switching_point_.t));
   }
   if (sets.empty()) {
     return fail(result::Termination::no_admissible_mode,
                 fmt::format("the regions {} meet at t = {}, and no set of them continues the solution",
-                            names(s_.system, candidates), occasion_.t));
+                            names(s_.system, candidates), switching_point_.t));
   }
   const auto best = preferred_set(meeting, sets);
   RegionChoice choice{range, {active_of(candidates, sets[best])}, {}};
@@ -196,12 +199,12 @@ std::size_t Decider::preferred_set(const MeetingRegions& meeting, const std::vec
   std::vector<int> before;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const auto j = candidates[k];
-    if (!occasion_.start && before_.mode[at(j)] == 0) before.push_back(static_cast<int>(k));
+    if (!switching_point_.start && before_.mode[at(j)] == 0) before.push_back(static_cast<int>(k));
   }
   // Sets whose weights are not determined by linear equations have several of them: no jump to others where one ends.
   std::vector<double> weights;
   for (const int j : candidates) {
-    if (meeting.basis && !occasion_.start) weights.push_back(before_.alpha[at(j)]);
+    if (meeting.basis && !switching_point_.start) weights.push_back(before_.alpha[at(j)]);
   }
   return switching::preferred_region_set(sets, before, weights);
 }
@@ -220,7 +223,7 @@ void Decider::follow_other_regions() {
         const auto& [surface, mode, alpha] = choice.surfaces[k];
         set_surface(other, surface, mode, alpha);
       }
-      Transition checked = check_forced_mode(s_, other, occasion_);
+      Transition checked = check_forced_mode(s_, other, switching_point_);
       if (checked.termination != result::Termination::completed) continue;
       checked.reason = choice.reason;
       checked.unique = false;

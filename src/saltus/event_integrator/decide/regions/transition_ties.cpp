@@ -46,11 +46,11 @@ MatrixXd Decider::region_gradients(const std::vector<int>& candidates, double t,
 /// that do are found as if they were independent.
 MeetingRegions Decider::meeting_of(std::vector<int> candidates) {
   MeetingRegions meeting{std::move(candidates), std::nullopt};
-  const MatrixXd rows = region_gradients(meeting.candidates, occasion_.t, occasion_.x);
+  const MatrixXd rows = region_gradients(meeting.candidates, switching_point_.t, switching_point_.x);
   if (!rows.allFinite()) return meeting;
   RegionBasis basis = basis_of(rows);
   if (basis.spans_all(rows.rows()) || basis.base.empty()) return meeting;
-  const MatrixXd velocities = velocities_of(region_rates(meeting.candidates, occasion_.t, occasion_.x));
+  const MatrixXd velocities = velocities_of(region_rates(meeting.candidates, switching_point_.t, switching_point_.x));
   const MatrixXd followed = coordinates_in(basis, rows).bottomRows(rows.rows()) * velocities(basis.base, Eigen::all);
   constexpr double same = 1e-6;  // as for gradients
   if ((velocities - followed).cwiseAbs().maxCoeff() <= same * velocities.cwiseAbs().maxCoeff()) {
@@ -72,11 +72,11 @@ bool Decider::stays_tied(const MeetingRegions& meeting, const switching::RegionS
   std::vector<int> regions;
   for (const int k : set.active) regions.push_back(meeting.candidates[at(k)]);
   if (regions.size() < 3) return true;
-  const auto basis = basis_of(region_gradients(regions, occasion_.t, occasion_.x));
+  const auto basis = basis_of(region_gradients(regions, switching_point_.t, switching_point_.x));
   if (basis.spans_all(static_cast<Index>(regions.size()) - 1)) return true;
   std::vector<double> ahead;
   step_ahead(meeting, set, ahead);
-  const double t = occasion_.t + 1e-2 * occasion_.time_scale;
+  const double t = switching_point_.t + 1e-2 * switching_point_.time_scale;
   for (int pass = 0; pass < 2; ++pass) {
     for (const Index k : meeting.basis->base) {
       move_onto(s_.kernel, base_, meeting.candidates[static_cast<std::size_t>(k) + 1], t, ahead);
@@ -91,7 +91,9 @@ bool Decider::stays_tied(const MeetingRegions& meeting, const switching::RegionS
 /// Whether these are the weights of before, which lose their stability here, or cease to exist with those of the root
 /// that they coalesce with.
 bool Decider::is_lost(const MeetingRegions& meeting, const switching::RegionSet& set) {
-  const auto is_lost = [&](int j) { return contains(occasion_.coalesced, j) || contains(occasion_.destabilised, j); };
+  const auto is_lost = [&](int j) {
+    return contains(switching_point_.coalesced, j) || contains(switching_point_.destabilised, j);
+  };
   if (std::none_of(meeting.candidates.begin(), meeting.candidates.end(), is_lost)) return false;
   std::vector<double> change;
   for (const int j : meeting.candidates) change.push_back(before_.mode[at(j)] == 0 ? before_.alpha[at(j)] : 0.0);
@@ -104,22 +106,23 @@ bool Decider::is_lost(const MeetingRegions& meeting, const switching::RegionSet&
 /// No set goes on where the fields of all regions turn around the point: a lap that grows leaves it.
 bool Decider::spiral_out(const MeetingRegions& meeting, const evaluation::RegionRange& range) {
   if (!meeting.basis || meeting.basis->base.size() != 2) return false;
-  const auto lap = switching::region_spiral(tie_at(meeting, occasion_.t, occasion_.x));
+  const auto lap = switching::region_spiral(tie_at(meeting, switching_point_.t, switching_point_.x));
   if (!lap || !(lap->lap_ratio > 1.0)) return false;
   const auto& candidates = meeting.candidates;
   // As around an intersection of two surfaces.
-  double delta = 1e-6 * occasion_.time_scale / lap->duration();
+  double delta = 1e-6 * switching_point_.time_scale / lap->duration();
   for (std::size_t k = 1; k < candidates.size(); ++k) {
     delta = std::max(delta, 1e5 * fields_.noise(candidates[k]) / (lap->lap_ratio - 1.0));
   }
   const int first = candidates[at(lap->regions.front())], last = candidates[at(lap->regions.back())];
-  SpiralStart start{delta * lap->duration(), {occasion_.x, occasion_.x + s_.kernel.states()}, last, lap->lap_ratio};
+  SpiralStart start{
+      delta * lap->duration(), {switching_point_.x, switching_point_.x + s_.kernel.states()}, last, lap->lap_ratio};
   std::vector<double> f(start.x.size());
   for (std::size_t k = 0; k < lap->regions.size(); ++k) {
     std::vector<double> alpha = base_.alpha;
     for (const int region : candidates) alpha[at(region)] = 0.0;
     alpha[at(candidates[at(lap->regions[k])])] = 1.0;
-    s_.kernel.field(occasion_.t, occasion_.x, alpha.data(), f.data());
+    s_.kernel.field(switching_point_.t, switching_point_.x, alpha.data(), f.data());
     for (std::size_t i = 0; i < f.size(); ++i) start.x[i] += delta * lap->durations[k] * f[i];
   }
   transition_.beyond_spiral = std::move(start);
@@ -139,10 +142,10 @@ bool Decider::moves_in_one_way(const MeetingRegions& meeting, const switching::R
     std::vector<double> alpha = base_.alpha;
     for (const int region : meeting.candidates) alpha[at(region)] = 0.0;
     alpha[at(meeting.candidates[k])] = 1.0;
-    s_.kernel.field(occasion_.t, occasion_.x, alpha.data(), f.data());
+    s_.kernel.field(switching_point_.t, switching_point_.x, alpha.data(), f.data());
     fields.col(static_cast<Index>(k)) = Eigen::Map<const Eigen::VectorXd>(f.data(), fields.rows());
   }
-  return !switching::motion_depends_on_weights(tie_at(meeting, occasion_.t, occasion_.x), set, fields);
+  return !switching::motion_depends_on_weights(tie_at(meeting, switching_point_.t, switching_point_.x), set, fields);
 }
 
 }  // namespace saltus::event_integrator

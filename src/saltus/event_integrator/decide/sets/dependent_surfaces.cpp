@@ -23,7 +23,7 @@ constexpr std::size_t most_numbered_surfaces = 60;
 
 class DependentSearch {
  public:
-  DependentSearch(const Surroundings& s, const ModeState& state, double t, std::vector<double>& x)
+  DependentSearch(const SwitchingContext& s, const ModeState& state, double t, std::vector<double>& x)
       : s_(s), sliding_(state.sliding), t_(t), x_(x), alpha_(state.alpha), functions_(s.kernel) {
     for (const int j : sliding_) alpha_[at(j)] = 0.5;
   }
@@ -144,7 +144,7 @@ class DependentSearch {
     return std::move(set_);
   }
 
-  const Surroundings& s_;
+  const SwitchingContext& s_;
   const std::vector<int>& sliding_;
   double t_;
   std::vector<double>& x_;
@@ -158,7 +158,7 @@ class DependentSearch {
 
 }  // namespace
 
-bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces) {
+bool are_plain_surfaces(const SwitchingContext& s, const std::vector<int>& surfaces) {
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     const auto& inner = s.kernel.inner(j);
     const bool own = contains(surfaces, j);
@@ -168,12 +168,12 @@ bool are_plain_surfaces(const Surroundings& s, const std::vector<int>& surfaces)
   return true;
 }
 
-std::optional<HigherOrderSet> find_dependent_set(const Surroundings& surroundings, const ModeState& state, double t,
-                                                 std::vector<double>& x, std::string& problem) {
+std::optional<HigherOrderSet> find_dependent_set(const SwitchingContext& switching_context, const ModeState& state,
+                                                 double t, std::vector<double>& x, std::string& problem) {
   problem.clear();
   if (state.sliding.size() < 2 || state.sliding.size() > most_numbered_surfaces) return std::nullopt;
-  if (!are_plain_surfaces(surroundings, state.sliding)) return std::nullopt;
-  DependentSearch search(surroundings, state, t, x);
+  if (!are_plain_surfaces(switching_context, state.sliding)) return std::nullopt;
+  DependentSearch search(switching_context, state, t, x);
   auto found = search.run();
   if (!found) problem = search.take_problem();
   return found;

@@ -17,7 +17,7 @@ constexpr double rate_accuracy = 1e-9;
 
 class RestingSearch {
  public:
-  RestingSearch(const Surroundings& s, Holding& holding, double t, const std::vector<double>& alpha,
+  RestingSearch(const SwitchingContext& s, Holding& holding, double t, const std::vector<double>& alpha,
                 const std::vector<double>& x)
       : s_(s), holding_(holding), t_(t), alpha_(alpha) {
     points_.push_back({t, x});
@@ -136,7 +136,7 @@ class RestingSearch {
         s_.system.switching[at(j)].name, why);
   }
 
-  const Surroundings& s_;
+  const SwitchingContext& s_;
   Holding& holding_;
   double t_;
   const std::vector<double>& alpha_;
@@ -146,10 +146,10 @@ class RestingSearch {
 
 }  // namespace
 
-RestingSurfaces find_resting_surfaces(const Surroundings& surroundings, Holding& holding, double t,
+RestingSurfaces find_resting_surfaces(const SwitchingContext& switching_context, Holding& holding, double t,
                                       const std::vector<double>& alpha, const std::vector<double>& x) {
-  if (holding.guards().empty() || surroundings.kernel.switching_functions() == 0) return {};
-  return RestingSearch(surroundings, holding, t, alpha, x).run();
+  if (holding.guards().empty() || switching_context.kernel.switching_functions() == 0) return {};
+  return RestingSearch(switching_context, holding, t, alpha, x).run();
 }
 
 }  // namespace saltus::event_integrator

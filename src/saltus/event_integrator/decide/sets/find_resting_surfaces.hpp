@@ -13,7 +13,8 @@ namespace saltus::event_integrator {
 /// or around them. The problem is a selection that changes what presses on several guards, or selections that multiply
 /// each other in it: where they are left is then a question of all of them together.
 /// Cost: three projections onto the guards and a few evaluations of f per surface at zero.
-[[nodiscard]] RestingSurfaces find_resting_surfaces(const Surroundings& surroundings, Holding& holding, double t,
-                                                    const std::vector<double>& alpha, const std::vector<double>& x);
+[[nodiscard]] RestingSurfaces find_resting_surfaces(const SwitchingContext& switching_context, Holding& holding,
+                                                    double t, const std::vector<double>& alpha,
+                                                    const std::vector<double>& x);
 
 }  // namespace saltus::event_integrator

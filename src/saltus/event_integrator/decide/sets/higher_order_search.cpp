@@ -23,7 +23,7 @@ constexpr std::size_t most_surfaces = 8;
 /// Grows a set function by function.
 class SetSearch {
  public:
-  SetSearch(const Surroundings& s, const ModeState& state, double t, std::vector<double>& x, double resolved)
+  SetSearch(const SwitchingContext& s, const ModeState& state, double t, std::vector<double>& x, double resolved)
       : s_(s),
         state_(state),
         sliding_(state.sliding),
@@ -247,7 +247,7 @@ class SetSearch {
     return true;
   }
 
-  const Surroundings& s_;
+  const SwitchingContext& s_;
   const ModeState& state_;
   const std::vector<int>& sliding_;
   double t_;
@@ -278,7 +278,7 @@ bool keeps_its_sign(const evaluation::ModelKernel& kernel, const ModeState& stat
 
 /// What of the surfaces cannot be held: kinks that no other one of them holds the sign of, and those inside functions
 /// that are not held and may be zero there.
-std::string find_obstacle(const Surroundings& s, const ModeState& state, double t, const double* x) {
+std::string find_obstacle(const SwitchingContext& s, const ModeState& state, double t, const double* x) {
   const auto& kernel = s.kernel;
   std::vector<int> inside;
   for (int j = 0; j < kernel.switching_functions(); ++j) {
@@ -300,16 +300,17 @@ std::string find_obstacle(const Surroundings& s, const ModeState& state, double 
 
 }  // namespace
 
-std::optional<HigherOrderSet> find_higher_order_set(const Surroundings& surroundings, const ModeState& state, double t,
-                                                    std::vector<double>& x, double resolved, std::string& problem) {
+std::optional<HigherOrderSet> find_higher_order_set(const SwitchingContext& switching_context, const ModeState& state,
+                                                    double t, std::vector<double>& x, double resolved,
+                                                    std::string& problem) {
   const auto refuse = [&](std::string why) {
     problem = std::move(why);
     return std::nullopt;
   };
   if (state.sliding.empty() || state.sliding.size() > most_surfaces) return refuse("too many surfaces");
-  if (!surroundings.affine_in_alpha) return refuse("selections do not enter affinely");
-  if (const auto why = find_obstacle(surroundings, state, t, x.data()); !why.empty()) return refuse(why);
-  SetSearch search(surroundings, state, t, x, resolved);
+  if (!switching_context.affine_in_alpha) return refuse("selections do not enter affinely");
+  if (const auto why = find_obstacle(switching_context, state, t, x.data()); !why.empty()) return refuse(why);
+  SetSearch search(switching_context, state, t, x, resolved);
   auto found = search.run();
   if (!found) problem = search.take_problem();
   return found;

@@ -18,10 +18,10 @@ namespace {
 
 /// y = w + W lambda for the surfaces at zero; nullopt where selections multiply each other, or velocities are not
 /// finite.
-std::optional<switching::AdditiveMap> additive_velocities(const Surroundings& s, const ModeState& state,
-                                                          const Occasion& occasion) {
-  const auto& meeting = occasion.at_zero;
-  const ProjectedFields fields(s.kernel, occasion);
+std::optional<switching::AdditiveMap> additive_velocities(const SwitchingContext& s, const ModeState& state,
+                                                          const SwitchingPoint& switching_point) {
+  const auto& meeting = switching_point.at_zero;
+  const ProjectedFields fields(s.kernel, switching_point);
   std::vector<double> alpha = state.alpha;
   const auto velocities = [&](const std::vector<double>& selections, Eigen::VectorXd& value) {
     for (std::size_t i = 0; i < meeting.size(); ++i) alpha[at(meeting[i])] = selections[i];
@@ -34,12 +34,12 @@ std::optional<switching::AdditiveMap> additive_velocities(const Surroundings& s,
 }
 
 /// Whether selections in [0, 1] are determined on all sliding surfaces, as usual.
-bool slides_as_usual(const Surroundings& s, const ModeState& state, const Occasion& occasion,
+bool slides_as_usual(const SwitchingContext& s, const ModeState& state, const SwitchingPoint& switching_point,
                      const std::vector<double>& x, std::vector<double>& alpha) {
   ModeField field(s.kernel, s.affine_in_alpha);
   field.enter(state);
   std::vector<double> xdot(x.size());
-  field(occasion.t, x.data(), xdot.data());
+  field(switching_point.t, x.data(), xdot.data());
   alpha = field.alpha();
   // As in the check of other modes.
   constexpr double room = 1e-9;
@@ -49,18 +49,18 @@ bool slides_as_usual(const Surroundings& s, const ModeState& state, const Occasi
 
 /// Sets the sides of functions at zero that are not in `meeting` to where the motion of `moving` leaves them; each with
 /// the order of its zero.
-std::vector<std::pair<int, int>> set_followers(const Surroundings& s, const Occasion& occasion,
+std::vector<std::pair<int, int>> set_followers(const SwitchingContext& s, const SwitchingPoint& switching_point,
                                                const std::vector<int>& meeting, const ModeState& moving,
                                                ModeState& state) {
   std::vector<std::pair<int, int>> followers;
   ModeField field(s.kernel, s.affine_in_alpha);
   field.enter(moving);
   std::vector<double> xdot(at(s.kernel.states())), row(xdot.size());
-  field(occasion.t, occasion.x, xdot.data());
-  for (const int j : occasion.at_zero) {
+  field(switching_point.t, switching_point.x, xdot.data());
+  for (const int j : switching_point.at_zero) {
     if (contains(meeting, j)) continue;
     double velocity = 0.0;
-    s.kernel.gradient(j, occasion.t, occasion.x, moving.alpha.data(), row.data(), &velocity);
+    s.kernel.gradient(j, switching_point.t, switching_point.x, moving.alpha.data(), row.data(), &velocity);
     double terms = std::abs(velocity);
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (row[i] == 0.0) continue;
@@ -76,60 +76,63 @@ std::vector<std::pair<int, int>> set_followers(const Surroundings& s, const Occa
 
 }  // namespace
 
-std::optional<Transition> hold_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
-                                         std::vector<double>& x, std::string& problem) {
-  if (auto held = hold(s, state, occasion, x, problem)) return held;
-  if (ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, state.sliding)) return std::nullopt;
+std::optional<Transition> hold_dependent(const SwitchingContext& s, ModeState state,
+                                         const SwitchingPoint& switching_point, std::vector<double>& x,
+                                         std::string& problem) {
+  if (auto held = hold(s, state, switching_point, x, problem)) return held;
+  if (ProjectedFields(s.kernel, switching_point).gradients_depend(state.alpha, state.sliding)) return std::nullopt;
   set_corner_alpha(state);
   std::vector<double> alpha;
-  if (!slides_as_usual(s, state, occasion, x, alpha)) return std::nullopt;
+  if (!slides_as_usual(s, state, switching_point, x, alpha)) return std::nullopt;
   for (const int j : state.sliding) state.alpha[at(j)] = std::clamp(alpha[at(j)], 0.0, 1.0);
   return transition_to(std::move(state));
 }
 
-bool slides_on_dependent(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
-  return state.sliding.size() > 1 && ProjectedFields(s.kernel, occasion).gradients_depend(state.alpha, state.sliding);
+bool slides_on_dependent(const SwitchingContext& s, const ModeState& state, const SwitchingPoint& switching_point) {
+  return state.sliding.size() > 1 &&
+         ProjectedFields(s.kernel, switching_point).gradients_depend(state.alpha, state.sliding);
 }
 
-std::optional<Transition> check_dependent(const Surroundings& s, ModeState state, const Occasion& occasion,
-                                          std::string& problem) {
+std::optional<Transition> check_dependent(const SwitchingContext& s, ModeState state,
+                                          const SwitchingPoint& switching_point, std::string& problem) {
   std::vector<int> leaving;
-  for (const int j : occasion.at_zero) {
+  for (const int j : switching_point.at_zero) {
     if (state.mode[at(j)] != 0) leaving.push_back(j);
   }
-  std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
+  std::vector<double> x(switching_point.x, switching_point.x + s.kernel.states());
   problem = "the fields do not lead on";
   std::optional<Transition> next;
   if (state.sliding.empty()) {
     next = transition_to(std::move(state));
   } else {
-    next = hold_dependent(s, std::move(state), occasion, x, problem);
+    next = hold_dependent(s, std::move(state), switching_point, x, problem);
   }
-  if (!next || !leads_into_its_region(s, next->state, occasion, x, leaving)) return std::nullopt;
+  if (!next || !leads_into_its_region(s, next->state, switching_point, x, leaving)) return std::nullopt;
   for (const int j : leaving) next->zero_order[at(j)] = 1;
   return next;
 }
 
-std::vector<int> acting_surfaces(const Surroundings& s, const ModeState& state, const Occasion& occasion) {
+std::vector<int> acting_surfaces(const SwitchingContext& s, const ModeState& state,
+                                 const SwitchingPoint& switching_point) {
   std::vector<int> acting;
   std::vector<double> alpha = state.alpha, below(at(s.kernel.states())), above(below.size());
-  for (const int j : occasion.at_zero) {
+  for (const int j : switching_point.at_zero) {
     if (s.system.switching[at(j)].role == model::SwitchingRole::kink) continue;
     double& own = alpha[at(j)];
     const double before = std::exchange(own, 0.0);
-    s.kernel.field(occasion.t, occasion.x, alpha.data(), below.data());
+    s.kernel.field(switching_point.t, switching_point.x, alpha.data(), below.data());
     own = 1.0;
-    s.kernel.field(occasion.t, occasion.x, alpha.data(), above.data());
+    s.kernel.field(switching_point.t, switching_point.x, alpha.data(), above.data());
     own = before;
     if (below != above) acting.push_back(j);
   }
   return acting;
 }
 
-std::optional<Transition> decide_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion,
-                                           std::string& problem) {
-  Occasion met = occasion;
-  met.at_zero = acting_surfaces(s, before, occasion);
+std::optional<Transition> decide_dependent(const SwitchingContext& s, const ModeState& before,
+                                           const SwitchingPoint& switching_point, std::string& problem) {
+  SwitchingPoint met = switching_point;
+  met.at_zero = acting_surfaces(s, before, switching_point);
   const auto& meeting = met.at_zero;
   problem.clear();
   if (!are_plain_surfaces(s, meeting)) return std::nullopt;
@@ -137,7 +140,7 @@ std::optional<Transition> decide_dependent(const Surroundings& s, const ModeStat
   ModeState state = before;
   state.higher.reset();
   // Functions that move nothing have a side, which follows from the motion.
-  for (const int j : occasion.at_zero) {
+  for (const int j : switching_point.at_zero) {
     if (state.mode[at(j)] == 0 && !contains(meeting, j)) set_surface(state, j, 1, 1.0);
   }
   const auto velocities = additive_velocities(s, state, met);
@@ -149,7 +152,7 @@ std::optional<Transition> decide_dependent(const Surroundings& s, const ModeStat
   }
   auto next = check_dependent(s, state, met, problem);
   if (!next) return std::nullopt;
-  const auto followers = set_followers(s, occasion, meeting, next->state, state);
+  const auto followers = set_followers(s, switching_point, meeting, next->state, state);
   if (!followers.empty()) {
     next = check_dependent(s, std::move(state), met, problem);
     if (!next) return std::nullopt;

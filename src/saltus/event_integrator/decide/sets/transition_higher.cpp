@@ -17,15 +17,15 @@ namespace {
 constexpr std::size_t most_regions = 16;
 
 /// A state that leaves these surfaces to the sides of a corner (bit i: the i-th of them), if its field agrees.
-std::optional<Transition> leave_to(const Surroundings& s, ModeState state, const Occasion& occasion,
+std::optional<Transition> leave_to(const SwitchingContext& s, ModeState state, const SwitchingPoint& switching_point,
                                    const std::vector<double>& x, const std::vector<int>& surfaces, std::size_t corner) {
   set_to_corner(state, surfaces, corner);
   int rooted = -1;
-  if (!leads_into_its_region(s, state, occasion, x, surfaces)) {
+  if (!leads_into_its_region(s, state, switching_point, x, surfaces)) {
     // Explicit steps from a root overshoot.
     if (surfaces.size() != 1) return std::nullopt;
     RootedExit exit(s.kernel, s.affine_in_alpha, state, surfaces.front());
-    if (!exit.leads_away(occasion.t, x, 1e-2 * occasion.time_scale)) return std::nullopt;
+    if (!exit.leads_away(switching_point.t, x, 1e-2 * switching_point.time_scale)) return std::nullopt;
     rooted = surfaces.front();
   }
   Transition transition = transition_to(std::move(state));
@@ -35,7 +35,7 @@ std::optional<Transition> leave_to(const Surroundings& s, ModeState state, const
 }
 
 /// The regions that meet at the set and that a solution can leave into.
-void note_regions(const Surroundings& s, const Occasion& occasion, const std::vector<double>& x,
+void note_regions(const SwitchingContext& s, const SwitchingPoint& switching_point, const std::vector<double>& x,
                   Transition& transition) {
   const auto surfaces = transition.state.sliding;
   const std::size_t regions = std::size_t{1} << surfaces.size();
@@ -46,7 +46,7 @@ void note_regions(const Surroundings& s, const Occasion& occasion, const std::ve
   ModeState free = transition.state;
   free.higher.reset();
   for (std::size_t corner = 0; corner < regions; ++corner) {
-    auto other = leave_to(s, free, occasion, x, surfaces, corner);
+    auto other = leave_to(s, free, switching_point, x, surfaces, corner);
     if (!other) continue;
     transition.unique = false;
     transition.alternatives.push_back(std::move(*other));
@@ -62,12 +62,13 @@ bool leaves_derivative(const ModeState& before) {
 /// Whether surfaces are held whose gradients depend on each other: fewer functions than surfaces.
 bool is_dependent(const ModeState& before) { return before.higher->functions.size() < before.sliding.size(); }
 
-Transition failed(const Occasion& occasion, const ModeState& before, const Surroundings& s, const std::string& why) {
+Transition failed(const SwitchingPoint& switching_point, const ModeState& before, const SwitchingContext& s,
+                  const std::string& why) {
   Transition transition;
   transition.state = before;
   transition.termination = result::Termination::outside_class;
   transition.message = fmt::format("sliding on {} at t = {} ends, and what follows is not determined: {}",
-                                   names(s.system, before.sliding), occasion.t, why);
+                                   names(s.system, before.sliding), switching_point.t, why);
   return transition;
 }
 
@@ -92,22 +93,23 @@ Leaving leaving_at(const ModeState& before, const BalanceRange& range, bool fall
 }
 
 /// Leaves some surfaces; the others are held on. nullopt if the field does not lead there.
-std::optional<Transition> leave(const Surroundings& s, const ModeState& before, const Occasion& occasion,
-                                const std::vector<double>& x, const Leaving& leaving, std::string& problem) {
+std::optional<Transition> leave(const SwitchingContext& s, const ModeState& before,
+                                const SwitchingPoint& switching_point, const std::vector<double>& x,
+                                const Leaving& leaving, std::string& problem) {
   ModeState state = before;
   state.higher.reset();
   std::optional<Transition> left;
   if (leaving.surfaces.size() < before.sliding.size()) {
     set_to_corner(state, leaving.surfaces, leaving.corner);
     std::vector<double> point = x;
-    left = is_dependent(before) ? hold_dependent(s, state, occasion, point, problem)
-                                : hold(s, state, occasion, point, problem);
-    if (left && !leads_into_its_region(s, left->state, occasion, point, leaving.surfaces)) left.reset();
+    left = is_dependent(before) ? hold_dependent(s, state, switching_point, point, problem)
+                                : hold(s, state, switching_point, point, problem);
+    if (left && !leads_into_its_region(s, left->state, switching_point, point, leaving.surfaces)) left.reset();
     if (left) {
       for (const int j : leaving.surfaces) left->zero_order[at(j)] = 2;
     }
   } else {
-    left = leave_to(s, state, occasion, x, leaving.surfaces, leaving.corner);
+    left = leave_to(s, state, switching_point, x, leaving.surfaces, leaving.corner);
   }
   if (left)
     left->reason = fmt::format("{}: no selection holds {} any more", names(s.system, leaving.surfaces),
@@ -116,7 +118,7 @@ std::optional<Transition> leave(const Surroundings& s, const ModeState& before, 
 }
 
 /// One of the surfaces whose function has a root of another one; -1 if there is none.
-int surface_around_root(const Surroundings& s, const std::vector<int>& surfaces) {
+int surface_around_root(const SwitchingContext& s, const std::vector<int>& surfaces) {
   for (const int j : surfaces) {
     const auto& inner = s.kernel.inner(j);
     const auto has_root_of = [&](int i) { return contains(inner, i) && s.kernel.has_root_inside(j, i); };
@@ -126,18 +128,18 @@ int surface_around_root(const Surroundings& s, const std::vector<int>& surfaces)
 }
 
 /// Whether functions are at zero together with others inside them.
-bool nested_meet(const Surroundings& s, const Occasion& occasion) {
-  return std::any_of(occasion.at_zero.begin(), occasion.at_zero.end(), [&](int j) {
+bool nested_meet(const SwitchingContext& s, const SwitchingPoint& switching_point) {
+  return std::any_of(switching_point.at_zero.begin(), switching_point.at_zero.end(), [&](int j) {
     const auto& inner = s.kernel.inner(j);
-    return std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(occasion.at_zero, i); });
+    return std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(switching_point.at_zero, i); });
   });
 }
 
 /// The same where surfaces inside those that are left, or around them, are left with them: to the sides that the field
 /// leads to.
-std::optional<Transition> leave_with_nested(const Surroundings& s, const ModeState& before, const Occasion& occasion,
-                                            const std::vector<double>& x, const Leaving& leaving,
-                                            std::string& problem) {
+std::optional<Transition> leave_with_nested(const SwitchingContext& s, const ModeState& before,
+                                            const SwitchingPoint& switching_point, const std::vector<double>& x,
+                                            const Leaving& leaving, std::string& problem) {
   const auto nested = [&](int i, int j) { return contains(s.kernel.inner(i), j) || contains(s.kernel.inner(j), i); };
   Leaving all = leaving;
   for (std::size_t k = 0; k < all.surfaces.size(); ++k) {
@@ -149,7 +151,7 @@ std::optional<Transition> leave_with_nested(const Surroundings& s, const ModeSta
   if (others == 0 || (std::size_t{1} << others) > most_regions) return std::nullopt;
   for (std::size_t sides = 0; sides < std::size_t{1} << others; ++sides) {
     all.corner = leaving.corner | sides << leaving.surfaces.size();
-    auto left = leave(s, before, occasion, x, all, problem);
+    auto left = leave(s, before, switching_point, x, all, problem);
     if (!left) continue;
     if (left->rooted < 0) left->rooted = surface_around_root(s, all.surfaces);
     return left;
@@ -159,17 +161,17 @@ std::optional<Transition> leave_with_nested(const Surroundings& s, const ModeSta
 
 /// Leaves through the corners of balances that can no longer be held; the others are held on. Where several directions
 /// end at once: through all of them, else through one.
-Transition leave_balances(const Surroundings& s, const ModeState& before, const Occasion& occasion,
+Transition leave_balances(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point,
                           const std::vector<double>& x) {
   HigherOrderField field(s.kernel);
   field.enter(*before.higher, before.sliding, before.alpha);
-  field.evaluate(occasion.t, x.data());
+  field.evaluate(switching_point.t, x.data());
   std::vector<Leaving> candidates;
   Leaving all;
   for (const auto& range : field.ranges()) {
     const int surface = before.sliding[range.row];
-    const bool falls = contains(occasion.exit_below, surface);
-    if (!falls && !contains(occasion.exit_above, surface)) continue;
+    const bool falls = contains(switching_point.exit_below, surface);
+    if (!falls && !contains(switching_point.exit_above, surface)) continue;
     candidates.push_back(leaving_at(before, range, falls));
     const Leaving& own = candidates.back();
     for (std::size_t i = 0; i < own.surfaces.size(); ++i) {
@@ -181,26 +183,26 @@ Transition leave_balances(const Surroundings& s, const ModeState& before, const 
   if (candidates.size() > 1) candidates.insert(candidates.begin(), std::move(all));
   std::string problem = "its fields do not lead away from it";
   for (const Leaving& leaving : candidates) {
-    if (auto left = leave(s, before, occasion, x, leaving, problem)) return std::move(*left);
-    if (auto left = leave_with_nested(s, before, occasion, x, leaving, problem)) return std::move(*left);
+    if (auto left = leave(s, before, switching_point, x, leaving, problem)) return std::move(*left);
+    if (auto left = leave_with_nested(s, before, switching_point, x, leaving, problem)) return std::move(*left);
   }
-  return failed(occasion, before, s, problem);
+  return failed(switching_point, before, s, problem);
 }
 
 /// Where a set can be held at this moment only, to the accuracy of its balances, and not a little later: it is left. A
 /// jump where sliding ends leaves the state there. nullopt if it is held, or no field leads away.
-std::optional<Transition> leave_at_once(const Surroundings& s, const ModeState& held, const Occasion& occasion,
-                                        const std::vector<double>& x) {
+std::optional<Transition> leave_at_once(const SwitchingContext& s, const ModeState& held,
+                                        const SwitchingPoint& switching_point, const std::vector<double>& x) {
   HigherOrderField field(s.kernel);
   field.enter(*held.higher, held.sliding, held.alpha);
-  field.evaluate(occasion.t, x.data());
+  field.evaluate(switching_point.t, x.data());
   const auto now = field.ranges();
-  const double h = 1e-2 * occasion.time_scale;
+  const double h = 1e-2 * switching_point.time_scale;
   std::vector<double> ahead = x;
   for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * field.motion()[i];
-  field.evaluate(occasion.t + h, ahead.data());
+  field.evaluate(switching_point.t + h, ahead.data());
   const auto& later = field.ranges();
-  Occasion ends = occasion;
+  SwitchingPoint ends = switching_point;
   ends.exit_below.clear();
   ends.exit_above.clear();
   for (std::size_t k = 0; k < now.size() && k < later.size(); ++k) {
@@ -216,22 +218,23 @@ std::optional<Transition> leave_at_once(const Surroundings& s, const ModeState& 
 }
 
 /// Surfaces are met whose gradients depend on those of the others.
-Transition meet_dependent(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
+Transition meet_dependent(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point) {
   std::string problem;
-  if (auto next = decide_dependent(s, before, occasion, problem)) return std::move(*next);
-  return failed(occasion, before, s, "others are met, and " + problem);
+  if (auto next = decide_dependent(s, before, switching_point, problem)) return std::move(*next);
+  return failed(switching_point, before, s, "others are met, and " + problem);
 }
 
 /// A surface is crossed behind which no selections hold the set any more.
-std::optional<Transition> cross_and_leave(const Surroundings& s, const ModeState& before, const Occasion& occasion,
-                                          const std::vector<double>& x, int surface) {
+std::optional<Transition> cross_and_leave(const SwitchingContext& s, const ModeState& before,
+                                          const SwitchingPoint& switching_point, const std::vector<double>& x,
+                                          int surface) {
   ModeState behind = before;
   const int mode = before.mode[at(surface)];
   set_surface(behind, surface, -mode, mode > 0 ? 0.0 : 1.0);
   HigherOrderField field(s.kernel);
   field.enter(*behind.higher, behind.sliding, behind.alpha);
-  field.evaluate(occasion.t, x.data());
-  Occasion ends = occasion;
+  field.evaluate(switching_point.t, x.data());
+  SwitchingPoint ends = switching_point;
   ends.exit_below.clear();
   ends.exit_above.clear();
   for (const auto& range : field.ranges()) {
@@ -242,32 +245,32 @@ std::optional<Transition> cross_and_leave(const Surroundings& s, const ModeState
   if (ends.exit_below.empty() && ends.exit_above.empty()) return std::nullopt;
   auto left = leave_balances(s, behind, ends, x);
   if (left.termination != result::Termination::completed) return std::nullopt;
-  if (!leads_into_its_region(s, left.state, occasion, x, {surface})) return std::nullopt;
+  if (!leads_into_its_region(s, left.state, switching_point, x, {surface})) return std::nullopt;
   left.zero_order[at(surface)] = 1;
   return left;
 }
 
 /// Another surface is met: crossed, or slid on as well.
-Transition meet(const Surroundings& s, const ModeState& before, const Occasion& occasion, const std::vector<double>& x,
-                int surface) {
+Transition meet(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point,
+                const std::vector<double>& x, int surface) {
   const int mode = before.mode[at(surface)];
   ModeState behind = before;
   behind.higher.reset();
   std::string problem;
   set_surface(behind, surface, -mode, mode > 0 ? 0.0 : 1.0);
   std::vector<double> point = x;
-  if (auto crossed = hold(s, behind, occasion, point, problem)) {
-    if (leads_into_its_region(s, crossed->state, occasion, point, {surface})) {
+  if (auto crossed = hold(s, behind, switching_point, point, problem)) {
+    if (leads_into_its_region(s, crossed->state, switching_point, point, {surface})) {
       crossed->zero_order[at(surface)] = 1;
       crossed->reason = fmt::format("{}: crossed in higher-order sliding", s.system.switching[at(surface)].name);
       return std::move(*crossed);
     }
   }
-  if (auto left = cross_and_leave(s, before, occasion, x, surface)) return std::move(*left);
+  if (auto left = cross_and_leave(s, before, switching_point, x, surface)) return std::move(*left);
   set_surface(behind, surface, 0, 0.5);
   point = x;
-  if (auto joined = hold(s, behind, occasion, point, problem)) return std::move(*joined);
-  return failed(occasion, before, s, problem);
+  if (auto joined = hold(s, behind, switching_point, point, problem)) return std::move(*joined);
+  return failed(switching_point, before, s, problem);
 }
 
 }  // namespace
@@ -281,13 +284,13 @@ Transition transition_to(ModeState state) {
   return transition;
 }
 
-std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occasion& occasion, std::vector<double>& x,
-                               std::string& problem) {
+std::optional<Transition> hold(const SwitchingContext& s, ModeState state, const SwitchingPoint& switching_point,
+                               std::vector<double>& x, std::string& problem) {
   // Behind a limit, everything that one of the last steps changes is at rest; elsewhere only what is rounding.
-  const double resolved = (occasion.limit ? 1.0 : 1e-9) * occasion.time_scale;
-  auto found = find_dependent_set(s, state, occasion.t, x, problem);
+  const double resolved = (switching_point.limit ? 1.0 : 1e-9) * switching_point.time_scale;
+  auto found = find_dependent_set(s, state, switching_point.t, x, problem);
   const bool dependent = found.has_value();
-  if (!found && problem.empty()) found = find_higher_order_set(s, state, occasion.t, x, resolved, problem);
+  if (!found && problem.empty()) found = find_higher_order_set(s, state, switching_point.t, x, resolved, problem);
   if (!found) return std::nullopt;
   const bool usual =
       found->undetermined.empty() && std::all_of(found->functions.begin(), found->functions.end(),
@@ -298,7 +301,7 @@ std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occ
   ModeField field(s.kernel, s.affine_in_alpha);
   field.enter(state);
   std::vector<double> xdot(x.size());
-  field(occasion.t, x.data(), xdot.data());
+  field(switching_point.t, x.data(), xdot.data());
   for (const int j : state.sliding) state.alpha[at(j)] = std::clamp(field.alpha()[at(j)], 0.0, 1.0);
   Transition transition = transition_to(std::move(state));
   transition.reason = fmt::format(
@@ -309,39 +312,40 @@ std::optional<Transition> hold(const Surroundings& s, ModeState state, const Occ
   return transition;
 }
 
-std::optional<Transition> hold_with_higher_order(const Surroundings& s, const ModeState& before,
-                                                 const Occasion& occasion) {
+std::optional<Transition> hold_with_higher_order(const SwitchingContext& s, const ModeState& before,
+                                                 const SwitchingPoint& switching_point) {
   ModeState state = before;
   state.higher.reset();
-  for (const int j : occasion.at_zero) set_surface(state, j, 0, 0.5);
-  if (state.sliding != occasion.at_zero) return std::nullopt;
-  std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
+  for (const int j : switching_point.at_zero) set_surface(state, j, 0, 0.5);
+  if (state.sliding != switching_point.at_zero) return std::nullopt;
+  std::vector<double> x(switching_point.x, switching_point.x + s.kernel.states());
   std::string problem;
-  auto transition = hold(s, std::move(state), occasion, x, problem);
+  auto transition = hold(s, std::move(state), switching_point, x, problem);
   if (!transition || !transition->state.higher) return std::nullopt;
-  if (auto left = leave_at_once(s, transition->state, occasion, x)) return left;
-  note_regions(s, occasion, x, *transition);
+  if (auto left = leave_at_once(s, transition->state, switching_point, x)) return left;
+  note_regions(s, switching_point, x, *transition);
   return transition;
 }
 
-std::optional<Transition> rest_where_nested_meet(const Surroundings& s, const ModeState& before,
-                                                 const Occasion& occasion) {
-  if (!nested_meet(s, occasion)) return std::nullopt;
-  return hold_with_higher_order(s, before, occasion);
+std::optional<Transition> rest_where_nested_meet(const SwitchingContext& s, const ModeState& before,
+                                                 const SwitchingPoint& switching_point) {
+  if (!nested_meet(s, switching_point)) return std::nullopt;
+  return hold_with_higher_order(s, before, switching_point);
 }
 
-std::optional<Transition> leave_where_nested_meet(const Surroundings& s, const ModeState& before,
-                                                  const Occasion& occasion) {
-  const auto& surfaces = occasion.at_zero;
-  if (!nested_meet(s, occasion) || (std::size_t{1} << std::min<std::size_t>(surfaces.size(), 8)) > most_regions) {
+std::optional<Transition> leave_where_nested_meet(const SwitchingContext& s, const ModeState& before,
+                                                  const SwitchingPoint& switching_point) {
+  const auto& surfaces = switching_point.at_zero;
+  if (!nested_meet(s, switching_point) ||
+      (std::size_t{1} << std::min<std::size_t>(surfaces.size(), 8)) > most_regions) {
     return std::nullopt;
   }
   ModeState state = before;
   state.higher.reset();
-  const std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
+  const std::vector<double> x(switching_point.x, switching_point.x + s.kernel.states());
   std::optional<Transition> found;
   for (std::size_t corner = 0; corner < std::size_t{1} << surfaces.size(); ++corner) {
-    auto left = leave_to(s, state, occasion, x, surfaces, corner);
+    auto left = leave_to(s, state, switching_point, x, surfaces, corner);
     if (!left) continue;
     if (left->rooted < 0) left->rooted = surface_around_root(s, surfaces);
     left->reason =
@@ -356,32 +360,33 @@ std::optional<Transition> leave_where_nested_meet(const Surroundings& s, const M
   return found;
 }
 
-Transition decide_from_higher_order(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
-  const std::vector<double> x(occasion.x, occasion.x + s.kernel.states());
-  std::vector<int> met, exits = occasion.exit_below;
-  exits.insert(exits.end(), occasion.exit_above.begin(), occasion.exit_above.end());
-  for (const int j : occasion.touched) {
+Transition decide_from_higher_order(const SwitchingContext& s, const ModeState& before,
+                                    const SwitchingPoint& switching_point) {
+  const std::vector<double> x(switching_point.x, switching_point.x + s.kernel.states());
+  std::vector<int> met, exits = switching_point.exit_below;
+  exits.insert(exits.end(), switching_point.exit_above.begin(), switching_point.exit_above.end());
+  for (const int j : switching_point.touched) {
     if (!contains(before.sliding, j)) met.push_back(j);
   }
   if (is_dependent(before)) {
     // Functions that move nothing are no reason to decide about those that are held.
-    const auto acting = acting_surfaces(s, before, occasion);
+    const auto acting = acting_surfaces(s, before, switching_point);
     const bool acts = std::any_of(met.begin(), met.end(), [&](int j) { return contains(acting, j); });
-    if (acts || (!met.empty() && exits.empty())) return meet_dependent(s, before, occasion);
-    if (!exits.empty()) return leave_balances(s, before, occasion, x);
+    if (acts || (!met.empty() && exits.empty())) return meet_dependent(s, before, switching_point);
+    if (!exits.empty()) return leave_balances(s, before, switching_point, x);
   }
   if (met.size() > 1 || (!met.empty() && !exits.empty())) {
-    return failed(occasion, before, s, "several things happen at once");
+    return failed(switching_point, before, s, "several things happen at once");
   }
-  if (met.size() == 1) return meet(s, before, occasion, x, met.front());
-  if (!exits.empty()) return leave_balances(s, before, occasion, x);
+  if (met.size() == 1) return meet(s, before, switching_point, x, met.front());
+  if (!exits.empty()) return leave_balances(s, before, switching_point, x);
   ModeState state = before;
   state.higher.reset();
   std::vector<double> point = x;
   std::string problem;
-  auto held = is_dependent(before) ? hold_dependent(s, state, occasion, point, problem)
-                                   : hold(s, state, occasion, point, problem);
-  return held ? std::move(*held) : failed(occasion, before, s, problem);
+  auto held = is_dependent(before) ? hold_dependent(s, state, switching_point, point, problem)
+                                   : hold(s, state, switching_point, point, problem);
+  return held ? std::move(*held) : failed(switching_point, before, s, problem);
 }
 
 }  // namespace saltus::event_integrator

@@ -12,20 +12,21 @@ namespace saltus::event_integrator {
 namespace {
 
 /// Crosses the touched surfaces inside function j, which is at zero: whether j is not, behind them, but jumps away.
-bool jumps_away(const Surroundings& s, const Occasion& occasion, int j, ModeState& state) {
+bool jumps_away(const SwitchingContext& s, const SwitchingPoint& switching_point, int j, ModeState& state) {
   const auto& inner = s.kernel.inner(j);
   ModeState behind = state;
   bool crosses = false;
-  for (const int i : occasion.touched) {
+  for (const int i : switching_point.touched) {
     if (i == j || !contains(inner, i) || state.mode[at(i)] == 0) continue;
     set_surface(behind, i, -state.mode[at(i)], state.mode[at(i)] > 0 ? 0.0 : 1.0);
     crosses = true;
   }
   if (!crosses) return false;
   std::vector<double> values(at(s.kernel.event_functions()));
-  s.kernel.functions(occasion.t, occasion.x, behind.alpha.data(), values.data());
+  s.kernel.functions(switching_point.t, switching_point.x, behind.alpha.data(), values.data());
   const double psi = values[at(j)];
-  const double size = size_of(s.kernel, j, occasion.t, occasion.x, behind.alpha.data(), occasion.time_scale);
+  const double size =
+      size_of(s.kernel, j, switching_point.t, switching_point.x, behind.alpha.data(), switching_point.time_scale);
   // Four digits above rounding, as for jumps on sliding surfaces: a kink leaves rounding, a jump something of size.
   if (!(std::abs(psi) > 1e5 * rounding_unit * size)) return false;
   set_surface(behind, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
@@ -42,8 +43,8 @@ bool Decider::read_nested_anew() {
   std::vector<double> values(at(s_.kernel.event_functions()));
   for (int j = 0; j < s_.kernel.switching_functions(); ++j) {
     const auto& inner = s_.kernel.inner(j);
-    if (inner.empty() || contains(occasion_.at_zero, j) || state.mode[at(j)] == 0) continue;
-    s_.kernel.functions(occasion_.t, occasion_.x, state.alpha.data(), values.data());
+    if (inner.empty() || contains(switching_point_.at_zero, j) || state.mode[at(j)] == 0) continue;
+    s_.kernel.functions(switching_point_.t, switching_point_.x, state.alpha.data(), values.data());
     const double psi = values[at(j)];
     if (!(std::abs(psi) > fields_.noise(j)) || (psi > 0.0) == (state.mode[at(j)] > 0)) continue;
     set_surface(state, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
@@ -61,24 +62,25 @@ Transition Decider::run_crossing(int jumping) {
     fail(result::Termination::outside_class,
          fmt::format("'{}' jumps away from 0 at t = {} on a surface inside it, and the field behind does not lead on: "
                      "the continuation needs the hidden dynamics of functions that jump",
-                     name, occasion_.t));
+                     name, switching_point_.t));
   }
   transition_.reason = fmt::format("'{}' jumps away from 0 on a surface inside it, which is crossed", name);
   return transition_;
 }
 
-std::optional<Transition> cross_with_jump(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
+std::optional<Transition> cross_with_jump(const SwitchingContext& s, const ModeState& before,
+                                          const SwitchingPoint& switching_point) {
   std::optional<ModeState> behind;
-  Occasion rest;
+  SwitchingPoint rest;
   int jumping = -1;
-  for (const int j : occasion.at_zero) {
+  for (const int j : switching_point.at_zero) {
     if (s.kernel.inner(j).empty()) continue;
     ModeState own = before;
-    if (!jumps_away(s, occasion, j, own)) continue;
+    if (!jumps_away(s, switching_point, j, own)) continue;
     jumping = j;
     if (!behind) {
       behind = before;
-      rest = occasion;
+      rest = switching_point;
     }
     for (auto* surfaces : {&rest.at_zero, &rest.touched, &rest.exit_below, &rest.exit_above}) std::erase(*surfaces, j);
     for (std::size_t k = 0; k < own.mode.size(); ++k) {
@@ -100,12 +102,13 @@ std::optional<Transition> cross_with_jump(const Surroundings& s, const ModeState
   return crossed;
 }
 
-std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& before, const Occasion& occasion) {
-  if (occasion.start) return std::nullopt;
+std::optional<Transition> cross_kinks(const SwitchingContext& s, const ModeState& before,
+                                      const SwitchingPoint& switching_point) {
+  if (switching_point.start) return std::nullopt;
   ModeState behind = before;
-  Occasion rest = occasion;
+  SwitchingPoint rest = switching_point;
   rest.touched.clear();
-  for (const int i : occasion.touched) {
+  for (const int i : switching_point.touched) {
     if (s.system.switching[at(i)].role != model::SwitchingRole::kink || before.mode[at(i)] == 0) return std::nullopt;
     set_surface(behind, i, -before.mode[at(i)], before.mode[at(i)] > 0 ? 0.0 : 1.0);
     std::erase(rest.at_zero, i);
@@ -115,8 +118,8 @@ std::optional<Transition> cross_kinks(const Surroundings& s, const ModeState& be
   }
   Transition transition = Decider(s, behind, rest).run();
   if (transition.termination != result::Termination::completed) return std::nullopt;
-  const ProjectedFields fields(s.kernel, occasion);
-  for (const int i : occasion.touched) {
+  const ProjectedFields fields(s.kernel, switching_point);
+  for (const int i : switching_point.touched) {
     if (!(fields.velocities(transition.state.alpha, {i}).front() * transition.state.mode[at(i)] > 0.0)) {
       return std::nullopt;
     }

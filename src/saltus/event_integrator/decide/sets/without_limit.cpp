@@ -23,7 +23,7 @@ struct Range {
 /// f near x: on the axes at a distance, both ways, with all other states beside theirs by next to nothing.
 class Around {
  public:
-  Around(const Surroundings& s, double t, const std::vector<double>& x, const std::vector<double>& alpha)
+  Around(const SwitchingContext& s, double t, const std::vector<double>& x, const std::vector<double>& alpha)
       : s_(s), t_(t), x_(x), alpha_(alpha), f_(x.size()) {}
 
   Range range(double distance) {
@@ -62,7 +62,7 @@ class Around {
     }
   }
 
-  const Surroundings& s_;
+  const SwitchingContext& s_;
   double t_;
   const std::vector<double>& x_;
   const std::vector<double>& alpha_;
@@ -72,7 +72,7 @@ class Around {
 
 }  // namespace
 
-std::optional<std::string> without_limit(const Surroundings& s, double t, const std::vector<double>& x,
+std::optional<std::string> without_limit(const SwitchingContext& s, double t, const std::vector<double>& x,
                                          const std::vector<double>& alpha, double distance) {
   constexpr std::size_t most_states = 100;
   if (x.size() > most_states || s.kernel.cells() > 0 || !s.kernel.region_groups().empty()) return std::nullopt;

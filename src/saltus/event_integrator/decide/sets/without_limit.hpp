@@ -13,7 +13,7 @@ namespace saltus::event_integrator {
 /// points that have the same listed selections: there no selection says what follows. `distance`: what counts as near,
 /// such as atol. nullopt where f has limits (|x|^c has them, and differs less by a factor 1000^c, c down to 1/10),
 /// where it jumps by itself (cells, regions by indicator), and with more than 100 states. Cost: 8 n evaluations of f.
-[[nodiscard]] std::optional<std::string> without_limit(const Surroundings& surroundings, double t,
+[[nodiscard]] std::optional<std::string> without_limit(const SwitchingContext& switching_context, double t,
                                                        const std::vector<double>& x, const std::vector<double>& alpha,
                                                        double distance);
 
