@@ -83,7 +83,7 @@ class Expression:
     def __rpow__(self, other: Operand) -> Expression:
         return _power(other, self)
 
-    def __mod__(self, other: Operand) -> Expression:
+    def __mod__(self, other: Operand) -> typing.Any:
         return mod(self, other)
 
     def __neg__(self) -> Expression:
@@ -92,7 +92,7 @@ class Expression:
     def __pos__(self) -> Expression:
         return _make("+" + _inside(self, SIGN), SIGN, False, self)
 
-    def __abs__(self) -> Expression:
+    def __abs__(self) -> typing.Any:
         return abs(self)
 
     # Conditions ----------------------------------------------------------------------------------------------------
@@ -148,7 +148,7 @@ class Expression:
             "functions of math take numbers only: write saltus.sin, saltus.exp, …",
         )
 
-    __int__ = __index__ = __float__  # type: ignore[assignment]
+    __int__ = __index__ = __float__
 
     def __iter__(self) -> typing.Iterator[Expression]:
         raise refuse(f"{self.text} is one number", "arrays of expressions: np.array([x, v])")
@@ -199,9 +199,9 @@ def _make(text: str, level: int, is_condition: bool, *operands: Expression) -> E
     return Expression(text, level, is_condition, owner_of(*operands))
 
 
-def _binary(sign: str, left: Operand, right: Operand, level: int) -> typing.Any:
+def _binary(sign: str, left: Operand, right: Operand, level: int) -> Expression:
     if isinstance(right, np.ndarray) and right.ndim > 0:
-        return NotImplemented
+        return typing.cast(Expression, NotImplemented)
     a, b = expression(left), expression(right)
     return _make(_inside(a, level) + sign + _inside(b, level + 1), level, False, a, b)
 
