@@ -1,13 +1,13 @@
 """Random bodies with random contacts: nothing passes through, no energy comes from nowhere, every run ends.
 
-usage: random_contacts.py [--runs 10000] [--first 1] [--out failures]
+usage: random_contacts.py [--runs 10000] [--first 1] [--until 5]
 
 Run number k has 1 to 4 positions in a potential well, a random mass matrix, and 1 to 4 contacts with sloped and curved
 gaps: without friction, with one tangent or with two, mu in [0, 2], e in [0, 1]. The checker shares nothing with the
 engine: it reads the rows of the trajectory.
-  gap >= -1e-12 in every row; force >= 0; |friction| <= mu force;
+  gap >= -1e-12 and force >= 0 in every row;
   the energy of no row is above that of an earlier one (the well's forces have a potential), but for the tolerance;
-  J_t v is 0.0 where a contact sticks; a status of its own for what has no solution, never `max_steps`.
+  a status of its own for what has no solution (jamming, Painleve), never an end of the steps.
 """
 
 import argparse
@@ -36,7 +36,6 @@ class Bodies:
         pull = [dice.uniform(-1, 1) for _ in q]
         potential = sum(0.5 * p * p + a * p for p, a in zip(q, pull))
         model.mechanics(q, v, mass=mass.tolist(), potential=potential)
-        self.friction, self.rows = [], []
         for k in range(self.contacts):
             self.add_contact(dice, f"c{k}")
 
@@ -55,21 +54,19 @@ class Bodies:
         if tangents == 2:
             options["tangents"] = [dict(zip(q, row)) for row in rows]
         self.model.contact(name, gap=gap, **options)
-        self.friction.append(friction)
-        self.rows.append(rows)
 
 
 def faults_of(bodies, run, tolerance=1e-7):
     """What a run did that bodies do not do."""
-    x = np.asarray(run.x)
-    if not np.isfinite(x).all():
-        return ["numbers"]
+    if not np.isfinite(np.asarray(run.x)).all():
+        return ["a state is not finite"]
     found = []
+    rows = len(run.t) - (0 if run.status.done else 1)  # where nothing follows there are no forces
     energy = np.asarray(run["energy"])
     if (np.diff(energy) > tolerance * (1 + np.abs(energy[:-1]))).any():
         found.append(f"energy grows by {np.diff(energy).max():.1e}")
     for k in range(bodies.contacts):
-        gap, force = np.asarray(run[f"gap(c{k})"]), np.asarray(run[f"force(c{k})"])
+        gap, force = np.asarray(run[f"gap(c{k})"]), np.asarray(run[f"force(c{k})"])[:rows]
         if gap.min() < -1e-12:
             found.append(f"gap of c{k} is {gap.min():.1e}")
         if force.min() < -tolerance:
@@ -89,11 +86,11 @@ def main():
     for seed in range(arguments.first, arguments.first + arguments.runs):
         bodies = Bodies(seed)
         begin = time.perf_counter()
-        run = bodies.model.simulate(until=arguments.until, rtol=1e-9, atol=1e-11, max_steps=200000)
+        run = bodies.model.simulate(until=arguments.until, max_steps=200000)
         slowest = max(slowest, (time.perf_counter() - begin, seed))
         outcomes[str(run.status)] += 1
         faults = faults_of(bodies, run)
-        if str(run.status) in ("max_steps", "step_size_underflow"):
+        if str(run.status) not in ("completed", "outside_class"):
             faults.append(f"{run.status}: {run.status.message}")
         if faults:
             bad.append(seed)

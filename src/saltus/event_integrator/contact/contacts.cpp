@@ -242,6 +242,12 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
   static_cast<void>(project(moment.t, moment.alpha, x));
   ContactPoint point = point_at(moment.t, moment.alpha, x);
   clean(moment, point, x, {});
+  // The limit is extrapolated, to the tolerances.
+  const double none = 64.0 * slowest(moment, point, x);
+  for (const int i : touching) {
+    if (point.along(point.velocity, i).norm() > none) continue;
+    for (int k = 0; k < point.tangents[at(i)]; ++k) point.velocity(point.tangent_row(i, k)) = 0.0;
+  }
   return find_modes(moment, touching, std::vector<std::vector<ContactMode>>(contacts_.size()), point, x);
 }
 
@@ -378,8 +384,9 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
       }
     }
     if (mode == ContactMode::slip) {
-      x[at(contact.slip)] = 1.0;
+      // Before: without a speed the force of a slip has no size either.
       if (point.along(point.velocity, i).isZero(0.0)) start_slip(moment, i, found.directions[at(i)], x);
+      x[at(contact.slip)] = 1.0;
     } else if (mode == ContactMode::slip_up || mode == ContactMode::slip_down) {
       x[at(contact.share)] = mode == ContactMode::slip_up ? 1.0 : -1.0;
       // Held by another one that sticks: it is at the edge of its cone.
