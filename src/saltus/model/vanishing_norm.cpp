@@ -1,5 +1,6 @@
 #include "saltus/model/vanishing_norm.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -53,10 +54,14 @@ std::string vanishing_norm(const System& system, double t, const std::vector<dou
     if (!(now[k].value <= next_to_nothing * before[k].value)) continue;
     std::vector<std::string> names;
     for (const int state : now[k].states) names.push_back(system.state_names[at(state)]);
+    const auto& contacts = system.contacts.contacts;
+    if (std::any_of(contacts.begin(), contacts.end(), [](const auto& contact) { return contact.in_plane; })) {
+      return "; a slip with two tangents begins or ends here, so slowly that its direction is hardly resolved: larger "
+             "rtol and atol follow it in fewer steps (a hundredth of the tolerance takes ten times as many)";
+    }
     return fmt::format(
         "; a norm of {0} vanishes here, and its direction with it, as in planar friction (the force along -v/|v|): use "
-        "a "
-        "norm that does not vanish, for two like sqrt({1}^2 + {2}^2 + 1e-6), or [[contacts]] with two tangents",
+        "a norm that does not vanish, for two like sqrt({1}^2 + {2}^2 + 1e-6), or [[contacts]] with two tangents",
         fmt::join(names, ", "), names[0], names[1]);
   }
   return "";
