@@ -335,6 +335,8 @@ class Builder:
     # Checks --------------------------------------------------------------------------------------------------------
 
     def _take(self, name: str) -> None:
+        if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
+            raise refuse(f"{name!r} is no name", "letters, digits and _, with a letter first: \"x1\"")
         if name in self._taken:
             raise refuse(f"the name '{name}' is taken", "every name of a model is declared once")
         self._taken.add(name)

@@ -122,6 +122,7 @@ class Model:
         runs: int | None,
         seed: int,
         keep: str,
+        yes: bool,
         jobs: int,
         share: tuple[int, int],
         progress: typing.Callable[[float, float], None] | None,

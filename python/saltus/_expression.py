@@ -5,6 +5,7 @@ An expression is its text, with the parentheses that are needed: what is built f
 
 from __future__ import annotations
 
+import functools
 import math
 import numbers
 import typing
@@ -155,7 +156,9 @@ class Expression:
 
 
 def _functions_for_numpy() -> None:
-    """np.sin of an array of expressions calls the method sin of its entries."""
+    """np.sin of an array of expressions calls the method sin of its entries, np.arctan2 of two arctan2 of the first."""
+    for name, own in (("arctan2", "atan2"), ("hypot", "hypot")):
+        setattr(Expression, name, lambda self, other, own=own: call(own, self, other))
     for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log10", "sqrt", "floor", "sign"):
         setattr(Expression, name, lambda self, name=name: call(name, self))
     for name, own in (("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan")):
@@ -168,6 +171,8 @@ def expression(value: Operand) -> Expression:
         return value
     if isinstance(value, np.ndarray) and value.ndim == 0:
         return expression(value.item())
+    if type(value).__module__.startswith("casadi"):
+        return _of_casadi(value)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise refuse(f"expected a number or an expression, found {value!r}", "expressions are scalar, entry by entry")
     if isinstance(value, numbers.Integral):
@@ -178,6 +183,44 @@ def expression(value: Operand) -> Expression:
             raise refuse(f"{number} is no number of a model", "write a finite number")
         text = repr(number).replace("e-0", "e-").replace("e+", "e")
     return Expression(text, SIGN if text.startswith("-") else PRIMARY)
+
+
+def _of_casadi(value: typing.Any) -> Expression:
+    """An SX of CasADi, whose symbols have the names of the model: x + casadi.SX.sym("a") is x+a."""
+    if type(value).__name__ not in ("SX", "DM") or value.numel() != 1:
+        raise refuse(
+            f"expected a scalar SX of CasADi, found {type(value).__name__}",
+            "make it of casadi.SX.sym with the names of states and parameters, entry by entry",
+        )
+    if type(value).__name__ == "DM":
+        return expression(float(value))
+    import casadi
+
+    return Expression(_casadi_text(casadi, value), SUM)
+
+
+#: Operations of CasADi by their names, in the language of models.
+_CASADI = {
+    "OP_ADD": "({}+{})", "OP_SUB": "({}-{})", "OP_MUL": "({}*{})", "OP_DIV": "({}/{})", "OP_NEG": "(-{})",
+    "OP_INV": "(1/{})", "OP_SQ": "({})^2", "OP_TWICE": "(2*{})", "OP_POW": "({})^({})", "OP_CONSTPOW": "({})^({})",
+    "OP_EXP": "exp({})", "OP_LOG": "log({})", "OP_SQRT": "sqrt({})", "OP_SIN": "sin({})", "OP_COS": "cos({})",
+    "OP_TAN": "tan({})", "OP_ASIN": "asin({})", "OP_ACOS": "acos({})", "OP_ATAN": "atan({})", "OP_SINH": "sinh({})",
+    "OP_COSH": "cosh({})", "OP_TANH": "tanh({})", "OP_ATAN2": "atan2({},{})", "OP_HYPOT": "hypot({},{})",
+    "OP_FABS": "abs({})", "OP_SIGN": "sign({})", "OP_FMIN": "min({},{})", "OP_FMAX": "max({},{})",
+    "OP_FLOOR": "floor({})",
+}  # fmt: skip
+
+
+def _casadi_text(casadi: typing.Any, value: typing.Any) -> str:
+    if value.is_symbolic():
+        return str(value.name())
+    if value.is_constant():
+        return expression(float(value)).text
+    names = {getattr(casadi, name): name for name in _CASADI}
+    name = names.get(value.op())
+    if name is None:
+        raise refuse(f"{value} has an operation that models do not", "write it with the functions of saltus")
+    return _CASADI[name].format(*(_casadi_text(casadi, value.dep(k)) for k in range(value.n_dep())))
 
 
 def owner_of(*operands: Operand) -> Owner:
@@ -199,18 +242,42 @@ def _make(text: str, level: int, is_condition: bool, *operands: Expression) -> E
     return Expression(text, level, is_condition, owner_of(*operands))
 
 
+Made = typing.TypeVar("Made", bound=typing.Callable[..., typing.Any])
+
+
+def _entry_by_entry(make: Made) -> Made:
+    """Of operands among which are arrays: an array of what is made of their entries."""
+
+    @functools.wraps(make)
+    def made(*operands: Operand) -> typing.Any:
+        if not any(isinstance(operand, np.ndarray) and operand.ndim > 0 for operand in operands):
+            return make(*operands)
+        entries = [operand if isinstance(operand, np.ndarray) else _one(operand) for operand in operands]
+        return np.frompyfunc(make, len(operands), 1)(*entries)
+
+    return typing.cast(Made, made)
+
+
+def _one(operand: Operand) -> np.ndarray:
+    """An operand as an array that has no axis."""
+    entry = np.empty((), dtype=object)
+    entry[()] = operand
+    return entry
+
+
+@_entry_by_entry
 def _binary(sign: str, left: Operand, right: Operand, level: int) -> Expression:
-    if isinstance(right, np.ndarray) and right.ndim > 0:
-        return typing.cast(Expression, NotImplemented)
     a, b = expression(left), expression(right)
     return _make(_inside(a, level) + sign + _inside(b, level + 1), level, False, a, b)
 
 
+@_entry_by_entry
 def _power(base: Operand, exponent: Operand) -> Expression:
     a, b = expression(base), expression(exponent)
     return _make(f"{_inside(a, PRIMARY)}^{_inside(b, SIGN)}", POWER, False, a, b)
 
 
+@_entry_by_entry
 def _comparison(sign: str, left: Operand, right: Operand) -> Expression:
     a, b = expression(left), expression(right)
     return _make(_inside(a, SUM) + sign + _inside(b, SUM), COMPARISON, True, a, b)
@@ -225,15 +292,15 @@ def _condition(value: Operand, sign: str) -> Expression:
     )
 
 
+@_entry_by_entry
 def _logical(word: str, left: Operand, right: Operand, level: int) -> Expression:
     a, b = _condition(left, word.strip()), _condition(right, word.strip())
     return _make(_inside(a, level) + word + _inside(b, level + 1), level, True, a, b)
 
 
+@_entry_by_entry
 def call(function: str, *arguments: Operand) -> typing.Any:
     """A function of the language; of arrays entry by entry."""
-    if any(isinstance(argument, np.ndarray) and argument.ndim > 0 for argument in arguments):
-        return np.frompyfunc(lambda *entries: call(function, *entries), len(arguments), 1)(*arguments)
     made = [expression(argument) for argument in arguments]
     return _make(f"{function}({','.join(argument.text for argument in made)})", PRIMARY, False, *made)
 
@@ -241,7 +308,8 @@ def call(function: str, *arguments: Operand) -> typing.Any:
 def _function(name: str, count: int, text: str) -> typing.Callable[..., typing.Any]:
     def function(*arguments: Operand) -> typing.Any:
         if len(arguments) != count:
-            raise refuse(f"{name} has {count} argument{'s' * (count > 1)}, found {len(arguments)}", text)
+            remedy = f"one in the other: {name}({name}(a, b), c)" if name in ("max", "min") else text
+            raise refuse(f"{name} has {count} argument{'s' * (count > 1)}, found {len(arguments)}", remedy)
         return call(name, *arguments)
 
     function.__name__ = function.__qualname__ = name
@@ -274,7 +342,8 @@ floor = _function("floor", 1, "The largest integer not above e, an expression of
 mod = _function("mod", 2, "e - m floor(e/m).")
 
 
-def if_(condition: Expression, a: Operand, b: Operand) -> Expression:
+@_entry_by_entry
+def if_(condition: Operand, a: Operand, b: Operand) -> Expression:
     """`a` where the condition holds, else `b`.
 
     >>> m = saltus.Builder("m")
@@ -282,7 +351,9 @@ def if_(condition: Expression, a: Operand, b: Operand) -> Expression:
     >>> saltus.if_(x > 1, -x, 2)
     if(x>1,-x,2)
     """
-    made = [_condition(condition, "if_"), expression(a), expression(b)]
+    if not isinstance(condition, Expression) or not condition.is_condition:
+        raise refuse(f"if_ needs a condition, found {condition!r}", "compare: saltus.if_(x > 0, a, b)")
+    made = [condition, expression(a), expression(b)]
     return _make(f"if({','.join(part.text for part in made)})", PRIMARY, False, *made)
 
 

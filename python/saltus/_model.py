@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import pathlib
 import sys
@@ -12,20 +11,25 @@ import warnings
 
 from . import _core
 from ._card import model_card
-from ._errors import ModelWarning
+from ._errors import ModelWarning, in_python
+from ._expression import refuse
 from ._progress import progress_line, progress_of_runs
-from ._result import Result
+from ._result import Result, own_results
 from ._settings import (
     Option,
     Value,
+    axis,
     check_path,
-    empty_axis,
+    count_of,
     is_list,
+    is_option,
+    once,
     optimize_options,
+    parameters_among,
     settings_of,
     simulate_options,
     sweep_name,
-    text_of,
+    whole,
 )
 from ._sweep import Sweep, SweepArguments, sweep_by, with_results
 
@@ -142,7 +146,7 @@ class Model:
         """
         typed, chosen = optimize_options(options)
         warned: list[str] = []
-        with _started_at(start) as file, _own_results():
+        with _started_at(start) as file, own_results():
             run = self._core.optimize(
                 [*settings_of(set), *typed], chosen, file, _print_line if progress else None, warned
             )
@@ -159,6 +163,7 @@ class Model:
         seed: int = 1,
         keep: str = "final",
         jobs: int = 0,
+        yes: bool = False,
         until: float | None = None,
         set: Settings | None = None,
         progress: bool = False,
@@ -171,7 +176,8 @@ class Model:
         a list is the same (``mu=np.linspace(0.1, 0.5, 50)``). Several make a grid, with `zip` they go one by one.
         `sample` has distributions (``{"v": "normal(3, 0.1)"}``), of which every point of the grid gets `runs` samples;
         they depend on `seed` and the number of the run only. `keep` is what is left of the runs: "final", "events" or
-        "trajectory". A run that stops early is a row with its status. Nothing depends on the number of threads.
+        "trajectory". A run that stops early is a row with its status. Nothing depends on the number of threads. More
+        than 10^7 runs need `yes`.
 
         `executor` is one of concurrent.futures, or of a library that has its interface (mpi4py.futures,
         dask.distributed, Ray): it gets shares of the runs, each with `jobs` threads (one without it).
@@ -180,12 +186,22 @@ class Model:
         >>> len(s), s.done, s["belt"].tolist()
         (3, True, [0.1, 0.2, 0.3])
         """
-        swept = dict(over or {})
-        for name in [name for name, value in options.items() if is_list(value) and name != "times"]:
-            swept[sweep_name(name, self._core.method)] = options.pop(name)
+        whole("jobs", jobs, 0)
+        whole("seed", seed, 0)
+        if runs is not None:
+            whole("runs", runs, 1)
+        if sample is not None and not isinstance(sample, typing.Mapping):
+            raise refuse(f"sample={sample!r}: expected a dict", 'e.g. sample={"v": "normal(3, 0.1)"}')
+        lists = {name: options.pop(name) for name in list(options) if is_list(options[name]) and name != "times"}
+        swept = {sweep_name(name, self._core.method): values for name, values in (over or {}).items()}
+        for name, values in lists.items():
+            swept[once(sweep_name(name, self._core.method), [*swept, *(set or {})])] = values
+        self._refuse_parameters(options)
         typed, chosen = simulate_options({"until": until, **options}, self._core.method)
-        axes = {name: text_of(values)[1:-1] for name, values in swept.items() if len(values) > 0 or empty_axis(name)}
-        shape = tuple(len(values) for values in swept.values()) if not zip and sample is None else ()
+        axes = {name: axis(name, values) for name, values in swept.items()}
+        # Of values that the tool counts the shape is not known here.
+        counts = tuple(count_of(values) for values in swept.values())
+        shape = counts if not zip and sample is None and 0 not in counts else ()
         arguments: SweepArguments = (
             [*settings_of(set), *typed],
             chosen,
@@ -195,6 +211,7 @@ class Model:
             runs,
             seed,
             keep,
+            yes,
         )
         if executor is not None:
             return Sweep(sweep_by(executor, self, arguments, max(1, jobs)), shape)
@@ -257,31 +274,25 @@ class Model:
         tell: typing.Callable[..., None] | None,
         more: tuple[str, ...] = (),
     ) -> tuple[_core.Run, list[str], list[Option]]:
+        self._refuse_parameters(options)
         typed, chosen = simulate_options({"until": until, **options}, self._core.method)
         warned: list[str] = []
-        with _own_results():
+        with own_results():
             settings = [*settings_of(set), *typed]
             run: _core.Run = getattr(self._core, command)(settings, chosen, tell, warned, *more)
         _warn(warned)
         return run, settings, chosen
+
+    def _refuse_parameters(self, options: Settings) -> None:
+        """Of keywords that are no options those that the model knows; the rest is the tool's to say."""
+        if any(not is_option(name, self._core.method) for name in options):
+            parameters_among(options, {**self.states, **self.parameters}, self._core.method)
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
         return self._made
 
     def __repr__(self) -> str:
         return f"<saltus.Model {self.name!r}>"
-
-
-@contextlib.contextmanager
-def _own_results() -> typing.Iterator[None]:
-    """What an exception (Ctrl-C) carries of an interrupted run becomes a result."""
-    try:
-        yield
-    except BaseException as stopped:
-        run = getattr(stopped, "result", None)
-        if isinstance(run, _core.Run):
-            stopped.result = Result(run)  # type: ignore[attr-defined]
-        raise
 
 
 class _started_at:
@@ -312,8 +323,12 @@ def _print_line(line: str) -> None:
 
 
 def _warn(messages: list[str]) -> None:
+    """Warns where the package was called, however deep that is."""
+    depth, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("saltus"):
+        depth, frame = depth + 1, frame.f_back
     for message in messages:
-        warnings.warn(message, ModelWarning, stacklevel=4)
+        warnings.warn(in_python(message), ModelWarning, stacklevel=depth)
 
 
 def models() -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import json
 import os
@@ -303,7 +304,8 @@ class Result:
                 "have it at other times"
             )
         model, settings, options = self._again
-        return Result(model._core.values_at(self._run, settings, options, times.tolist(), side == "left"))
+        with own_results():
+            return Result(model._core.values_at(self._run, settings, options, times.tolist(), side == "left"))
 
     # What to do with it --------------------------------------------------------------------------------------------
 
@@ -380,6 +382,18 @@ class Result:
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
         return _restored, (self._run.json(True), self._again)
+
+
+@contextlib.contextmanager
+def own_results() -> typing.Iterator[None]:
+    """What an exception (Ctrl-C) carries of an interrupted run becomes a result."""
+    try:
+        yield
+    except BaseException as stopped:
+        run = getattr(stopped, "result", None)
+        if isinstance(run, _core.Run):
+            stopped.result = Result(run)  # type: ignore[attr-defined]
+        raise
 
 
 class Page:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import numbers
 import typing
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from . import _core
 from ._errors import ModelError
+from ._expression import Expression, refuse
 
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
 Option = tuple[str, str, str]
@@ -16,7 +18,7 @@ _SIMULATE = frozenset(_core.simulate_keys())
 _OPTIMIZE = frozenset(_core.optimize_keys())
 
 
-def text_of(value: Value) -> str:
+def text_of(value: Value, name: str = "") -> str:
     """A value as the tool reads it behind --set.
 
     >>> text_of(0.1), text_of(True), text_of([1, 2.5]), text_of("2*mu")
@@ -24,6 +26,8 @@ def text_of(value: Value) -> str:
     """
     if isinstance(value, str):
         return value
+    if isinstance(value, Expression):
+        return value.text
     if value is None:
         return "none"
     if isinstance(value, (bool, np.bool_)):
@@ -31,11 +35,13 @@ def text_of(value: Value) -> str:
     if isinstance(value, numbers.Integral):
         return str(int(value))
     if isinstance(value, numbers.Real):
+        if not math.isfinite(value):
+            raise refuse(f"{name}{'=' * bool(name)}{float(value)}: that is no number of a model", "write a finite number")
         return repr(float(value))
     if isinstance(value, np.ndarray) and value.ndim == 0:
-        return text_of(value.item())
+        return text_of(value.item(), name)
     if is_list(value) or isinstance(value, np.ndarray):
-        return "[" + ", ".join(text_of(entry) for entry in value) + "]"
+        return "[" + ", ".join(text_of(entry, name) for entry in value) + "]"
     raise TypeError(f"a number, a text or a list of numbers is expected, found {type(value).__name__}")
 
 
@@ -43,7 +49,7 @@ def settings_of(values: typing.Mapping[str, Value] | None) -> list[str]:
     """NAME=VALUE of `set`; tables inside become dotted names."""
     if values is not None and not isinstance(values, typing.Mapping):
         raise TypeError(f'set={values!r}: expected a dict, e.g. set={{"mu": 0.5}}')
-    return [f"{name}={text_of(value)}" for name, value in _flat(values or {})]
+    return [f"{name}={text_of(value, name)}" for name, value in _flat(values or {})]
 
 
 def _flat(values: typing.Mapping[str, Value], before: str = "") -> typing.Iterator[tuple[str, Value]]:
@@ -66,11 +72,12 @@ def simulate_options(
     options: list[Option] = []
     for name, value in _flat(keywords):
         if name.startswith("inputs."):
-            settings.append(f"simulate.{name}={text_of(value)}")
+            settings.append(f"simulate.{name}={text_of(value, name)}")
             continue
         keys = [name] + [f"{table}.{name}" for table in tables]
-        key = next((key for key in keys if key in _SIMULATE), name)
-        options.append((f"simulate.{key}", text_of(value), f"{name}={_shown(value)}"))
+        by_surface = f"event.{name}" if name.startswith("scaling.") else name
+        key = next((key for key in keys if key in _SIMULATE), by_surface)
+        options.append((f"simulate.{key}", text_of(value, name), f"{name}={_shown(value)}"))
     return settings, options
 
 
@@ -81,9 +88,9 @@ def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], l
     for name, value in _flat({name.rstrip("_"): value for name, value in keywords.items() if value is not None}):
         key = next((key for key in (name, f"mpcc.{name}") if key in _OPTIMIZE), None)
         if key is None:
-            settings.append(f"optimize.{name}={text_of(value)}")
+            settings.append(f"optimize.{name}={text_of(value, name)}")
         else:
-            options.append((f"optimize.{key}", text_of(value), f"{name}={_shown(value)}"))
+            options.append((f"optimize.{key}", text_of(value, name), f"{name}={_shown(value)}"))
     return settings, options
 
 
@@ -100,9 +107,49 @@ def sweep_name(name: str, method: str) -> str:
     return key if key.removeprefix("simulate.") in _SIMULATE else name
 
 
-def empty_axis(name: str) -> bool:
-    """Refuses a list without values."""
-    raise ModelError(f"{name}: an empty list of values", f"{name}: an empty list of values", "at least one value")
+def axis(name: str, values: Value) -> str:
+    """The values of a swept name, as the tool reads them: a list, or the text FROM:TO:NUMBER."""
+    if isinstance(values, str):
+        return values
+    if not is_list(values):
+        raise refuse(f"{name}: expected a list of values, found {values!r}", f"{name}=[0.1, 0.2], or set={{...}} for one")
+    if len(values) == 0:
+        raise refuse(f"{name}: an empty list of values", "at least one value")
+    return text_of(values, name)[1:-1]
+
+
+def whole(name: str, value: Value, least: int) -> None:
+    """Refuses what is no whole number from `least` on."""
+    if not isinstance(value, numbers.Integral) or value < least:
+        raise refuse(f"{name}={value!r}: expected a whole number", f"at least {least}")
+
+
+def count_of(values: Value) -> int:
+    """How many they are; 0 where the tool counts them."""
+    return 0 if isinstance(values, str) else len(values)
+
+
+def once(name: str, taken: typing.Sequence[str]) -> str:
+    """A name that nobody else changes."""
+    if name in taken:
+        raise refuse(f"'{name}' is changed twice", "give its values once: as a keyword, in over or in set")
+    return name
+
+
+def is_option(name: str, method: str) -> bool:
+    """Whether a keyword is a key of [simulate], or the table of several."""
+    ((key, _, _),) = simulate_options({name: 0}, method)[1] or [("simulate.inputs", "", "")]
+    return key.removeprefix("simulate.") in _SIMULATE or name in ("inputs", "set", "event", "fesd", "output", "smoothed")
+
+
+def parameters_among(options: typing.Mapping[str, Value], known: typing.Container[str], method: str) -> None:
+    """Refuses a parameter or state that is given as if it were an option."""
+    for name in options:
+        if name in known and not is_option(name, method):
+            raise refuse(
+                f"'{name}' is a name of the model, not an option",
+                f'write set={{"{name}": {_shown(options[name])}}}; in a sweep {name}=[…] has its values',
+            )
 
 
 def _shown(value: Value) -> str:

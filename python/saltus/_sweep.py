@@ -16,7 +16,7 @@ Array = np.ndarray
 Found = tuple[dict[str, typing.Any], list[Result], list[str]]
 #: What the library's sweep takes before its number of threads.
 SweepArguments = tuple[
-    list[str], list[tuple[str, str, str]], list[str], bool, list[str], typing.Optional[int], int, str
+    list[str], list[tuple[str, str, str]], list[str], bool, list[str], typing.Optional[int], int, str, bool
 ]
 
 
@@ -71,6 +71,8 @@ class Sweep:
 
     def __getitem__(self, name: str) -> Array:
         """A column of the table."""
+        if name not in self.table:
+            raise KeyError(f"{name!r} is no column; there are {', '.join(self.table)}")
         return self.table[name]
 
     @property

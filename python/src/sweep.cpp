@@ -96,17 +96,17 @@ void add_sweep(nb::class_<Model>& type) {
       "sweep",
       [](Model& model, std::vector<std::string> settings, std::vector<Option> options, std::vector<std::string> over,
          bool paired, std::vector<std::string> samples, std::optional<long> runs, std::uint64_t seed, std::string keep,
-         std::size_t jobs, std::pair<std::size_t, std::size_t> share, nb::object progress, nb::list warnings) {
+         bool yes, std::size_t jobs, std::pair<std::size_t, std::size_t> share, nb::object progress, nb::list warnings) {
         const Request asked{std::move(settings), std::move(options), cli::RunMethods::chosen};
         const std::size_t threads = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
-        const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, true},
+        const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, yes},
                          std::move(keep),
                          threads,
                          {share.first, share.second}};
         return sweep(model, asked, what, std::move(progress), std::move(warnings));
       },
       nb::arg("settings"), nb::arg("options"), nb::arg("over"), nb::arg("paired"), nb::arg("samples"),
-      nb::arg("runs").none(), nb::arg("seed"), nb::arg("keep"), nb::arg("jobs"), nb::arg("share"),
+      nb::arg("runs").none(), nb::arg("seed"), nb::arg("keep"), nb::arg("yes"), nb::arg("jobs"), nb::arg("share"),
       nb::arg("progress").none(), nb::arg("warnings"));
 }
 

@@ -180,10 +180,7 @@ def test_what_a_model_cannot_be(m):
     refused(lambda: x + a, "another builder")
     refused(lambda: m.rate(a, 1), "another builder")
     m.rate("y", x)
-    m.state("bad name", 0)
-    m.rate("bad name", 0)
-    with pytest.raises(saltus.ModelError):
-        m.model()
+    refused(lambda: m.state("bad name", 0), "is no name")
 
 
 def test_tables_inputs_events_and_regions():
@@ -283,3 +280,30 @@ def test_a_problem_of_optimal_control():
 def test_powers_are_the_language_s(m):
     x = saltus.Expression("x", owner=m)
     assert saltus.pow(x, 3).text == "pow(x,3)"
+
+
+def test_arrays_and_numbers_of_casadi():
+    casadi = pytest.importorskip("casadi")
+    m = saltus.Builder("m")
+    x, v, k = m.state("x", 0), m.state("v", 1), m.parameter("k", 2.0)
+    both = np.array([x, v])
+    for made, expected in [
+        (both * k, ["x*k", "v*k"]),
+        (k * both, ["k*x", "k*v"]),
+        (both - k, ["x-k", "v-k"]),
+        (both**k, ["x^k", "v^k"]),
+        (np.array([1, 2]) * x, ["1*x", "2*x"]),
+        (saltus.max(both, 0), ["max(x,0)", "max(v,0)"]),
+    ]:
+        assert [str(entry) for entry in made] == expected
+    assert str(both @ both) == "x*x+v*v"
+    assert str(np.arctan2(x, v)) == "atan2(x,v)"
+    a = casadi.SX.sym("x")
+    m.rate(x, v)
+    m.rate(v, casadi.sin(a) ** 2 - k)
+    assert m.simulate(until=0.1).status.done
+    for wrong in ("x y", 3, ""):
+        with pytest.raises(saltus.ModelError, match="is no name"):
+            m.state(wrong, 1)
+    with pytest.raises(saltus.ModelError, match="compare"):
+        saltus.if_(x, 1, 2)

@@ -238,3 +238,33 @@ def test_lists_of_any_kind_are_swept(slip):
     assert slip.sweep(belt=range(1, 4), until=1).table["belt"].tolist() == [1, 2, 3]
     with pytest.raises(TypeError, match="expected a dict"):
         slip.simulate(set=[("belt", 1)])
+
+
+def test_what_is_swept_is_said_once(slip):
+    assert slip.sweep(over={"belt": "0.1:0.3:3"}, until=1)["belt"].tolist() == [0.1, 0.2, 0.3]
+    assert slip.sweep(over={"rtol": [1e-4, 1e-8]}, until=1).done
+    for wrong, told in [
+        (dict(over={"belt": [0.1]}, belt=[0.2]), "changed twice"),
+        (dict(set={"belt": 0.1}, belt=[0.2]), "changed twice"),
+        (dict(over={"belt": 0.3}), "expected a list"),
+        (dict(belt=0.3), "not an option"),
+        (dict(belt=[0.1], jobs=-1), "whole number"),
+        (dict(sample={"v": "normal(3, 0.1)"}, runs=2.5), "whole number"),
+        (dict(sample={"v": "normal(3, 0.1)"}), r"runs="),
+        (dict(sample={"v": "normal(3, 0.1)"}, runs=20_000_000), r"yes=True"),
+    ]:
+        with pytest.raises(saltus.ModelError, match=told):
+            slip.sweep(until=1, **wrong)
+
+
+def test_messages_speak_python(slip):
+    for call, told, untold in [
+        (lambda: slip.simulate(belt=3), r'set={"belt": 3}', "simulate.belt"),
+        (lambda: slip.simulate(set={"beltt": 1}), r'set={"beltt"', "--set"),
+        (lambda: slip.simulate(set={"belt": float("nan")}), "belt=nan", "--set"),
+        (lambda: slip.sweep(beltt=[1, 2], until=1), "'beltt'", "--"),
+        (lambda: slip.order(steps=["a"]), "steps=", "--steps"),
+    ]:
+        with pytest.raises(saltus.ModelError, match=told) as error:
+            call()
+        assert untold not in str(error.value)
