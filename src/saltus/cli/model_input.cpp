@@ -94,9 +94,11 @@ std::vector<std::string> options_without_effect(const io::ModelFile& file) {
     warnings.push_back(fmt::format("{} has no effect: {}", place, reason));
   }
   constexpr double least = 1e-15;  // a few roundings
-  if (file.simulate.rtol > 0.0 && file.simulate.rtol < least && file.simulate.atol < least) {
-    warnings.push_back(fmt::format("rtol = {:g} asks for more digits than numbers have: errors are those of rounding",
-                                   file.simulate.rtol));
+  const auto& [rtol, atol] = std::pair{file.simulate.rtol, file.simulate.atol};
+  if (rtol > 0.0 && rtol < least) {
+    warnings.push_back(fmt::format("rtol = {:g} asks for more digits than numbers have: {}", rtol,
+                                   atol < least ? std::string("errors are those of rounding")
+                                                : fmt::format("atol = {:g} holds alone", atol)));
   }
   return warnings;
 }

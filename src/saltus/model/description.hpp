@@ -18,7 +18,7 @@ enum class Inclusion { filippov, aizerman_pyatnitskii };
 enum class Direction { up, down, both };
 enum class AtEvent { record, stop };
 
-/// What turns a jump on (interface.md, [[jumps]]).
+/// What turns a jump of [[jumps]] on (docs/model-file.md).
 enum class JumpTrigger {
   condition,   ///< a condition becomes true
   guard_down,  ///< g < 0 becomes true

@@ -40,7 +40,7 @@ enum class EventKind {
 /// The inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<EventKind> event_kind_named(std::string_view name);
 
-/// The kind of a switch from the components of the modes (interface.md section 3).
+/// The kind of a switch from the components of the modes (docs/result-file.md).
 [[nodiscard]] EventKind kind_of_switch(const Mode& before, const Mode& after);
 
 /// The active modes of every group by `indicator`, in the order of the model; empty without such groups.

@@ -16,7 +16,7 @@
 
 namespace saltus::solver {
 
-/// [optimize.mpcc] of interface.md.
+/// [optimize.mpcc] (docs/options.md).
 struct SolveOptions {
   homotopy::Relaxation relaxation = homotopy::Relaxation::scholtes;
   homotopy::Steering steering = homotopy::Steering::direct;

@@ -17,7 +17,7 @@ namespace saltus::model {
 namespace {
 
 using expression::NodePtr;
-/// Speed of time beside contacts and hysteresis, unless bounds are stated (interface.md).
+/// Speed of time beside contacts and hysteresis, unless bounds are stated.
 constexpr double default_fastest = 100.0;
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 

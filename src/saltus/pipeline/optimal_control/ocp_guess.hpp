@@ -21,7 +21,7 @@ struct OcpStart {
   std::vector<std::string> warnings;  ///< values outside their bounds that were moved onto them
 };
 
-/// Rule 11 of interface.md [optimize]: `initial_guess`; else an event-driven simulation of the guessed controls from
+/// In this order (docs/optimal-control.md): `initial_guess`; else an event-driven simulation of the guessed controls from
 /// the guessed initial state; from where that stops, or with a free horizon whose terminal constraint names a state
 /// linearly, the straight line; else the initial values.
 /// @param intervals  N >= 1

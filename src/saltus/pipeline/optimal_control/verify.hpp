@@ -40,7 +40,7 @@ struct VerificationWanted {
 
 /// Simulates every interval from its node with its controls, then the whole horizon from the first node, and compares.
 /// The amplification is that of the product of the intervals' derivatives, by central differences.
-/// Definitions: interface.md, `verification`.
+/// Definitions: docs/result-file.md, `verification`.
 /// Cost: one compilation of the model, (2 n + 1) N + 1 event-driven simulations with n states.
 [[nodiscard]] Expected<result::Verification> verify(const model::Ocp& ocp, const OptimizedPath& path,
                                                     const VerificationWanted& wanted,

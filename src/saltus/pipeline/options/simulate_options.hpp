@@ -76,7 +76,7 @@ struct ElementOptions {
   bool sensitivities = false;       ///< derivatives of the end state
 };
 
-/// [simulate]; defaults as in interface.md. `until` has none: it must be given in the file or on the command line.
+/// [simulate]; defaults as in docs/options.md. `until` has none: it must be given in the file or on the command line.
 struct SimulateOptions {
   std::optional<double> until;
   double from = 0.0;
