@@ -96,9 +96,9 @@ std::vector<std::string> options_without_effect(const io::ModelFile& file) {
   constexpr double least = 1e-15;  // a few roundings
   const auto& [rtol, atol] = std::pair{file.simulate.rtol, file.simulate.atol};
   if (rtol > 0.0 && rtol < least) {
-    warnings.push_back(fmt::format("rtol = {:g} asks for more digits than numbers have: {}", rtol,
-                                   atol < least ? std::string("errors are those of rounding")
-                                                : fmt::format("atol = {:g} holds alone", atol)));
+    warnings.push_back(fmt::format(
+        "rtol = {:g} asks for more digits than numbers have: {}", rtol,
+        atol < least ? std::string("errors are those of rounding") : fmt::format("atol = {:g} holds alone", atol)));
   }
   return warnings;
 }
