@@ -75,8 +75,12 @@ TEST(SparseSystem, FewerEntriesThanBeforeAreAnotherMatrix) {
   system.reset(2);
   for (const auto& [i, j, value] : Entries{{0, 0, 2.0}, {1, 1, 4.0}}) system.add(i, j, value);
   system.right() << 10.0, 4.0;
-  ASSERT_TRUE(system.solve(0.0, Unit::row));
+  ASSERT_TRUE(system.solve(0.0, Unit::row));  // a diagonal
   EXPECT_DOUBLE_EQ(system.right()(0), 5.0);
+  EXPECT_DOUBLE_EQ(system.right()(1), 1.0);
+  system.right() << 1.0, 1.0;
+  ASSERT_TRUE(system.solve_again());
+  EXPECT_DOUBLE_EQ(system.right()(1), 0.25);
 }
 
 TEST(SparseSystem, ASingularOneHasTheSolutionOfLeastNorm) {

@@ -14,7 +14,10 @@ using EntryList = std::vector<std::pair<std::size_t, double>>;
 /// Appends the sum of all entries at each place as vector k of a matrix.
 template <class Matrix>
 void append(std::size_t k, EntryList& entries, Matrix& matrix) {
-  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const auto is_before = [](const auto& a, const auto& b) { return a.first < b.first; };
+  if (!std::is_sorted(entries.begin(), entries.end(), is_before)) {  // of two regions
+    std::stable_sort(entries.begin(), entries.end(), is_before);
+  }
   const auto outer = static_cast<Index>(k);
   matrix.startVec(outer);
   std::size_t last = static_cast<std::size_t>(-1);

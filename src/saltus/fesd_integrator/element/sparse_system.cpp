@@ -60,7 +60,9 @@ void SparseSystem::analyse() {
     const int* const last = rows + matrix_.outerIndexPtr()[column + 1];
     slot_.push_back(std::lower_bound(first, last, static_cast<int>(row)) - rows);
   }
-  factors_.analyzePattern(matrix_);
+  is_diagonal_ = matrix_.nonZeros() == matrix_.cols() &&
+                 std::all_of(places_.begin(), places_.end(), [](const auto& at) { return at.first == at.second; });
+  if (!is_diagonal_) factors_.analyzePattern(matrix_);
   analysed_ = true;
 }
 
@@ -79,12 +81,18 @@ bool SparseSystem::take_entries() {
   return finite;
 }
 
+/// False where the matrix is singular.
+bool SparseSystem::factorise() {
+  if (is_diagonal_) return column_sizes_.minCoeff() > 0.0;
+  factors_.factorize(matrix_);
+  return factors_.info() == Eigen::Success && !factors_.is_singular(column_sizes_);
+}
+
 bool SparseSystem::solve(double negligible, DenseSystem::Unit unit) {
   if (right_.size() == 0) return true;
   if (!analysed_ || next_ != places_.size()) analyse();
   if (!take_entries()) return false;
-  factors_.factorize(matrix_);
-  factorised_ = factors_.info() == Eigen::Success && !factors_.is_singular(column_sizes_);
+  factorised_ = factorise();
   return factorised_ ? solve_again() : solve_dense(negligible, unit);
 }
 
@@ -100,7 +108,11 @@ bool SparseSystem::solve_dense(double negligible, DenseSystem::Unit unit) {
 
 bool SparseSystem::solve_again() {
   if (factorised_) {
-    right_ = factors_.solve(right_).eval();
+    if (is_diagonal_) {
+      right_.array() /= Eigen::Map<const Eigen::ArrayXd>(matrix_.valuePtr(), matrix_.cols());
+    } else {
+      right_ = factors_.solve(right_).eval();
+    }
     return right_.allFinite();
   }
   dense_.right() = right_;

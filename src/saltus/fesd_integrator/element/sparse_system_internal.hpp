@@ -36,6 +36,7 @@ class SparseSystem {
   };
   void analyse();
   [[nodiscard]] bool take_entries();
+  [[nodiscard]] bool factorise();
   [[nodiscard]] bool solve_dense(double negligible, DenseSystem::Unit unit);
 
   using Place = std::pair<Eigen::Index, Eigen::Index>;
@@ -44,6 +45,7 @@ class SparseSystem {
   std::vector<Eigen::Index> slot_;  ///< where in the matrix
   std::size_t next_ = 0;
   bool analysed_ = false, factorised_ = false;
+  bool is_diagonal_ = false;  ///< as where sliding surfaces do not feel each other
   Eigen::SparseMatrix<double> matrix_;
   Eigen::VectorXd right_, column_sizes_;
   Factors factors_;
