@@ -1,6 +1,7 @@
 // Models whose surfaces depend on each other, stated in the tests.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <random>
 #include <string>
@@ -54,6 +55,22 @@ inline std::string agents_on_a_graph(int instance, std::mt19937_64& random) {
   for (int i = 0; i < n; ++i) dynamics += fmt::format("x{} = \"{}\"\n", i, rates[static_cast<std::size_t>(i)]);
   return fmt::format("[model]\nname = \"network\"\n[states]\n{}[dynamics]\n{}[simulate]\nuntil = 6\n", states,
                      dynamics);
+}
+
+/// Blocks in a row on springs, each on a belt of speed 0.2 with dry friction (benchmarks/large/large_models.py).
+inline std::string block_chain(int n, double until) {
+  std::string positions, speeds, rates;
+  for (int i = 1; i <= n; ++i) {
+    positions += fmt::format("q{} = {:.6f}\n", i, std::sin(1.7 * i));
+    speeds += fmt::format("v{} = {:.6f}\n", i, 0.5 * std::cos(2.3 * i));
+    const std::string left = i > 1 ? fmt::format("q{} + ", i - 1) : "",
+                      right = i < n ? fmt::format(" + q{}", i + 1) : "";
+    rates += fmt::format("v{0} = \"{1}-2.5*q{0}{2} - sign(v{0} - 0.2)\"\n", i, left, right);
+  }
+  std::string moves;
+  for (int i = 1; i <= n; ++i) moves += fmt::format("q{0} = \"v{0}\"\n", i);
+  return fmt::format("[model]\nname = \"chain\"\n[states]\n{}{}[dynamics]\n{}{}[simulate]\nuntil = {}\n", positions,
+                     speeds, moves, rates, until);
 }
 
 }  // namespace saltus::problems

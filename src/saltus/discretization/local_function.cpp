@@ -1,6 +1,7 @@
 #include <array>
 #include <utility>
 
+#include "saltus/discretization/dcs_expressions_internal.hpp"
 #include "saltus/discretization/local_function_internal.hpp"
 
 namespace saltus::discretization {
@@ -15,9 +16,6 @@ mpcc::Pattern pattern_of(const SX& matrix) {
   for (std::size_t e = 0; e < rows.size(); ++e) pattern.add(static_cast<int>(rows[e]), static_cast<int>(columns[e]));
   return pattern;
 }
-
-/// The entries of a sparse matrix as a dense column.
-SX entries_of(const SX& matrix) { return SX(casadi::Sparsity::dense(matrix.nnz(), 1), SX(matrix.nonzeros())); }
 
 SX column_of(const std::vector<SX>& scalars) { return scalars.empty() ? SX(0, 1) : SX::vertcat(scalars); }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/discretization/entry_pattern.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 
 namespace saltus::reformulation {
@@ -14,7 +15,7 @@ struct Dcs;
 
 namespace saltus::discretization {
 
-/// f, the indicators and their derivatives at one point; matrices by columns.
+/// f, the indicators and their derivatives at one point; of matrices the entries of `pattern`.
 struct StageValues {
   std::vector<double> f;            ///< n_x
   std::vector<double> indicator;    ///< n_selections: psi_j, or g_i
@@ -22,6 +23,7 @@ struct StageValues {
   std::vector<double> f_selection;  ///< n_x by n_selections
   std::vector<double> indicator_x;  ///< n_selections by n_x
   std::vector<double> indicator_t;  ///< n_selections
+  const StagePattern* pattern = nullptr;
 };
 
 /// What Dcs::roots are to a point: unknowns of their own; matrices by columns.
@@ -47,6 +49,8 @@ class StageKernel {
 
   [[nodiscard]] std::size_t states() const;
   [[nodiscard]] std::size_t selections() const;
+  /// Of a system of some size with few entries those, else all. Lives as long as the kernel.
+  [[nodiscard]] const StagePattern& pattern() const;
 
   /// Exponents of Dcs::roots.
   [[nodiscard]] const std::vector<double>& root_exponents() const;

@@ -12,11 +12,11 @@
 namespace saltus::fesd_integrator {
 namespace {
 
-/// Rates and selections within this of their bounds are not decided by first derivatives. Events are located to about
-/// 1e-12; a selection that ends there is off by that, times the conditioning of its equation.
-constexpr double undecided = 1e-7;
-
-constexpr std::size_t most_patterns = 20000;
+std::vector<bool> mask_of(const std::vector<int>& members, std::size_t n) {
+  std::vector<bool> mask(n, false);
+  for (const int j : members) mask[at(j)] = true;
+  return mask;
+}
 
 }  // namespace
 
@@ -44,152 +44,11 @@ Transition::Transition(const discretization::StageKernel& kernel, std::span<cons
   }
 }
 
-/// Which functions are zero at the point, whatever influences them; signs of the others into `modes`.
-/// @return nullopt where the indicators of regions are not finite, so that none of them is the smallest
-std::optional<std::vector<int>> Transition::find_zeros(const Decision& decision, std::vector<int>& modes) {
-  modes.assign(kernel_.selections(), -1);
-  const std::vector<double> middle(kernel_.selections(), 0.5);
-  kernel_.evaluate(decision.t, decision.x.data(), middle.data(), decision.held, values_);
-  indicator_noise(values_, decision.t, decision.size, noise_);
-  const auto forced = [&](int j) {
-    return std::find(decision.at_zero.begin(), decision.at_zero.end(), j) != decision.at_zero.end();
-  };
-  std::vector<int> members;
-  for (const Part& part : parts_) {
-    double smallest = std::numeric_limits<double>::infinity();
-    for (int j = part.first; j < part.first + part.count; ++j) {
-      smallest = std::min(smallest, values_.indicator[at(j)]);
-    }
-    if (part.simplex && !std::isfinite(smallest)) return std::nullopt;
-    const std::size_t begin = members.size();
-    for (int j = part.first; j < part.first + part.count; ++j) {
-      const double value = part.simplex ? values_.indicator[at(j)] - smallest : values_.indicator[at(j)];
-      const bool zero = std::abs(value) <= 4.0 * noise_[at(j)] || forced(j);
-      if (part.simplex) {
-        // One of the tied regions alone, as a classical mode stands for the other groups while one is asked.
-        modes[at(j)] = zero && members.size() == begin ? 0 : -1;
-      } else {
-        modes[at(j)] = value > 0.0 ? 1 : -1;
-      }
-      if (zero) members.push_back(j);
-    }
-    if (part.simplex && members.size() == begin + 1) members.pop_back();  // one region: nothing to decide
-  }
-  modes_at_zero_ = modes;
-  for (const int j : members) modes_at_zero_[at(j)] = 0;
-  return members;
-}
-
-/// Whether d(psi_a)/dt depends on selection b where values_ were evaluated, or both are regions of one simplex.
-bool Transition::influences(int a, int b) const {
-  if (part_of_[at(a)] == part_of_[at(b)] && parts_[at(part_of_[at(a)])].simplex) return true;
-  const std::size_t n = kernel_.selections(), n_x = kernel_.states();
-  for (std::size_t i = 0; i < n_x; ++i) {
-    if (values_.indicator_x[i * n + at(a)] * values_.f_selection[at(b) * n_x + i] != 0.0) return true;
-  }
-  return false;
-}
-
-/// Members that influence each other at any of three points of the cube, and the size of a rate: of its largest terms
-/// there, as f may cancel inside.
-std::vector<std::vector<int>> Transition::find_influences(const Decision& decision, const std::vector<int>& modes,
-                                                          const std::vector<int>& members) {
-  const std::size_t n = kernel_.selections(), n_x = kernel_.states();
-  size_.assign(n, 0.0);
-  Components components(members.size());
-  std::vector<double> selections(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    selections[j] = modes[j] == (parts_[at(part_of_[j])].simplex ? 0 : 1) ? 1.0 : 0.0;
-  }
-  for (const double level : {0.5, 0.0, 1.0}) {
-    for (const int j : members) selections[at(j)] = level;
-    kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values_);
-    for (std::size_t j = 0; j < n; ++j) {
-      double sum = std::abs(values_.indicator_t[j]);
-      for (std::size_t i = 0; i < n_x; ++i) sum += std::abs(values_.indicator_x[i * n + j] * values_.f[i]);
-      size_[j] = std::max(size_[j], sum);
-    }
-    for (std::size_t a = 0; a < members.size(); ++a) {
-      for (std::size_t b = 0; b < members.size(); ++b) {
-        if (!components.connected(a, b) && influences(members[a], members[b])) components.join(a, b);
-      }
-    }
-  }
-  std::vector<std::vector<int>> groups;
-  for (const auto& component : components.lists()) {
-    auto& group = groups.emplace_back();
-    for (const std::size_t k : component) group.push_back(members[k]);
-  }
-  return groups;
-}
-
-/// Groups of functions that are zero at the point and influence each other, and their patterns.
-/// @return false as find_zeros()
-bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<int>& modes) {
-  groups_.clear();
-  depends_ = false;
-  const auto members = find_zeros(decision, modes);
-  if (!members || members->empty()) return members.has_value();
-  for (auto& group : find_influences(decision, modes, *members)) {
-    Group& entry = groups_.emplace_back();
-    entry.members = std::move(group);
-    if (rule == Rule::dependent && find_dependent(decision, modes, entry)) {
-      depends_ = true;
-    } else {
-      entry.patterns = patterns_of(entry, decision);
-    }
-  }
-  return true;
-}
-
-std::vector<std::vector<int>> Transition::patterns_of(const Group& group, const Decision& decision) const {
-  std::vector<std::vector<int>> patterns{{}};
-  for (const int j : group.members) {
-    const bool region = parts_[at(part_of_[at(j)])].simplex;
-    std::vector<std::vector<int>> longer;
-    for (const auto& pattern : patterns) {
-      for (const int mode : decision.before == nullptr ? std::array{1, -1, 0} : std::array{0, 1, -1}) {
-        if (region && mode == 1) continue;
-        longer.push_back(pattern);
-        longer.back().push_back(mode);
-      }
-      if (longer.size() > most_patterns) return {};
-    }
-    patterns = std::move(longer);
-  }
-  // Every simplex needs an active region.
-  std::erase_if(patterns, [&](const auto& pattern) {
-    for (std::size_t k = 0; k < pattern.size(); ++k) {
-      const int part = part_of_[at(group.members[k])];
-      if (!parts_[at(part)].simplex) continue;
-      bool active = false;
-      for (std::size_t l = 0; l < pattern.size(); ++l) {
-        active = active || (part_of_[at(group.members[l])] == part && pattern[l] == 0);
-      }
-      if (!active) return true;
-    }
-    return false;
-  });
-  const auto rank = [&](const auto& pattern) {
-    int changes = 0, sliding = 0;
-    for (std::size_t k = 0; k < pattern.size(); ++k) {
-      if (decision.before != nullptr) changes += decision.before->modes()[at(group.members[k])] != pattern[k] ? 1 : 0;
-      sliding += parts_[at(part_of_[at(group.members[k])])].simplex && pattern[k] == 0 ? 1 : 0;
-    }
-    return std::pair(changes, sliding);
-  };
-  std::stable_sort(patterns.begin(), patterns.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
-  return patterns;
-}
-
 /// How clearly the signs of a group hold just behind the point: > 0 they do, < 0 they do not, relative to the size of
 /// what is compared; the candidate gets its selections.
 double Transition::margin(const Decision& decision, const Group& group, Continuation& candidate) {
   const auto& sliding = candidate.set.sliding();
-  std::vector<double> unknown(sliding.size(), 0.5);
-  for (std::size_t k = 0; k < unknown.size(); ++k) {
-    if (sliding[k].reference >= 0) unknown[k] = 1.0 / static_cast<double>(sliding.size() + 1);
-  }
+  auto unknown = candidate.set.middle();
   const double from_middle = margin_from(unknown, decision, group, candidate);
   // The selections of several surfaces solve a multi-affine system with several roots: also from near the corners.
   constexpr std::size_t most_sliding = 4;
@@ -217,10 +76,14 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
   }
   projected_.rates(rate_);
   if (!take_from_trial(decision, candidate)) return -1.0;
-  if (!set.balances().empty()) margins_.evaluate(set, field_view(projected_.values()), candidate.selections.data());
+  if (!set.balances().empty()) {
+    DenseMatrices memory;
+    margins_.evaluate(set, field_view(projected_.values(), memory), candidate.selections.data());
+  }
   double least = 1.0;
+  const auto asked = mask_of(group.members, kernel_.selections());
   for (const Condition& condition : set.conditions()) {
-    if (std::find(group.members.begin(), group.members.end(), condition.selection) == group.members.end()) continue;
+    if (!asked[at(condition.selection)]) continue;
     const bool margin = condition.kind != Condition::Kind::side && !set.is_determined(condition.selection);
     double value = margin ? margins_.value(condition) : set.value(condition, rate_.data(), candidate.selections.data());
     if (condition.kind == Condition::Kind::side) {
@@ -300,6 +163,11 @@ Transition::Trial Transition::try_elements(const Decision& decision, const Group
 
 std::vector<Continuation> Transition::continuations(const Decision& decision) {
   auto found = continuations(decision, Rule::dependent);
+  if (found.empty() && !kept_.empty()) {
+    Decision all = decision;
+    all.ended = -1;
+    return continuations(all);
+  }
   return found.empty() && depends_ ? continuations(decision, Rule::enumeration) : found;
 }
 
@@ -355,6 +223,7 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
 std::optional<Continuation> Transition::continuation_in(const Decision& decision, const std::vector<int>& modes) {
   Group all;
   for (const Group& group : groups_) all.members.insert(all.members.end(), group.members.begin(), group.members.end());
+  all.members.insert(all.members.end(), kept_.begin(), kept_.end());
   Continuation candidate{make_set(decision, modes), {}};
   if (margin(decision, all, candidate) < -undecided) return std::nullopt;
   candidate.decided = std::all_of(groups_.begin(), groups_.end(), [](const Group& group) { return group.decided; });

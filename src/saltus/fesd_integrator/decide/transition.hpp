@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "saltus/base/components.hpp"
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/element/active_set.hpp"
 #include "saltus/fesd_integrator/element/element.hpp"
@@ -32,6 +33,8 @@ struct Decision {
   std::span<const int> at_zero{};     ///< selections whose indicator is zero there whatever its rounding
   double size = 0.0;                  ///< of the states around, as in Point
   double trial_length = 0.0;          ///< of an element, where first derivatives do not decide
+  /// The selection one of whose conditions ended the set; -1 where anything may be otherwise than before.
+  int ended = -1;
 };
 
 /// All sets that continue a solution from a point. Of the functions that are zero there, every pattern of signs and
@@ -41,7 +44,11 @@ struct Decision {
 /// to, as psi stays at zero, is no other continuation than sliding with the selections of that side. Functions that do
 /// not influence each other are enumerated one by one. Surfaces whose gradients depend on each other, with selections
 /// that enter additively, are not enumerated: a complementarity problem says which are slid on and which are left [ADR
-/// 20]; where it leaves that open, the one just behind the point does.
+/// 20]; where it leaves that open, the one just behind the point does. In a system of some size
+/// (discretization::StagePattern) only functions that influence the one whose sign ended are asked, and those whose
+/// conditions do not clearly hold; the others slide on. Where nothing continues so, all are asked. Of more functions
+/// than are enumerated those slide on that slid before and did not end; whether others continue the solution, too, is
+/// not decided then.
 ///
 /// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
 /// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
@@ -58,6 +65,9 @@ class Transition {
   [[nodiscard]] bool finite() const { return finite_; }
 
  private:
+  /// Rates and selections within this of their bounds are not decided by first derivatives. Events are located to about
+  /// 1e-12; a selection that ends there is off by that, times the conditioning of its equation.
+  static constexpr double undecided = 1e-7;
   struct Group {
     std::vector<int> members;                ///< functions of the step form, or regions of a simplex
     std::vector<std::vector<int>> patterns;  ///< modes of the members
@@ -79,11 +89,17 @@ class Transition {
                                                                    Group& group);
   [[nodiscard]] ActiveSet make_set(const Decision& decision, std::vector<int> modes);
   [[nodiscard]] std::optional<std::vector<int>> find_zeros(const Decision& decision, std::vector<int>& modes);
-  [[nodiscard]] bool influences(int a, int b) const;
+  void join_by_influence(const std::vector<int>& members, Components& components) const;
   [[nodiscard]] std::vector<std::vector<int>> find_influences(const Decision& decision, const std::vector<int>& modes,
                                                               const std::vector<int>& members);
+  [[nodiscard]] bool slides_on(const Decision& decision, const std::vector<int>& group,
+                               const std::vector<double>& selections) const;
+  void keep_sliding(const Decision& decision, std::vector<std::vector<int>>& groups, std::vector<int>& modes);
   [[nodiscard]] bool find_groups(const Decision& decision, Rule rule, std::vector<int>& modes);
-  [[nodiscard]] std::vector<std::vector<int>> patterns_of(const Group& group, const Decision& decision) const;
+  enum class Asked { all, changed };
+  [[nodiscard]] std::vector<std::vector<int>> combinations(const Group& group, const Decision& decision,
+                                                           Asked asked) const;
+  void find_patterns(const Decision& decision, Group& group) const;
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
                                    Continuation& candidate);
@@ -119,7 +135,8 @@ class Transition {
   std::vector<Group> groups_;
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
-  bool depends_ = false;  ///< whether a group of the decision in hand is dependent
+  std::vector<int> kept_;  ///< functions that slide on unasked
+  bool depends_ = false;   ///< whether a group of the decision in hand is dependent
   SelectionMargins margins_;
   bool finite_ = true;
   std::vector<double> rate_, size_, noise_;

@@ -26,13 +26,12 @@ struct Gradients {
 };
 
 Gradients gradients_of(const discretization::StageValues& values, const std::vector<int>& members) {
-  const std::size_t n = values.indicator.size(), n_x = values.f.size();
-  Gradients gradients{MatrixXd(index(members.size()), index(n_x)), VectorXd(index(members.size()))};
+  const auto count = index(members.size());
+  Gradients gradients{MatrixXd::Zero(count, index(values.f.size())), VectorXd(count)};
   for (std::size_t k = 0; k < members.size(); ++k) {
     gradients.rates[index(k)] = values.indicator_t[at(members[k])];
-    for (std::size_t i = 0; i < n_x; ++i) {
-      gradients.rows(index(k), index(i)) = values.indicator_x[i * n + at(members[k])];
-    }
+    visit_row(values.pattern->indicator_x, values.indicator_x, at(members[k]),
+              [&](std::size_t i, double gradient) { gradients.rows(index(k), index(i)) = gradient; });
   }
   return gradients;
 }
@@ -48,7 +47,8 @@ ActiveSet Transition::make_set(const Decision& decision, std::vector<int> modes)
   discretization::StageValues values;
   kernel_.size(values);
   kernel_.evaluate(decision.t, decision.x.data(), selections.data(), decision.held, values);
-  static_cast<void>(find_balances(field_view(values), set));
+  DenseMatrices memory;
+  static_cast<void>(find_balances(field_view(values, memory), set));
   return set;
 }
 
@@ -63,7 +63,9 @@ Transition::Dependent Transition::split_by_action(const Decision& decision, cons
   for (const int j : group.members) split.selections[at(j)] = side_before(decision, j) < 0 ? 0.0 : 1.0;
   kernel_.evaluate(decision.t, decision.x.data(), split.selections.data(), decision.held, values_);
   VectorXd terms = Eigen::Map<const VectorXd>(values_.f.data(), index(n_x)).cwiseAbs();
-  const Eigen::Map<const MatrixXd> jumps(values_.f_selection.data(), index(n_x), index(kernel_.selections()));
+  DenseMatrices memory;
+  const Eigen::Map<const MatrixXd> jumps(field_view(values_, memory).f_selection, index(n_x),
+                                         index(kernel_.selections()));
   for (const int j : group.members) terms += jumps.col(j).cwiseAbs();
   for (const int j : group.members) {
     const bool acts = (jumps.col(j).cwiseAbs().array() > switching::field_accuracy * terms.array()).any();

@@ -50,6 +50,14 @@ void ActiveSet::unknowns(const double* all, double* unknown) const {
   for (std::size_t k = 0; k < sliding_.size(); ++k) unknown[k] = all[at(sliding_[k].selection)];
 }
 
+std::vector<double> ActiveSet::middle() const {
+  std::vector<double> unknown(sliding_.size(), 0.5);
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    if (sliding_[k].reference >= 0) unknown[k] = 1.0 / static_cast<double>(sliding_.size() + 1);
+  }
+  return unknown;
+}
+
 void ActiveSet::set_balances(std::vector<switching::Balance> balances) {
   balances_ = std::move(balances);
   undetermined_.assign(modes_.size(), false);

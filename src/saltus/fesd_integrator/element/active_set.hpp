@@ -58,6 +58,8 @@ class ActiveSet {
   void selections(const double* unknown, double* all) const;
   /// The unknown ones out of all.
   void unknowns(const double* all, double* unknown) const;
+  /// Unknown ones in the middle of their range; of a simplex equal parts.
+  [[nodiscard]] std::vector<double> middle() const;
   /// What is zero while entry k of sliding() slides: psi_j, or g_r - g_i; also for rows of derivatives (`stride`
   /// apart).
   [[nodiscard]] double surface(std::size_t k, const double* indicator, std::size_t stride = 1) const {

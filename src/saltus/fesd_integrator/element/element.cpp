@@ -47,19 +47,26 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
   auto& equations = implementation_->equations;
   SALTUS_ASSERT(sets.size() == 1 || sets.size() == static_cast<std::size_t>(tableau().stages()));
   equations.begin(left, h, sets, held, guess, element);
+  const auto failed = [&](Outcome outcome) {
+    equations.forget_matrix();
+    return outcome;
+  };
   double before = std::numeric_limits<double>::infinity();
-  Matrix matrix = Matrix::its_own;
+  Matrix matrix = equations.first_matrix(h);
   for (int iteration = 0;; ++iteration) {
-    if (iteration == most_newton_steps) return Outcome::not_converged;
+    if (iteration == most_newton_steps) return failed(Outcome::not_converged);
     const auto change = equations.step(held, matrix, element);
-    if (!change) return Outcome::not_finite;
+    if (!change) return failed(Outcome::not_finite);
     // Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are
     // roundings. With the matrix of the step before, a step leaves 2 change / before of itself.
     const bool again = matrix == Matrix::of_the_step_before;
-    const bool quadratic = again ? *change * *change <= 1e-17 * before : *change <= 1e-9 && before <= 1e-3;
+    const bool quadratic =
+        again ? *change * *change <= 1e-17 * before && std::isfinite(before) : *change <= 1e-9 && before <= 1e-3;
     if (*change <= 1e-15 || quadratic || (*change <= equations.rounding() && *change >= 0.25 * before)) break;
-    constexpr double near = 1e-4;
-    const bool keep = !again && *change <= near && equations.keeps_matrix();
+    constexpr double near = 1e-4, shrinks = 0.1;
+    const bool once_more =
+        equations.saves_factors() ? !again || *change <= shrinks * before : !again && *change <= near;
+    const bool keep = once_more && equations.keeps_matrix();
     matrix = keep ? Matrix::of_the_step_before : Matrix::its_own;
     before = *change;
   }

@@ -16,6 +16,10 @@ using Eigen::Index;
 /// Of Newton's method that puts an end onto the surfaces.
 constexpr int most_steps_onto_surfaces = 40;
 
+NewtonSystem::Storage storage_of(const discretization::StageKernel& kernel) {
+  return kernel.pattern().is_sparse ? NewtonSystem::Storage::sparse : NewtonSystem::Storage::dense;
+}
+
 }  // namespace
 
 ElementEquations::ElementEquations(const discretization::StageKernel& kernel,
@@ -27,8 +31,11 @@ ElementEquations::ElementEquations(const discretization::StageKernel& kernel,
       n_psi_(static_cast<Index>(kernel.selections())),
       explicit_method_(tableau.family == discretization::TableauFamily::explicit_rk),
       left_limit_(tableau.family == discretization::TableauFamily::lobatto_iiia),
+      system_(storage_of(kernel), n_s_ * (n_x_ + n_psi_)),
+      projection_(storage_of(kernel), n_psi_),
       values_(static_cast<std::size_t>(n_s_ + 1)),
-      directions_(n_x_, n_psi_ * (n_s_ + 1)),
+      directions_(n_x_, system_.is_sparse() ? 0 : n_psi_ * (n_s_ + 1)),
+      sparse_{std::vector<SparseColumns>(system_.is_sparse() ? at(n_s_ + 1) : 0), {}, 0.0},
       offset_(static_cast<std::size_t>(n_s_ + 1)),
       sets_(static_cast<std::size_t>(n_s_)),
       end_(n_x_),
@@ -39,8 +46,6 @@ ElementEquations::ElementEquations(const discretization::StageKernel& kernel,
       b_(tableau.b),
       c_(tableau.c) {
   for (auto& stage : values_) kernel.size(stage);
-  system_.reserve(n_s_ * (n_x_ + n_psi_));
-  projection_.reserve(n_psi_);
 }
 
 void ElementEquations::set_warp(const TimeWarp& wanted) {
@@ -55,6 +60,10 @@ void ElementEquations::set_warp(const TimeWarp& wanted) {
 }
 
 void ElementEquations::find_directions(Index stage, const discretization::StageValues& at) {
+  if (system_.is_sparse()) {
+    sparse_.directions[static_cast<std::size_t>(stage)] = sliding_directions(set(std::min(stage, n_s_ - 1)), at);
+    return;
+  }
   const ConstMatrix f_selection(at.f_selection.data(), n_x_, n_psi_);
   Index column = stage * n_psi_;
   for (const Sliding& entry : set(std::min(stage, n_s_ - 1)).sliding()) {
@@ -77,6 +86,11 @@ void ElementEquations::surface_row(const ActiveSet& active, std::size_t k, const
 double ElementEquations::size(const Element& element) const {
   double terms = 0.0;
   for (Index m = 0; m < n_s_; ++m) {
+    if (system_.is_sparse()) {
+      const SparseColumns& entries = sparse_.directions[at(m)];
+      if (unknowns(m) > 0 && entries.nonZeros() > 0) terms = std::max(terms, entries.coeffs().abs().maxCoeff());
+      continue;
+    }
     for (Index k = 0; k < unknowns(m); ++k) {
       terms = std::max(terms, directions_.col(m * n_psi_ + k).cwiseAbs().maxCoeff());
     }
@@ -130,6 +144,7 @@ void ElementEquations::assemble_right(const Element& element) {
 
 void ElementEquations::assemble_matrix(const Element& element) {
   system_.reset(offset_[at(n_s_)]);
+  if (system_.is_sparse()) return assemble_entries(element);
   auto matrix = system_.matrix();
   const Index rows = matrix.rows();
   const auto place = [&](Index stage) { return offset_[at(stage)]; };
@@ -205,36 +220,46 @@ void ElementEquations::guess_by_euler(const Point& left, const double* held, Ele
   }
 }
 
+/// A Newton step of the right end from the values there; the largest change of a state.
+std::optional<double> ElementEquations::move_onto_surfaces(const ActiveSet& active, Element& element) {
+  if (projection_.is_sparse()) return move_onto_surfaces_by_entries(active, element);
+  const auto& here = values_[at(n_s_)];
+  const auto count = static_cast<Index>(active.sliding().size());
+  const auto along = directions_.middleCols(n_s_ * n_psi_, count);
+  projection_.reset(count);
+  auto matrix = projection_.matrix();
+  auto right = projection_.right();
+  double steepest = 0.0;
+  for (Index k = 0; k < count; ++k) {
+    surface_row(active, static_cast<std::size_t>(k), here);
+    steepest = std::max(steepest, row_.cwiseAbs().maxCoeff());
+    for (Index l = 0; l < count; ++l) matrix(k, l) = row_.dot(along.col(l));
+    right(k) = -active.surface(static_cast<std::size_t>(k), here.indicator.data());
+  }
+  if (!projection_.solve(negligible(element) * steepest)) return std::nullopt;
+  Vector x_1(element.end.data(), n_x_);
+  for (Index l = 0; l < count; ++l) x_1 += right(l) * along.col(l);
+  double change = 0.0;
+  for (Index i = 0; i < n_x_; ++i) {
+    double moved = 0.0;
+    for (Index l = 0; l < count; ++l) moved += right(l) * along(i, l);
+    change = std::max(change, std::abs(moved));
+  }
+  return change;
+}
+
 /// NOTE: without this the methods with c_s != 1 lose half their order on curved surfaces.
 bool ElementEquations::project(double t, const double* held, Element& element) {
   auto& here = values_[at(n_s_)];
   const ActiveSet& active = set(n_s_ - 1);
-  const auto count = static_cast<Index>(active.sliding().size());
   const double* selections = element.stage_selections.data() + (n_s_ - 1) * n_psi_;
-  Vector x_1(element.end.data(), n_x_);
   double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_steps_onto_surfaces; ++iteration) {
     kernel_.evaluate(t + element.h, element.end.data(), selections, held, here);
     if (iteration == 0) find_directions(n_s_, here);
-    const auto along = directions_.middleCols(n_s_ * n_psi_, count);
-    projection_.reset(count);
-    auto matrix = projection_.matrix();
-    auto right = projection_.right();
-    double steepest = 0.0;
-    for (Index k = 0; k < count; ++k) {
-      surface_row(active, static_cast<std::size_t>(k), here);
-      steepest = std::max(steepest, row_.cwiseAbs().maxCoeff());
-      for (Index l = 0; l < count; ++l) matrix(k, l) = row_.dot(along.col(l));
-      right(k) = -active.surface(static_cast<std::size_t>(k), here.indicator.data());
-    }
-    if (!projection_.solve(negligible(element) * steepest)) return false;
-    for (Index l = 0; l < count; ++l) x_1 += right(l) * along.col(l);
-    double change = 0.0;
-    for (Index i = 0; i < n_x_; ++i) {
-      double moved = 0.0;
-      for (Index l = 0; l < count; ++l) moved += right(l) * along(i, l);
-      change = std::max(change, std::abs(moved));
-    }
+    const auto moved = move_onto_surfaces(active, element);
+    if (!moved) return false;
+    const double change = *moved;
     const double scale = size(element);
     if (change <= 1e-15 * scale || (change <= 1e-12 * scale && change >= 0.5 * before)) return true;
     if (change <= 1e-9 * scale && before <= 1e-4 * scale) return true;

@@ -8,9 +8,10 @@
 #include <Eigen/Core>
 
 #include "saltus/base/at.hpp"
-#include "saltus/fesd_integrator/element/dense_system_internal.hpp"
 #include "saltus/fesd_integrator/element/element.hpp"
+#include "saltus/fesd_integrator/element/newton_system_internal.hpp"
 #include "saltus/fesd_integrator/element/root_unknowns_internal.hpp"
+#include "saltus/fesd_integrator/element/sliding_matrices_internal.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -30,6 +31,11 @@ class ElementEquations {
   [[nodiscard]] std::optional<double> step(const double* held, Matrix matrix, Element& element);
   /// Whether the matrix of the last step may serve once more.
   [[nodiscard]] bool keeps_matrix() const { return system_.is_factorised() && roots_.empty() && !at_end_; }
+  /// Of large systems factors cost more than steps: they serve as long as steps shrink, also for the next element in
+  /// the same sets if its length is near.
+  [[nodiscard]] bool saves_factors() const { return system_.is_sparse(); }
+  [[nodiscard]] Matrix first_matrix(double h) const;
+  void forget_matrix() { sparse_.sets.clear(); }
   /// Relative change of states that may be no more than the rounding of a step.
   [[nodiscard]] double rounding() const { return roots_.empty() ? 1e-12 : 1e-9; }
   /// Slopes of the stages and the right end; false if that cannot be put on the surfaces.
@@ -63,9 +69,13 @@ class ElementEquations {
   void evaluate(const Element& element, const double* held, Parts parts);
   void evaluate_end(const Element& element, const double* held);
   void assemble_matrix(const Element& element);
+  void assemble_entries(const Element& element);
+  void assemble_surface_entries(const Element& element, Eigen::Index stage);
   void assemble_right(const Element& element);
   [[nodiscard]] double update(Element& element);
   [[nodiscard]] bool project(double t, const double* held, Element& element);
+  [[nodiscard]] std::optional<double> move_onto_surfaces(const ActiveSet& active, Element& element);
+  [[nodiscard]] std::optional<double> move_onto_surfaces_by_entries(const ActiveSet& active, Element& element);
 
   const discretization::StageKernel& kernel_;
   const discretization::ButcherTableau& tableau_;
@@ -74,10 +84,16 @@ class ElementEquations {
   bool one_set_ = true, slides_ = false;
   bool at_end_ = false;  ///< the surfaces of an explicit method vanish at the right end
 
-  DenseSystem system_, projection_;
+  NewtonSystem system_, projection_;
   std::vector<discretization::StageValues> values_;  ///< of the stages; one more for the end
   Eigen::MatrixXd directions_;                       ///< n_x by n_psi per stage: f_alpha of what slides
-  std::vector<Eigen::Index> offset_;                 ///< of the unknowns of each stage
+  /// The same where systems are sparse, and what the matrix of the last step was made for.
+  struct Sparse {
+    std::vector<SparseColumns> directions;
+    std::vector<ActiveSet> sets;
+    double h = 0.0;
+  } sparse_;
+  std::vector<Eigen::Index> offset_;  ///< of the unknowns of each stage
   std::vector<const ActiveSet*> sets_;
   Eigen::VectorXd end_, row_, mu_;
   RootUnknowns roots_;

@@ -5,20 +5,23 @@
 #include <limits>
 
 #include "saltus/base/at.hpp"
-#include "saltus/fesd_integrator/element/dense_system_internal.hpp"
+#include "saltus/fesd_integrator/element/newton_system_internal.hpp"
+#include "saltus/fesd_integrator/element/sliding_matrices_internal.hpp"
 
 namespace saltus::fesd_integrator {
 
 struct ProjectedField::Work {
-  DenseSystem system;
+  explicit Work(const discretization::StageKernel& kernel)
+      : system(kernel.pattern().is_sparse ? NewtonSystem::Storage::sparse : NewtonSystem::Storage::dense,
+               static_cast<Eigen::Index>(kernel.selections())) {}
+  NewtonSystem system;
   std::vector<double> unknown;
 };
 
 ProjectedField::ProjectedField(const discretization::StageKernel& kernel)
-    : kernel_(kernel), work_(std::make_unique<Work>()) {
+    : kernel_(kernel), work_(std::make_unique<Work>(kernel)) {
   kernel.size(values_);
   const std::size_t n = kernel.selections();
-  work_->system.reserve(static_cast<Eigen::Index>(n));
   work_->unknown.resize(n);
   in_no_equation_.resize(n);
 }
@@ -30,6 +33,7 @@ ProjectedField::Sizes ProjectedField::form_equations(const ActiveSet& set) {
   const std::size_t count = sliding.size(), n_x = kernel_.states(), n = kernel_.selections();
   auto& system = work_->system;
   system.reset(static_cast<Eigen::Index>(count));
+  if (system.is_sparse()) return form_entries(set);
   auto matrix = system.matrix();
   auto right = system.right();
   double size = 0.0, gradients = 0.0;
@@ -55,6 +59,31 @@ ProjectedField::Sizes ProjectedField::form_equations(const ActiveSet& set) {
   }
   for (std::size_t l = 0; l < count; ++l) in_no_equation_[l] = matrix.col(static_cast<Eigen::Index>(l)).isZero(0.0);
   return {size, gradients};
+}
+
+/// The same by the entries of gradients and directions. Cost: linear in them.
+ProjectedField::Sizes ProjectedField::form_entries(const ActiveSet& set) {
+  auto& system = work_->system;
+  const SparseRows surfaces = sliding_surfaces(set, values_);
+  const SparseRows matrix = surfaces * SparseRows(sliding_directions(set, values_));
+  Sizes sizes;
+  std::fill(in_no_equation_.begin(), in_no_equation_.end(), true);
+  for (Eigen::Index k = 0; k < surfaces.rows(); ++k) {
+    double rate = set.surface(static_cast<std::size_t>(k), values_.indicator_t.data());
+    sizes.terms = std::max(sizes.terms, std::abs(rate));
+    for (SparseRows::InnerIterator gradient(surfaces, k); gradient; ++gradient) {
+      const double term = gradient.value() * values_.f[at(gradient.col())];
+      rate += term;
+      sizes.gradients = std::max(sizes.gradients, std::abs(gradient.value()));
+      sizes.terms = std::max(sizes.terms, std::abs(term));
+    }
+    system.right()(k) = -rate;
+    for (SparseRows::InnerIterator entry(matrix, k); entry; ++entry) {
+      system.add(k, entry.col(), entry.value());
+      if (entry.value() != 0.0) in_no_equation_[at(entry.col())] = false;
+    }
+  }
+  return sizes;
 }
 
 bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections,
@@ -109,10 +138,10 @@ void ProjectedField::take_undetermined(const ActiveSet& set, const double* known
 }
 
 void ProjectedField::rates(std::vector<double>& rate) const {
-  const std::size_t n_x = kernel_.states(), n = kernel_.selections();
   rate.assign(values_.indicator_t.begin(), values_.indicator_t.end());
-  for (std::size_t i = 0; i < n_x; ++i) {
-    for (std::size_t j = 0; j < n; ++j) rate[j] += values_.indicator_x[i * n + j] * values_.f[i];
+  for (std::size_t i = 0; i < kernel_.states(); ++i) {
+    discretization::visit_column(values_.pattern->indicator_x, values_.indicator_x, i,
+                                 [&](std::size_t j, double gradient) { rate[j] += gradient * values_.f[i]; });
   }
 }
 

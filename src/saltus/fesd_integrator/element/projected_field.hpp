@@ -44,6 +44,7 @@ class ProjectedField {
     double terms = 0.0, gradients = 0.0;
   };
   Sizes form_equations(const ActiveSet& set);
+  Sizes form_entries(const ActiveSet& set);
 
   const discretization::StageKernel& kernel_;
   discretization::StageValues values_;

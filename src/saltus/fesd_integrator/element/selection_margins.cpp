@@ -17,6 +17,23 @@ using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
 }  // namespace
 
+FieldView field_view(const discretization::StageValues& at, DenseMatrices& memory) {
+  FieldView view = field_view(at);
+  if (!at.pattern->is_sparse) return view;
+  const auto fill = [](const discretization::EntryPattern& pattern, const std::vector<double>& values) {
+    MatrixXd matrix = MatrixXd::Zero(pattern.rows, pattern.columns);
+    for (std::size_t j = 0; j < saltus::at(pattern.columns); ++j) {
+      visit_column(pattern, values, j, [&](std::size_t i, double value) { matrix(index(i), index(j)) = value; });
+    }
+    return matrix;
+  };
+  memory.f_selection = fill(at.pattern->f_selection, at.f_selection);
+  memory.indicator_x = fill(at.pattern->indicator_x, at.indicator_x);
+  view.f_selection = memory.f_selection.data();
+  view.indicator_x = memory.indicator_x.data();
+  return view;
+}
+
 bool find_balances(const FieldView& at, ActiveSet& set) {
   const auto& sliding = set.sliding();
   const ConstMatrix indicator_x(at.indicator_x, index(at.n), index(at.n_x));

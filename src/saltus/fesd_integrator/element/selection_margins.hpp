@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/element/active_set.hpp"
 #include "saltus/switching/selections/selection_range.hpp"
 
@@ -20,12 +21,20 @@ struct FieldView {
   std::size_t n_x = 0, n = 0;
 };
 
-/// That of StageValues and of TangentValues.
+/// That of TangentValues, and of StageValues that keep all entries.
 template <class Values>
 [[nodiscard]] FieldView field_view(const Values& at) {
   return {at.f.data(),           at.f_selection.data(), at.indicator_x.data(),
           at.indicator_t.data(), at.f.size(),           at.indicator_t.size()};
 }
+
+/// Dense matrices of StageValues that keep few entries.
+struct DenseMatrices {
+  Eigen::MatrixXd f_selection, indicator_x;
+};
+
+/// That of any StageValues; valid as long as these and `memory` are.
+[[nodiscard]] FieldView field_view(const discretization::StageValues& at, DenseMatrices& memory);
 
 /// Of an active set with balances (ActiveSet::balances): the velocities a + B lambda of a balance are a zonotope, which
 /// holds 0 up to one of its facets [ADR 20]. Each selection of a balance stands for some pairs of facets: its margins

@@ -12,6 +12,26 @@
 #include "saltus/fesd_integrator/run/diagnosis_internal.hpp"
 
 namespace saltus::fesd_integrator {
+namespace {
+
+struct PlaceOfEntry {
+  std::size_t row, column;
+};
+
+/// The first entry by columns that is as asked.
+template <class Test>
+std::optional<PlaceOfEntry> first_entry(const discretization::EntryPattern& pattern, const std::vector<double>& values,
+                                        const Test& is_asked) {
+  std::optional<PlaceOfEntry> first;
+  for (std::size_t column = 0; column < at(pattern.columns) && !first; ++column) {
+    visit_column(pattern, values, column, [&](std::size_t row, double value) {
+      if (!first && is_asked(value)) first = PlaceOfEntry{row, column};
+    });
+  }
+  return first;
+}
+
+}  // namespace
 
 std::string coarse_message(const Facts& facts, const Coarseness::Worst& worst) {
   return fmt::format(
@@ -23,29 +43,26 @@ std::string coarse_message(const Facts& facts, const Coarseness::Worst& worst) {
 std::optional<std::string> steep_derivative(RunContext& context, const Position& position, double nominal) {
   context.kernel.evaluate(position.t(), position.x().data(), position.selections().data(), context.held.data(),
                           context.at_point);
-  const std::size_t n_x = position.x().size();
   // Of a square root: of arguments below 1e-20 of the unit of time.
   constexpr double steep = 1e10;
-  for (std::size_t k = 0; k < n_x; ++k) {
-    for (std::size_t i = 0; i < n_x; ++i) {
-      const double derivative = context.at_point.f_x[k * n_x + i];
-      if (std::abs(derivative) * nominal < steep) continue;
-      return fmt::format(
-          "the right-hand side of {} has no finite derivative by {} at t = {:.10g} (a root of zero?), and elements are "
-          "solved by derivatives; use method = \"event\"",
-          context.facts.state_names[i], context.facts.state_names[k], position.t());
-    }
+  const auto& at_point = context.at_point;
+  const auto by_state = first_entry(at_point.pattern->f_x, at_point.f_x,
+                                    [&](double derivative) { return !(std::abs(derivative) * nominal < steep); });
+  if (by_state) {
+    return fmt::format(
+        "the right-hand side of {} has no finite derivative by {} at t = {:.10g} (a root of zero?), and elements are "
+        "solved by derivatives; use method = \"event\"",
+        context.facts.state_names[by_state->row], context.facts.state_names[by_state->column], position.t());
   }
-  const std::size_t n = context.facts.selections.size();
-  for (std::size_t k = 0; k < n_x; ++k) {
-    for (std::size_t j = 0; j < n; ++j) {
-      // Of any size, as psi may be in any unit.
-      if (std::isfinite(context.at_point.indicator_x[k * n + j])) continue;
-      return fmt::format(
-          "the switching function of {} has no finite derivative by {} at t = {:.10g} (a root of zero?), and elements "
-          "are solved by derivatives; use method = \"event\"",
-          context.facts.selections[j].name, context.facts.state_names[k], position.t());
-    }
+  // Of any size, as psi may be in any unit.
+  const auto of_indicator = first_entry(at_point.pattern->indicator_x, at_point.indicator_x,
+                                        [](double derivative) { return !std::isfinite(derivative); });
+  if (of_indicator) {
+    return fmt::format(
+        "the switching function of {} has no finite derivative by {} at t = {:.10g} (a root of zero?), and elements "
+        "are solved by derivatives; use method = \"event\"",
+        context.facts.selections[of_indicator->row].name, context.facts.state_names[of_indicator->column],
+        position.t());
   }
   return std::nullopt;
 }

@@ -3,15 +3,31 @@
 #include <limits>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/element/dense_system_internal.hpp"
+#include "saltus/fesd_integrator/element/selection_margins.hpp"
 #include "saltus/fesd_integrator/run/rest_projection_internal.hpp"
 
 namespace saltus::fesd_integrator {
 
 RestProjection::RestProjection(const discretization::StageKernel& kernel) : kernel_(kernel) { kernel.size(values_); }
 
+/// Of the surfaces that slide: n_sliding by n_x.
+Eigen::MatrixXd RestProjection::gradients_of(const ActiveSet& set, std::size_t n_x) const {
+  DenseMatrices memory;
+  const double* const indicator_x = field_view(values_, memory).indicator_x;
+  Eigen::MatrixXd gradients(index(set.sliding().size()), index(n_x));
+  for (std::size_t i = 0; i < n_x; ++i) {
+    for (std::size_t k = 0; k < set.sliding().size(); ++k) {
+      gradients(index(k), index(i)) = set.surface(k, indicator_x + i * kernel_.selections());
+    }
+  }
+  return gradients;
+}
+
 std::optional<double> RestProjection::step(const ActiveSet& set, double size, std::vector<double>& x) {
-  const std::size_t n = kernel_.selections(), n_x = x.size(), count = set.sliding().size();
+  const std::size_t n_x = x.size(), count = set.sliding().size();
+  const Eigen::MatrixXd gradients = gradients_of(set, n_x);
   DenseSystem system;
   system.reserve(static_cast<Eigen::Index>(count));
   system.reset(static_cast<Eigen::Index>(count));
@@ -19,9 +35,7 @@ std::optional<double> RestProjection::step(const ActiveSet& set, double size, st
   for (std::size_t k = 0; k < count; ++k) {
     for (std::size_t l = 0; l < count; ++l) {
       for (std::size_t i = 0; i < n_x; ++i) {
-        const double* column = values_.indicator_x.data() + i * n;
-        matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) +=
-            set.surface(k, column) * set.surface(l, column);
+        matrix(index(k), index(l)) += gradients(index(k), index(i)) * gradients(index(l), index(i));
       }
     }
     system.right()(static_cast<Eigen::Index>(k)) = -set.surface(k, values_.indicator.data());
@@ -31,7 +45,7 @@ std::optional<double> RestProjection::step(const ActiveSet& set, double size, st
   for (std::size_t i = 0; i < n_x; ++i) {
     double step = 0.0;
     for (std::size_t k = 0; k < count; ++k) {
-      step += set.surface(k, values_.indicator_x.data() + i * n) * system.right()(static_cast<Eigen::Index>(k));
+      step += gradients(index(k), index(i)) * system.right()(index(k));
     }
     x[i] += step;
     change = std::max(change, std::abs(step));
@@ -55,15 +69,17 @@ bool RestProjection::onto_surfaces(const ActiveSet& set, const Place& place, std
 
 RestProjection::Rate RestProjection::rate_of(std::size_t k, const ActiveSet& set, const Place& place,
                                              const std::vector<double>& x) {
-  const std::size_t n = kernel_.selections(), n_x = x.size();
   kernel_.evaluate(place.t, x.data(), place.selections.data(), place.held, values_);
   Rate rate{set.surface(k, values_.indicator_t.data()), false};
-  for (std::size_t i = 0; i < n_x; ++i) {
-    const double gradient = set.surface(k, values_.indicator_x.data() + i * n);
+  const Eigen::MatrixXd gradients = gradients_of(set, x.size());
+  DenseMatrices memory;
+  const double* const f_selection = field_view(values_, memory).f_selection;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double gradient = gradients(index(k), index(i));
     rate.value += gradient * values_.f[i];
     for (const Sliding& entry : set.sliding()) {
-      double along = values_.f_selection[static_cast<std::size_t>(entry.selection) * n_x + i];
-      if (entry.reference >= 0) along -= values_.f_selection[static_cast<std::size_t>(entry.reference) * n_x + i];
+      double along = f_selection[at(entry.selection) * x.size() + i];
+      if (entry.reference >= 0) along -= f_selection[at(entry.reference) * x.size() + i];
       rate.moved = rate.moved || gradient * along != 0.0;
     }
   }

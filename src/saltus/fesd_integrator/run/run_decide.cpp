@@ -8,12 +8,12 @@
 
 namespace saltus::fesd_integrator {
 
-std::vector<Continuation> Run::continuations(const ActiveSet* before, std::vector<int> at_zero) {
-  return transition_.continuations(
-      {position_.t(), position_.x(), context_.held.data(), before, at_zero, position_.size(), length_.trial()});
+std::vector<Continuation> Run::continuations(const ActiveSet* before, const AtPoint& here) {
+  return transition_.continuations({position_.t(), position_.x(), context_.held.data(), before, here.at_zero,
+                                    position_.size(), length_.trial(), here.ended});
 }
 
-void Run::decide(std::vector<int> at_zero, std::string_view reason, const Before& before, const double* held_before) {
+void Run::decide(const AtPoint& here, std::string_view reason, const Before& before, const double* held_before) {
   const double t = position_.t();
   if (!decisions_.add(t)) {
     if (go_to_limit(LapSeries::Wanted::soon)) return;
@@ -21,7 +21,7 @@ void Run::decide(std::vector<int> at_zero, std::string_view reason, const Before
          fmt::format("the modes at t = {:.10g} change without end; try other simulate.fesd.steps", t));
     return;
   }
-  const auto found = continuations(&before.set, std::move(at_zero));
+  const auto found = continuations(&before.set, here);
   if (found.empty()) {
     if (go_to_limit(LapSeries::Wanted::soon) || stopped_where_not_finite()) return;
     if (can_fall_back()) return decisions_.leave_open();

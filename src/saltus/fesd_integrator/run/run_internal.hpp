@@ -80,14 +80,18 @@ class Run {
   [[nodiscard]] bool left_at_double_root();
 
   // run_decide: the sets that continue the solution.
-  /// `at_zero` as in Decision.
+  /// `at_zero` and `ended` as in Decision.
   struct Before {
     ActiveSet set;
     std::vector<double> selections;
   };
   [[nodiscard]] Before before_here() const { return {position_.set(), position_.selections()}; }
-  void decide(std::vector<int> at_zero, std::string_view reason, const Before& before, const double* held_before);
-  [[nodiscard]] std::vector<Continuation> continuations(const ActiveSet* before, std::vector<int> at_zero);
+  struct AtPoint {
+    std::vector<int> at_zero{};
+    int ended = -1;
+  };
+  void decide(const AtPoint& here, std::string_view reason, const Before& before, const double* held_before);
+  [[nodiscard]] std::vector<Continuation> continuations(const ActiveSet* before, const AtPoint& here);
   void continue_with(const std::vector<Continuation>& found);
   void hold_behind();
   [[nodiscard]] bool stopped_where_not_finite();

@@ -16,9 +16,8 @@ double Run::resolution_of(const Condition& condition, const std::vector<double>&
   for (const std::vector<double>* selections : {&selections_before, &position_.selections()}) {
     context_.kernel.evaluate(position_.t(), position_.x().data(), selections->data(), context_.held.data(), at);
     double sum = at.indicator_t[j];
-    for (std::size_t i = 0; i < position_.x().size(); ++i) {
-      sum += at.indicator_x[i * selections->size() + j] * at.f[i];
-    }
+    visit_row(at.pattern->indicator_x, at.indicator_x, j,
+              [&](std::size_t i, double gradient) { sum += gradient * at.f[i]; });
     rate = std::max(rate, std::abs(sum));
   }
   return rate > 0.0 ? context_.watch.noise(condition) / rate : 0.0;

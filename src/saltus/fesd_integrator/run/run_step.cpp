@@ -131,7 +131,8 @@ void Run::decide_at(StepPart& part, const Located& located) {
   const Before before = before_here();
   std::vector<int> at_zero = position_.on_surfaces();
   if (located.condition.kind == Condition::Kind::side) at_zero.push_back(located.condition.selection);
-  decide(std::move(at_zero), "located by the elements before it", before, context_.held.data());
+  decide({std::move(at_zero), located.condition.selection}, "located by the elements before it", before,
+         context_.held.data());
   rows_.emit_here();
   if (!stopped() && !(position_.set() == before.set)) {
     note_switch(located.condition, before);
@@ -161,7 +162,7 @@ bool Run::left_at_double_root() {
   });
   if (!at_bound) return false;
   const Before before = before_here();
-  decide(position_.on_surfaces(), "a selection has a double root at its bound", before, context_.held.data());
+  decide({position_.on_surfaces()}, "a selection has a double root at its bound", before, context_.held.data());
   rows_.emit_here();
   return stopped() || decisions_.is_open() || !(position_.set() == before.set);
 }

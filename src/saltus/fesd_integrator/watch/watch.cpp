@@ -29,11 +29,12 @@ void indicator_noise(const discretization::StageValues& values, double t, double
   const std::size_t n = values.indicator.size();
   noise.resize(n);
   const std::size_t n_x = values.f.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    double sum = std::abs(values.indicator_t[j] * t) + std::abs(values.indicator[j]);
-    for (std::size_t i = 0; i < n_x; ++i) sum += std::abs(values.indicator_x[i * n + j]) * size;
-    noise[j] = roundings * sum;
+  for (std::size_t j = 0; j < n; ++j) noise[j] = std::abs(values.indicator_t[j] * t) + std::abs(values.indicator[j]);
+  for (std::size_t i = 0; i < n_x; ++i) {
+    visit_column(values.pattern->indicator_x, values.indicator_x, i,
+                 [&](std::size_t j, double gradient) { noise[j] += std::abs(gradient) * size; });
   }
+  for (double& level : noise) level *= roundings;
 }
 
 Watch::Watch(const discretization::StageKernel& kernel, const ElementSolver& solver)
@@ -95,7 +96,8 @@ void Watch::note_margins(const ActiveSet& set, std::size_t point, double* select
   const std::size_t n = kernel_.selections();
   lower_.resize(selections_.size());
   upper_.resize(selections_.size());
-  margins_.evaluate(set, field_view(projected_.values()), selections);
+  DenseMatrices memory;
+  margins_.evaluate(set, field_view(projected_.values(), memory), selections);
   for (const auto& balance : set.balances()) {
     for (const std::size_t k : balance.rows) {
       const int j = set.sliding()[k].selection;
@@ -176,11 +178,13 @@ void Watch::find_errors(const Element& element, const ActiveSet& set, const doub
   slope_ = errors_;
   for (std::size_t k = 0; k < n_x; ++k) {
     const double moved = 0.5 * element.h * errors_[k];
-    for (std::size_t i = 0; i < n_x; ++i) slope_[i] += std::abs(left_.f_x[k * n_x + i]) * moved;
+    visit_column(left_.pattern->f_x, left_.f_x, k,
+                 [&](std::size_t i, double derivative) { slope_[i] += std::abs(derivative) * moved; });
   }
   indicator_errors_.assign(n, 0.0);
   for (std::size_t i = 0; i < n_x; ++i) {
-    for (std::size_t j = 0; j < n; ++j) indicator_errors_[j] += std::abs(left_.indicator_x[i * n + j]) * slope_[i];
+    visit_column(left_.pattern->indicator_x, left_.indicator_x, i,
+                 [&](std::size_t j, double gradient) { indicator_errors_[j] += std::abs(gradient) * slope_[i]; });
   }
 }
 
@@ -219,10 +223,10 @@ double Watch::error_of(const ActiveSet& set, const Condition& condition) const {
 
 /// d psi / dt at the left end. NOTE: left_ is that of the middle later on, where a root is zero at the left end.
 void Watch::find_left_rates() {
-  const std::size_t n = kernel_.selections();
   left_rates_ = left_.indicator_t;
   for (std::size_t i = 0; i < left_.f.size(); ++i) {
-    for (std::size_t j = 0; j < n; ++j) left_rates_[j] += left_.indicator_x[i * n + j] * left_.f[i];
+    visit_column(left_.pattern->indicator_x, left_.indicator_x, i,
+                 [&](std::size_t j, double gradient) { left_rates_[j] += gradient * left_.f[i]; });
   }
 }
 
