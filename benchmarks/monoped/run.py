@@ -4,7 +4,8 @@ python3 benchmarks/monoped/run.py SALTUS [--intervals 30 40 …] [--start rest|r
     [--seconds 600] [--stages KEY=VALUE,… KEY=VALUE,… …]
 
 Every stage begins at the result of the one before (the first one as --start says) and changes what it names, for itself and those behind it:
-goal (metres), friction, a_n, stabilisation (followed down to 0 with sigma), form (step|stewart), sigma (the first one), factor, ground (lowest foot, metres), or key.of.optimize.
+goal (metres), friction, a_n, stabilisation (followed down to 0 with sigma), form (step|stewart), sigma (the first one), factor, steering (direct|l1|linf), first (relaxed|branch), elements, penetration
+(of the foot, metres), correction (metres per second), or key.of.optimize.
 """
 
 import argparse
@@ -32,9 +33,11 @@ def model_text(arguments, intervals, stage, table):
     text = replaced(text, "weight = [0.01, 0.01]", f"weight = [{arguments.rho}, {arguments.rho}]")
     text = replaced(text, '"q_x - 3"', f'"q_x - {goal}"')
     text = replaced(text, "friction = 0.8", f"friction = {stage.get('friction', 0.8)}")
-    text = replaced(text, "foot_z >= -1e-3", f"foot_z >= {stage.get('ground', -1e-3)}")
-    text = replaced(text, "a_n = 200", f"a_n = {stage.get('a_n', 200)}\n"
-                    f"stabilisation = {{ initial = {stage.get('stabilisation', 0)}, final = 0 }}")
+    freezing = {"a_n": stage.get("a_n", 200), "correction": stage.get("correction", 0.1),
+                "penetration": stage.get("penetration", 5e-4)}
+    if "stabilisation" in stage:
+        freezing["stabilisation"] = f"{{ initial = {stage['stabilisation']}, final = 0 }}"
+    text = replaced(text, "a_n = 200", "\n".join(f"{key} = {value}" for key, value in freezing.items()))
     if arguments.terminal_weight == "T/N":
         scale = horizon / intervals
         weights = [1000 * scale] * 4 + [10 * scale] * 4
@@ -50,7 +53,8 @@ def model_text(arguments, intervals, stage, table):
 
 def settings(arguments, stage):
     keys = {"optimize.native": "on", "optimize.closed_loop": "true", "optimize.mpcc.iteration_limit": arguments.iterations}
-    names = {"form": "optimize.reformulation", "sigma": "optimize.mpcc.sigma_initial", "factor": "optimize.mpcc.sigma_factor"}
+    names = {"form": "optimize.reformulation", "sigma": "optimize.mpcc.sigma_initial", "factor": "optimize.mpcc.sigma_factor",
+             "steering": "optimize.mpcc.steering", "first": "optimize.mpcc.first", "elements": "optimize.elements"}
     for key, value in stage.items():
         if key in names or key.startswith("optimize."):
             keys[names.get(key, key)] = value

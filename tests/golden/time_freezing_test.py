@@ -80,6 +80,31 @@ elements = 3
 running_cost = "(u - 1)^2"
 """
 
+# A ball is pushed over a hump, on which it stays.
+HUMP = HEAD + """[states]
+x = -1
+z = -0.25
+vx = 0
+vz = 0
+[controls]
+u = { lower = -20, upper = 20 }
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+force = { vx = "u", vz = -9.81 }
+[[contacts]]
+name = "hump"
+gap = "z + x^2/4"
+[time_freezing]
+a_n = 20
+[optimize]
+horizon = 2
+control_intervals = 5
+elements = 2
+running_cost = "u^2"
+terminal_constraints = ["x == 1"]
+"""
+
 QUARTER = math.pi / 4
 # Of an independent code, but for the ninth digit of M33 (by hand).
 MONOPED = (
@@ -142,6 +167,7 @@ class TimeFreezing(tool.ToolTest):
             (("[simulate]", "[time_freezing]\na_n = 0\n[simulate]"), "a_n is 0"),
             (("[simulate]", "[time_freezing]\nstiffness = -1\n[simulate]"), "stiffness is -1"),
             (("[simulate]", "[time_freezing]\ntransfer = 0\n[simulate]"), "transfer is 0"),
+            (("[simulate]", "[time_freezing]\npenetration = 0\n[simulate]"), "penetration is 0"),
             (("[simulate]", "[time_freezing]\nstabilisation = -1\n[simulate]"), "stabilisation is -1"),
             (("[simulate]", "[time_freezing]\nstabilisation = { initial = -1 }\n[simulate]"), "initial is -1"),
             (("[simulate]", "[time_freezing]\nstabilisation = { initial = 1, final = -1 }\n[simulate]"), "final is -1"),
@@ -189,6 +215,30 @@ class TimeFreezing(tool.ToolTest):
             self.assertLess(result["verification"]["penetration"]["simulation"], 1e-9)
             rows, drawn = result["trajectory"]["x"], result["drawing"]["rows"]
             self.assertEqual(drawn, [[0, x[0] + 0.1, 0.1] for x in rows])
+
+    def test_a_curved_gap_is_held(self):
+        exact = self.optimised(HUMP)
+        self.assertLess(exact["verification"]["penetration"]["solution"], 1e-9)
+        self.assertLess(exact["verification"]["interval_defect"], 1e-3)
+
+    def test_bodies_are_only_so_deep_in_each_other(self):
+        depths = []
+        for limit in ("inf", "1e-5"):
+            self.run_tool("optimize", self.write("m.toml", HUMP.replace("a_n", f"correction = 0\npenetration = {limit}\na_n")),
+                          "--quiet", "--out", "r.json")
+            result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+            depths.append(result["verification"]["penetration"]["solution"])
+        self.assertGreater(depths[0], 1e-4)
+        self.assertLess(depths[1], 1.1e-5)
+
+    def test_a_solution_is_followed_to_another_problem(self):
+        self.optimised(HUMP)
+        near = self.write("near.toml", HUMP.replace("x == 1", "x == 0.9"))
+        self.run_tool("optimize", near, "--start", "r.json", "--set", "optimize.mpcc.first=branch", "--quiet", "--out",
+                      "s.json", code=0)
+        result = json.loads((self.folder / "s.json").read_text(encoding="utf-8"))
+        self.assertEqual({step["phase"] for step in result["homotopy"]}, {"branch"})
+        self.assertAlmostEqual(result["final"]["x"][0], 0.9, delta=1e-8)
 
     def test_the_closed_loop_goes_through_an_impact(self):
         result = self.optimised(LANDING.replace("horizon", "closed_loop = true\nhorizon"))

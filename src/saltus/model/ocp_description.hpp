@@ -89,6 +89,8 @@ struct ClockDescription {
   expression::NodePtr a_n, stiffness, stabilisation, transfer;  ///< null: the default
   /// { initial = …, final = … }: with what an optimisation begins, `stabilisation` is where it ends; null: it is fixed.
   expression::NodePtr stabilisation_initial;
+  expression::NodePtr correction;   ///< of held gaps: a speed; null: the default
+  expression::NodePtr penetration;  ///< how deep an optimum may be in a contact; null: the default
   SourceLocation location;
 };
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/solver/crossover/sides.hpp"
 #include "saltus/solver/run_internal.hpp"
 
 namespace saltus::solver {
@@ -13,6 +14,9 @@ namespace {
 
 using homotopy::Steering;
 using result::Termination;
+
+/// Of the branch problem of a start.
+constexpr int branch_iterations = 1000;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
@@ -78,6 +82,17 @@ PathEnd follow_with_restarts(Run& run, const Start& start) {
   return follow_relaxed(run, attempt);
 }
 
+/// The branch of the start's sides, if it has a solution.
+bool solve_first_branch(Run& run, const Eigen::VectorXd& w) {
+  Eigen::VectorXd c(run.problem.rows());
+  run.problem.functions(w, c);
+  auto branch = run.solve_branch(crossover::smaller_sides(run.problem, run.groups, c), w, branch_iterations,
+                                 "sides of the start");
+  if (!branch.is_feasible(run.options.tolerance) || !std::isfinite(branch.objective)) return false;
+  run.branch = std::move(branch);
+  return true;
+}
+
 bool has_small_residuals(const result::Certificate& certificate, double tolerance) {
   return certificate.primal_infeasibility <= tolerance && certificate.complementarity_residual <= tolerance &&
          certificate.stationarity <= tolerance;
@@ -134,7 +149,8 @@ Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpc
 
   Run run(problem, nlp, lpcc, options);
   run.relaxed.point.w = from.w;
-  const PathEnd end = follow_with_restarts(run, from);
+  const bool is_on_branch = options.first == FirstProblem::branch && solve_first_branch(run, from.w);
+  const PathEnd end = is_on_branch ? PathEnd::crossed_over : follow_with_restarts(run, from);
   if (options.crossover && end != PathEnd::crossed_over && end != PathEnd::stopped) rescue(run);
   Solution& solution = run.solution;
   if (run.branch) {

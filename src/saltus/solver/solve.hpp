@@ -16,15 +16,22 @@
 
 namespace saltus::solver {
 
+/// The problem that a solution begins with.
+enum class FirstProblem {
+  relaxed,  ///< that of the first sigma
+  branch,   ///< that of the sides of the start, which are right where it is a solution of a similar problem
+};
+
 /// [optimize.mpcc] (docs/options.md).
 struct SolveOptions {
   homotopy::Relaxation relaxation = homotopy::Relaxation::scholtes;
   homotopy::Steering steering = homotopy::Steering::direct;
   homotopy::Schedule schedule;
   homotopy::WarmStart warm_start = homotopy::WarmStart::primal;
+  FirstProblem first = FirstProblem::relaxed;
   bool crossover = true;
-  double tolerance = 1e-8;      ///< of the three residuals
-  int iteration_limit = 3000;   ///< of all relaxed and branch problems together
+  double tolerance = 1e-8;           ///< of the three residuals
+  int iteration_limit = 3000;        ///< of all relaxed and branch problems together
   std::optional<double> time_limit;  ///< seconds
   /// Ends everything at the next iteration of the solver (stopped_by_user).
   std::function<bool()> is_interrupted = [] { return false; };

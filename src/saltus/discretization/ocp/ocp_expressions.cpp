@@ -4,6 +4,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/ocp/ocp_kernel_internal.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 
 namespace saltus::discretization {
 namespace {
@@ -178,7 +179,8 @@ class OcpExpressionBuilder {
     return count;
   }
 
-  /// Between the ends of elements: path constraints, bounds of states that are no variables, complementarities.
+  /// Between the ends of elements: path constraints, bounds of states that are no variables, complementarities; at the
+  /// ends, too: gaps.
   void add_stage_rows() {
     const int stages = kernel_.tableau.stages();
     const bool ends_at_stage = kernel_.tableau.ends_at_last_stage();
@@ -200,6 +202,19 @@ class OcpExpressionBuilder {
         made_.stage_rows.G_signs.push_back(mpcc::Sign::constrained);
         made_.stage_rows.H_signs.push_back(mpcc::Sign::constrained);
       }
+      add_gap_rows(point);
+    }
+    if (!ends_at_stage) add_gap_rows(made_.element.end);
+  }
+
+  /// Persistent contact is held by velocities, so that gaps drift, which an optimiser exploits.
+  void add_gap_rows(const ElementPoint& point) {
+    const auto* freezing = ocp_.system.freezing ? &*ocp_.system.freezing : nullptr;
+    if (freezing == nullptr || !std::isfinite(freezing->penetration)) return;
+    int number = static_cast<int>(ocp_.path.size());
+    for (const auto& contact : freezing->contacts) {
+      made_.stage_rows.equation(output_at(point, contact.gap_output));
+      kernel_.stage_bounds.push_back({number++, -freezing->penetration, inf, -1});
     }
   }
 

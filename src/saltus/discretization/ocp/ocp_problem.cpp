@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
@@ -16,6 +18,10 @@ using mpcc::VectorView;
 OcpProblem::Implementation::Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp)
     : structure(std::move(made)), time_weight(ocp.time_weight), state_names(ocp.system.state_names) {
   for (const auto& constraint : ocp.path) path_names.push_back(constraint.name);
+  if (ocp.system.freezing) {
+    for (const auto& contact : ocp.system.freezing->contacts)
+      path_names.push_back(fmt::format("gap({})", contact.name));
+  }
   for (const auto& constraint : ocp.terminal) terminal_names.push_back(constraint.name);
   const auto& options = structure->kernel.options;
   if (options.step_equilibration == StepEquilibration::heuristic_mean) {

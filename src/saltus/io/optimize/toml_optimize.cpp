@@ -1,5 +1,6 @@
 // [optimize] and [time_freezing].
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -245,19 +246,25 @@ void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
   }
 }
 
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
 /// A key of [time_freezing] that is a number or an expression of parameters; nothing if it is no such key.
 expression::NodePtr* freezing_number(model::ClockDescription& clock, const std::string& key) {
-  for (const auto& [name, node] : {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness},
-                                   std::pair{"transfer", &clock.transfer}}) {
+  for (const auto& [name, node] :
+       {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness}, std::pair{"transfer", &clock.transfer},
+        std::pair{"penetration", &clock.penetration}, std::pair{"correction", &clock.correction}}) {
     if (key == name) return node;
   }
   return nullptr;
 }
 
 void read_freezing_number(TomlReader& reader, const TomlEntry& field, expression::NodePtr& node) {
-  node = reader.expression(field.value);
+  const bool may_be_infinite = field.key == "penetration";
+  node = may_be_infinite ? reader.bound(field.value) : reader.expression(field.value);
+  if (!node) node = expression::number(unlimited, field.value.location);
   const auto value = node ? constant_value(*node) : std::nullopt;
-  const bool may_vanish = field.key == "stabilisation" || field.key == "initial" || field.key == "final";
+  const bool may_vanish =
+      field.key == "stabilisation" || field.key == "initial" || field.key == "final" || field.key == "correction";
   if (!value || *value > 0.0 || (may_vanish && *value == 0.0)) return;
   reader.fail(with_context({ErrorCode::invalid_model,
                             fmt::format("{} is {}", field.key, *value),
@@ -307,7 +314,8 @@ void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& m
     } else if (field.key == "eps_t") {
       reader.not_available(field.location, fmt::format("{} of [time_freezing]", field.key));
     } else {
-      reader.unknown_key(field, {"clock", "speed", "a_n", "stiffness", "stabilisation", "eps_t", "transfer"});
+      reader.unknown_key(field, {"clock", "speed", "a_n", "stiffness", "stabilisation", "eps_t", "transfer",
+                                 "penetration", "correction"});
     }
   }
   model.description.clock = std::move(clock);

@@ -19,16 +19,20 @@ std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& sc
     const expression::NodePtr& node;
     double& number;
     bool may_vanish;
+    bool may_be_infinite = false;
   };
   for (const auto& key :
        {Key{"a_n", stated.a_n, numbers.a_n, false}, Key{"stiffness", stated.stiffness, numbers.stiffness, false},
         Key{"stabilisation", stated.stabilisation, numbers.stabilisation, true},
         Key{"stabilisation.initial", stated.stabilisation_initial, numbers.stabilisation_initial, true},
-        Key{"transfer", stated.transfer, numbers.transfer, false}}) {
+        Key{"transfer", stated.transfer, numbers.transfer, false},
+        Key{"correction", stated.correction, numbers.correction, true},
+        Key{"penetration", stated.penetration, numbers.penetration, false, true}}) {
     if (!key.node) continue;
     const auto value = scope.value(*key.node, Reach::everything, key.name);
     if (!value) return with_context(value.error(), "in [time_freezing]");
-    if (!std::isfinite(*value) || !(*value > 0.0 || (key.may_vanish && *value == 0.0))) {
+    const bool is_number = key.may_be_infinite ? !std::isnan(*value) : std::isfinite(*value);
+    if (!is_number || !(*value > 0.0 || (key.may_vanish && *value == 0.0))) {
       return freezing_error(key.node->location, fmt::format("{} is {}", key.name, *value),
                             key.may_vanish ? "it is a number that is 0 or positive" : "it is a positive number");
     }
@@ -67,6 +71,7 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
   if (description.clock) {
     if (auto error = take_numbers(*description.clock, scope, plan.numbers)) return error;
   }
+  plan.made.penetration = plan.numbers.penetration;
   declare_stabilisation(description, recognition, statement, plan);
   for (const auto& entry : description.hysteresis) {
     plan.made.hysteresis.push_back({entry.name, declare_state(recognition, statement, entry.name, entry.location)});

@@ -107,7 +107,29 @@ class ContactFreezing {
     if (!plan_.stabilisation.is_zero()) {
       add_to(system_.positions, -plan_.stabilisation * response(i) * system_.gap(i) * (1.0 - *gap) * (1.0 - *rate));
     }
+    if (plan_.purpose == FrozenFor::optimisation && plan_.numbers.correction > 0.0 && is_curved(system_.gap(i))) {
+      if (auto error = hold(k, *gap)) return error;
+    }
     add_outputs(k, normal, tangential);
+    return std::nullopt;
+  }
+
+  /// Whether a scheme that holds its rate at the stages does not hold the gap.
+  [[nodiscard]] bool is_curved(const SX& gap) const {
+    SX moving(0, 1);
+    for (const auto& state : statement_.states) moving = SX::vertcat({moving, SX(state.symbol)});
+    return SX::depends_on(SX::jacobian(gap, moving), moving);
+  }
+
+  /// Holds a gap of 0 as it is: the difference of two selections of its surface is a speed of either sign there and 0
+  /// elsewhere. In exact motions it is 0 there, too, so that they stay what they are.
+  std::optional<Error> hold(std::size_t k, const SX& gap) {
+    const auto i = static_cast<casadi_int>(k);
+    const auto other =
+        recognition_.another_step(SX::densify(system_.gap(i)).scalar(), plan_.made.contacts[k].name + ".held");
+    if (!other) return other.error();
+    const SX inverse_mass = SX::mtimes(system_.rows(i, casadi::Slice()), response(i));
+    add_to(system_.positions, plan_.numbers.correction * (gap - *other) * response(i) / inverse_mass);
     return std::nullopt;
   }
 

@@ -19,6 +19,8 @@ enum class FrozenFor { simulation, optimisation };
 struct FreezingNumbers {
   double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
   double stabilisation_initial = 0.0;
+  double penetration = 5e-4;
+  double correction = 0.1;  ///< largest speed with which a held gap is corrected
 };
 
 /// A rate that is added to that of a state.

@@ -42,6 +42,7 @@ struct TimeFreezing {
   std::vector<FrozenHysteresis> hysteresis;
   int stabilisation = -1;              ///< parameter of the system: kappa, if it is followed down; -1: a constant
   double stabilisation_initial = 0.0;  ///< its value at the first relaxed problem; at last it has its parameter's
+  double penetration = 0.0;            ///< gaps of an optimum are at least -penetration; infinite: whatever they are
 };
 
 /// What a system with contacts or hysteresis is when it is frozen, or why it cannot be.

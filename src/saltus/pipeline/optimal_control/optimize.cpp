@@ -155,12 +155,10 @@ void judge(const result::Verification& verification, double tolerance, result::S
 std::optional<solver::Start> same_structure(const discretization::OcpProblem& problem, const OptimizeOptions& options) {
   if (!options.start_from || !options.start_from->optimization) return std::nullopt;
   const auto& from = *options.start_from->optimization;
-  if (static_cast<int>(from.primal.size()) != problem.variables() ||
-      static_cast<int>(from.dual_rows.size()) != problem.constraints()) {
-    return std::nullopt;
-  }
+  if (static_cast<int>(from.primal.size()) != problem.variables()) return std::nullopt;
   solver::Start start;
   start.w = vector_of(from.primal);
+  if (static_cast<int>(from.dual_rows.size()) != problem.constraints()) return start;
   start.multipliers.rows = vector_of(from.dual_rows);
   start.multipliers.lower = vector_of(from.dual_lower);
   start.multipliers.upper = vector_of(from.dual_upper);

@@ -12,6 +12,7 @@
 namespace saltus::pipeline {
 namespace {
 
+using solver::FirstProblem;
 using solver::SolveOptions;
 using solver::homotopy::Relaxation;
 using solver::homotopy::Steering;
@@ -21,9 +22,11 @@ constexpr auto sigma_initial_of = [](auto& o) -> auto& { return o.schedule.sigma
 constexpr auto sigma_final_of = [](auto& o) -> auto& { return o.schedule.sigma_final; };
 constexpr auto tolerance_of = [](auto& o) -> auto& { return o.tolerance; };
 constexpr auto steering_of = [](auto& o) -> auto& { return o.steering; };
+constexpr auto first_of = [](auto& o) -> auto& { return o.first; };
 constexpr auto warm_start_of = [](auto& o) -> auto& { return o.warm_start; };
 
 constexpr Choices<Steering, 3> steerings{{"direct", "l1", "linf"}, {Steering::direct, Steering::l1, Steering::linf}};
+constexpr Choices<FirstProblem, 2> first_problems{{"relaxed", "branch"}, {FirstProblem::relaxed, FirstProblem::branch}};
 constexpr Choices<WarmStart, 2> warm_starts{{"primal", "primal_dual"}, {WarmStart::primal, WarmStart::primal_dual}};
 
 /// The names of the relaxations stand beside these themselves.
@@ -99,6 +102,12 @@ constexpr std::array fields_of_mpcc{
     MpccField{"warm_start", "primal, primal_dual", "What the next relaxed problem starts with.",
               set_choice<warm_start_of, warm_starts, SolveOptions>,
               record_choice<warm_start_of, warm_starts, SolveOptions>},
+    MpccField{"first", "relaxed, branch",
+              "The problem that is solved first: the relaxed one of sigma_initial, or that of the sides of the start, "
+              "for a start "
+              "at a result of a similar problem.",
+              set_choice<first_of, first_problems, SolveOptions>,
+              record_choice<first_of, first_problems, SolveOptions>},
     MpccField{"crossover", "true, false",
               "Problems with one side of every pair fixed behind the relaxed ones: exact zeros, and a certificate.",
               set_crossover, record_crossover},
