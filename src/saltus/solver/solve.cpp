@@ -16,7 +16,7 @@ using homotopy::Steering;
 using result::Termination;
 
 /// Of the branch problem of a start.
-constexpr int branch_iterations = 1000;
+constexpr int first_branch_iterations = 1000;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
@@ -86,7 +86,7 @@ PathEnd follow_with_restarts(Run& run, const Start& start) {
 bool solve_first_branch(Run& run, const Eigen::VectorXd& w) {
   Eigen::VectorXd c(run.problem.rows());
   run.problem.functions(w, c);
-  auto branch = run.solve_branch(crossover::smaller_sides(run.problem, run.groups, c), w, branch_iterations,
+  auto branch = run.solve_branch(crossover::smaller_sides(run.problem, run.groups, c), w, first_branch_iterations,
                                  "sides of the start");
   if (!branch.is_feasible(run.options.tolerance) || !std::isfinite(branch.objective)) return false;
   run.branch = std::move(branch);
