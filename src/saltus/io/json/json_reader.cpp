@@ -1,17 +1,29 @@
 // JSON -> Result.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+
+#include <fmt/format.h>
 
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_optimization_internal.hpp"
 #include "saltus/io/json/json_parts_internal.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/json/json_shapes_internal.hpp"
+#include "saltus/io/sha256.hpp"
 
 namespace saltus::io {
 namespace {
 
 constexpr std::string_view format_name = "saltus-result/1";
+
+/// Refuses what was edited.
+void check_text(JsonReader& reader, const std::string& path, const std::string& text, const std::string& fingerprint,
+                const std::string& what) {
+  if (text.empty() || sha256(text) == fingerprint) return;
+  reader.fail(path + "/text",
+              fmt::format("{} is not the one with which it was computed: its sha256 was {}", what, fingerprint));
+}
 
 result::NamedFile read_named_file(JsonReader& reader, const Json& json, const std::string& path) {
   result::NamedFile file;
@@ -53,6 +65,7 @@ void read_model(JsonReader& reader, const Json& json, const std::string& path, r
   }
   reader.read_if_there(json, path, "file", model.file);
   reader.read_if_there(json, path, "text", model.text);
+  check_text(reader, path, model.text, model.sha256, "the model in this result");
   reader.read_if_there(json, path, "set", model.settings);
   if (json.contains("files")) read_list(reader, json["files"], path + "/files", model.files, read_named_file);
 }
@@ -121,6 +134,14 @@ void read_trajectory(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_if_there(json, path, "regions", trajectory.regions);
   reader.read_if_there(json, path, "theta", trajectory.theta);
   reader.read_if_there(json, path, "contact_modes", trajectory.contact_modes);
+  constexpr double rounded = 1e-9;  // of physical time where it is a state
+  for (std::size_t i = 1; i < trajectory.t.size(); ++i) {
+    const double before = trajectory.t[i - 1], t = trajectory.t[i];
+    if (!(t < before - rounded * (1.0 + std::abs(before)))) continue;
+    reader.fail(fmt::format("{}/t/{}", path, i),
+                fmt::format("expected a time that is not before {}, found {}", before, t));
+    return;
+  }
 }
 
 result::AffineSurface read_affine(JsonReader& reader, const Json& json, const std::string& path) {
