@@ -29,6 +29,24 @@ class Diff(tool.ToolTest):
         self.assertRegex(out, r"(?m)^first event that differs: event 1: ")
         self.assertRegex(out, r"(?m)^different to rtol")
 
+    def test_what_differs_between_the_ends_is_seen(self):
+        self.write("wave.toml", "[model]\nname = \"wave\"\n[parameters]\na = 1\n[states]\nx = 1\n[dynamics]\nx = \"a*cos(t)\"\n"
+                                "[simulate]\nuntil = 6.283185307179586\n")
+        a = self.run_model("a.json", "wave.toml")
+        b = self.run_model("b.json", "wave.toml", "--set", "a=3")
+        self.assertRegex(self.run_tool("diff", a, b, code=1)[0], r"(?m)^on the way\n  x at t = ")
+        close = self.run_model("close.json", "wave.toml", "--rtol", "1e-11", "--integrator", "dop853")
+        self.assertRegex(self.run_tool("diff", a, close, code=0)[0], r"[1-9]\d* between rows")
+        slip = self.run_model("slip.json", "bouncing-ball", "--set", "simulate.output=auto")
+        again = self.run_model("again.json", "bouncing-ball", "--set", "simulate.output=auto", "--integrator", "taylor")
+        self.run_tool("diff", slip, again, code=0)
+
+    def test_results_of_other_equations_are_refused(self):
+        a = self.run_model("a.json", "stick-slip")
+        b = self.run_model("b.json", "stick-slip", "--set", "dynamics.q=2*v")
+        for command, first, second in (("diff", a, b), ("report", b, a)):
+            self.assertIn("q' = v and q' = 2*v", self.run_tool(command, first, second, code=2)[1])
+
     def test_values_near_zero_are_compared_with_their_range(self):
         self.write("m.toml", "[model]\nname = \"m\"\n[states]\nx = 1\nv = 0\nsmall = 1e-7\n[dynamics]\nx = \"v\"\nv = \"-x\"\n"
                              "small = \"-small\"\n[simulate]\nuntil = 1.5707963267948966\natol = 1e-14\n")

@@ -42,9 +42,12 @@ std::string difference_text(const result::Difference& difference, const DiffArgu
   const auto states = difference.common_states == states_of_model
                           ? ""
                           : fmt::format(" of {} of {} states", difference.common_states, states_of_model);
-  return text + fmt::format("{} to rtol {:g}, {} ({} events, {} common times{})\n",
+  const auto between = difference.between_times == 0
+                           ? ""
+                           : fmt::format(", {} between rows to 0.2 % of the range", difference.between_times);
+  return text + fmt::format("{} to rtol {:g}, {} ({} events, {} common times{}{})\n",
                             difference.is_none() ? "the same" : "different", rtol, absolute, difference.events_a,
-                            difference.common_times, states);
+                            difference.common_times, between, states);
 }
 
 ExitCode run_diff(const DiffArguments& arguments) {
@@ -75,7 +78,8 @@ Command add_diff(CLI::App& app) {
       ->type_name("A")
       ->check(CLI::NonNegativeNumber);
   command->footer(
-      "Compares end states, events, and states at the times that both have. Exit code 0: the same, 1: different, 2: "
+      "Compares end states, events, and states at the times that both have; of output = \"auto\" between them, too. "
+      "Exit code 0: the same, 1: different, 2: "
       "results of\ndifferent models, or none.\n"
       "\nExample:\n  saltus simulate stick-slip --out a.json && saltus simulate stick-slip --rtol 1e-10 --out b.json "
       "&& "

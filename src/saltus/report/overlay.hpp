@@ -14,8 +14,8 @@ struct Overlay {
   result::Result result;
 };
 
-/// Whether `other` is of the same model as `first`: the name of the model and the names of its states agree (parameters,
-/// methods, outputs and text may differ).
+/// Whether `other` is of the same model as `first`: the name of the model, its equations and the names of its states agree
+/// (parameters, methods and outputs may differ).
 [[nodiscard]] Expected<void> check_overlay(const result::Result& first, const Overlay& other);
 
 }  // namespace saltus::report

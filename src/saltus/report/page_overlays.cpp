@@ -8,6 +8,7 @@
 #include "saltus/report/page_data_internal.hpp"
 #include "saltus/report/page_overlays_internal.hpp"
 #include "saltus/report/thinning_internal.hpp"
+#include "saltus/result/difference.hpp"
 
 namespace saltus::report {
 namespace {
@@ -64,6 +65,9 @@ Expected<void> check_overlay(const result::Result& first, const Overlay& other) 
   if (first.states != other.result.states) {
     return refuse(fmt::format("{} has the states {}, the first one has {}", other.label,
                               fmt::join(other.result.states, ", "), fmt::join(first.states, ", ")));
+  }
+  if (const auto equations = result::differing_equation(other.result, first); !equations.empty()) {
+    return refuse(fmt::format("{} has another equation than the first one: {}", other.label, equations));
   }
   return {};
 }

@@ -38,21 +38,24 @@ std::string quoted_list(const std::vector<std::string>& names) {
 }
 
 std::optional<Error> different_models(const Result& a, const Result& b) {
-  const auto refuse = [](const std::string& what, const std::string& first, const std::string& second) {
+  const auto refuse = [](const std::string& what, const std::string& difference) {
     return Error{ErrorCode::invalid_model,
-                 "these are results of different models: " + what + " " + first + " and " + second,
+                 "these are results of different models: " + what + " " + difference,
                  "compare two runs of one model",
                  {},
                  {}};
   };
-  if (a.model.name != b.model.name) return refuse("they are named", "'" + a.model.name + "'", "'" + b.model.name + "'");
+  if (a.model.name != b.model.name) {
+    return refuse("they are named", "'" + a.model.name + "' and '" + b.model.name + "'");
+  }
   const std::pair<const char*, std::vector<std::string> Result::*> lists[] = {
       {"their states are", &Result::states},
       {"their switching functions are", &Result::switching_functions},
       {"their outputs are", &Result::outputs}};
   for (const auto& [what, names] : lists) {
-    if (a.*names != b.*names) return refuse(what, quoted_list(a.*names), quoted_list(b.*names));
+    if (a.*names != b.*names) return refuse(what, quoted_list(a.*names) + " and " + quoted_list(b.*names));
   }
+  if (const auto equations = differing_equation(a, b); !equations.empty()) return refuse("they say", equations);
   return std::nullopt;
 }
 
@@ -86,13 +89,20 @@ class AllowedDifferences {
       }
     }
     time = of(t);
-    for (const Range& range : states) of_states.push_back(of(range));
+    for (const Range& range : states) {
+      of_states.push_back(of(range));
+      of_lines.push_back(of_states.back());
+      of_lines.back().atol += line_error * range.width();
+    }
     for (const Range& range : outputs) of_outputs.push_back(of(range));
   }
   Allowed time{};
   std::vector<Allowed> of_states{}, of_outputs{};
+  std::vector<Allowed> of_lines{};  ///< of states between rows
 
  private:
+  /// The lines of "auto" keep to a thousandth of the range.
+  static constexpr double line_error = 2e-3;
   static double computed_with(const Result& result) {
     for (const auto& [name, value] : result.options) {
       if (name != "simulate.atol") continue;
@@ -124,14 +134,63 @@ void compare_list(const std::vector<std::string>& names, const std::vector<doubl
   }
 }
 
-/// A state that the rows of both have.
+/// A state that the rows of both have, and where it differs most.
 struct CommonColumn {
   std::string name;
   std::size_t of_a, of_b;
-  Allowed allowed;
+  Allowed allowed, of_line;
   double worst = 1.0;
   std::optional<NumberDifference> found{};
+
+  void compare(double t, double in_a, double in_b, const Allowed& tolerances) {
+    const double ratio = excess(in_a, in_b, tolerances);
+    if (ratio <= worst) return;
+    worst = ratio;
+    found = {name + " at t = " + number_text(t), in_a, in_b};
+  }
 };
+
+bool has_true_lines(const Result& result) {
+  for (const auto& [name, value] : result.options) {
+    const auto* word = std::get_if<std::string>(&value);
+    if (name == "simulate.output" && word != nullptr && *word == "auto") return true;
+  }
+  return false;
+}
+
+/// Ascending times of the events of both.
+std::vector<double> event_times(const Result& a, const Result& b) {
+  std::vector<double> times;
+  for (const Result* one : {&a, &b}) {
+    for (std::size_t i = 0; i < one->events.size(); ++i) times.push_back(one->events.t(i));
+  }
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+/// The rows of one against the lines between those of the other.
+void compare_lines(const Result& rows, const Result& lines, bool swapped, const std::vector<double>& events,
+                   const Allowed& time, std::vector<CommonColumn>& columns, Difference& difference) {
+  const auto& t = lines.trajectory.t;
+  for (std::size_t i = 0; i < rows.trajectory.t.size(); ++i) {
+    const double when = rows.trajectory.t[i];
+    const auto behind = std::lower_bound(t.begin(), t.end(), when);
+    if (behind == t.begin() || behind == t.end() || *behind == when) continue;
+    const double near = time.atol + time.rtol * std::abs(when);
+    const auto event = std::lower_bound(events.begin(), events.end(), when - near);
+    if (event != events.end() && *event <= when + near) continue;
+    ++difference.between_times;
+    const auto j = static_cast<std::size_t>(behind - t.begin());
+    const double part = (when - t[j - 1]) / (t[j] - t[j - 1]);
+    for (auto& column : columns) {
+      const auto of_row = swapped ? column.of_b : column.of_a, of_line = swapped ? column.of_a : column.of_b;
+      const double on_row = rows.trajectory.x[i][of_row];
+      const double before = lines.trajectory.x[j - 1][of_line];
+      const double on_line = before + part * (lines.trajectory.x[j][of_line] - before);
+      column.compare(when, swapped ? on_line : on_row, swapped ? on_row : on_line, column.of_line);
+    }
+  }
+}
 
 void compare_parameters(const Result& a, const Result& b, Difference& difference) {
   for (const auto& [name, value] : a.model.parameters) {
@@ -142,12 +201,12 @@ void compare_parameters(const Result& a, const Result& b, Difference& difference
 }
 
 /// The states of two lists of rows at times that both have; rows of one time (at events) in their order.
-void compare_rows(const Result& a, const Result& b, const std::vector<Allowed>& allowed, Difference& difference) {
+void compare_rows(const Result& a, const Result& b, const AllowedDifferences& allowed, Difference& difference) {
   const auto& [first, second] = std::pair<const Trajectory&, const Trajectory&>(a.trajectory, b.trajectory);
   std::vector<CommonColumn> columns;
   for (std::size_t k = 0; k < a.states.size(); ++k) {
     const auto of_a = column_of_state(a, k), of_b = column_of_state(b, k);
-    if (of_a && of_b) columns.push_back({a.states[k], *of_a, *of_b, allowed[k]});
+    if (of_a && of_b) columns.push_back({a.states[k], *of_a, *of_b, allowed.of_states[k], allowed.of_lines[k]});
   }
   difference.common_states = columns.size();
   std::size_t i = 0, j = 0;
@@ -158,13 +217,14 @@ void compare_rows(const Result& a, const Result& b, const std::vector<Allowed>& 
     }
     ++difference.common_times;
     for (auto& column : columns) {
-      const double in_a = first.x[i][column.of_a], in_b = second.x[j][column.of_b];
-      const double ratio = excess(in_a, in_b, column.allowed);
-      if (ratio <= column.worst) continue;
-      column.worst = ratio;
-      column.found = {column.name + " at t = " + number_text(first.t[i]), in_a, in_b};
+      column.compare(first.t[i], first.x[i][column.of_a], second.x[j][column.of_b], column.allowed);
     }
     ++i, ++j;
+  }
+  if (has_true_lines(a) && has_true_lines(b)) {
+    const auto events = event_times(a, b);
+    compare_lines(a, b, false, events, allowed.time, columns, difference);
+    compare_lines(b, a, true, events, allowed.time, columns, difference);
   }
   for (auto& column : columns) {
     if (column.found) difference.rows.push_back(std::move(*column.found));
@@ -196,6 +256,18 @@ std::string event_difference(const Event& a, const Event& b, const std::vector<s
 
 }  // namespace
 
+std::string differing_equation(const Result& a, const Result& b) {
+  const auto& [first, second] = std::pair<const std::vector<StatedEquation>&, const std::vector<StatedEquation>&>(
+      a.model.equations, b.model.equations);
+  const auto text = [](const StatedEquation& equation) {
+    return equation.left + " = " + equation.right + (equation.where.empty() ? "" : " (" + equation.where + ")");
+  };
+  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
+    if (text(first[i]) != text(second[i])) return text(first[i]) + " and " + text(second[i]);
+  }
+  return "";
+}
+
 Expected<Difference> difference(const Result& a, const Result& b, const Tolerances& tolerances) {
   if (auto error = different_models(a, b)) return tl::unexpected(*error);
   Difference difference;
@@ -207,7 +279,7 @@ Expected<Difference> difference(const Result& a, const Result& b, const Toleranc
   compare_list({"t"}, {a.final.t}, {b.final.t}, {allowed.time}, difference.end_state);
   compare_list(a.states, a.final.x, b.final.x, allowed.of_states, difference.end_state);
   compare_list(a.outputs, a.final.outputs, b.final.outputs, allowed.of_outputs, difference.end_state);
-  compare_rows(a, b, allowed.of_states, difference);
+  compare_rows(a, b, allowed, difference);
   difference.events_a = a.events.size();
   difference.events_b = b.events.size();
   for (std::size_t i = 0; i < std::min(a.events.size(), b.events.size()) && difference.first_event.empty(); ++i) {

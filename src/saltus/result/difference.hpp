@@ -30,6 +30,8 @@ struct Difference {
   std::vector<NumberDifference> end_state;   ///< states, then outputs, that differ at the end, and the end time
   std::vector<NumberDifference> rows;        ///< states that differ at a time that both have, with the worst time
   std::size_t common_times = 0;
+  std::size_t between_times =
+      0;  ///< at which one has a row and the other a line between two, true to a part of the range
   std::size_t common_states = 0;  ///< that the rows of both have
   std::size_t events_a = 0, events_b = 0;
   std::string first_event;  ///< what differs in the first event that does; empty if none
@@ -39,7 +41,13 @@ struct Difference {
   }
 };
 
-/// Compares end states, events (kind, name, surfaces, time, state) and the rows at common times.
+/// Says the first equation that two results state differently ("v' = -9.81 and v' = -8.81"); empty if there is none, or
+/// if one of them states none.
+[[nodiscard]] std::string differing_equation(const Result& a, const Result& b);
+
+/// Compares end states, events (kind, name, surfaces, time, state) and the rows at common times; rows of
+/// `output = "auto"` also at times that one of both has, but not beside events, with the lines between the other's
+/// rows.
 /// @return the differences, or an error: results of different models (another name, other states, switching functions
 ///         or outputs).
 [[nodiscard]] Expected<Difference> difference(const Result& a, const Result& b, const Tolerances& tolerances);
