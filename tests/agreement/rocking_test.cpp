@@ -12,7 +12,7 @@
 namespace saltus::problems {
 namespace {
 
-constexpr double p = 2.0;
+constexpr double rocking_rate = 2.0;
 constexpr double slenderness = 0.25;
 
 /// The slender block of Housner on ground with the acceleration `ground`, both in units of gravity; an impact takes a
@@ -33,7 +33,7 @@ set = {{ w = "0.7*w" }}
 [simulate]
 until = {}
 )toml",
-                     th, p, slenderness, ground, until);
+                     th, rocking_rate, slenderness, ground, until);
 }
 
 /// It leaves to th < 0 at t_0, when the ground accelerates with the slenderness and on by rate s:
@@ -41,8 +41,9 @@ until = {}
 void expect_tipped(const Result& result, double t_0, double rate, double rtol) {
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   const double s = result.final.t - t_0;
-  // Errors grow with exp(p s), as the solution does.
-  const double th = rate * (s - std::sinh(p * s) / p), w = rate * (1.0 - std::cosh(p * s));
+  // Errors grow with exp(rocking_rate s), as the solution does.
+  const double th = rate * (s - std::sinh(rocking_rate * s) / rocking_rate),
+               w = rate * (1.0 - std::cosh(rocking_rate * s));
   EXPECT_NEAR(result.final.x[0], th, 100 * rtol * std::abs(th));
   EXPECT_NEAR(result.final.x[1], w, 100 * rtol * std::abs(w));
   const auto left = std::find_if(result.events.begin(), result.events.end(), [&](const auto& event) {

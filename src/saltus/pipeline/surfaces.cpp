@@ -17,7 +17,7 @@ namespace saltus::pipeline {
 namespace {
 
 /// Room around the trajectory, as a fraction of its range: a surface beside it should be seen, too.
-constexpr double margin = 0.25;
+constexpr double box_margin = 0.25;
 
 /// >= 0 on the part of the surface that is one.
 double least_margin(const evaluation::SurfaceFunction& function, double t, const double* coordinates) {
@@ -122,7 +122,7 @@ Interval drawn_range(const result::Result& result, int state) {
     include(result.events.x_after(i)[column]);
   }
   const double width = greatest - least;
-  const double room = width > 0.0 ? margin * width : std::max(0.5 * std::abs(least), 0.5);
+  const double room = width > 0.0 ? box_margin * width : std::max(0.5 * std::abs(least), 0.5);
   return {least - room, greatest + room};
 }
 

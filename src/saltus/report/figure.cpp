@@ -13,7 +13,7 @@
 namespace saltus::report {
 namespace {
 
-constexpr double width = 960.0, left = 70.0, right = 110.0;
+constexpr double figure_width = 960.0, left_edge = 70.0, right_edge = 110.0;
 constexpr std::string_view sliding_color = "#ef7d00", minus_color = "#1f4e8c", plus_color = "#9cc9ee",
                            jump_color = "#0b7285", alarm_color = "#c2185b";
 constexpr std::array<std::string_view, 6> curve_colors{"#1f66b0", "#11806a", "#8a4fb0",
@@ -91,7 +91,7 @@ double draw_bands(Svg& svg, const result::Result& result, const Plot& time, doub
       const bool whole = share[1] == wide;
       if (share[1] > 0.0) svg.rectangle({from, whole ? top : middle - 2.0}, wide, whole ? height : 4.0, sliding_color);
     }
-    svg.text({width - right + 8.0, top + 12.0}, result.switching_functions[j], "start", "#1c2430");
+    svg.text({figure_width - right_edge + 8.0, top + 12.0}, result.switching_functions[j], "start", "#1c2430");
     top += height + 4.0;
   }
   return top + 8.0;
@@ -146,9 +146,9 @@ std::string over_time(const result::Result& result) {
   const double panel = columns.size() > 6 ? 92.0 : 130.0, gap = 12.0;
   const double bands = 20.0 * static_cast<double>(std::min(most_panels, result.switching_functions.size()));
   const double height = 44.0 + bands + static_cast<double>(columns.size()) * (panel + gap) + 56.0;
-  Svg svg(width, height);
-  Plot plot{{left, 40.0}, width - left - right, panel, time_range(result), {0.0, 1.0}};
-  svg.text({left, 22.0},
+  Svg svg(figure_width, height);
+  Plot plot{{left_edge, 40.0}, figure_width - left_edge - right_edge, panel, time_range(result), {0.0, 1.0}};
+  svg.text({left_edge, 22.0},
            fmt::format("{}: {} to t = {:.6g}{}", title_of(result), result::name(result.status.termination),
                        result.status.time_reached, left_out > 0 ? fmt::format(", {} more columns", left_out) : ""),
            "start", "#1c2430");
@@ -165,10 +165,10 @@ std::string over_time(const result::Result& result) {
     draw_pieces(svg, curve_pieces(result.trajectory, result.trajectory.t, column.values, plot, pixel, steps),
                 color_of(column.sort), 0.0);
     svg.clip(std::nullopt);
-    svg.text({width - right + 8.0, top + panel / 2}, column.name, "start", color_of(column.sort));
+    svg.text({figure_width - right_edge + 8.0, top + panel / 2}, column.name, "start", color_of(column.sort));
   }
-  svg.text({left + plot.width / 2, height - 14.0}, "t", "middle", "#1c2430");
-  draw_legend(svg, legend_over_time(result), left, width - 20.0, height + 2.0);
+  svg.text({left_edge + plot.width / 2, height - 14.0}, "t", "middle", "#1c2430");
+  draw_legend(svg, legend_over_time(result), left_edge, figure_width - 20.0, height + 2.0);
   return svg.document(title_of(result));
 }
 
@@ -258,10 +258,13 @@ Error unknown_column(const std::vector<FigureColumn>& columns, const std::string
 
 std::string in_a_plane(const result::Result& result, const FigureColumn& x, const FigureColumn& y) {
   constexpr double height = 720.0;
-  Svg svg(width, height);
-  const Plot plot{
-      {left, 40.0}, width - left - 40.0, height - 100.0, roomy(range_of(x.values)), roomy(range_of(y.values))};
-  svg.text({left, 22.0}, fmt::format("{}: {} over {}", title_of(result), y.name, x.name), "start", "#1c2430");
+  Svg svg(figure_width, height);
+  const Plot plot{{left_edge, 40.0},
+                  figure_width - left_edge - 40.0,
+                  height - 100.0,
+                  roomy(range_of(x.values)),
+                  roomy(range_of(y.values))};
+  svg.text({left_edge, 22.0}, fmt::format("{}: {} over {}", title_of(result), y.name, x.name), "start", "#1c2430");
   draw_axes(svg, plot, true);
   svg.clip(plot.corner, plot.width, plot.height);
   auto legend = draw_surfaces(svg, result, plot, x, y);
@@ -284,9 +287,9 @@ std::string in_a_plane(const result::Result& result, const FigureColumn& x, cons
     svg.disc(plot.place(x.values[0], y.values[0]), 5.0, "#ffffff", "#1c2430");
   if (rows > 0 && std::isfinite(x.values[rows - 1]) && std::isfinite(y.values[rows - 1]))
     svg.disc(plot.place(x.values[rows - 1], y.values[rows - 1]), 5.0, "#1c2430", "#1c2430");
-  svg.text({left + plot.width / 2, height - 18.0}, x.name, "middle", "#1c2430");
+  svg.text({left_edge + plot.width / 2, height - 18.0}, x.name, "middle", "#1c2430");
   svg.text({18.0, 40.0 + plot.height / 2}, y.name, "middle", "#1c2430", -90.0);
-  draw_legend(svg, entries, left, width - 40.0, height + 2.0);
+  draw_legend(svg, entries, left_edge, figure_width - 40.0, height + 2.0);
   return svg.document(title_of(result));
 }
 
