@@ -42,6 +42,8 @@ class Run:
     command: str
     method: str
     states: list[str]
+    states_in_rows: list[str]
+    functions_in_rows: list[str]
     controls: list[str]
     output_names: list[str]
     switching_functions: list[str]

@@ -118,7 +118,7 @@ class Result:
 
     @property
     def x(self) -> Array:
-        """States, (rows, n_x), in the order of ``states``."""
+        """States, (rows, n_x), in the order of ``states``; of a run with ``output={"states": …}`` only those."""
         return self._run.x
 
     @property
@@ -195,11 +195,11 @@ class Result:
     def _columns(self) -> dict[str, tuple[str, int | None]]:
         columns: dict[str, tuple[str, int | None]] = {"t": ("t", None)}
         for block, names in (
-            ("x", self.states),
+            ("x", self._run.states_in_rows),
             ("u", self.controls),
             ("outputs", self.output_names),
-            ("mode", [f"mode({name})" for name in self.switching_functions]),
-            ("alpha", [f"alpha({name})" for name in self.switching_functions]),
+            ("mode", [f"mode({name})" for name in self._run.functions_in_rows]),
+            ("alpha", [f"alpha({name})" for name in self._run.functions_in_rows]),
             ("theta", [f"theta({name})" for name in self._run.regions]),
         ):
             for index, name in enumerate(names):

@@ -22,6 +22,7 @@
 #include "saltus/pipeline/vector_field.hpp"
 #include "saltus/report/html.hpp"
 #include "saltus/report/table.hpp"
+#include "saltus/result/kept_columns.hpp"
 
 namespace nb = nanobind;
 
@@ -65,6 +66,14 @@ void add_table(nb::class_<Run>& type, const char* name) {
   type.def_prop_ro(name, [](nb::handle self) {
     const auto& result = *nb::cast<Run&>(self).result;
     return table_array(result.trajectory.*rows, (result.*names).size(), self);
+  });
+}
+
+template <auto table, auto block>
+void add_of_functions(nb::class_<Run>& type, const char* name) {
+  type.def_prop_ro(name, [](nb::handle self) {
+    auto& run = nb::cast<Run&>(self);
+    return block_array(run.*block, run.result->trajectory.*table, result::functions_in_rows(*run.result).size(), self);
   });
 }
 
@@ -183,6 +192,8 @@ void add_names(nb::class_<Run>& type) {
       .def_prop_ro("command", [](const Run& self) { return self.result->command; })
       .def_prop_ro("method", [](const Run& self) { return self.result->method; })
       .def_prop_ro("states", [](const Run& self) { return self.result->states; })
+      .def_prop_ro("states_in_rows", [](const Run& self) { return result::states_in_rows(*self.result); })
+      .def_prop_ro("functions_in_rows", [](const Run& self) { return result::functions_in_rows(*self.result); })
       .def_prop_ro("controls", [](const Run& self) { return self.result->controls; })
       .def_prop_ro("output_names", [](const Run& self) { return self.result->outputs; })
       .def_prop_ro("switching_functions", [](const Run& self) { return self.result->switching_functions; })
@@ -211,17 +222,14 @@ void add_result(nb::module_& module) {
   });
   using result::Result;
   using result::Trajectory;
-  add_table<&Trajectory::x, &Result::states>(type, "x");
+  type.def_prop_ro("x", [](nb::handle self) {
+    const auto& run = *nb::cast<Run&>(self).result;
+    return table_array(run.trajectory.x, result::states_in_rows(run).size(), self);
+  });
   add_table<&Trajectory::u, &Result::controls>(type, "u");
   add_table<&Trajectory::outputs, &Result::outputs>(type, "outputs");
-  type.def_prop_ro("alpha", [](nb::handle self) {
-    auto& run = nb::cast<Run&>(self);
-    return block_array(run.alpha, run.result->trajectory.alpha, run.result->switching_functions.size(), self);
-  });
-  type.def_prop_ro("mode", [](nb::handle self) {
-    auto& run = nb::cast<Run&>(self);
-    return block_array(run.mode, run.result->trajectory.mode, run.result->switching_functions.size(), self);
-  });
+  add_of_functions<&Trajectory::alpha, &Run::alpha>(type, "alpha");
+  add_of_functions<&Trajectory::mode, &Run::mode>(type, "mode");
   type.def_prop_ro("theta",
                    [](nb::handle self) {
                      auto& run = nb::cast<Run&>(self);

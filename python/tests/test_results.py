@@ -142,3 +142,20 @@ def test_methods_compared():
     assert study.order["series"]
     with pytest.raises(saltus.ModelError, match="ascending"):
         saltus.order(saltus.catalogue("stick-slip"), until=2, steps=[40, 20])
+
+
+def test_rows_with_some_of_the_columns():
+    model = saltus.catalogue("stick-slip")
+    whole = model.simulate(until=20)
+    some = model.simulate(until=20, output={"states": ["v*"], "surfaces": []})
+    assert some.x.shape == (len(some.t), 1)
+    assert some["v"].tolist() == whole["v"].tolist()
+    assert some.alpha.shape == some.mode.shape == (len(some.t), 0)
+    with pytest.raises(KeyError):
+        some["q"]
+    assert some.states == whole.states
+    assert some.final.x.tolist() == whole.final.x.tolist()
+    assert some.events[0].x.tolist() == whole.events[0].x.tolist()
+    assert model.simulate(until=20, states="q")["q"].tolist() == whole["q"].tolist()
+    with pytest.raises(saltus.ModelError, match="unknown state 'w'"):
+        model.simulate(until=1, output={"states": ["w"]})

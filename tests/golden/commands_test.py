@@ -16,7 +16,7 @@ class Diff(tool.ToolTest):
         b = self.run_model("b.json", "stick-slip", "--rtol", "1e-10", "--integrator", "dop853")
         out, err = self.run_tool("diff", a, b, code=0)
         self.assertEqual(err, "")
-        self.assertTrue(out.startswith("the same to rtol 1e-06, atol 1e-09"), out)
+        self.assertTrue(out.startswith("the same to rtol 1e-06, atol 1e-06 of each range ("), out)
         self.run_tool("diff", a, b, "--rtol", "0", "--atol", "0", code=1)
         self.assertTrue(self.run_tool("diff", a, a, "--rtol", "0", "--atol", "0", code=0)[0].startswith("the same"))
 
@@ -28,6 +28,24 @@ class Diff(tool.ToolTest):
         self.assertRegex(out, r"(?m)^parameters\n  belt +0.2 +0.3 ")
         self.assertRegex(out, r"(?m)^first event that differs: event 1: ")
         self.assertRegex(out, r"(?m)^different to rtol")
+
+    def test_values_near_zero_are_compared_with_their_range(self):
+        self.write("m.toml", "[model]\nname = \"m\"\n[states]\nx = 1\nv = 0\nsmall = 1e-7\n[dynamics]\nx = \"v\"\nv = \"-x\"\n"
+                             "small = \"-small\"\n[simulate]\nuntil = 1.5707963267948966\natol = 1e-14\n")
+        a = self.run_model("a.json", "m.toml")
+        changed = json.loads((self.folder / a).read_text(encoding="utf-8"))
+
+        def differs(state, by, *words, code):
+            other = json.loads(json.dumps(changed))
+            other["final"]["x"][state] += by
+            self.write("b.json", json.dumps(other))
+            return self.run_tool("diff", a, "b.json", *words, code=code)[0]
+
+        # x ends at 0 and has been 1: what is 1e-7 there is no difference. The third state is that small everywhere.
+        differs(0, 1e-7, code=0)
+        differs(0, 1e-7, "--atol", "1e-9", code=1)
+        differs(0, 3e-6, code=1)
+        self.assertIn("small ", differs(2, 1e-12, code=1))
 
     def test_an_event_that_differs_alone_is_seen(self):
         a = self.run_model("a.json", "bouncing-ball")

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import resource
 import signal
 import subprocess
 import time
@@ -54,12 +55,12 @@ class GrowingFiles(tool.ToolTest):
     def both(self, *words):
         """The files as they grow, and as they are written at the end: a page needs the whole result."""
         self.write("m.toml", MODEL)
-        names = [word for name in ("{}.json", "{}.csv", "{}.events.csv") for word in ("--out", name)]
+        names = [word for name in ("{}.json", "{}.csv", "{}.events.csv", "{}.npz") for word in ("--out", name)]
         self.run_tool("simulate", "m.toml", *words, *(word.format("grown") for word in names), code=0)
         self.run_tool("simulate", "m.toml", *words, *(word.format("whole") for word in names), "--report", "r.html",
                       code=0)
         return [(self.folder / f"grown{suffix}", self.folder / f"whole{suffix}")
-                for suffix in (".json", ".csv", ".events.csv")]
+                for suffix in (".json", ".csv", ".events.csv", ".npz")]
 
     def test_grown_files_are_those_written_at_the_end(self):
         for words in ([], ["--set", "simulate.output=steps"], ["--set", "simulate.output.every=0.01"],
@@ -69,7 +70,7 @@ class GrowingFiles(tool.ToolTest):
                 (grown, whole), *tables = self.both(*words)
                 self.assertEqual(numbers(grown), numbers(whole))
                 for ours, theirs in tables:
-                    self.assertEqual(ours.read_text(), theirs.read_text())
+                    self.assertEqual(ours.read_bytes(), theirs.read_bytes())
         self.assertEqual([path.name for path in self.folder.glob("*.part")], [])
 
     def test_the_table_is_the_same(self):
@@ -112,13 +113,26 @@ class GrowingFiles(tool.ToolTest):
         peaks = []
         for rows in (2_000, 500_000):
             process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--quiet", "--out", "r.csv", "--out", "r.json",
-                                        "--set", f"simulate.output.points={rows}"], cwd=self.folder)
+                                        "--out", "r.npz", "--set", f"simulate.output.points={rows}"], cwd=self.folder)
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = status
             self.assertEqual(status, 0)
             peaks.append(usage.ru_maxrss / 1024)
-        # The times that are asked for are there: 8 bytes for each row.
-        self.assertLess(peaks[1], peaks[0] + 25, peaks)
+        # The times that are asked for are there: 8 bytes for each row; and a block of the archive.
+        self.assertLess(peaks[1], peaks[0] + 40, peaks)
+
+    def test_rows_that_cannot_be_put_aside_say_why(self):
+        self.write("m.toml", LONG.replace("UNTIL", "3000"))
+        limit = 3_000_000  # bytes of any file: the rows of the archive are put aside before it is written
+        for name in ("r.npz", "r.json"):
+            process = subprocess.run([tool.TOOL, "simulate", "m.toml", "--quiet", "--out", name,
+                                      "--set", "simulate.output.points=500000"], cwd=self.folder, text=True,
+                                     capture_output=True, timeout=120,
+                                     preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                                                         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
+            self.assertEqual(process.returncode, 2, process.stderr)
+            self.assertIn("rows cannot be put aside in folder '.': File too large", process.stderr)
+            self.assertFalse((self.folder / name).exists())
 
 
 if __name__ == "__main__":

@@ -50,12 +50,47 @@ class Large(tool.ToolTest):
 
     def test_what_is_shown_of_a_hundred_states(self):
         table, _ = self.run_tool("simulate", self.model("ladder", 50), "--until", "0.01", code=0)
-        self.assertIn("… (100 in all)", table)
+        self.assertRegex(table, r"end state   100 states; --show NAME,… shows those you name")
+        self.assertRegex(table, r"i1 … i50  +50  from ")
         self.assertLess(len(table.splitlines()), 40)
         checked, _ = self.run_tool("check", self.model("ladder", 120), code=0)
         self.assertIn("… (216 more)", checked)
         self.assertIn("more than 100 switching functions", checked)
         self.assertLess(len(checked.splitlines()), 120)
+
+    def test_some_of_them_are_shown(self):
+        model = self.model("ladder", 50)
+        table, _ = self.run_tool("simulate", model, "--until", "2", "--show", "v7,i5*", code=0)
+        self.assertIn("v7 = ", table)
+        self.assertIn("i50 = ", table)
+        self.assertNotIn("v8 = ", table)
+        heading = next(line for line in table.splitlines() if line.startswith("  #"))
+        self.assertRegex(heading, r"v7 +i5 +i50$")
+        self.assertIn("'v77'", self.run_tool("simulate", model, "--show", "v77", code=2)[1])
+
+    def test_a_misspelt_name_is_refused_where_it_stands(self):
+        lines = large_models.text("chain", 1600).splitlines()
+        lines[4710] = lines[4710].replace("- 2*q", "- 2*qq")
+        self.assertIn("qq", lines[4710])
+        self.write("m.toml", "\n".join(lines))
+        _, error = self.run_tool("simulate", "m.toml", code=2)
+        self.assertRegex(error, r"^m.toml:4711:\d+: error: unknown name 'qq")
+        self.assertIn("did you mean", error)
+
+    def test_definitions_that_unfold_are_refused(self):
+        # Each has the one before four times; written out they would be 4^60 terms.
+        chain = "".join(f'd{i} = "d{i - 1}*d{i - 1} + sign(d{i - 1} - 0.1)*d{i - 1}"\n' for i in range(1, 60))
+        self.write("m.toml", '[model]\nname = "m"\n[states]\nx = 1\n[definitions]\nd0 = "x"\n' + chain
+                   + '[dynamics]\nx = "-d59"\n[simulate]\nuntil = 1\n')
+        _, error = self.run_tool("simulate", "m.toml", code=2)
+        self.assertIn("nest fewer of them", error)
+
+    def test_a_million_states_by_mistake(self):
+        entries = 1_000_000
+        self.write("m.toml", '[model]\nname = "m"\n[states]\n' + "".join(f"x{i} = 0\n" for i in range(entries))
+                   + "[dynamics]\n" + "".join(f'x{i} = "-x{i}"\n' for i in range(entries)) + "[simulate]\nuntil = 1\n")
+        _, error = self.run_tool("simulate", "m.toml", code=2)
+        self.assertIn("too large for a model", error)
 
 
 if __name__ == "__main__":

@@ -70,3 +70,26 @@ test("a result is put together from its skeleton and its numbers", () => {
     ],
   });
 });
+
+test("columns are unpacked when they are asked for, those kept by points on the lines between them", () => {
+  const numbers = new Float64Array([0, 1, 2, 2, 3, 5, 6, NaN, 7, 8, 0, 2, 3, 4, 10, 14, -1, -2]);
+  const {t, x} = saltus.unpack(
+      {x: [{$n: [5, 5]}, {$points: [{$n: [10, 4]}, {$n: [14, 4]}], size: 5}, {$points: [[0, 4], [1, null]], size: 5}], t: {$n: [0, 5]}},
+      numbers);
+  assert.equal(typeof Object.getOwnPropertyDescriptor(x, 1).get, "function");
+  assert.deepEqual(x[0], [5, 6, null, 7, 8]);
+  assert.deepEqual(t, [0, 1, 2, 2, 3]);
+  assert.deepEqual(x[1], [10, 12, 14, -1, -2]);
+  assert.equal(Object.getOwnPropertyDescriptor(x, 1).get, undefined);
+  assert.deepEqual(x[2], [1, null, null, null, null]);
+  assert.deepEqual([...saltus.packedOf.get(x)[1].values], [10, 14, -1, -2]);
+});
+
+test("of very many rows members are unpacked column by column", () => {
+  const count = 1500;
+  const numbers = new Float64Array(Array.from({length: count}, (_, i) => i));
+  const rows = saltus.unpack({$rows: count, columns: {t: {$n: [0, count]}, kind: {$codes: {$n: [0, count]}, of: numbers}}}, numbers);
+  assert.equal(rows.length, count);
+  assert.deepEqual(rows.map(({t}) => t), [...numbers]);
+  assert.equal(rows[1499].kind, 1499);
+});

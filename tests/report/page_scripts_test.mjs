@@ -7,7 +7,7 @@ import vm from "node:vm";
 const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
-      "format.js", "series.js", "panels.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
+      "format.js", "numbers.js", "series.js", "panels.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
       "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js", "bodies.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
@@ -204,7 +204,7 @@ test("a surface that moves is drawn at its times within the window", () => {
 test("drawings begin with the states of the first surface", () => {
   const moving = [0, 1, 2, 1.5, 0.5], stepping = [1, 1, 1, 2, 2];
   const choice = (surfaces, size, x = [moving, moving, moving, moving, moving]) =>
-      saltus.firstChoice({surfaces, trajectory: {t: [0, 1, 2, 2, 3], x}}, size);
+      saltus.firstChoice({states: x.map((_, i) => `x${i}`), surfaces, trajectory: {t: [0, 1, 2, 2, 3], x}}, size);
   assert.deepEqual(choice([], 2), [0, 1]);
   assert.deepEqual(choice([affine([3], [1], 0)], 2), [0, 3]);
   assert.deepEqual(choice([affine([1, 2, 4], [1, 1, 1], 0)], 2), [1, 2]);
@@ -474,7 +474,7 @@ test("of very many states those that move most are drawn, the last one too", () 
   const result = {states, output_names: [], controls: [], switching_functions: [], regions: [], trajectory: {t, x}};
   const drawn = saltus.firstPanels({...result, trajectory: {...result.trajectory, modes: [], regions: []}});
   const curves = drawn.panels.flatMap((panel) => panel.curves);
-  assert.equal(curves.length, saltus.firstCurves);
+  assert.equal(curves.length, saltus.firstCurves(states));
   assert.ok(curves.includes(299));
   assert.ok(curves.every((i) => i >= 200));
 });

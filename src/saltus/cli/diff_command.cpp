@@ -28,7 +28,8 @@ std::string numbers_text(std::string_view title, const std::vector<result::Numbe
   return text;
 }
 
-std::string difference_text(const result::Difference& difference, const DiffArguments& arguments) {
+std::string difference_text(const result::Difference& difference, const DiffArguments& arguments,
+                            std::size_t states_of_model) {
   std::string text = numbers_text("parameters", difference.parameters);
   if (!difference.ends.empty()) text += fmt::format("the runs ended differently: {}\n", difference.ends);
   text += numbers_text("at the end", difference.end_state) + numbers_text("on the way", difference.rows);
@@ -37,9 +38,13 @@ std::string difference_text(const result::Difference& difference, const DiffArgu
   }
   if (!difference.first_event.empty()) text += fmt::format("first event that differs: {}\n", difference.first_event);
   const auto& [rtol, atol] = arguments.tolerances;
-  return text + fmt::format("{} to rtol {:g}, atol {:g} ({} events, {} common times)\n",
-                            difference.is_none() ? "the same" : "different", rtol, atol, difference.events_a,
-                            difference.common_times);
+  const auto absolute = atol ? fmt::format("atol {:g}", *atol) : fmt::format("atol {:g} of each range", rtol);
+  const auto states = difference.common_states == states_of_model
+                          ? ""
+                          : fmt::format(" of {} of {} states", difference.common_states, states_of_model);
+  return text + fmt::format("{} to rtol {:g}, {} ({} events, {} common times{})\n",
+                            difference.is_none() ? "the same" : "different", rtol, absolute, difference.events_a,
+                            difference.common_times, states);
 }
 
 ExitCode run_diff(const DiffArguments& arguments) {
@@ -49,7 +54,7 @@ ExitCode run_diff(const DiffArguments& arguments) {
   if (!b) return refuse(b.error());
   const auto difference = result::difference(*a, *b, arguments.tolerances);
   if (!difference) return refuse(difference.error());
-  print(difference_text(*difference, arguments));
+  print(difference_text(*difference, arguments, a->states.size()));
   return difference->is_none() ? ExitCode::done : ExitCode::different;
 }
 
@@ -64,7 +69,9 @@ Command add_diff(CLI::App& app) {
   command->add_option("--rtol", arguments->tolerances.rtol, "relative tolerance (1e-6)")
       ->type_name("R")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--atol", arguments->tolerances.atol, "absolute tolerance (1e-9)")
+  command
+      ->add_option("--atol", arguments->tolerances.atol,
+                   "absolute tolerance (rtol times the range of each column, and no less than that of the runs)")
       ->type_name("A")
       ->check(CLI::NonNegativeNumber);
   command->footer(

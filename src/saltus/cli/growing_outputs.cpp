@@ -1,7 +1,6 @@
 #include "saltus/cli/growing_outputs.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <utility>
 
@@ -37,14 +36,15 @@ void GrowingOutputs::begin() {
     const auto folder = standard ? std::filesystem::temp_directory_path() : io::target_of(name).parent_path();
     file.parts = kind.ends_with("events.csv") ? io::events_csv_parts(file.sink)
                  : kind.ends_with("csv")      ? io::csv_parts(file.sink)
+                 : kind.ends_with("npz")      ? io::npz_parts(folder.empty() ? "." : folder, file.sink)
                                               : io::json_parts(folder.empty() ? "." : folder, file.sink);
   }
 }
 
-/// What was just written of a file; errno says why not all of it was.
-void GrowingOutputs::note(File& file, bool good) {
-  file.good = good;
-  if (!good && file.file) file.file->spoil(errno);
+/// What became of what was just written of a file.
+void GrowingOutputs::note(File& file, const Expected<void>& outcome) {
+  file.good = outcome.has_value();
+  if (!outcome && file.file) file.file->spoil(outcome.error().message);
 }
 
 bool GrowingOutputs::add(const result::Result& part) {

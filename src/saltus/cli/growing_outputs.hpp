@@ -51,7 +51,7 @@ class GrowingOutputs {
   };
   void begin();
   bool pass(File& file, std::string_view piece);
-  static void note(File& file, bool good);
+  static void note(File& file, const Expected<void>& outcome);
 
   std::vector<std::string> names_;
   std::string format_;

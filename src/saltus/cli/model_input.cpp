@@ -52,10 +52,7 @@ Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
 Expected<ModelText> read_model_text(const std::string& model) {
   const auto path = find_model(model);
   if (!path) return tl::unexpected(path.error());
-  auto text = io::read_model_text(*path);
-  if (!text) return tl::unexpected(text.error());
-  return ModelText{path->string(), std::move(text->name), std::move(text->text), std::move(text->files),
-                   std::move(text->settings)};
+  return io::read_model_text(*path);
 }
 
 Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings) {

@@ -11,14 +11,8 @@
 
 namespace saltus::cli {
 
-/// MODEL of the command line, read but not parsed; of a stored result the model in it.
-struct ModelText {
-  std::string path;
-  std::string name;  ///< for messages
-  std::string text;
-  std::vector<result::NamedFile> files;  ///< that a stored result has
-  std::vector<std::string> settings;     ///< with which it was computed
-};
+/// MODEL of the command line, read but not parsed.
+using io::ModelText;
 
 struct ModelInput {
   std::string path;

@@ -163,13 +163,7 @@ bool Outputs::fill_standard_output() const {
 
 std::optional<GrowingOutputs> Outputs::growing(std::size_t events) const {
   constexpr std::size_t most_events = 10000;
-  const auto needs_all = [&](const std::string& file) {
-    return (file == standard_output ? names_.format : file).ends_with("npz");
-  };
-  if (names_.files.empty() || !names_.report.empty() || events > most_events ||
-      std::any_of(names_.files.begin(), names_.files.end(), needs_all)) {
-    return std::nullopt;
-  }
+  if (names_.files.empty() || !names_.report.empty() || events > most_events) return std::nullopt;
   return GrowingOutputs(names_.files, names_.format, events);
 }
 

@@ -1,5 +1,6 @@
 #include "saltus/cli/run_command.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <set>
@@ -22,12 +23,31 @@
 namespace saltus::cli {
 namespace {
 
+/// Of many the first ones.
+void print_warnings(const std::vector<std::string>& warnings) {
+  constexpr std::size_t most = 12;
+  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i)
+    print_error(fmt::format("warning: {}", warnings[i]));
+  if (warnings.size() > most) {
+    print_error(fmt::format("and {} more warnings: saltus check lists them", warnings.size() - most));
+  }
+}
+
+/// Names of --show.
+Expected<void> check_shown(const RunArguments& arguments, const model::System& system) {
+  if (arguments.show.empty()) return {};
+  std::vector<std::string> functions;
+  for (const auto& column : system.columns) functions.push_back(column.name);
+  return report::check_names(arguments.show, system.state_names, system.output_names, functions);
+}
+
 /// @param growing  gets rows and events on the way; may be null
 Expected<result::Result> compute_all(const RunArguments& arguments, const ModelInput& input, const Outputs& outputs,
                                      GrowingOutputs* growing, Compute compute) {
   const auto system = model::build(input.file.description, input.overrides);
   if (!system) return tl::unexpected(system.error());
-  for (const auto& warning : system->warnings) print_error(fmt::format("warning: {}", warning));
+  if (auto known = check_shown(arguments, *system); !known) return tl::unexpected(known.error());
+  print_warnings(system->warnings);
   ProgressLine progress(progress_of(arguments));
   auto observers = watched(progress);
   bool can_write = true;
@@ -215,7 +235,7 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
   if (has_grown) result->events = growing->ends();
   // Also if nothing could be written: it is all that is left.
   if (!arguments.quiet && !outputs->fill_standard_output())
-    print(report::to_table(*result, *shown, input->file.captions));
+    print(report::to_table(*result, *shown, input->file.captions, arguments.show));
   if (!written) return refuse(written.error());
   if (*written == Written::interrupted) return ExitCode::stopped_early;
   return report_stops(*result, arguments);

@@ -55,7 +55,8 @@ struct RunArguments {
   std::vector<std::pair<Shortcut, std::optional<std::string>>> shortcuts;
   std::vector<std::string> settings;
   OutputNames outputs;
-  std::string events;  ///< of --events; empty: the default
+  std::string events;             ///< of --events; empty: the default
+  std::vector<std::string> show;  ///< of --show
   bool quiet = false;
   RunMethods methods = RunMethods::several;
 };

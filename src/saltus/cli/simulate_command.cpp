@@ -31,6 +31,13 @@ Command add_simulate(CLI::App& app) {
                   "write the result: .json all, .csv trajectory, .events.csv events, .npz for NumPy; may repeat");
   command->add_option("--events", arguments->events, "events in the table: N at each end (10), or all")
       ->type_name("N|all");
+  command
+      ->add_option("--show", arguments->show,
+                   "states, outputs, switching functions in the table, as names or patterns like v*; may repeat")
+      ->type_name("NAME,…")
+      ->delimiter(',')
+      ->expected(1)
+      ->take_all();
   command->footer(simulate_footer);
   const auto compute = [](const model::System& system, const pipeline::SimulateOptions& options,
                           const pipeline::Observers& observers) {

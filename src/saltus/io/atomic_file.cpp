@@ -1,5 +1,6 @@
 #include "saltus/io/atomic_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -175,57 +176,68 @@ bool GrowingFile::write(std::string_view piece) {
   return error_number_ == 0;
 }
 
-void GrowingFile::spoil(int error_number) {
-  if (error_number_ == 0) error_number_ = error_number != 0 ? error_number : EIO;
+void GrowingFile::spoil(std::string reason) {
+  if (error_number_ == 0 && spoiled_.empty()) spoiled_ = std::move(reason);
 }
 
 Expected<void> GrowingFile::complete() {
   struct stat old {};
   const bool exists = ::stat(target_.c_str(), &old) == 0;
-  if (is_open() && exists && ::fchmod(number_, old.st_mode & 07777) != 0) error_number_ = errno;
-  if (error_number_ == 0 && (::fsync(number_) != 0 || ::close(std::exchange(number_, -1)) != 0 ||
-                             ::rename(part_.c_str(), target_.c_str()) != 0)) {
+  if (spoiled_.empty() && is_open() && exists && ::fchmod(number_, old.st_mode & 07777) != 0) error_number_ = errno;
+  if (error_number_ == 0 && spoiled_.empty() &&
+      (::fsync(number_) != 0 || ::close(std::exchange(number_, -1)) != 0 ||
+       ::rename(part_.c_str(), target_.c_str()) != 0)) {
     error_number_ = errno;
   }
-  if (error_number_ == 0) return {};
+  if (error_number_ == 0 && spoiled_.empty()) return {};
   const std::string part = number_ < 0 ? "" : fmt::format("what was written is in {}; ", part_.string());
-  return failure(target_, fmt::format("cannot write: {}", reason(error_number_)),
+  return failure(target_, fmt::format("cannot write: {}", error_number_ != 0 ? reason(error_number_) : spoiled_),
                  part + "an earlier file of that name is as it was");
 }
 
 void GrowingFile::remove() { ::unlink(part_.c_str()); }
-
-SpoolFile::SpoolFile(const fs::path& folder) {
-  std::string path = (folder / ".saltus-XXXXXX.tmp").string();
-  number_ = ::mkostemps(path.data(), 4, O_CLOEXEC);
-  if (number_ < 0) error_number_ = errno;
-  if (number_ >= 0) ::unlink(path.c_str());
-}
-
-SpoolFile::SpoolFile(SpoolFile&& other) noexcept
-    : number_(std::exchange(other.number_, -1)), error_number_(other.error_number_) {}
 
 SpoolFile::~SpoolFile() {
   if (number_ >= 0) ::close(number_);
 }
 
 bool SpoolFile::write(std::string_view piece) {
+  if (number_ < 0 && error_number_ == 0) {
+    std::string path = (folder_ / ".saltus-XXXXXX.tmp").string();
+    number_ = ::mkostemps(path.data(), 4, O_CLOEXEC);
+    if (number_ < 0) error_number_ = errno;
+    if (number_ >= 0) ::unlink(path.c_str());
+  }
   if (error_number_ == 0) error_number_ = write_all(number_, piece);
-  if (error_number_ != 0) errno = error_number_;
+  size_ += piece.size();
   return error_number_ == 0;
 }
 
-bool SpoolFile::copy_to(Sink sink) const {
-  std::string buffer(std::size_t{1} << 18, '\0');
-  off_t place = 0;
-  while (error_number_ == 0) {
-    const auto count = ::pread(number_, buffer.data(), buffer.size(), place);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return count == 0;
-    place += count;
-    if (!sink(std::string_view(buffer.data(), static_cast<std::size_t>(count)))) return false;
+bool SpoolFile::copy_to(Sink sink, std::uint64_t from, std::uint64_t count) {
+  std::string buffer(std::min<std::uint64_t>(count, std::uint64_t{1} << 18), '\0');
+  while (error_number_ == 0 && count > 0) {
+    const std::size_t wanted = std::min<std::uint64_t>(count, buffer.size());
+    for (std::size_t filled = 0; filled < wanted;) {
+      const auto got = ::pread(number_, buffer.data() + filled, wanted - filled, static_cast<off_t>(from + filled));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) error_number_ = got < 0 ? errno : EIO;
+      if (got <= 0) return false;
+      filled += static_cast<std::size_t>(got);
+    }
+    from += wanted, count -= wanted;
+    if (!sink(std::string_view(buffer.data(), wanted))) return false;
   }
-  return false;
+  return error_number_ == 0;
+}
+
+Expected<void> SpoolFile::outcome() const {
+  if (error_number_ == 0) return {};
+  return tl::unexpected(
+      Error{ErrorCode::io_failure,
+            fmt::format("rows cannot be put aside in folder '{}': {}", folder_.string(), reason(error_number_)),
+            "make room there, or choose another folder for the output",
+            {},
+            {}});
 }
 
 Expected<std::string> read_file(const fs::path& path, std::size_t limit) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "saltus/base/error.hpp"
 #include "saltus/base/function_ref.hpp"
@@ -35,8 +37,8 @@ class GrowingFile {
   ~GrowingFile();
   /// False if it could not be written, which complete() tells.
   bool write(std::string_view piece);
-  /// Something of it was lost elsewhere, for the reason of this errno: complete() tells, and puts nothing in its place.
-  void spoil(int error_number);
+  /// Something of it was lost elsewhere, for this reason: complete() tells, and puts nothing in its place.
+  void spoil(std::string reason);
   /// Flushes it to disk and renames it over its place.
   [[nodiscard]] Expected<void> complete();
   /// Removes it; an earlier file of that name is as it was.
@@ -48,24 +50,31 @@ class GrowingFile {
   std::filesystem::path target_, part_;
   int number_ = -1;
   int error_number_ = 0;
+  std::string spoiled_;
 };
 
-/// Bytes that are put aside on the disk, in a file without a name.
+/// Bytes that are put aside on the disk, in a file without a name, made with the first of them.
 class SpoolFile {
  public:
   /// @param folder  where it lies
-  explicit SpoolFile(const std::filesystem::path& folder);
-  SpoolFile(SpoolFile&& other) noexcept;
-  SpoolFile& operator=(SpoolFile&&) = delete;
+  explicit SpoolFile(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  SpoolFile(const SpoolFile&) = delete;
+  SpoolFile& operator=(const SpoolFile&) = delete;
   ~SpoolFile();
-  /// False if it could not be written; errno says why, of the first failure.
+  /// False if it could not be written, now or before.
   bool write(std::string_view piece);
-  /// Hands all of it to a sink, in pieces; false if the sink, or the disk, did not.
-  bool copy_to(Sink sink) const;
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+  /// Hands so many bytes from a place on to a sink, in pieces; false if the sink, or the disk, did not.
+  bool copy_to(Sink sink, std::uint64_t from, std::uint64_t count);
+  bool copy_to(Sink sink) { return copy_to(sink, 0, size_); }
+  /// The first thing that failed, with the folder.
+  [[nodiscard]] Expected<void> outcome() const;
 
  private:
+  std::filesystem::path folder_;
   int number_ = -1;
   int error_number_ = 0;
+  std::uint64_t size_ = 0;
 };
 
 /// The whole content of a file, device or pipe; more than `limit` bytes are an error (a device has no end).

@@ -7,6 +7,7 @@
 
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/text_stream_internal.hpp"
+#include "saltus/result/kept_columns.hpp"
 
 namespace saltus::io {
 namespace {
@@ -98,11 +99,11 @@ bool write_lines(const std::string& header, const result::Result& result, Append
 
 std::string head_of_rows(const result::Result& result) {
   std::string text = "t,side";
-  append_names(text, result.states);
+  append_names(text, states_in_rows(result));
   append_names(text, result.controls);
   append_names(text, result.outputs);
-  append_heads(text, "alpha", result.switching_functions);
-  append_heads(text, "mode", result.switching_functions);
+  append_heads(text, "alpha", functions_in_rows(result));
+  append_heads(text, "mode", functions_in_rows(result));
   for (const auto& group : result.region_groups) {
     text += "," + field(group.name.empty() ? "regions" : "regions(" + group.name + ")");
   }
@@ -126,7 +127,7 @@ class CsvParts : public ResultParts {
   enum class Of { rows, events };
   CsvParts(Of of, Sink sink) : of_(of), stream_(sink) {}
 
-  bool add(const result::Result& part) override {
+  Expected<void> add(const result::Result& part) override {
     begin(part);
     if (of_ == Of::events) {
       append_events(stream_, part, "");
@@ -134,11 +135,11 @@ class CsvParts : public ResultParts {
       append_rows_behind(last_, stream_, part, "");
       if (!part.trajectory.t.empty()) last_ = part.trajectory.t.back();
     }
-    return stream_.flush();
+    return taken(stream_.flush());
   }
-  bool finish(const result::Result& rest) override {
+  Expected<void> finish(const result::Result& rest) override {
     begin(rest);
-    return stream_.flush();
+    return taken(stream_.flush());
   }
 
  private:

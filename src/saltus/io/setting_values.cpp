@@ -35,6 +35,19 @@ std::optional<double> constant_in(std::string_view text) {
   return tree ? constant_value(**tree) : std::nullopt;
 }
 
+/// Words between commas, in quotes or without.
+std::vector<std::string> words_in(std::string_view text) {
+  std::vector<std::string> words;
+  while (!text.empty()) {
+    const char quote = text.front() == '"' || text.front() == '\'' ? text.front() : '\0';
+    const auto end = std::min(text.find(quote == '\0' ? ',' : quote, quote == '\0' ? 0 : 1), text.size());
+    words.emplace_back(quote == '\0' ? trimmed(text.substr(0, end)) : text.substr(1, end - 1));
+    text.remove_prefix(std::min(text.find(',', end), text.size()));
+    text = trimmed(text.substr(std::min<std::size_t>(1, text.size())));
+  }
+  return words;
+}
+
 std::optional<std::vector<double>> list_in(std::string_view text) {
   if (!text.starts_with('[') || !text.ends_with(']')) return std::nullopt;
   text = text.substr(1, text.size() - 2);
@@ -57,6 +70,7 @@ result::OptionValue option_value(std::string_view text) {
   if (const auto integer = whole_text_as<std::int64_t>(text)) return *integer;
   if (const auto number = constant_in(text)) return *number;
   if (auto list = list_in(text)) return std::move(*list);
+  if (text.starts_with('[') && text.ends_with(']')) return words_in(trimmed(text.substr(1, text.size() - 2)));
   return std::string(text);
 }
 

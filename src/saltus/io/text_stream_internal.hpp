@@ -32,6 +32,12 @@ class TextStream {
   bool good_ = true;
 };
 
+/// What a writer of parts returns where its sink took all, or did not.
+[[nodiscard]] inline Expected<void> taken(bool all) {
+  if (all) return {};
+  return tl::unexpected(Error{ErrorCode::io_failure, "not everything was taken", "", {}, {}});
+}
+
 /// All that a writer writes.
 [[nodiscard]] inline std::string collected(Writer writer) {
   std::string all;

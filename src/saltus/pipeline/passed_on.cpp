@@ -6,6 +6,7 @@
 
 #include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/passed_on_internal.hpp"
+#include "saltus/result/kept_columns.hpp"
 
 namespace saltus::pipeline {
 
@@ -33,7 +34,9 @@ void PassingOn::pass(result::Trajectory rows, result::Events events) {
     widen(events.x(i));
     widen(events.x_after(i));
     known_.alternatives += events.alternatives(i);
+    ++known_.kinds[events.kind(i)];
   }
+  if (part_.kept) result::keep_columns(*part_.kept, rows);
   part_.trajectory = std::move(rows);
   part_.events = std::move(events);
   observers_.on_part(part_);

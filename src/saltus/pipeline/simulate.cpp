@@ -15,6 +15,7 @@
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
+#include "saltus/pipeline/kept_columns_internal.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
@@ -261,7 +262,8 @@ bool by_elements(const SimulateOptions& options) {
 }
 
 Expected<result::Result> simulated(const model::System& system, const SimulateOptions& options,
-                                   const Observers& observers, KernelStore* kernels) {
+                                   const std::optional<result::KeptColumns>& kept_columns, const Observers& observers,
+                                   KernelStore* kernels) {
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   if (by_elements(options)) {
@@ -292,7 +294,9 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
     std::optional<PassingOn> passing;
     event_integrator::TakeRecorded take;
     if (passes_on) {
-      passing.emplace(observers, frame(system, options), options.event_rows ? nullptr : &integration.output.times);
+      auto of_parts = frame(system, options);
+      of_parts.kept = kept_columns;
+      passing.emplace(observers, of_parts, options.event_rows ? nullptr : &integration.output.times);
       take = [&](result::Trajectory rows, result::Events events) { passing->take(std::move(rows), std::move(events)); };
     }
     auto run = integrand_or->restated(
@@ -325,8 +329,12 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   if (options.method != Method::event && other && other->system && !other->system->freezing) {
     return simulate(*other->system, options, observers, kernels);
   }
-  auto result = simulated(system, options, observers, kernels);
-  if (result) add_penetration(system, *result);
+  const auto kept = kept_columns(frame(system, options), options.kept);
+  if (!kept) return tl::unexpected(kept.error());
+  auto result = simulated(system, options, *kept, observers, kernels);
+  if (!result) return result;
+  add_penetration(system, *result);
+  if (*kept) keep_columns(system, **kept, *result);
   return result;
 }
 

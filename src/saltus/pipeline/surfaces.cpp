@@ -11,6 +11,7 @@
 #include "saltus/evaluation/surface_functions.hpp"
 #include "saltus/pipeline/level_curves.hpp"
 #include "saltus/pipeline/recorded_internal.hpp"
+#include "saltus/result/kept_columns.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -113,7 +114,9 @@ Interval drawn_range(const result::Result& result, int state) {
     if (!(greatest >= value)) greatest = value;
   };
   if (result.passed_on) include(result.passed_on->least[column]), include(result.passed_on->greatest[column]);
-  for (const auto& x : result.trajectory.x) include(x[column]);
+  if (const auto in_rows = result::column_of_state(result, column)) {
+    for (const auto& x : result.trajectory.x) include(x[*in_rows]);
+  }
   for (std::size_t i = 0; i < result.events.size(); ++i) {
     include(result.events.x(i)[column]);
     include(result.events.x_after(i)[column]);

@@ -35,6 +35,7 @@ Expected<result::Trajectory> values_at(const model::System& system, const Simula
                                        const std::vector<double>& times, SideOfEvent side, const Observers& observers) {
   SimulateOptions again = options;
   again.event_rows = true;
+  again.kept = {};
   again.event.trajectories = 1;
   if (again.until) {
     for (const double t : times) {

@@ -67,6 +67,7 @@ Expected<RanksAlongSolution> ranks_along_solution(const model::System& system, S
   options.method = Method::event;
   options.native = Native::off;  // compiling would take longer than most runs
   options.event.trajectories = 1;
+  options.kept = {};
   const auto result = simulate(system, options, observers);
   if (!result) return tl::unexpected(result.error());
   std::vector<std::pair<Form, WellPosedness>> forms;

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "saltus/report/figure_columns_internal.hpp"
+#include "saltus/report/figure/figure_columns_internal.hpp"
+#include "saltus/report/figure/figure_legend_internal.hpp"
+#include "saltus/result/kept_columns.hpp"
 
 namespace saltus::report {
 namespace {
@@ -115,6 +117,28 @@ std::string title_of(const result::Result& result) {
   return result.model.name.empty() ? "simulation" : result.model.name;
 }
 
+/// Of the bands and the lines of events.
+std::vector<LegendEntry> legend_over_time(const result::Result& result) {
+  std::vector<LegendEntry> entries;
+  if (!result.switching_functions.empty()) {
+    entries.push_back({"psi < 0", {minus_color}, LegendEntry::Mark::box});
+    entries.push_back({"sliding", {sliding_color}, LegendEntry::Mark::box});
+    entries.push_back({"psi > 0", {plus_color}, LegendEntry::Mark::box});
+  }
+  bool jumps = false, switches = false, alarming = false;
+  for (std::size_t i = 0; i < result.events.size(); ++i) {
+    const bool alarm = result.events.unique(i) == false;
+    const bool jump = result.events.kind(i) == result::EventKind::jump;
+    alarming = alarming || alarm;
+    jumps = jumps || (jump && !alarm);
+    switches = switches || (!jump && !alarm);
+  }
+  if (switches) entries.push_back({"event", {"#8d97a5", 1.0}});
+  if (jumps) entries.push_back({"jump", {jump_color, 1.0, "2 2"}});
+  if (alarming) entries.push_back({"not unique", {alarm_color, 1.5, "5 3"}});
+  return entries;
+}
+
 std::string over_time(const result::Result& result) {
   auto columns = columns_over_time(result);
   const std::size_t left_out = columns.size() - std::min(columns.size(), most_panels);
@@ -144,6 +168,7 @@ std::string over_time(const result::Result& result) {
     svg.text({width - right + 8.0, top + panel / 2}, column.name, "start", color_of(column.sort));
   }
   svg.text({left + plot.width / 2, height - 14.0}, "t", "middle", "#1c2430");
+  draw_legend(svg, legend_over_time(result), left, width - 20.0, height + 2.0);
   return svg.document(title_of(result));
 }
 
@@ -185,13 +210,16 @@ void draw_line(Svg& svg, const Plot& plot, const std::array<double, 3>& line, co
   }
 }
 
-void draw_surfaces(Svg& svg, const result::Result& result, const Plot& plot, const FigureColumn& x,
-                   const FigureColumn& y) {
+/// Draws the surfaces that are lines there; returns what they are called.
+std::vector<LegendEntry> draw_surfaces(Svg& svg, const result::Result& result, const Plot& plot, const FigureColumn& x,
+                                       const FigureColumn& y) {
+  std::vector<LegendEntry> drawn;
   std::size_t n = 0;
   for (const auto& surface : result.surfaces) {
     const Pen pen{curve_colors[5 - n++ % 5], 1.2, surface.role == result::SurfaceRole::jump ? "6 2 2 2" : "7 3"};
     if (const auto line = line_of(result, surface, x, y)) {
       draw_line(svg, plot, *line, pen);
+      drawn.push_back({surface.name, pen});
       continue;
     }
     if (surface.states.size() != 2 || x.sort != ColumnSort::state || y.sort != ColumnSort::state) continue;
@@ -207,7 +235,9 @@ void draw_surfaces(Svg& svg, const result::Result& result, const Plot& plot, con
       }
       svg.path(points, pen);
     }
+    if (!surface.curves.empty()) drawn.push_back({surface.name, pen});
   }
+  return drawn;
 }
 
 const FigureColumn* named(const std::vector<FigureColumn>& columns, const std::string& name) {
@@ -234,11 +264,20 @@ std::string in_a_plane(const result::Result& result, const FigureColumn& x, cons
   svg.text({left, 22.0}, fmt::format("{}: {} over {}", title_of(result), y.name, x.name), "start", "#1c2430");
   draw_axes(svg, plot, true);
   svg.clip(plot.corner, plot.width, plot.height);
-  draw_surfaces(svg, result, plot, x, y);
+  auto legend = draw_surfaces(svg, result, plot, x, y);
   const Range time = time_range(result);
   const bool over_time = x.sort == ColumnSort::time;
   const double pixel = (time.to - time.from) / (over_time ? 2.0 * plot.width : 20000.0);
-  draw_pieces(svg, curve_pieces(result.trajectory, x.values, y.values, plot, pixel, false), curve_colors[0], 3.0);
+  const auto pieces = curve_pieces(result.trajectory, x.values, y.values, plot, pixel, false);
+  draw_pieces(svg, pieces, curve_colors[0], 3.0);
+  const bool any_slides =
+      std::any_of(pieces.lines.begin(), pieces.lines.end(), [](const auto& piece) { return piece.sliding; });
+  std::vector<LegendEntry> entries{{"solution", {curve_colors[0], 1.6}}};
+  if (any_slides) entries.push_back({"sliding", {sliding_color, 3.0}});
+  if (!pieces.jumps.empty()) entries.push_back({"jump", {jump_color, 1.0, "2 3"}});
+  entries.push_back({"start", {}, LegendEntry::Mark::ring});
+  entries.push_back({"end", {}, LegendEntry::Mark::disc});
+  entries.insert(entries.end(), legend.begin(), legend.end());
   svg.clip(std::nullopt);
   const std::size_t rows = x.values.size();
   if (rows > 0 && std::isfinite(x.values[0]) && std::isfinite(y.values[0]))
@@ -247,12 +286,14 @@ std::string in_a_plane(const result::Result& result, const FigureColumn& x, cons
     svg.disc(plot.place(x.values[rows - 1], y.values[rows - 1]), 5.0, "#1c2430", "#1c2430");
   svg.text({left + plot.width / 2, height - 18.0}, x.name, "middle", "#1c2430");
   svg.text({18.0, 40.0 + plot.height / 2}, y.name, "middle", "#1c2430", -90.0);
+  draw_legend(svg, entries, left, width - 40.0, height + 2.0);
   return svg.document(title_of(result));
 }
 
 }  // namespace
 
 Expected<PhaseAxes> phase_axes(const result::Result& result, const std::string& text) {
+  if (result.kept) return phase_axes(as_in_rows(result), text);
   const auto columns = figure_columns(result);
   const auto first = text.find(',');
   if (first == std::string::npos) {
@@ -271,6 +312,7 @@ Expected<PhaseAxes> phase_axes(const result::Result& result, const std::string& 
 }
 
 Expected<std::string> to_svg(const result::Result& result, const std::optional<PhaseAxes>& phase) {
+  if (result.kept) return to_svg(as_in_rows(result), phase);
   if (!phase) return over_time(result);
   const auto columns = figure_columns(result);
   for (const auto& name : {phase->first, phase->second}) {

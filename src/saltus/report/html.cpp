@@ -11,32 +11,11 @@
 #include "saltus/report/packing_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
 #include "saltus/report/page_overlays_internal.hpp"
+#include "saltus/report/page_text.hpp"
+#include "saltus/result/kept_columns.hpp"
 
 namespace saltus::report {
 namespace {
-
-std::string escape_html(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 /// Inside the strings of a script, the only places where these can stand, the backslash changes nothing; for the HTML
 /// parser it hides the end of the element.
@@ -65,14 +44,30 @@ std::uint64_t fingerprint(std::string_view text) {
   return hash;
 }
 
+/// A page shows what the rows have; all of the others is in the result.
+nlohmann::json everything_shown(const result::Result& result, const std::vector<Overlay>& overlays) {
+  const auto is_kept = [](const Overlay& overlay) { return overlay.result.kept.has_value(); };
+  if (result.kept || std::any_of(overlays.begin(), overlays.end(), is_kept)) {
+    std::vector<Overlay> in_rows;
+    for (const auto& [label, other] : overlays) in_rows.push_back({label, as_in_rows(other)});
+    auto shown = everything_shown(as_in_rows(result), in_rows);
+    if (result.kept) {
+      shown["kept"] = {{"states", result.states.size()}, {"switching functions", result.switching_functions.size()}};
+    }
+    return shown;
+  }
+  const std::size_t share = numbers_in_page / (1 + overlays.size());
+  auto everything = page_data(result, share);
+  everything["overlays"] = overlays_data(result, overlays, share);
+  everything["kept"] = nullptr;
+  return everything;
+}
+
 }  // namespace
 
 std::string to_html(const result::Result& result, std::string_view plotly_source,
                     const std::vector<Overlay>& overlays) {
-  const std::size_t share = numbers_in_page / (1 + overlays.size());
-  nlohmann::json everything = page_data(result, share);
-  everything["overlays"] = overlays_data(result, overlays, share);
-  Packed packed = pack(std::move(everything));
+  Packed packed = pack(everything_shown(result, overlays));
   const std::string data = to_script_text(packed.skeleton);
   const std::string numbers = deflated_base64(shuffled_bytes(packed.numbers));
   const std::string plotly = deflated_base64(plotly_source);

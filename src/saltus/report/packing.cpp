@@ -82,7 +82,8 @@ json by_columns(json list, std::vector<double>& numbers) {
 json taken_out(json value, std::vector<double>& numbers) {
   if (value.is_array() && value.size() >= least_packed) {
     if (all_numbers(value)) return put_away(value, numbers);
-    if (value.front().is_object() && are_alike(value)) return by_columns(std::move(value), numbers);
+    const bool of_points = value.front().is_object() && value.front().contains("$points");
+    if (value.front().is_object() && !of_points && are_alike(value)) return by_columns(std::move(value), numbers);
   }
   if (value.is_structured()) {
     for (json& part : value) part = taken_out(std::move(part), numbers);

@@ -18,7 +18,7 @@ inline constexpr std::size_t least_packed = 24;
 /// An array of numbers becomes {"$n": [first, count]}, null as NaN. A long array of objects that have the same keys
 /// becomes {"$rows": count, "columns": {key: values}}; of a column the values are an array of numbers, or
 /// {"$table": width, "of": numbers} where all are arrays of one length, or {"$codes": numbers, "of": list} where few of
-/// them differ.
+/// them differ. Columns that are kept by points ({"$points": [places, values], "size": count}) stay objects.
 struct Packed {
   nlohmann::json skeleton;
   std::vector<double> numbers;

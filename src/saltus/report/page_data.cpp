@@ -3,10 +3,10 @@
 #include <type_traits>
 
 #include "saltus/base/version.hpp"
+#include "saltus/report/page_columns_internal.hpp"
 #include "saltus/report/page_comparison_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
 #include "saltus/report/page_optimization_internal.hpp"
-#include "saltus/report/thinning_internal.hpp"
 
 namespace saltus::report {
 namespace {
@@ -23,22 +23,6 @@ std::vector<T> head(const std::vector<T>& list, std::size_t most) {
 template <class T>
 json head_or_null(const std::optional<std::vector<T>>& value, std::size_t most) {
   return value ? json(head(*value, most)) : json(nullptr);
-}
-
-/// One array per column; a row that is too short counts as not a number there.
-template <class Table>
-json columns(const Table& rows, const std::vector<std::size_t>& chosen, std::size_t width) {
-  json result = json::array();
-  for (std::size_t column = 0; column < width; ++column) {
-    json::array_t values;
-    values.reserve(chosen.size());
-    for (const std::size_t i : chosen) {
-      const bool there = i < rows.size() && column < rows[i].size();
-      values.emplace_back(there ? rows[i][column] : std::numeric_limits<double>::quiet_NaN());
-    }
-    result.push_back(std::move(values));
-  }
-  return result;
 }
 
 /// Intervals of constant value of one band: edges t_0 < … < t_n and the n values between them.
@@ -205,26 +189,60 @@ json model_data(const result::ModelRecord& model) {
           {"settings", model.settings}};
 }
 
+/// Calls visit(name, table, width) for each table of columns of a trajectory.
+template <class Visit>
+void for_each_list_of_columns(const result::Result& result, Visit visit) {
+  const auto width = [](const std::vector<std::string>& names) { return std::min(columns_in_page, names.size()); };
+  const auto& trajectory = result.trajectory;
+  visit("x", trajectory.x, width(result.states));
+  visit("u", trajectory.u, width(result.controls));
+  visit("alpha", trajectory.alpha, width(result.switching_functions));
+  visit("outputs", trajectory.outputs, width(result.outputs));
+  visit("theta", trajectory.theta, width(result::region_labels(result.region_groups)));
+}
+
+/// Rows of a trajectory of many columns, and a tolerance with which the points of all of them are about as many numbers
+/// as there is room for.
+KeptRows rows_of_many(const result::Result& result, std::size_t limit) {
+  constexpr std::size_t most_rows = 20000;
+  constexpr double coarsest = 0.05;
+  KeptRows kept{rows_to_draw(result.trajectory, most_rows, 4), {}, least_line_tolerance};
+  for (const std::size_t i : kept.rows) kept.t.push_back(result.trajectory.t[i]);
+  for (; kept.line_tolerance < coarsest; kept.line_tolerance *= 2.0) {
+    std::size_t numbers = kept.t.size();
+    for_each_list_of_columns(result, [&](const char*, const auto& table, std::size_t width) {
+      for (std::size_t column = 0; column < width && numbers <= limit; ++column) {
+        numbers += 2 * points_of(kept, values_of(table, kept.rows, column)).size();
+      }
+    });
+    if (numbers <= limit) break;
+  }
+  return kept;
+}
+
 json trajectory_data(const result::Result& result, std::size_t limit) {
   const auto& trajectory = result.trajectory;
   const std::size_t of_bodies = result.drawing ? result.drawing->width() : 0;
   const std::size_t columns_drawn = 1 + number_of_columns(trajectory, columns_in_page) + of_bodies;
-  const auto chosen = rows_to_draw(trajectory, std::max<std::size_t>(1, limit / columns_drawn), columns_in_page);
-  const auto width = [](const std::vector<std::string>& names) { return std::min(columns_in_page, names.size()); };
-  json::array_t t;
-  t.reserve(chosen.size());
-  for (const std::size_t i : chosen) t.emplace_back(trajectory.t[i]);
-  return {{"rows", trajectory.t.size()},
-          {"t", std::move(t)},
-          {"x", columns(trajectory.x, chosen, width(result.states))},
-          {"u", columns(trajectory.u, chosen, width(result.controls))},
-          {"alpha", columns(trajectory.alpha, chosen, width(result.switching_functions))},
-          {"outputs", columns(trajectory.outputs, chosen, width(result.outputs))},
-          {"theta", columns(trajectory.theta, chosen, width(result::region_labels(result.region_groups)))},
-          {"drawing", result.drawing ? columns(result.drawing->rows, chosen, of_bodies) : json::array()},
-          {"contact_modes", contact_bands(result)},
-          {"modes", mode_bands(trajectory, width(result.switching_functions))},
-          {"regions", region_bands(result)}};
+  const bool many = columns_drawn > many_columns && trajectory.t.size() * columns_drawn > limit / 8;
+  KeptRows kept;
+  if (many) {
+    kept = rows_of_many(result, limit / 2);
+  } else {
+    kept.rows = rows_to_draw(trajectory, std::max<std::size_t>(1, limit / columns_drawn), columns_in_page);
+    for (const std::size_t i : kept.rows) kept.t.push_back(trajectory.t[i]);
+  }
+  json data = {{"rows", trajectory.t.size()},
+               {"t", kept.t},
+               {"line_tolerance", kept.line_tolerance},
+               {"contact_modes", contact_bands(result)},
+               {"modes", mode_bands(trajectory, std::min(columns_in_page, result.switching_functions.size()))},
+               {"regions", region_bands(result)}};
+  for_each_list_of_columns(result, [&](const char* name, const auto& table, std::size_t width) {
+    data[name] = kept_columns(table, kept, width);
+  });
+  data["drawing"] = result.drawing ? kept_columns(result.drawing->rows, {kept.rows, kept.t}, of_bodies) : json::array();
+  return data;
 }
 
 /// Of the first columns; a page shows one selection after the other, but carries all of them.
@@ -237,11 +255,12 @@ json elements_data(const std::optional<result::Elements>& elements) {
     selections.emplace_back(json{{"name", name}, {"form", result::name(form)}});
   }
   const std::size_t width = selections.size();
+  const KeptRows all{std::move(rows), {}};
   return {{"points", elements->points},
           {"t", elements->t},
           {"selections", std::move(selections)},
-          {"lambda", columns(elements->lambda, rows, width)},
-          {"selection", columns(elements->selection, rows, width)}};
+          {"lambda", kept_columns(elements->lambda, all, width)},
+          {"selection", kept_columns(elements->selection, all, width)}};
 }
 
 json sensitivities_data(const std::optional<result::Sensitivities>& sensitivities) {
@@ -315,8 +334,9 @@ json families_data(const std::vector<result::TreeEntry>& tree) {
 
 /// Events with as many values each as fit the limit of the page.
 json events_data(const result::Result& result, std::size_t limit) {
-  // x, mode and alpha on both sides: six lists for every event.
-  const std::size_t share = limit / (6 * std::max<std::size_t>(1, result.events.size()));
+  // x, mode and alpha on both sides: six lists for every event. Of many columns nobody reads the lists.
+  const bool many = result.states.size() + result.switching_functions.size() > many_columns;
+  const std::size_t share = (many ? limit / 8 : limit) / (6 * std::max<std::size_t>(1, result.events.size()));
   const std::size_t values_of_event = std::clamp(share, least_values_of_event, columns_in_page);
   json events = json::array();
   for (const auto& event : result.events) events.push_back(event_data(event, values_of_event));

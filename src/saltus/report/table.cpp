@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/report/comparison_table_internal.hpp"
+#include "saltus/report/end_state_internal.hpp"
 #include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/text_columns_internal.hpp"
 
@@ -59,15 +61,29 @@ std::string remark(const result::Event& event, const result::Result& result) {
   return *event.unique ? "" : "not unique";
 }
 
-Row event_row(std::size_t number, const result::Event& event, const result::Result& result) {
-  const std::size_t columns = result.switching_functions.size();
-  const bool with_modes = columns > 0 && columns <= most_signs;
-  return {fmt::format("{}", number),  fmt::format("{:.12g}", event.t), std::string(name(event.kind)),
-          shortened(what(event), 24), with_modes ? modes(event) : "",  shortened(regions(event), 64),
-          remark(event, result)};
+/// Of how many kinds how many.
+std::string kinds_of(const result::Result& result) {
+  auto kinds = result.passed_on ? result.passed_on->kinds : std::map<result::EventKind, std::size_t>{};
+  for (std::size_t i = 0; !result.passed_on && i < result.events.size(); ++i) ++kinds[result.events.kind(i)];
+  std::vector<std::string> pieces;
+  for (const auto& [kind, count] : kinds) pieces.push_back(fmt::format("{} {}", count, name(kind)));
+  return fmt::format("{}", fmt::join(pieces, ", "));
 }
 
-std::string event_table(const result::Result& result, std::size_t shown_at_each_end) {
+/// Values of states behind an event.
+using ShownStates = std::vector<std::size_t>;
+
+Row event_row(std::size_t number, const result::Event& event, const result::Result& result, const ShownStates& states) {
+  const std::size_t columns = result.switching_functions.size();
+  const bool with_modes = columns > 0 && columns <= most_signs;
+  Row row{fmt::format("{}", number),  fmt::format("{:.12g}", event.t), std::string(name(event.kind)),
+          shortened(what(event), 24), with_modes ? modes(event) : "",  shortened(regions(event), 64),
+          remark(event, result)};
+  for (const std::size_t state : states) row.push_back(fmt::format("{:.9g}", event.x_after[state]));
+  return row;
+}
+
+std::string event_table(const result::Result& result, std::size_t shown_at_each_end, const ShownStates& states) {
   const auto& events = result.events;
   const std::size_t columns = result.switching_functions.size();
   const std::size_t count_of_all = result.passed_on ? result.passed_on->events : events.size();
@@ -76,15 +92,17 @@ std::string event_table(const result::Result& result, std::size_t shown_at_each_
   const bool all = count_of_all / 2 < shown_at_each_end || count_of_all == 2 * shown_at_each_end;
   std::vector<Row> rows{{"#", "t", "kind", "surfaces", columns > 0 && columns <= most_signs ? "mode" : "",
                          !events.empty() && events.front().regions_after ? "regions" : "", ""}};
+  for (const std::size_t state : states) rows.front().push_back(result.states[state]);
   for (std::size_t i = 0; i < events.size(); ++i) {
     const bool first = i < shown_at_each_end;
-    if (!all && i == shown_at_each_end) rows.push_back({"…", "", "", "", "", "", ""});
+    if (!all && i == shown_at_each_end) rows.emplace_back(rows.front().size()).front() = "…";
     if (all || first || events.size() - i <= shown_at_each_end) {
-      rows.push_back(event_row(first ? i + 1 : i + 1 + left_out, events[i], result));
+      rows.push_back(event_row(first ? i + 1 : i + 1 + left_out, events[i], result, states));
     }
   }
   const auto count = all ? fmt::format("events      {}\n", count_of_all)
-                         : fmt::format("events      {}, the first and the last {}\n", count_of_all, shown_at_each_end);
+                         : paragraph("events", fmt::format("{}: {}; the first and the last {}", count_of_all,
+                                                           kinds_of(result), shown_at_each_end));
   return count + aligned(rows);
 }
 
@@ -179,61 +197,10 @@ std::string method_text(const result::Result& result) {
   return details.empty() ? result.method : fmt::format("{} ({})", result.method, fmt::join(details, ", "));
 }
 
-/// "q = 0.5 m"
-std::string with_unit(const std::string& name, double value, const result::Captions& captions) {
-  const auto unit = caption_of(captions, name).unit;
-  return fmt::format("{} = {:.12g}{}{}", name, value, unit.empty() ? "" : " ", unit);
-}
-
-/// Of a large system the first and the last ones; result files have them all.
-std::vector<std::string> few_of(std::vector<std::string> pieces) {
-  constexpr std::size_t most = 60, at_front = 20, at_back = 4;
-  if (pieces.size() <= most) return pieces;
-  std::vector<std::string> few(pieces.begin(), pieces.begin() + at_front);
-  few.push_back(fmt::format("… ({} in all)", pieces.size()));
-  few.insert(few.end(), pieces.end() - at_back, pieces.end());
-  return few;
-}
-
-std::string end_state(const result::Result& result, const result::Captions& captions) {
-  std::vector<std::string> pieces;
-  for (std::size_t i = 0; i < result.states.size() && i < result.final.x.size(); ++i) {
-    pieces.push_back(with_unit(result.states[i], result.final.x[i], captions));
-  }
-  std::string text = wrapped("end state", few_of(pieces));
-  pieces.clear();
-  const bool smoothed = result.method == "smoothed";
-  for (std::size_t j = 0; j < result.switching_functions.size() && j < result.final.mode.size(); ++j) {
-    if (result.final.mode[j] != 0) continue;
-    const double alpha = j < result.final.alpha.size() ? result.final.alpha[j] : 0.0;
-    pieces.push_back(fmt::format("{}{} ({})", shortened(result.switching_functions[j], 40), smoothed ? "" : " = 0",
-                                 std::isfinite(alpha) ? fmt::format("alpha {:.6g}", alpha) : "alpha not determined"));
-  }
-  if (!pieces.empty()) text += wrapped(smoothed ? "in layer of" : "sliding on", few_of(pieces));
-  pieces.clear();
-  const auto labels = result::region_labels(result.region_groups);
-  std::size_t label = 0;
-  for (std::size_t g = 0; g < std::min(result.region_groups.size(), result.final.regions.size()); ++g) {
-    const auto& active = result.final.regions[g];
-    for (const auto& mode : result.region_groups[g].modes) {
-      const std::size_t k = label++;
-      if (std::find(active.begin(), active.end(), mode) == active.end() || k >= result.final.theta.size()) continue;
-      const bool alone = active.size() == 1;
-      pieces.push_back(shortened(labels[k], 40) + (alone ? "" : fmt::format(" (theta {:.6g})", result.final.theta[k])));
-    }
-  }
-  if (!pieces.empty()) text += wrapped("regions", pieces);
-  pieces.clear();
-  for (std::size_t i = 0; i < result.outputs.size() && i < result.final.outputs.size(); ++i) {
-    pieces.push_back(with_unit(result.outputs[i], result.final.outputs[i], captions));
-  }
-  if (!pieces.empty()) text += wrapped("outputs", few_of(pieces));
-  return text;
-}
-
 }  // namespace
 
-std::string to_table(const result::Result& result, std::size_t shown_events, const result::Captions& captions) {
+std::string to_table(const result::Result& result, std::size_t shown_events, const result::Captions& captions,
+                     const std::vector<std::string>& names) {
   std::string text = paragraph("model", result.model.description.empty()
                                             ? result.model.name
                                             : fmt::format("{}: {}", result.model.name, result.model.description));
@@ -248,14 +215,18 @@ std::string to_table(const result::Result& result, std::size_t shown_events, con
                                   : fmt::format("{} at t = {:.12g}", termination, result.status.time_reached));
   if (!result.status.message.empty()) text += paragraph("", result.status.message);
   if (result.optimization) text += objective_table(*result.optimization);
-  text += end_state(result, captions);
+  text += end_state(result, captions, names);
   if (result.optimization) text += findings_table(result, *result.optimization);
   constexpr double rounding = 1e-12;
   if (result.penetration.value_or(0.0) > rounding) {
     text += paragraph("contacts", fmt::format("bodies are at most {:.2g} deep in each other", *result.penetration));
   }
   if (result.sensitivities) text += sensitivity_table(result, *result.sensitivities);
-  text += event_table(result, shown_events);
+  // Values beside events: as many columns as a terminal has room for.
+  constexpr std::size_t most_states = 4;
+  ShownStates states = names.empty() ? ShownStates{} : shown_states(result, names);
+  if (states.size() > most_states) states.clear();
+  text += event_table(result, shown_events, states);
   text += branch_table(result);
   text += family_table(result);
   if (result.optimization) return text + optimization_statistics(*result.optimization);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "saltus/report/thinning_internal.hpp"
@@ -54,6 +55,42 @@ void keep_extremes(const Rows& rows, std::size_t column, Run run, std::vector<ch
 }
 
 }  // namespace
+
+std::vector<std::size_t> straight_places(const std::vector<double>& t, const std::vector<double>& values,
+                                         double tolerance) {
+  std::vector<std::size_t> places;
+  const std::size_t size = values.size();
+  if (size == 0) return places;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  places.push_back(0);
+  double lowest = -infinity, highest = infinity;  // slopes of lines from the last place that pass all values since
+  const auto begin_at = [&](std::size_t i) {
+    if (places.back() != i) places.push_back(i);
+    lowest = -infinity, highest = infinity;
+  };
+  for (std::size_t i = 1; i < size; ++i) {
+    const bool there = std::isfinite(values[i]), before = std::isfinite(values[i - 1]);
+    const bool jumps = t[i] == t[i - 1] && values[i] != values[i - 1];
+    if (!there && !before) continue;
+    if (there != before || jumps) {
+      begin_at(i - 1);
+      begin_at(i);
+      continue;
+    }
+    const std::size_t from = places.back();
+    if (t[i] == t[from]) continue;
+    const double dt = t[i] - t[from], slope = (values[i] - values[from]) / dt;
+    if (slope < lowest || slope > highest) {
+      begin_at(i - 1);
+      if (t[i] == t[i - 1]) continue;
+    }
+    const double reach = t[i] - t[places.back()], rise = values[i] - values[places.back()];
+    lowest = std::max(lowest, (rise - tolerance) / reach);
+    highest = std::min(highest, (rise + tolerance) / reach);
+  }
+  begin_at(size - 1);
+  return places;
+}
 
 std::size_t number_of_columns(const result::Trajectory& trajectory, std::size_t most_columns) {
   std::size_t count = 0;

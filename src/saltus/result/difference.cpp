@@ -3,13 +3,22 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <variant>
+
+#include "saltus/result/kept_columns.hpp"
 
 namespace saltus::result {
 namespace {
 
+/// The tolerances of one column.
+struct Allowed {
+  double rtol, atol;
+};
+
 /// How often the tolerance the difference is; 0 for two numbers that are missing.
-double excess(double a, double b, const Tolerances& tolerances) {
+double excess(double a, double b, const Allowed& tolerances) {
   if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0;
   const double allowed = tolerances.atol + tolerances.rtol * std::max(std::abs(a), std::abs(b));
   const double ratio = std::abs(a - b) / allowed;
@@ -47,12 +56,82 @@ std::optional<Error> different_models(const Result& a, const Result& b) {
   return std::nullopt;
 }
 
+class Range {
+ public:
+  void include(double value) {
+    if (!std::isfinite(value)) return;
+    least_ = std::min(least_, value);
+    greatest_ = std::max(greatest_, value);
+  }
+  [[nodiscard]] double width() const { return least_ < greatest_ ? greatest_ - least_ : 0.0; }
+
+ private:
+  double least_ = std::numeric_limits<double>::infinity();
+  double greatest_ = -std::numeric_limits<double>::infinity();
+};
+
+/// Tolerances of every column: with none for small values a part of the column's range in both results, and no less
+/// than they were computed with.
+class AllowedDifferences {
+ public:
+  AllowedDifferences(const Result& a, const Result& b, const Tolerances& tolerances) : tolerances_(tolerances) {
+    std::vector<Range> states(a.states.size()), outputs(a.outputs.size());
+    Range t;
+    for (const Result* one : {&a, &b}) {
+      least_ = std::max(least_, computed_with(*one));
+      for (const double when : one->trajectory.t) t.include(when);
+      for (std::size_t k = 0; k < states.size(); ++k) include_state(*one, k, states[k]);
+      for (const auto row : one->trajectory.outputs) {
+        for (std::size_t k = 0; k < std::min(outputs.size(), row.size()); ++k) outputs[k].include(row[k]);
+      }
+    }
+    time = of(t);
+    for (const Range& range : states) of_states.push_back(of(range));
+    for (const Range& range : outputs) of_outputs.push_back(of(range));
+  }
+  Allowed time{};
+  std::vector<Allowed> of_states{}, of_outputs{};
+
+ private:
+  static double computed_with(const Result& result) {
+    for (const auto& [name, value] : result.options) {
+      if (name != "simulate.atol") continue;
+      if (const auto* atol = std::get_if<double>(&value)) return *atol;
+    }
+    return 0.0;
+  }
+  static void include_state(const Result& result, std::size_t state, Range& range) {
+    if (const auto column = column_of_state(result, state)) {
+      for (const auto row : result.trajectory.x) range.include(row[*column]);
+    }
+    for (std::size_t i = 0; i < result.events.size(); ++i) {
+      range.include(result.events.x(i)[state]);
+      range.include(result.events.x_after(i)[state]);
+    }
+    if (state < result.final.x.size()) range.include(result.final.x[state]);
+  }
+  [[nodiscard]] Allowed of(const Range& range) const {
+    return {tolerances_.rtol, tolerances_.atol.value_or(std::max(least_, tolerances_.rtol * range.width()))};
+  }
+  const Tolerances& tolerances_;
+  double least_ = 0.0;
+};
+
 void compare_list(const std::vector<std::string>& names, const std::vector<double>& a, const std::vector<double>& b,
-                  const Tolerances& tolerances, std::vector<NumberDifference>& found) {
+                  const std::vector<Allowed>& allowed, std::vector<NumberDifference>& found) {
   for (std::size_t i = 0; i < std::min({names.size(), a.size(), b.size()}); ++i) {
-    if (excess(a[i], b[i], tolerances) > 1.0) found.push_back({names[i], a[i], b[i]});
+    if (excess(a[i], b[i], allowed[i]) > 1.0) found.push_back({names[i], a[i], b[i]});
   }
 }
+
+/// A state that the rows of both have.
+struct CommonColumn {
+  std::string name;
+  std::size_t of_a, of_b;
+  Allowed allowed;
+  double worst = 1.0;
+  std::optional<NumberDifference> found{};
+};
 
 void compare_parameters(const Result& a, const Result& b, Difference& difference) {
   for (const auto& [name, value] : a.model.parameters) {
@@ -63,10 +142,14 @@ void compare_parameters(const Result& a, const Result& b, Difference& difference
 }
 
 /// The states of two lists of rows at times that both have; rows of one time (at events) in their order.
-void compare_rows(const Result& a, const Result& b, const Tolerances& tolerances, Difference& difference) {
+void compare_rows(const Result& a, const Result& b, const std::vector<Allowed>& allowed, Difference& difference) {
   const auto& [first, second] = std::pair<const Trajectory&, const Trajectory&>(a.trajectory, b.trajectory);
-  std::vector<double> worst(a.states.size(), 1.0);
-  std::vector<std::optional<NumberDifference>> found(a.states.size());
+  std::vector<CommonColumn> columns;
+  for (std::size_t k = 0; k < a.states.size(); ++k) {
+    const auto of_a = column_of_state(a, k), of_b = column_of_state(b, k);
+    if (of_a && of_b) columns.push_back({a.states[k], *of_a, *of_b, allowed[k]});
+  }
+  difference.common_states = columns.size();
   std::size_t i = 0, j = 0;
   while (i < first.t.size() && j < second.t.size()) {
     if (first.t[i] != second.t[j]) {
@@ -74,16 +157,17 @@ void compare_rows(const Result& a, const Result& b, const Tolerances& tolerances
       continue;
     }
     ++difference.common_times;
-    for (std::size_t k = 0; k < a.states.size(); ++k) {
-      const double ratio = excess(first.x[i][k], second.x[j][k], tolerances);
-      if (ratio <= worst[k]) continue;
-      worst[k] = ratio;
-      found[k] = {a.states[k] + " at t = " + number_text(first.t[i]), first.x[i][k], second.x[j][k]};
+    for (auto& column : columns) {
+      const double in_a = first.x[i][column.of_a], in_b = second.x[j][column.of_b];
+      const double ratio = excess(in_a, in_b, column.allowed);
+      if (ratio <= column.worst) continue;
+      column.worst = ratio;
+      column.found = {column.name + " at t = " + number_text(first.t[i]), in_a, in_b};
     }
     ++i, ++j;
   }
-  for (auto& state : found) {
-    if (state) difference.rows.push_back(std::move(*state));
+  for (auto& column : columns) {
+    if (column.found) difference.rows.push_back(std::move(*column.found));
   }
 }
 
@@ -98,13 +182,13 @@ std::string text_of(const Event& event) {
 
 /// What differs between two events; empty if nothing does.
 std::string event_difference(const Event& a, const Event& b, const std::vector<std::string>& states,
-                             const Tolerances& tolerances) {
+                             const AllowedDifferences& allowed) {
   if (text_of(a) != text_of(b)) return text_of(a) + " and " + text_of(b);
   const auto pair = [](double first, double second) { return number_text(first) + " and " + number_text(second); };
-  if (excess(a.t, b.t, tolerances) > 1.0) return text_of(a) + ": t = " + pair(a.t, b.t);
+  if (excess(a.t, b.t, allowed.time) > 1.0) return text_of(a) + ": t = " + pair(a.t, b.t);
   for (const auto& [first, second] : {std::pair{&a.x, &b.x}, std::pair{&a.x_after, &b.x_after}}) {
     std::vector<NumberDifference> found;
-    compare_list(states, *first, *second, tolerances, found);
+    compare_list(states, *first, *second, allowed.of_states, found);
     if (!found.empty()) return text_of(a) + ": " + found.front().what + " = " + pair(found.front().a, found.front().b);
   }
   return "";
@@ -119,14 +203,15 @@ Expected<Difference> difference(const Result& a, const Result& b, const Toleranc
   if (a.status.termination != b.status.termination) {
     difference.ends = std::string(name(a.status.termination)) + " and " + std::string(name(b.status.termination));
   }
-  compare_list({"t"}, {a.final.t}, {b.final.t}, tolerances, difference.end_state);
-  compare_list(a.states, a.final.x, b.final.x, tolerances, difference.end_state);
-  compare_list(a.outputs, a.final.outputs, b.final.outputs, tolerances, difference.end_state);
-  compare_rows(a, b, tolerances, difference);
+  const AllowedDifferences allowed(a, b, tolerances);
+  compare_list({"t"}, {a.final.t}, {b.final.t}, {allowed.time}, difference.end_state);
+  compare_list(a.states, a.final.x, b.final.x, allowed.of_states, difference.end_state);
+  compare_list(a.outputs, a.final.outputs, b.final.outputs, allowed.of_outputs, difference.end_state);
+  compare_rows(a, b, allowed.of_states, difference);
   difference.events_a = a.events.size();
   difference.events_b = b.events.size();
   for (std::size_t i = 0; i < std::min(a.events.size(), b.events.size()) && difference.first_event.empty(); ++i) {
-    const auto what = event_difference(a.events[i], b.events[i], a.states, tolerances);
+    const auto what = event_difference(a.events[i], b.events[i], a.states, allowed);
     if (!what.empty()) difference.first_event = "event " + std::to_string(i + 1) + ": " + what;
   }
   return difference;

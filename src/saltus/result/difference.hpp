@@ -14,7 +14,9 @@ namespace saltus::result {
 /// Numbers a and b are the same if |a - b| <= atol + rtol max(|a|, |b|); two that are missing (NaN) are, too.
 struct Tolerances {
   double rtol = 1e-6;
-  double atol = 1e-9;
+  /// By default that of each column: rtol times its range in both results, and no less than the absolute tolerance with
+  /// which they were computed.
+  std::optional<double> atol{};
 };
 
 /// Two numbers of one meaning; of a state the pair that lies farthest beyond the tolerances.
@@ -28,6 +30,7 @@ struct Difference {
   std::vector<NumberDifference> end_state;   ///< states, then outputs, that differ at the end, and the end time
   std::vector<NumberDifference> rows;        ///< states that differ at a time that both have, with the worst time
   std::size_t common_times = 0;
+  std::size_t common_states = 0;  ///< that the rows of both have
   std::size_t events_a = 0, events_b = 0;
   std::string first_event;  ///< what differs in the first event that does; empty if none
   std::string ends;         ///< how the runs ended, if differently

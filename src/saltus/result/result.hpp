@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -137,8 +138,9 @@ struct VectorField {
   Arrows sliding;  ///< on those parts of surfaces where solutions slide
 };
 
-/// Dotted option name ("simulate.event.integrator") and its value in force; a vector for output times.
-using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+/// Dotted option name ("simulate.event.integrator") and its value in force; lists of output times, and of names.
+using OptionValue =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
 using OptionRecord = std::vector<std::pair<std::string, OptionValue>>;
 
 enum class FamilyKind {
@@ -174,8 +176,16 @@ struct Departure {
 /// Of rows and events that were passed on while they were computed: what is known without them.
 struct PassedOn {
   std::size_t rows = 0, events = 0;
-  std::size_t alternatives = 0;         ///< in the events
-  std::vector<double> least, greatest;  ///< of every state, in rows and events; NaN left out
+  std::size_t alternatives = 0;              ///< in the events
+  std::map<EventKind, std::size_t> kinds{};  ///< how many events of each
+  std::vector<double> least, greatest;       ///< of every state, in rows and events; NaN left out
+};
+
+/// Columns that the rows of a trajectory have where those are not all: numbers in the lists of the result, ascending.
+struct KeptColumns {
+  std::vector<std::size_t> states;               ///< of x
+  std::vector<std::size_t> switching_functions;  ///< of alpha and mode
+  bool operator==(const KeptColumns&) const = default;
 };
 
 struct Result {
@@ -190,6 +200,7 @@ struct Result {
   Final final;
   Events events;
   Trajectory trajectory;
+  std::optional<KeptColumns> kept;    ///< what the rows have of them; end state and events always have all
   std::optional<PassedOn> passed_on;  ///< then the trajectory has no rows, and of the events at most some are left
   Statistics statistics;              ///< of an optimisation those of Optimization are written instead
   OptionRecord options;

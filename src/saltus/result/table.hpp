@@ -131,6 +131,15 @@ class Table {
     rows_ = rows.size();
     numbers_.resize(rows_ * width_);
   }
+  /// Leaves these columns, ascending.
+  void keep_columns(const std::vector<std::size_t>& columns) {
+    std::size_t end = 0;
+    for (std::size_t row = 0; row < rows_; ++row) {
+      for (const std::size_t column : columns) numbers_[end++] = numbers_[row * width_ + column];
+    }
+    width_ = rows_ > 0 ? columns.size() : 0;
+    numbers_.resize(end);
+  }
   /// Leaves the first columns of all rows.
   void narrow(std::size_t width) {
     if (width >= width_) return;
@@ -252,6 +261,14 @@ class SteadyTable {
   void pop_back() {
     --rows_;
     for (auto& column : columns_) column.drop_from(rows_);
+  }
+  /// Leaves these columns, ascending.
+  void keep_columns(const std::vector<std::size_t>& columns) {
+    std::vector<SteadyColumn<Number>> kept;
+    for (const std::size_t column : columns) {
+      if (column < columns_.size()) kept.push_back(std::move(columns_[column]));
+    }
+    columns_ = std::move(kept);
   }
   /// Leaves these rows, ascending.
   void keep(const std::vector<std::size_t>& rows) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saltus/report/figure_columns_internal.hpp"
+#include "saltus/report/figure/figure_columns_internal.hpp"
 #include "sample_results.hpp"
 
 namespace saltus::report {
@@ -34,6 +34,23 @@ TEST(Figure, OfAPlaneHasItsColumnsAsAxes) {
   const auto svg = to_svg(result, *axes);
   ASSERT_TRUE(svg);
   EXPECT_NE(svg->find("alpha(slip) over q"), std::string::npos);
+}
+
+TEST(Figure, SaysWhatItsLinesMean) {
+  auto result = report_samples::stick_slip(40, 50);
+  const auto over_time = to_svg(result);
+  ASSERT_TRUE(over_time);
+  for (const char* name : {">psi &lt; 0<", ">sliding<", ">psi &gt; 0<", ">event<"}) {
+    EXPECT_EQ(occurrences(*over_time, name), 1U) << name;
+  }
+  result::Surface line{
+      "slip", result::SurfaceRole::switching, {"v"}, false, result::AffineSurface{{1.0}, 0.0, -0.2}, {}, {}};
+  result.surfaces = {line};
+  const auto plane = to_svg(result, PhaseAxes{"q", "v"});
+  ASSERT_TRUE(plane);
+  for (const char* name : {">solution<", ">sliding<", ">start<", ">end<", ">slip<"}) {
+    EXPECT_EQ(occurrences(*plane, name), 1U) << name;
+  }
 }
 
 TEST(Figure, UnknownColumnsAreRefusedWithTheNearestName) {
@@ -87,7 +104,8 @@ TEST(Figure, ChatteringFillsBothHalvesOfABand) {
   result.states = {"x"};
   result.switching_functions = {"s"};
   for (int i = 0; i < 20000; ++i) {
-    for (const double part : {0.0, 0.5}) report_samples::add_row(result, {i + part, {0.0}, {part == 0.0 ? 1 : -1}, {0.0}});
+    for (const double part : {0.0, 0.5})
+      report_samples::add_row(result, {i + part, {0.0}, {part == 0.0 ? 1 : -1}, {0.0}});
   }
   report_samples::finish(result);
   const auto svg = to_svg(result);

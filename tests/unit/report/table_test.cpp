@@ -110,7 +110,7 @@ TEST(Table, LongListsShowTheFirstAndTheLastTen) {
   EXPECT_EQ(to_table(r).find("…"), std::string::npos);
   r.events.push_back(crossing(20, "a"));
   const auto text = to_table(r);
-  EXPECT_NE(text.find("events      21, the first and the last 10\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("events      21: 21 crossing; the first and the last 10\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("\n  11 "), std::string::npos);
   EXPECT_NE(text.find("\n  10 "), std::string::npos);
   EXPECT_NE(text.find("\n  12 "), std::string::npos);
@@ -200,6 +200,49 @@ TEST(Table, OfAnOptimisationThatFailedNamesEveryFailure) {
   text = to_table(r);
   EXPECT_NE(text.find("Not decided whether it is B-stationary (multipliers: C)"), std::string::npos) << text;
   EXPECT_NE(text.find("Not simulated again."), std::string::npos) << text;
+}
+
+/// Two families of names, and one that stands alone.
+result::Result many_states() {
+  result::Result r = sample();
+  r.states = {"total"};
+  r.final.x = {7.5};
+  for (int i = 1; i <= 1000; ++i) {
+    for (const char* letter : {"q", "v"}) {
+      r.states.push_back(letter + std::to_string(i));
+      r.final.x.push_back(letter[0] == 'q' ? i : -0.5 * i);
+    }
+  }
+  r.events = {};
+  return r;
+}
+
+TEST(Table, OfManyStatesItSaysTheirRange) {
+  const auto text = to_table(many_states());
+  EXPECT_NE(text.find("end state   2001 states; --show NAME"), std::string::npos) << text;
+  EXPECT_NE(text.find("q1 … q1000  1000  from  1     (q1)     to  1000  (q1000)"), std::string::npos) << text;
+  EXPECT_NE(text.find("v1 … v1000  1000  from  -500  (v1000)  to  -0.5  (v1)"), std::string::npos) << text;
+  EXPECT_NE(text.find("total = 7.5"), std::string::npos) << text;
+  EXPECT_LT(lines(text).size(), 20U);
+}
+
+TEST(Table, ShowsWhatIsNamed) {
+  auto r = many_states();
+  const auto text = to_table(r, events_at_each_end, {}, {"v7*", "total"});
+  EXPECT_NE(text.find("end state   v7 = -3.5  v70 = -35"), std::string::npos) << text;
+  EXPECT_NE(text.find("total = 7.5"), std::string::npos) << text;
+  EXPECT_EQ(text.find("q1"), std::string::npos);
+  EXPECT_TRUE(check_names({"v7*", "total"}, r.states, r.outputs, r.switching_functions));
+  const auto unknown = check_names({"w1"}, r.states, r.outputs, r.switching_functions);
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().message.find("'w1'"), std::string::npos);
+}
+
+TEST(Table, SaysInWhichModesContactsEnd) {
+  auto r = sample();
+  r.contacts = {"heel", "toe"};
+  r.final.contact_modes = {result::ContactMode::stick, result::ContactMode::open};
+  EXPECT_NE(to_table(r).find("contacts    heel: stick  toe: open\n"), std::string::npos) << to_table(r);
 }
 
 }  // namespace

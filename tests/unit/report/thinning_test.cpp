@@ -102,5 +102,49 @@ TEST(Thinning, CountsTheColumnsOfAllTables) {
   EXPECT_EQ(number_of_columns({}), 0U);
 }
 
+/// The largest distance of lines between places from the values.
+double farthest(const std::vector<double>& t, const std::vector<double>& values,
+                const std::vector<std::size_t>& places) {
+  double most = 0.0;
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    const std::size_t from = places[k], to = places[k + 1];
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const double part = t[to] == t[from] ? 0.0 : (t[i] - t[from]) / (t[to] - t[from]);
+      most = std::max(most, std::abs(values[from] + part * (values[to] - values[from]) - values[i]));
+    }
+  }
+  return most;
+}
+
+TEST(Thinning, LinesBetweenPlacesAreAsCloseAsTheyShouldBe) {
+  std::vector<double> t, values;
+  for (int i = 0; i < 5000; ++i) {
+    t.push_back(1e-3 * i + 4e-4 * std::sin(7.0 * i));
+    values.push_back(std::sin(20.0 * t.back()) + 0.01 * std::sin(311.0 * i));
+  }
+  std::sort(t.begin(), t.end());
+  std::size_t before = t.size();
+  for (const double tolerance : {1e-3, 1e-2, 1e-1}) {
+    const auto places = straight_places(t, values, tolerance);
+    EXPECT_EQ(places.front(), 0U);
+    EXPECT_EQ(places.back(), t.size() - 1);
+    EXPECT_TRUE(std::is_sorted(places.begin(), places.end()));
+    EXPECT_LE(farthest(t, values, places), tolerance * (1.0 + 1e-9));
+    EXPECT_LE(places.size(), before);
+    before = places.size();
+  }
+  EXPECT_LT(before, 200U);
+  // A constant is its ends, exactly.
+  EXPECT_EQ(straight_places(t, std::vector<double>(t.size(), 0.1), 0.0).size(), 2U);
+}
+
+TEST(Thinning, BothSidesOfJumpsAndOfGapsAreKept) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> t{0, 1, 2, 3, 3, 4, 5, 6, 7, 8}, values{0, 1, 2, 3, -3, -2, nan, nan, 0, 0};
+  EXPECT_EQ(straight_places(t, values, 1e-3), (std::vector<std::size_t>{0, 3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_TRUE(straight_places({}, {}, 1.0).empty());
+  EXPECT_EQ(straight_places({1}, {2}, 1.0), (std::vector<std::size_t>{0}));
+}
+
 }  // namespace
 }  // namespace saltus::report

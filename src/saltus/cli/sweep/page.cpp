@@ -1,10 +1,12 @@
 #include "saltus/cli/sweep/page.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <string_view>
 
 #include <fmt/format.h>
 
+#include "saltus/report/page_text.hpp"
 #include "sweep_page_script.hpp"
 
 namespace saltus::cli {
@@ -17,32 +19,6 @@ h1{font-size:1.4rem}h2{font-size:1rem;margin:1rem 0 .2rem}svg{width:100%;height:
 .frame{fill:none;stroke:var(--line)}.run{cursor:pointer}.run:hover{stroke:var(--text)}select{font:inherit}label{margin-right:1rem}
 #run{position:sticky;bottom:0;background:Canvas;border-top:1px solid var(--line);padding:.5rem 0}code{user-select:all;word-break:break-all}
 )";
-
-/// A text inside a script element: what would end the element is written as escapes.
-std::string quoted_json(std::string_view text) {
-  std::string json = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      json += '\\';
-      json += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == '<' || c == '>' || c == '&') {
-      json += fmt::format("\\u{:04x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    } else {
-      json += c;
-    }
-  }
-  return json + '"';
-}
-
-std::string json_of(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
-std::string json_of(const std::string& value) { return quoted_json(value); }
-
-template <class Values>
-std::string list_of(const Values& values) {
-  std::string list = "[";
-  for (const auto& value : values) list += (list.size() > 1 ? "," : "") + json_of(value);
-  return list + "]";
-}
 
 /// Rows that are drawn: all, or of every run as many of its last ones as leave room for all runs.
 struct DrawnRows {
@@ -80,33 +56,29 @@ std::vector<Value> rows_in(const std::vector<Value>& values, const std::vector<s
   return result;
 }
 
-std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : text) html += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return html;
-}
-
 std::string data_of(const std::vector<TableColumn>& table, const DrawnRows& drawn, const SweepPage& page) {
-  std::string columns, counts;
+  using report::script_json;
+  result::OptionRecord columns, counts;
   for (const auto& [run, count] : drawn.counts) {
-    counts += fmt::format(R"({}"{}":{})", counts.empty() ? "" : ",", run, count);
+    counts.emplace_back(fmt::format("{}", run), static_cast<std::int64_t>(count));
   }
   std::vector<std::string> swept;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (k > 0 && k <= page.names.size()) swept.push_back(table[k].name);
-    columns += fmt::format(
-        "{}{}:{}", k > 0 ? "," : "", quoted_json(table[k].name),
-        std::visit([&](const auto& values) { return list_of(rows_in(values, drawn.rows)); }, table[k].values));
+    std::visit([&](const auto& values) { columns.emplace_back(table[k].name, rows_in(values, drawn.rows)); },
+               table[k].values);
   }
-  return fmt::format(R"({{"columns":{{{}}},"swept":{},"names":{},"command":{},"grid":{},"rows_of_runs":{{{}}}}})",
-                     columns, list_of(swept), list_of(page.names), quoted_json(page.command), page.grid, counts);
+  const auto said =
+      script_json({{"swept", swept}, {"names", page.names}, {"command", page.command}, {"grid", page.grid}});
+  return fmt::format(R"({{"columns":{},"rows_of_runs":{},{})", script_json(columns), script_json(counts),
+                     std::string_view(said).substr(1));
 }
 
 }  // namespace
 
 std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& page) {
   const DrawnRows drawn = drawn_rows(table);
-  const auto title = escaped(page.title);
+  const auto title = report::escape_html(page.title);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   // Nothing may be fetched from anywhere.
   html +=

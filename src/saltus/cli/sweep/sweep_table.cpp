@@ -144,18 +144,19 @@ Table event_table(const Beginning& beginning, const Result& first, const std::ve
 
 Table trajectory_table(const Beginning& beginning, const Result& first, const std::vector<SweepRun>& runs) {
   auto columns = beginning.columns();
+  const auto states = states_in_rows(first);
   append(columns, {"t"});
-  append(columns, first.states);
+  append(columns, states);
   append(columns, first.controls);
   append(columns, first.outputs);
-  for (const auto& name : first.switching_functions) append(columns, {"mode(" + name + ")"});
+  for (const auto& name : functions_in_rows(first)) append(columns, {"mode(" + name + ")"});
   Table table(std::move(columns));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto& rows = runs[i].result.trajectory;
     for (std::size_t k = 0; k < rows.t.size(); ++k) {
       beginning.write(table, i, runs[i]);
       table << rows.t[k];
-      table.add(rows.x[k], first.states.size()).add(rows.u[k], first.controls.size());
+      table.add(rows.x[k], states.size()).add(rows.u[k], first.controls.size());
       table.add(rows.outputs[k], first.outputs.size());
       for (const int sign : rows.mode[k]) table << static_cast<double>(sign);
     }

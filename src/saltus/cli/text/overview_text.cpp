@@ -156,7 +156,10 @@ std::string overview_text(const ModelOverview& overview, const std::string& path
   std::string text = fmt::format("{}{}{}\n{}\n", overview.name, colon, overview.description, path);
   text += quantities_text("states", overview.states) + quantities_text("parameters", overview.parameters) +
           quantities_text("controls", overview.controls);
-  text += heading("equations", overview.equations.size()) + equations_text(overview.equations, "'");
+  if (overview.mechanics.empty() || !overview.equations.empty()) {
+    text += heading("equations", overview.equations.size()) + equations_text(overview.equations, "'");
+  }
+  text += named_text("mechanics, M v' = F", overview.mechanics);
   text +=
       modes_text(overview) + named_text("definitions", overview.definitions) + named_text("outputs", overview.outputs);
   for (std::size_t i = 0; i < overview.contacts.size(); ++i) {

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
@@ -37,7 +40,16 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
 bool Run::too_many_events() {
   if (recorder_.events() >= options_.max_events) {
     const std::string laps = ContractingCycles(surroundings_, here_, recorder_).describe();
-    const std::string advice = "see in the table of events what switches ever faster";
+    constexpr long last_events = 64;
+    constexpr std::size_t most_names = 3;
+    std::vector<std::string> names;
+    for (std::size_t j = 0; j < surroundings_.system.switching.size() && names.size() < most_names; ++j) {
+      const auto& name = surroundings_.system.switching[j].name;
+      if (recorder_.switched_lately(static_cast<int>(j), last_events)) names.push_back(fmt::format("'{}'", name));
+    }
+    const std::string advice = names.empty() ? "see what happens in the last events"
+                                             : fmt::format("see why {} switch{} so often", fmt::join(names, ", "),
+                                                           names.size() == 1 ? "es" : "");
     fail(Termination::iteration_limit,
          fmt::format("max_events = {} reached at {}; raise simulate.max_events if they are meant, or {}",
                      options_.max_events, where(), laps.empty() ? advice : "change the model: " + laps));

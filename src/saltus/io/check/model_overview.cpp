@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <unordered_map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,27 +25,6 @@ std::vector<OverviewEquation> equations_of(const std::vector<model::NamedExpress
   for (const auto& entry : entries)
     equations.push_back({entry.name, to_spaced_text(*entry.expression), caption_of(captions, entry.name)});
   return equations;
-}
-
-/// q' = v, and for the velocities what is beside M v'.
-void add_motion(const model::MechanicsDescription& mechanics, std::vector<OverviewEquation>& equations) {
-  const std::size_t n = std::min(mechanics.positions.size(), mechanics.velocities.size());
-  for (std::size_t i = 0; i < n; ++i) {
-    equations.push_back({mechanics.positions[i].name, mechanics.velocities[i].name, {}});
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto& velocity = mechanics.velocities[i].name;
-    const auto stated = std::find_if(mechanics.force.begin(), mechanics.force.end(),
-                                     [&](const auto& force) { return force.velocity == velocity; });
-    std::string force = stated == mechanics.force.end() ? "" : to_spaced_text(*stated->force);
-    if (mechanics.potential) {
-      force += fmt::format("{}d({})/d{}", force.empty() ? "-" : " - ", to_spaced_text(*mechanics.potential),
-                           mechanics.positions[i].name);
-    }
-    if (force.empty()) force = "0";
-    const bool has_mass = !mechanics.mass.empty();
-    equations.push_back({velocity, has_mass ? fmt::format("(M^-1 F)[{0}], F[{0}] = {1}", velocity, force) : force, {}});
-  }
 }
 
 std::string contact_text(const model::ContactDescription& contact) {
@@ -134,24 +114,32 @@ std::string meaning_of(const model::SwitchingFunction& function, const std::vect
   __builtin_unreachable();
 }
 
-/// The expression behind a name of [switching] or [definitions]; an unnamed function is its own text.
-std::string expression_of(const model::Description& description, const std::string& name) {
-  for (const auto* table : {&description.switching, &description.definitions}) {
-    for (const auto& entry : *table) {
-      if (entry.name == name) return to_spaced_text(*entry.expression);
+/// The expressions behind names of [switching] and [definitions]; an unnamed function is its own text.
+class NamedFunctions {
+ public:
+  explicit NamedFunctions(const model::Description& description) {
+    for (const auto* table : {&description.switching, &description.definitions}) {
+      for (const auto& entry : *table) expressions_.emplace(entry.name, entry.expression.get());
     }
   }
-  const auto parsed = expression::parse(name, {});
-  return parsed ? to_spaced_text(**parsed) : name;
-}
+  [[nodiscard]] std::string expression_of(const std::string& name) const {
+    if (const auto found = expressions_.find(name); found != expressions_.end()) return to_spaced_text(*found->second);
+    const auto parsed = expression::parse(name, {});
+    return parsed ? to_spaced_text(**parsed) : name;
+  }
+
+ private:
+  std::unordered_map<std::string, const expression::Node*> expressions_;
+};
 
 std::vector<OverviewSurface> surfaces_of(const model::Description& description, const model::System& system) {
   const auto switched = model::switched_rates(system);
+  const NamedFunctions functions(description);
   std::vector<OverviewSurface> all;
   for (std::size_t j = 0; j < system.switching.size(); ++j) {
     const auto& function = system.switching[j];
     OverviewSurface surface{
-        function.name, expression_of(description, function.name), std::string(role_of(function.role)), "", {}, {}, "",
+        function.name, functions.expression_of(function.name), std::string(role_of(function.role)), "", {}, {}, "",
         false};
     for (const int state : switched[j]) surface.rates.push_back(system.state_names[at(state)]);
     for (const int index : function.inner) surface.inner.push_back(system.switching[at(index)].name);
@@ -165,7 +153,7 @@ std::vector<OverviewSurface> surfaces_of(const model::Description& description, 
     ordered.push_back(function);
     if (column.name != function.name) {
       ordered.back().name = column.name;
-      ordered.back().expression = expression_of(description, column.name);
+      ordered.back().expression = functions.expression_of(column.name);
       ordered.back().alias_of = function.name;
       ordered.back().swapped = column.orientation < 0;
     }
@@ -193,7 +181,11 @@ ModelOverview overview_of(const model::Description& description, const model::Sy
   overview.description = system.description;
   take_quantities(system, captions, overview);
   overview.equations = equations_of(description.dynamics);
-  if (description.mechanics) add_motion(*description.mechanics, overview.equations);
+  if (description.mechanics) {
+    for (const auto& [left, right, where] : mechanics_equations(*description.mechanics)) {
+      overview.mechanics.push_back({left, right, {}});
+    }
+  }
   for (const auto& contact : description.contacts) {
     overview.contacts.push_back({contact.name, contact_text(contact), {}});
   }

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +41,13 @@ class EquationList {
                                            : fmt::format("{}\\text{{{}}}", name, behind);
     }
   }
+  /// The derivative of one name is another one.
+  void add_rate(const std::string& name, const std::string& rate) {
+    if (list_.size() >= most_) return;
+    const bool is_text = notation_ == Notation::text;
+    list_.push_back({is_text ? name + "'" : fmt::format("\\dot{{{}}}", expression::latex_name(name)),
+                     is_text ? rate : expression::latex_name(rate), ""});
+  }
   [[nodiscard]] std::vector<StatedEquation> take() { return std::move(list_); }
 
  private:
@@ -53,9 +62,11 @@ class EquationList {
   std::vector<StatedEquation> list_;
 };
 
-void add_mechanics(const model::Description& description, EquationList& equations) {
-  if (!description.mechanics) return;
-  const auto& mechanics = *description.mechanics;
+/// q' = v, and the parts of M v' = F.
+void add_mechanics(const model::MechanicsDescription& mechanics, EquationList& equations) {
+  for (std::size_t i = 0; i < std::min(mechanics.positions.size(), mechanics.velocities.size()); ++i) {
+    equations.add_rate(mechanics.positions[i].name, mechanics.velocities[i].name);
+  }
   for (std::size_t i = 0; i < mechanics.mass.size(); ++i) {
     for (std::size_t j = 0; j < mechanics.mass[i].size(); ++j) {
       equations.add(fmt::format("M[{}, {}]", i + 1, j + 1), mechanics.mass[i][j]);
@@ -63,6 +74,9 @@ void add_mechanics(const model::Description& description, EquationList& equation
   }
   equations.add("potential", mechanics.potential);
   for (const auto& force : mechanics.force) equations.add("force on " + force.velocity, force.force);
+}
+
+void add_contacts(const model::Description& description, EquationList& equations) {
   for (const auto& contact : description.contacts) {
     equations.add(fmt::format("gap({})", contact.name), contact.gap);
     for (const auto& tangent : contact.tangents) {
@@ -83,11 +97,18 @@ std::string place_of(const model::ModeDescription& mode) {
 
 }  // namespace
 
+std::vector<StatedEquation> mechanics_equations(const model::MechanicsDescription& mechanics) {
+  EquationList equations(std::numeric_limits<std::size_t>::max(), Notation::text);
+  add_mechanics(mechanics, equations);
+  return equations.take();
+}
+
 std::vector<StatedEquation> stated_equations(const model::Description& description, std::size_t most,
                                              Notation notation) {
   EquationList equations(most, notation);
   equations.add(description.dynamics, "'");
-  add_mechanics(description, equations);
+  if (description.mechanics) add_mechanics(*description.mechanics, equations);
+  add_contacts(description, equations);
   for (const auto& mode : description.modes) equations.add(mode.dynamics, "'", place_of(mode));
   equations.add(description.definitions, "");
   equations.add(description.switching, "", "switching function");

@@ -189,6 +189,8 @@ void read_option_record(JsonReader& reader, const Json& json, const std::string&
       add(std::int64_t{});
     } else if (value.is_string()) {
       add(std::string{});
+    } else if (value.is_array() && !value.empty() && value.front().is_string()) {
+      add(std::vector<std::string>{});
     } else if (value.is_array()) {
       add(std::vector<double>{});
     } else {
@@ -290,6 +292,30 @@ result::RegionGroup read_region_group(JsonReader& reader, const Json& json, cons
   return group;
 }
 
+/// The places of names in a list, ascending.
+std::vector<std::size_t> read_places(JsonReader& reader, const Json& json, const std::string& path, const char* key,
+                                     const std::vector<std::string>& all) {
+  std::vector<std::string> names;
+  reader.read_member(json, path, key, names);
+  std::vector<std::size_t> places;
+  for (const auto& name : names) {
+    const auto from = all.begin() + static_cast<std::ptrdiff_t>(places.empty() ? 0 : places.back() + 1);
+    const auto found = std::find(from, all.end(), name);
+    if (found == all.end()) {
+      reader.fail(fmt::format("{}/{}", path, key),
+                  fmt::format("expected names of {}, in its order; found '{}'", key, name));
+      return {};
+    }
+    places.push_back(static_cast<std::size_t>(found - all.begin()));
+  }
+  return places;
+}
+
+void read_kept_columns(JsonReader& reader, const Json& json, const std::string& path, result::Result& result) {
+  auto states = read_places(reader, json, path, "states", result.states);
+  result.kept = {std::move(states), read_places(reader, json, path, "switching_functions", result.switching_functions)};
+}
+
 result::Result read_whole(JsonReader& reader, const Json& json, const std::string& path, int depth) {
   result::Result result;
   read_part(reader, json, path, "model", read_model, result.model);
@@ -301,6 +327,9 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   reader.read_member(json, path, "controls", result.controls);
   reader.read_member(json, path, "switching_functions", result.switching_functions);
   reader.read_member(json, path, "outputs", result.outputs);
+  if (json.is_object() && json.contains("kept_columns")) {
+    read_part(reader, json, path, "kept_columns", read_kept_columns, result);
+  }
   if (json.is_object() && json.contains("region_groups")) {
     read_list(reader, json["region_groups"], path + "/region_groups", result.region_groups, read_region_group);
   }

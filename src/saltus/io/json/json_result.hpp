@@ -34,17 +34,19 @@ class ResultParts {
   ResultParts(const ResultParts&) = delete;
   ResultParts& operator=(const ResultParts&) = delete;
   virtual ~ResultParts() = default;
-  /// A part: rows and events behind those before it. False if the sink, or the disk, did not take everything.
-  [[nodiscard]] virtual bool add(const result::Result& part) = 0;
-  /// All that is not in parts.
-  [[nodiscard]] virtual bool finish(const result::Result& rest) = 0;
+  /// A part: rows and events behind those before it.
+  /// @return why not everything was taken; where the sink refused, it knows better
+  [[nodiscard]] virtual Expected<void> add(const result::Result& part) = 0;
+  /// All that is not in parts; returns as add.
+  [[nodiscard]] virtual Expected<void> finish(const result::Result& rest) = 0;
 };
 /// Lines reach the sink, which must outlive what is returned, part by part.
 [[nodiscard]] std::unique_ptr<ResultParts> csv_parts(Sink sink);
 [[nodiscard]] std::unique_ptr<ResultParts> events_csv_parts(Sink sink);
-/// Its lists are put aside in files without names, and reach the sink with finish().
+/// What they get is put aside in files without names, and reaches the sink with finish().
 /// @param folder  for those files
 [[nodiscard]] std::unique_ptr<ResultParts> json_parts(const std::filesystem::path& folder, Sink sink);
+[[nodiscard]] std::unique_ptr<ResultParts> npz_parts(const std::filesystem::path& folder, Sink sink);
 [[nodiscard]] std::string events_to_csv(const result::Result& result);
 /// The columns of both tables as a zip archive of .npy arrays, deflated: those of the trajectory by their names, those
 /// of the events with "events." before them. Numbers are float64, `side` and modes of rows int8, words unicode; what is

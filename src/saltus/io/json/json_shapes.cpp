@@ -2,6 +2,7 @@
 #include <cstddef>
 
 #include "saltus/io/json/json_shapes_internal.hpp"
+#include "saltus/result/kept_columns.hpp"
 
 namespace saltus::io {
 namespace {
@@ -143,10 +144,11 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   const auto& trajectory = result.trajectory;
   const std::size_t times = trajectory.t.size();
   const std::size_t columns = result.switching_functions.size();
-  check_rows(reader, path + "/trajectory/x", trajectory.x, times, result.states.size());
+  const std::size_t functions = result::functions_in_rows(result).size();
+  check_rows(reader, path + "/trajectory/x", trajectory.x, times, result::states_in_rows(result).size());
   check_rows(reader, path + "/trajectory/u", trajectory.u, times, result.controls.size());
-  check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, columns);
-  check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, columns);
+  check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, functions);
+  check_rows(reader, path + "/trajectory/mode", trajectory.mode, times, functions);
   check_regions(reader, path, result);
   check_contacts(reader, path, result);
   check_rows(reader, path + "/trajectory/outputs", trajectory.outputs, times, result.outputs.size());
@@ -183,10 +185,11 @@ void check_branch(JsonReader& reader, const std::string& path, const result::Res
                   const result::Result& branch) {
   const bool same = branch.states == parent.states && branch.controls == parent.controls &&
                     branch.switching_functions == parent.switching_functions && branch.outputs == parent.outputs &&
-                    branch.region_groups == parent.region_groups;
+                    branch.region_groups == parent.region_groups && branch.kept == parent.kept;
   if (!same)
     reader.fail(path,
-                "expected the states, controls, switching functions, outputs and groups of regions of what it leaves");
+                "expected the states, controls, switching functions, outputs and groups of regions of what it leaves, "
+                "and the same columns");
   if (!branch.left_at) {
     reader.fail(path, "'left_at' is missing");
     return;

@@ -11,6 +11,7 @@
 #include "saltus/io/json/json_parts_internal.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/json/json_stream_internal.hpp"
+#include "saltus/result/kept_columns.hpp"
 
 namespace saltus::io {
 namespace {
@@ -239,6 +240,10 @@ void append_head(ObjectStream& object, const result::Result& result) {
   object.member("controls", result.controls);
   object.member("switching_functions", result.switching_functions);
   object.member("outputs", result.outputs);
+  if (result.kept) {
+    object.member("kept_columns",
+                  {{"states", states_in_rows(result)}, {"switching_functions", functions_in_rows(result)}});
+  }
   Json groups = Json::array();
   for (const auto& group : result.region_groups) groups.push_back({{"name", group.name}, {"modes", group.modes}});
   if (!groups.empty()) object.member("region_groups", groups);
@@ -307,8 +312,12 @@ class SpooledList {
     return stream_.text().append(count_++ > 0 ? "," : "").append(between_);
   }
   [[nodiscard]] bool empty() const { return count_ == 0; }
-  [[nodiscard]] bool flush() { return stream_.flush(); }
-  void append_to(TextStream& stream) const {
+  [[nodiscard]] Expected<void> flush() {
+    static_cast<void>(stream_.flush());
+    return file_.outcome();
+  }
+  [[nodiscard]] Expected<void> outcome() const { return file_.outcome(); }
+  void append_to(TextStream& stream) {
     static_cast<void>(file_.copy_to([&](std::string_view piece) {
       stream.text() += piece;
       return stream.pass();
@@ -327,7 +336,7 @@ class JsonParts : public ResultParts {
  public:
   JsonParts(std::filesystem::path folder, Sink sink) : folder_(std::move(folder)), sink_(sink) {}
 
-  bool add(const result::Result& part) override {
+  Expected<void> add(const result::Result& part) override {
     auto& events = list("events", "\n" + std::string(margin + 2, ' '));
     for (std::size_t i = 0; i < part.events.size(); ++i) {
       std::string text;
@@ -346,19 +355,20 @@ class JsonParts : public ResultParts {
       auto& rows = list(key, "\n" + std::string(margin + 4, ' '));
       for (const auto& row : table) append_row(rows.next(), row);
     });
-    bool good = true;
-    for (auto& [name, spooled] : lists_) good = spooled->flush() && good;
-    return good;
+    for (auto& [name, spooled] : lists_) {
+      if (auto flushed = spooled->flush(); !flushed) return flushed;
+    }
+    return {};
   }
 
-  bool finish(const result::Result& rest) override {
+  Expected<void> finish(const result::Result& rest) override {
     TextStream stream(sink_);
     const auto append_lists = [&](ObjectStream& object) {
       append(object, stream, "events");
       object.key("trajectory");
       ObjectStream trajectory(stream, margin);
       trajectory.key("t") += '[';
-      if (const auto* times = found("t")) times->append_to(stream);
+      if (auto* times = found("t")) times->append_to(stream);
       stream.text() += ']';
       for_each_list(rest.trajectory, [&](const char* key, const auto&, auto) { append(trajectory, stream, key); });
       for (const char* key : {"regions", "theta", "contact_modes"}) {
@@ -368,7 +378,10 @@ class JsonParts : public ResultParts {
     };
     append_with(append_lists, stream, rest, 0);
     stream.text() += '\n';
-    return stream.flush();
+    for (const auto& [name, spooled] : lists_) {
+      if (auto read = spooled->outcome(); !read) return read;
+    }
+    return taken(stream.flush());
   }
 
  private:
@@ -379,13 +392,13 @@ class JsonParts : public ResultParts {
     if (!spooled) spooled = std::make_unique<SpooledList>(folder_, between);
     return *spooled;
   }
-  [[nodiscard]] const SpooledList* found(const std::string& name) const {
+  [[nodiscard]] SpooledList* found(const std::string& name) const {
     const auto place = lists_.find(name);
     return place == lists_.end() || place->second->empty() ? nullptr : place->second.get();
   }
   void append(ObjectStream& object, TextStream& stream, const char* key) const {
     object.key(key) += '[';
-    const auto* spooled = found(key);
+    auto* spooled = found(key);
     if (spooled != nullptr) spooled->append_to(stream);
     object.end_list(spooled == nullptr);
   }

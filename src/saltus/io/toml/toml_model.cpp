@@ -297,8 +297,12 @@ Expected<ModelText> read_model_text(const std::filesystem::path& file) {
   if (!text) return tl::unexpected(text.error());
   // Standard input is in the working folder, as far as files beside it are concerned.
   const std::string name = file == "-" ? "<standard input>" : file.string();
-  if (is_stored_result(*text) && file.extension() != ".toml") return model_in_result(*text, name);
-  return ModelText{name, std::move(*text)};
+  if (is_stored_result(*text) && file.extension() != ".toml") {
+    auto stored = model_in_result(*text, name);
+    if (stored) stored->path = file.string();
+    return stored;
+  }
+  return ModelText{name, std::move(*text), {}, {}, file.string()};
 }
 
 Error located(Error error, const ModelFile& model) {

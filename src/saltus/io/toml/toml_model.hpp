@@ -45,6 +45,7 @@ struct ModelText {
   std::string text;
   std::vector<result::NamedFile> files{};  ///< of a stored result
   std::vector<std::string> settings{};     ///< NAME=VALUE: with which it was computed
+  std::string path{};                      ///< what was read: the model file, or the result
 };
 /// The text of a model file, or the model in a stored result. "-" is standard input.
 [[nodiscard]] Expected<ModelText> read_model_text(const std::filesystem::path& file);

@@ -28,6 +28,17 @@ std::optional<std::vector<double>> numbers(TomlReader& reader, const TomlArray& 
   return list;
 }
 
+/// A list of words; nullopt unless all are.
+std::optional<std::vector<std::string>> words(const TomlArray& array) {
+  std::vector<std::string> list;
+  for (const auto& element : array) {
+    const auto* word = std::get_if<TomlString>(&element.value);
+    if (word == nullptr) return std::nullopt;
+    list.push_back(word->text);
+  }
+  return list;
+}
+
 /// Whether some option's key begins with this one and a dot: then it is a table.
 bool is_table_of_options(std::string_view key) {
   const auto prefix = fmt::format("{}.", key);
@@ -68,8 +79,10 @@ void read_option(TomlReader& reader, const std::string& key, const TomlEntry& en
 }
 
 void check_output_table(TomlReader& reader, const TomlEntry& entry, const TomlTable& table) {
-  // `events` stands beside one of the others, or alone.
-  const auto grids = std::count_if(table.begin(), table.end(), [](const auto& key) { return key.key != "events"; });
+  // What the rows have stands beside one of the grids, or alone.
+  const auto grids = std::count_if(table.begin(), table.end(), [](const auto& key) {
+    return key.key != "events" && key.key != "states" && key.key != "surfaces";
+  });
   if (!table.empty() && grids <= 1) return;
   reader.fail(
       {ErrorCode::invalid_option,
@@ -145,9 +158,13 @@ std::optional<OptionValue> read_option_value(TomlReader& reader, const TomlValue
   } else if (const auto* text = std::get_if<TomlString>(&value.value)) {
     result.emplace(text->text);
   } else if (const auto* array = std::get_if<TomlArray>(&value.value)) {
-    if (auto list = numbers(reader, *array)) result.emplace(std::move(*list));
+    if (auto names = words(*array); names && !names->empty()) {
+      result.emplace(std::move(*names));
+    } else if (auto list = numbers(reader, *array)) {
+      result.emplace(std::move(*list));
+    }
   } else {
-    reader.wrong_type("a number, a word in quotes or a list of numbers", value);
+    reader.wrong_type("a number, a word in quotes or a list of numbers or words", value);
   }
   return result;
 }

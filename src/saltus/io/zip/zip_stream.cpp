@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 #include <zlib.h>
 
 namespace saltus::io {
@@ -15,13 +16,13 @@ void append_bytes(std::string& record, std::uint64_t value, int bytes) {
 constexpr std::uint64_t elsewhere = 0xffffffffU;  // the number stands in the zip64 part
 constexpr int version = 45;                       // that knows zip64
 constexpr int deflate_method = 8;
-constexpr int utf8_names = 1 << 11;
+constexpr int flags = (1 << 11) | (1 << 3);    // names are UTF-8; check and sizes stand behind the bytes
 constexpr std::uint64_t first_of_1980 = 0x21;  // no clock: the same result gives the same bytes
 
-/// Deflates pieces into one text.
+/// Deflates pieces on their way into a sink.
 class Deflater {
  public:
-  Deflater() {
+  explicit Deflater(Sink sink) : sink_(sink) {
     // Negative: without zlib's own header. The first level packs numbers nearly as well as the last, much faster.
     if (deflateInit2(&stream_, 1, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
   }
@@ -43,7 +44,7 @@ class Deflater {
   void finish() { run(Z_FINISH); }
   [[nodiscard]] std::uint32_t check() const { return check_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  [[nodiscard]] const std::string& packed() const { return packed_; }
+  [[nodiscard]] std::uint64_t packed() const { return packed_; }
 
  private:
   void run(int flush) {
@@ -51,15 +52,17 @@ class Deflater {
       stream_.next_out = buffer_.data();
       stream_.avail_out = static_cast<uInt>(buffer_.size());
       deflate(&stream_, flush);
-      packed_.append(reinterpret_cast<const char*>(buffer_.data()), buffer_.size() - stream_.avail_out);
+      const std::size_t made = buffer_.size() - stream_.avail_out;
+      packed_ += made;
+      if (made > 0) static_cast<void>(sink_({reinterpret_cast<const char*>(buffer_.data()), made}));
     } while (stream_.avail_out == 0);
   }
 
+  Sink sink_;
   z_stream stream_{};
   std::vector<Bytef> buffer_ = std::vector<Bytef>(std::size_t{1} << 16);
-  std::string packed_;
   std::uint32_t check_ = 0;
-  std::uint64_t size_ = 0;
+  std::uint64_t size_ = 0, packed_ = 0;
 };
 
 }  // namespace
@@ -71,21 +74,13 @@ bool ZipStream::put(std::string_view bytes) {
 }
 
 bool ZipStream::add(const std::string& name, Writer content) {
-  Deflater deflater;
-  const bool complete = content([&](std::string_view piece) {
-    deflater.add(piece);
-    return good_;
-  });
-  good_ = good_ && complete;
-  deflater.finish();
-  const auto& entry =
-      entries_.emplace_back(Entry{name, deflater.check(), deflater.size(), deflater.packed().size(), offset_});
+  Entry entry{name, 0, 0, 0, offset_};
   std::string head("PK\x03\x04");
   append_bytes(head, version, 2);
-  append_bytes(head, utf8_names, 2);
+  append_bytes(head, flags, 2);
   append_bytes(head, deflate_method, 2);
   append_bytes(head, first_of_1980 << 16, 4);
-  append_bytes(head, entry.check, 4);
+  append_bytes(head, 0, 4);
   append_bytes(head, elsewhere, 4);
   append_bytes(head, elsewhere, 4);
   append_bytes(head, name.size(), 2);
@@ -93,9 +88,23 @@ bool ZipStream::add(const std::string& name, Writer content) {
   head += name;
   append_bytes(head, 1, 2);
   append_bytes(head, 16, 2);
-  append_bytes(head, entry.size, 8);
-  append_bytes(head, entry.packed, 8);
-  return put(head) && put(deflater.packed());
+  append_bytes(head, 0, 8 + 8);
+  put(head);
+  const auto pass = [this](std::string_view bytes) { return put(bytes); };
+  Deflater deflater(pass);
+  const bool complete = content([&](std::string_view piece) {
+    deflater.add(piece);
+    return good_;
+  });
+  good_ = good_ && complete;
+  deflater.finish();
+  entry.check = deflater.check(), entry.size = deflater.size(), entry.packed = deflater.packed();
+  std::string descriptor("PK\x07\x08");
+  append_bytes(descriptor, entry.check, 4);
+  append_bytes(descriptor, entry.packed, 8);
+  append_bytes(descriptor, entry.size, 8);
+  entries_.push_back(std::move(entry));
+  return put(descriptor);
 }
 
 bool ZipStream::finish() {
@@ -104,7 +113,7 @@ bool ZipStream::finish() {
     std::string record("PK\x01\x02");
     append_bytes(record, version, 2);
     append_bytes(record, version, 2);
-    append_bytes(record, utf8_names, 2);
+    append_bytes(record, flags, 2);
     append_bytes(record, deflate_method, 2);
     append_bytes(record, first_of_1980 << 16, 4);
     append_bytes(record, entry.check, 4);

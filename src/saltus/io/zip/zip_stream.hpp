@@ -16,7 +16,7 @@ class ZipStream {
  public:
   /// The sink must outlive it.
   explicit ZipStream(Sink sink) : sink_(sink) {}
-  /// An entry of what the writer writes; false if the sink wants no more. Memory: the deflated entry.
+  /// An entry of what the writer writes; false if the sink wants no more. Memory: a few pieces.
   bool add(const std::string& name, Writer content);
   /// The list of the entries; false if the sink did not take everything.
   bool finish();

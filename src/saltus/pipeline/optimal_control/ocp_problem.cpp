@@ -126,6 +126,10 @@ Expected<void> take_result(const model::Ocp& ocp, const result::Result& from, in
                             names(from.states), names(from.controls)),
                 fmt::format("this model has the states {} and the controls {}", names(states), names(controls))));
   }
+  if (from.kept) {
+    return tl::unexpected(refusal("the result to start from has not kept all states in its rows",
+                                  "simulate it again without `states` in its output"));
+  }
   if (from.trajectory.t.empty()) return {};
   const double begin = from.trajectory.t.front();
   const double length = from.trajectory.t.back() - begin;

@@ -86,6 +86,27 @@ Expected<void> set_output_times(SimulateOptions& options, std::string_view, cons
   return {};
 }
 
+/// A list of names; a word by itself is one name, and a list without anything in it can be one of numbers.
+template <auto member>
+Expected<void> set_kept(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  const auto* numbers = std::get_if<std::vector<double>>(&value);
+  if (const auto* names = std::get_if<std::vector<std::string>>(&value)) {
+    options.kept.*member = *names;
+  } else if (const auto* name = std::get_if<std::string>(&value)) {
+    options.kept.*member = std::vector{*name};
+  } else if (numbers != nullptr && numbers->empty()) {
+    options.kept.*member = std::vector<std::string>{};
+  } else {
+    return tl::unexpected(out_of_range("a list of names like [\"x\", \"v*\"]", value));
+  }
+  return {};
+}
+
+template <auto member>
+void record_kept(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (options.kept.*member) record.emplace_back(key, *(options.kept.*member));
+}
+
 void record_output_word(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
   if (std::holds_alternative<Automatic>(options.output)) record.emplace_back(key, std::string("auto"));
   if (std::holds_alternative<EveryStep>(options.output)) record.emplace_back(key, std::string("steps"));
@@ -208,6 +229,12 @@ constexpr std::array fields{
     OptionField{"output.events", "true, false",
                 "Rows before and behind every event; false leaves them out, so that no time has two rows.",
                 set_truth<event_rows_of>, record_truth<event_rows_of>},
+    OptionField{"output.states", "names, or patterns like v*",
+                "Rows have these states only; end state and events stay complete. Default: all.",
+                set_kept<&KeptNames::states>, record_kept<&KeptNames::states>},
+    OptionField{"output.surfaces", "names, or patterns like s*",
+                "Rows have the modes and selections of these switching functions only. Default: all.",
+                set_kept<&KeptNames::surfaces>, record_kept<&KeptNames::surfaces>},
     OptionField{"native", "auto, on, off",
                 "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler.",
                 set_choice<native_of, natives>, record_choice<native_of, natives>},

@@ -43,6 +43,9 @@ std::string to_text(const result::OptionValue& value) {
     std::string operator()(double number) const { return fmt::format("{}", number); }
     std::string operator()(const std::string& word) const { return fmt::format("\"{}\"", word); }
     std::string operator()(const std::vector<double>& list) const { return fmt::format("[{}]", fmt::join(list, ", ")); }
+    std::string operator()(const std::vector<std::string>& list) const {
+      return list.empty() ? "[]" : fmt::format("[\"{}\"]", fmt::join(list, "\", \""));
+    }
   };
   return std::visit(Writer{}, value);
 }

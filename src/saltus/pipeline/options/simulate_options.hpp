@@ -28,6 +28,12 @@ struct AtTimes {
 };
 using OutputGrid = std::variant<Automatic, EveryStep, EveryInterval, NumberOfPoints, AtTimes>;
 
+/// Columns of the rows: names, or patterns in which * stands for any letters; nullopt: all.
+struct KeptNames {
+  std::optional<std::vector<std::string>> states;    ///< of x
+  std::optional<std::vector<std::string>> surfaces;  ///< switching functions, of alpha and mode
+};
+
 /// [simulate.event]
 struct EventOptions {
   Integrator integrator = Integrator::dopri5;
@@ -84,6 +90,7 @@ struct SimulateOptions {
   double rtol = 1e-8;
   double atol = 1e-10;
   OutputGrid output = Automatic{};
+  KeptNames kept;
   bool event_rows = true;  ///< rows before and behind every event; without them no two rows have the same time
   Native native = Native::automatic;
   long max_steps = 1000000;

@@ -85,27 +85,63 @@ saltus.banners = (result, select) => {
 saltus.card = (title, ...content) =>
     saltus.element("section", {class: "card"}, saltus.element("h2", {}, title), ...content);
 
-saltus.pairTable = (pairs) => saltus.element(
-    "table", {class: "plain"},
-    saltus.element(
-        "tbody", {},
-        ...pairs.map(
-            ([name, value]) => saltus.element(
-                "tr", {}, saltus.element("td", {title: name}, name), saltus.element("td", {class: "digits"}, value)))));
+/** Rows of a table of values at first; the others are in the result file. */
+saltus.firstRows = 100;
+
+/** Of very many pairs the first ones. */
+saltus.pairTable = (pairs) => {
+  const shown = pairs.length > 3 * saltus.firstRows ? pairs.slice(0, saltus.firstRows) : pairs;
+  const left = pairs.length - shown.length;
+  return saltus.element(
+      "table", {class: "plain"},
+      saltus.element(
+          "tbody", {},
+          ...shown.map(
+              ([name, value]) => saltus.element(
+                  "tr", {}, saltus.element("td", {title: name}, name), saltus.element("td", {class: "digits"}, value))),
+          ...(left === 0 ? [] : [saltus.element("tr", {}, saltus.element("td", {class: "quiet"}, `and ${left} more`))])));
+};
 
 /** A value with the unit of its name. */
 saltus.inUnit = (result, name, value) => `${saltus.exact(value)} ${saltus.captionOf(result, name).unit}`.trim();
+
+/** Places of the first names that match. */
+saltus.firstOf = (names, matches) => {
+  const places = [];
+  for (let i = 0; i < names.length && places.length < saltus.firstRows; i += 1) {
+    if (matches(names[i])) places.push(i);
+  }
+  return places;
+};
 
 saltus.finalCard = (result) => {
   const {final} = result;
   const names = [...result.states, ...result.output_names];
   const values = [...final.x, ...final.outputs];
-  const surfaces = result.switching_functions.map(
-      (name, i) => [name, saltus.modeBoxes([final.mode[i] ?? null]), saltus.selection(final.alpha[i])]);
+  // Of many the first ones, and a search for the others.
+  const valueTable = (matches) => saltus.pairTable([
+    ["t", saltus.exact(final.t)],
+    ...saltus.firstOf(names, matches).map((i) => [names[i], saltus.inUnit(result, names[i], values[i])])
+  ]);
+  const functions = result.switching_functions;
+  const surfaces = (matches) => saltus.plainTable(["ψ", "mode", "α"], saltus.firstOf(functions, matches).map((i) => [
+    functions[i], saltus.modeBoxes([final.mode[i] ?? null]), saltus.selection(final.alpha[i])
+  ]));
+  const tables = (matches) => [valueTable(matches), ...(functions.length > 0 ? [surfaces(matches)] : [])];
+  const many = Math.max(names.length, functions.length) > saltus.firstRows;
+  const held = saltus.element("div", {}, ...tables(() => true));
+  const search = saltus.element("input", {
+    type: "search",
+    class: "column-search",
+    placeholder: `search ${names.length} values`,
+    "aria-label": "search the end state",
+    oninput: (event) => {
+      const text = event.target.value.trim().toLowerCase();
+      held.replaceChildren(...tables((name) => name.toLowerCase().includes(text)));
+    },
+  });
   return saltus.card(
-      "End state",
-      saltus.pairTable([["t", saltus.exact(final.t)], ...names.map((name, i) => [name, saltus.inUnit(result, name, values[i])])]),
-      ...(surfaces.length > 0 ? [saltus.plainTable(["ψ", "mode", "α"], surfaces)] : []),
+      "End state", ...(many ? [search] : []), held,
       ...(result.regions.length > 0 ?
               [saltus.plainTable(
                   ["region", "θ"], result.regions.map((name, i) => [name, saltus.selection(final.theta[i])]))] :
@@ -162,6 +198,10 @@ saltus.infoCards = (result) => {
 saltus.notes = (result) => {
   const {rows, t} = result.trajectory;
   const number = (n) => n.toLocaleString("en-US");
+  const tolerance = result.trajectory.line_tolerance ?? 0;
+  const lines = tolerance === 0 ?
+      "" :
+      `Each column is kept by the points between which lines are within ${saltus.brief(tolerance, 1)} of its range; the result file has all values. `;
   const kept = t.length === rows ? `This page holds all ${number(rows)} rows of the trajectory. ` : [
     `This page holds ${number(t.length)} of the ${
         number(rows)} rows of the trajectory: the least and greatest value of`,
@@ -182,9 +222,13 @@ saltus.notes = (result) => {
   const cut = Object.entries(result.sizes).filter(([sort, size]) => size > names[sort].length);
   const left = cut.map(([sort, size]) => `the first ${names[sort].length} of ${number(size)} ${sort}`).join(", ");
   const columns = left === "" ? "" : `It shows ${left}. `;
+  const chosen = Object.entries(result.kept ?? {})
+                     .filter(([sort, size]) => size > names[sort].length)
+                     .map(([sort, size]) => `${number(names[sort].length)} of ${number(size)} ${sort}`);
+  const few = chosen.length === 0 ? "" : `Rows were asked to have ${chosen.join(", ")} only. `;
   const {sha256} = result.model;
   const model = sha256 === "" ? "No model file is recorded." : `SHA-256 of the model file: ${sha256}`;
   return saltus.element(
-      "footer", {}, saltus.element("p", {}, kept, columns, drawn),
+      "footer", {}, saltus.element("p", {}, kept, lines, few, columns, drawn),
       saltus.element("p", {class: "digits"}, `Saltus ${result.saltus}, command ${result.command}. ${model}`));
 };

@@ -102,7 +102,7 @@ saltus.columnList = (result, choice, text, apply) => {
   const columns = saltus.columns(result).flatMap((column, i) => {
     const label = saltus.columnTitle(column);
     const about = column.caption?.label ? `, ${column.caption.label}` : "";
-    const sort = `${words[column.sort]}${about}${saltus.moves(column.values) ? "" : ", constant"}`;
+    const sort = `${words[column.sort]}${about}${saltus.isWide(column.range) ? "" : ", constant"}`;
     return fits(label) ? [tick(label, sort, shown.has(i), (on) => saltus.showColumn(choice, i, on))] : [];
   });
   const modes = saltus.bands(result).flatMap(

@@ -18,9 +18,24 @@ saltus.columnOf = (trajectory, {sort, index}) =>
     sort === "time" ? trajectory.t : trajectory[saltus.columnTables[sort]][index];
 
 /** Whether a column changes by more than rounding. */
-saltus.moves = (values) => {
-  const [least, greatest] = saltus.range(values);
-  return greatest - least > 1e-12 * Math.max(Math.abs(least), Math.abs(greatest));
+saltus.moves = (values) => saltus.isWide(saltus.range(values));
+saltus.isWide = ([least, greatest]) => greatest - least > 1e-12 * Math.max(Math.abs(least), Math.abs(greatest));
+
+/** What a column is kept by, without unpacking it; null where all of it is there. */
+saltus.keptColumn = (trajectory, {sort, index}) =>
+    saltus.packedOf.get(trajectory[saltus.columnTables[sort]])?.[index] ?? null;
+
+/** Whether the column changes at doubled rows only, and whether it is piecewise constant. */
+saltus.isDiscreteColumn = (trajectory, column) => {
+  const kept = saltus.keptColumn(trajectory, column);
+  if (kept === null || kept.places === null)
+    return saltus.isDiscrete(trajectory.t, kept?.values ?? saltus.columnOf(trajectory, column));
+  return saltus.isDiscrete(Array.from(kept.places, (place) => trajectory.t[place]), kept.values);
+};
+saltus.isStepwiseColumn = (trajectory, column) => {
+  const kept = saltus.keptColumn(trajectory, column);
+  return kept === null || kept.places === null ? saltus.isStepwise(kept?.values ?? saltus.columnOf(trajectory, column)) :
+                                                 saltus.isDiscreteColumn(trajectory, column);
 };
 
 /** All columns, states first in their order, so that the number of a state is that of its column. */
@@ -36,16 +51,18 @@ saltus.columns = (result) => {
     theta: result.regions,
   };
   const columns = Object.entries(names).flatMap(([sort, list]) => (list ?? []).map((name, index) => {
-    const values = saltus.columnOf(trajectory, {sort, index});
-    return {
+    const place = {sort, index};
+    const column = {
       name,
-      sort,
-      index,
-      values,
+      ...place,
       caption: ["state", "output", "input"].includes(sort) ? saltus.captionOf(result, name) : null,
-      stepwise: sort === "input" && saltus.isStepwise(values),
-      discrete: sort === "state" && saltus.isDiscrete(trajectory.t, values),
+      stepwise: sort === "input" && saltus.isStepwiseColumn(trajectory, place),
+      discrete: sort === "state" && saltus.isDiscreteColumn(trajectory, place),
     };
+    saltus.lazily(column, "values", () => saltus.columnOf(trajectory, place));
+    saltus.lazily(
+        column, "range", () => saltus.range(saltus.keptColumn(trajectory, place)?.values ?? column.values));
+    return column;
   }));
   saltus.columnsOf.set(result, columns);
   return columns;
@@ -56,19 +73,16 @@ saltus.columnsOf = new WeakMap();
 saltus.axes = (result) =>
     [...saltus.columns(result), {name: "t", sort: "time", index: 0, values: result.trajectory.t}];
 
-/** As many curves are drawn at first; the others wait in the list of columns. */
-saltus.firstCurves = 48;
-saltus.firstBands = 24;
+/** As many curves, and bands of modes, are drawn at first; the others wait in the list of columns. */
+saltus.firstCurves = (columns) => (columns.length > 200 ? 16 : 48);
+saltus.firstBands = (columns) => (columns.length > 200 ? 8 : 24);
 
 /** Columns of a sort that move, all if none does; of very many those that move most; discrete ones last. */
 saltus.movingFirst = (columns) => {
-  const moving = columns.filter((column) => saltus.moves(column.values));
+  const moving = columns.filter((column) => saltus.isWide(column.range));
   const shown = moving.length > 0 ? moving : columns;
-  const size = (column) => {
-    const [least, greatest] = saltus.range(column.values);
-    return greatest - least;
-  };
-  const most = new Set([...shown].sort((a, b) => size(b) - size(a)).slice(0, saltus.firstCurves));
+  const size = ({range: [least, greatest]}) => greatest - least;
+  const most = new Set([...shown].sort((a, b) => size(b) - size(a)).slice(0, saltus.firstCurves(columns)));
   const kept = shown.filter((column) => most.has(column));
   return [...kept.filter((column) => !column.discrete), ...kept.filter((column) => column.discrete)];
 };
@@ -77,9 +91,9 @@ saltus.movingFirst = (columns) => {
 saltus.movingBands = (result) => {
   const bands = saltus.bandIntervals(result);
   const all = bands.map((_, i) => i);
-  if (all.length <= saltus.firstBands) return all;
+  if (all.length <= saltus.firstBands(all)) return all;
   const changing = all.filter((i) => new Set(bands[i].values).size > 1);
-  return (changing.length > 0 ? changing : all).slice(0, saltus.firstBands);
+  return (changing.length > 0 ? changing : all).slice(0, saltus.firstBands(all));
 };
 
 /** The panels at first, from top to bottom, as numbers of columns; and the bands of modes. */
@@ -89,7 +103,10 @@ saltus.firstPanels = (result) => {
   const of = (sort) => columns.filter((column) => column.sort === sort);
   const groups = ["state", "output", "input"].flatMap((sort) => saltus.groupCurves(saltus.movingFirst(of(sort))));
   for (const sort of ["alpha", "theta"]) {
-    const all = of(sort).slice(0, saltus.firstBands);
+    const selections = of(sort);
+    const moving = selections.filter((column) => saltus.isWide(column.range));
+    const few = saltus.firstBands(selections);
+    const all = (selections.length > few && moving.length > 0 ? moving : selections).slice(0, few);
     for (let i = 0; i < all.length; i += saltus.perPanel) groups.push(all.slice(i, i + saltus.perPanel));
   }
   const isLast = (group) => group.every((column) => column.discrete);

@@ -200,7 +200,88 @@ saltus.unpackColumn = (packed, numbers) => {
   return saltus.unpack(packed, numbers);
 };
 
-saltus.unpack = (packed, numbers) => {
+/** A property that is computed when it is asked for first. */
+saltus.lazily = (owner, key, compute) => Object.defineProperty(owner, key, {
+  configurable: true,
+  enumerable: true,
+  get: () => {
+    const value = compute();
+    Object.defineProperty(owner, key, {value, writable: true, configurable: true, enumerable: true});
+    return value;
+  },
+});
+
+/** Objects whose members lie in columns; of many, each column is unpacked when a member of it is asked for first. */
+saltus.unpackRows = ({$rows: count, columns}, numbers) => {
+  const few = 1000;
+  if (count <= few) {
+    const rows = Array.from({length: count}, () => ({}));
+    for (const [key, column] of Object.entries(columns)) {
+      const values = saltus.unpackColumn(column, numbers);
+      for (let i = 0; i < count; i += 1) rows[i][key] = values[i];
+    }
+    return rows;
+  }
+  const lists = {};
+  const shape = {};
+  for (const [key, column] of Object.entries(columns)) {
+    saltus.lazily(lists, key, () => saltus.unpackColumn(column, numbers));
+    Object.defineProperty(shape, key, {
+      enumerable: true,
+      get() {
+        return lists[key][this.$row];
+      },
+    });
+  }
+  return Array.from({length: count}, (_, i) => {
+    const row = Object.create(shape);
+    row.$row = i;
+    return row;
+  });
+};
+
+/** What is known of a column without all of its values: the points that it is kept by, or the values themselves. */
+saltus.packedColumn = (packed, numbers) => {
+  // Short lists stay in the skeleton, where what is missing is null.
+  const list = (part) => part.$n === undefined ? Float64Array.from(part, (value) => value ?? NaN) :
+                                                 numbers.subarray(part.$n[0], part.$n[0] + part.$n[1]);
+  if (packed.$points === undefined) return {places: null, values: list(packed)};
+  const [places, values] = packed.$points.map(list);
+  return {places, values, size: packed.size};
+};
+
+/** All values of a column that is kept by points: on the lines between them. */
+saltus.onLines = ({places, values, size}, t) => {
+  const all = new Array(size);
+  const number = (value) => (Number.isFinite(value) ? value : null);
+  for (let k = 0; k < places.length; k += 1) {
+    const [from, to] = [places[k], places[k + 1] ?? places[k]];
+    all[from] = number(values[k]);
+    const slope = (values[k + 1] - values[k]) / (t[to] - t[from]);
+    for (let i = from + 1; i < to; i += 1) {
+      all[i] = t[i] === t[from] || values[k] === values[k + 1] ? all[from] : number(values[k] + slope * (t[i] - t[from]));
+    }
+  }
+  return all;
+};
+
+/** Columns that are unpacked one by one, when they are asked for; until then `saltus.packedOf` knows them. */
+saltus.packedOf = new WeakMap();
+saltus.lazyColumns = (parts, numbers, times) => {
+  const columns = new Array(parts.length);
+  saltus.packedOf.set(columns, parts.map((part) => saltus.packedColumn(part, numbers)));
+  parts.forEach((part, i) => saltus.lazily(columns, i, () => {
+    const kept = saltus.packedOf.get(columns)[i];
+    return kept.places === null ? saltus.unpack(part, numbers) : saltus.onLines(kept, times());
+  }));
+  return columns;
+};
+
+saltus.isPackedColumn = (part) => part !== null && typeof part === "object" &&
+    (part.$n !== undefined || part.$points !== undefined);
+
+/** @param times  of the rows, for columns that are kept by points */
+saltus.unpack = (packed, numbers, times = () => null) => {
   if (packed === null || typeof packed !== "object") return packed;
   if (packed.$n !== undefined) {
     const [first, count] = packed.$n;
@@ -208,16 +289,14 @@ saltus.unpack = (packed, numbers) => {
     for (let i = 0; i < count; i += 1) list[i] = Number.isFinite(numbers[first + i]) ? numbers[first + i] : null;
     return list;
   }
-  if (packed.$rows !== undefined) {
-    const rows = Array.from({length: packed.$rows}, () => ({}));
-    for (const [key, column] of Object.entries(packed.columns)) {
-      const values = saltus.unpackColumn(column, numbers);
-      for (let i = 0; i < rows.length; i += 1) rows[i][key] = values[i];
-    }
-    return rows;
+  if (packed.$rows !== undefined) return saltus.unpackRows(packed, numbers);
+  if (Array.isArray(packed)) {
+    if (packed.length > 0 && packed.every(saltus.isPackedColumn)) return saltus.lazyColumns(packed, numbers, times);
+    return packed.map((part) => saltus.unpack(part, numbers, times));
   }
-  if (Array.isArray(packed)) return packed.map((part) => saltus.unpack(part, numbers));
-  return Object.fromEntries(Object.entries(packed).map(([key, part]) => [key, saltus.unpack(part, numbers)]));
+  const unpacked = {};
+  for (const [key, part] of Object.entries(packed)) unpacked[key] = saltus.unpack(part, numbers, () => unpacked.t);
+  return unpacked;
 };
 
 /** The result of the page, and plotly brought to life: both lie deflated in it. */

@@ -73,10 +73,12 @@ saltus.differenceOf = (first, other, column) => {
 saltus.overlayCard = (result, palette) => {
   const rows = result.overlays.map((overlay, i) => {
     const line = saltus.element("i", {class: "overlay-line", style: `color: ${saltus.overlayLine(i, palette).color}`});
-    const states = saltus.columns(result).filter(({sort}) => sort === "state");
+    const most = 200;  // of many states the first ones that move
+    const all = saltus.columns(result).filter(({sort}) => sort === "state");
+    const states = all.length > most ? saltus.movingFirst(all).slice(0, most) : all;
     const far = states
                     .map((column) => {
-                      const [least, greatest] = saltus.range(column.values);
+                      const [least, greatest] = column.range;
                       const {largest} = saltus.differenceOf(result.trajectory, overlay.trajectory, column);
                       return {name: column.name, part: (largest ?? 0) / (greatest - least || 1)};
                     })

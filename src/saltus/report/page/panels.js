@@ -5,7 +5,7 @@ saltus.range = (values) => {
   let least = Infinity;
   let greatest = -Infinity;
   for (const value of values) {
-    if (value === null) continue;
+    if (value === null || value !== value) continue;  // missing, in packed columns NaN
     if (value < least) least = value;
     if (value > greatest) greatest = value;
   }
@@ -22,7 +22,7 @@ saltus.groupCurves = (curves) => {
   if (curves.length <= saltus.singlePanels) return curves.map((curve) => [curve]);
   const groups = [];
   for (const curve of curves) {
-    const [least, greatest] = saltus.range(curve.values);
+    const [least, greatest] = curve.range ?? saltus.range(curve.values);
     const span = greatest > least ? greatest - least : Infinity;
     const fits = ({members, hull, smallest}) => {
       const together = Math.max(hull[1], greatest) - Math.min(hull[0], least);

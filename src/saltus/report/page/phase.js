@@ -49,7 +49,9 @@ saltus.slicePlace = (result, selected, rows) => {
   // Events of very many keep a few of their states only: the row of the trajectory next to it.
   const {t} = result.trajectory;
   const last = event === null ? rows[rows.length - 1] : saltus.rowsAtOneTime(t, saltus.nearestRow(t, event.t))[1];
-  return {t: result.trajectory.t[last], x: result.trajectory.x.map((column) => column[last]), timeAxis};
+  // Only the states that are asked for are unpacked.
+  const x = new Proxy([], {get: (_, state) => result.trajectory.x[state]?.[last]});
+  return {t: t[last], x, timeAxis};
 };
 
 /** What a drawing in phase space shows: rows of the window, parts of the curve, events, the box around it. */
@@ -110,10 +112,10 @@ saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
  * any; in their order. A counter or a phase of a cycle shows little on an axis.
  */
 saltus.firstChoice = (result, size) => {
-  const {t, x} = result.trajectory;
-  const moves = (state) => saltus.moves(x[state]) && !saltus.isDiscrete(t, x[state]);
+  const columns = saltus.columns(result).slice(0, result.states.length);
+  const moves = (state) => saltus.isWide(columns[state].range) && !columns[state].discrete;
   const first = result.surfaces.find((surface) => surface.states.every(moves));
-  const states = x.map((_, i) => i);
+  const states = columns.map((_, i) => i);
   const ranked = [...(first?.states ?? []), ...states.filter(moves), ...states];
   return [...new Set(ranked)].slice(0, size).sort((a, b) => a - b);
 };
@@ -138,18 +140,25 @@ saltus.axisPickers = (result, choice, changed) => {
     const option = (k) => saltus.element(
         "option", {value: String(k), ...(k === choice[axis] ? {selected: ""} : {})},
         saltus.shorten(saltus.columnLabel(axes[k]), 30));
-    const groups = Object.entries(sorts).map(([sort, label]) => {
+    const groups = () => Object.entries(sorts).map(([sort, label]) => {
       const numbers = axes.map((_column, k) => k).filter((k) => axes[k].sort === sort);
       return numbers.length === 0 ? null : saltus.element("optgroup", {label}, ...numbers.map(option));
     });
-    return saltus.element(
+    // Of very many not before they are wanted.
+    const many = axes.length > 400;
+    const fill = () => {
+      if (picker.childElementCount === 1) picker.replaceChildren(...groups().filter((group) => group !== null));
+    };
+    const picker = saltus.element(
         "select", {
           "aria-label": `axis ${axis + 1}`,
           onchange: (e) => {
             choice[axis] = Number(e.target.value);
             changed();
-          }
+          },
+          ...(many ? {onfocus: fill, onpointerdown: fill} : {}),
         },
-        ...groups);
+        ...(many ? [option(choice[axis])] : groups()));
+    return picker;
   });
 };

@@ -35,6 +35,7 @@ class Svg {
   void text(Point at, std::string_view words, std::string_view anchor, std::string_view color, double turned = 0.0);
   /// What follows is drawn only within a rectangle; until the next call, or with nothing.
   void clip(std::optional<Point> corner, double width = 0.0, double height = 0.0);
+  void make_taller(double by) { height_ += by; }
   [[nodiscard]] std::string document(std::string_view title) const;
 
  private:

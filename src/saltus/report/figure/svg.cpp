@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "saltus/report/svg_internal.hpp"
+#include "saltus/report/figure/svg_internal.hpp"
 
 namespace saltus::report {
 namespace {

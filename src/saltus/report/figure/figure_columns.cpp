@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "saltus/report/figure_columns_internal.hpp"
+#include "saltus/report/figure/figure_columns_internal.hpp"
 
 namespace saltus::report {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "saltus/report/svg_internal.hpp"
+#include "saltus/report/figure/svg_internal.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {
