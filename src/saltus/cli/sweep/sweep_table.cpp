@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/result/kept_columns.hpp"
+
 namespace saltus::cli {
 namespace {
 
