@@ -12,7 +12,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-using saltus::testing::allocations;
+using saltus::tests::allocations;
 
 struct Count {
   long steps = 0;            ///< from one step without event to the next

@@ -16,7 +16,7 @@ namespace {
 using casadi::SX;
 using discretization::TableauFamily;
 using reformulation::Form;
-using saltus::testing::allocations;
+using saltus::tests::allocations;
 
 struct Count {
   long steps = 0;            ///< from one step without switch to the next

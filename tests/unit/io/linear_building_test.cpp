@@ -34,8 +34,8 @@ struct Cost {
 
 Cost cost_of(int blocks) {
   const auto text = chain(blocks);
-  const long before = testing::allocations;
-  const std::size_t bytes_before = testing::allocated_bytes;
+  const long before = tests::allocations;
+  const std::size_t bytes_before = tests::allocated_bytes;
   {
     const SymbolicLock lock;
     const auto file = parse_model(text, "m.toml");
@@ -46,8 +46,8 @@ Cost cost_of(int blocks) {
     if (!system) return {};
     EXPECT_EQ(overview_of(file->description, *system).surfaces.size(), static_cast<std::size_t>(blocks));
   }
-  return {static_cast<double>(testing::allocations - before),
-          static_cast<double>(testing::allocated_bytes - bytes_before)};
+  return {static_cast<double>(tests::allocations - before),
+          static_cast<double>(tests::allocated_bytes - bytes_before)};
 }
 
 TEST(Building, OfFourTimesTheBlocksTakesFourTimesAsMuch) {

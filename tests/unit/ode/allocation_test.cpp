@@ -7,7 +7,7 @@
 namespace saltus::ode {
 namespace {
 
-using saltus::testing::allocations;
+using saltus::tests::allocations;
 
 using namespace trial;
 
