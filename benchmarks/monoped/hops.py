@@ -33,7 +33,7 @@ def shifted(result, x, t):
 
 
 def stages(result):
-    return int(result["options"]["stages"])
+    return int(result["options"]["optimize.stages"])
 
 
 def joined(hops):

@@ -15,8 +15,9 @@ namespace {
 using homotopy::Steering;
 using result::Termination;
 
-/// Of the branch problem of a start.
-constexpr int first_branch_iterations = 1000;
+/// Of the branch problem of a start, in one round; and how many more rounds.
+constexpr int start_iterations = 500;
+constexpr int start_rounds = 5;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
@@ -82,12 +83,17 @@ PathEnd follow_with_restarts(Run& run, const Start& start) {
   return follow_relaxed(run, attempt);
 }
 
-/// The branch of the start's sides, if it has a solution.
+/// The branch of the start's sides, if it has a solution. A start may be far from it: as long as only iterations are
+/// missing it goes on from where it has come to.
 bool solve_first_branch(Run& run, const Eigen::VectorXd& w) {
   Eigen::VectorXd c(run.problem.rows());
   run.problem.functions(w, c);
-  auto branch = run.solve_branch(crossover::smaller_sides(run.problem, run.groups, c), w, first_branch_iterations,
-                                 "sides of the start");
+  const auto sides = crossover::smaller_sides(run.problem, run.groups, c);
+  auto branch = run.solve_branch(sides, w, start_iterations, "sides of the start");
+  for (int i = 0; i < start_rounds && branch.report.termination == Termination::iteration_limit && !run.is_over();
+       ++i) {
+    branch = run.solve_branch(sides, branch.w, start_iterations, "sides of the start");
+  }
   if (!branch.is_feasible(run.options.tolerance) || !std::isfinite(branch.objective)) return false;
   run.branch = std::move(branch);
   return true;

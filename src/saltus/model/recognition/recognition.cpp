@@ -130,10 +130,6 @@ Expected<SXElem> Recognition::step(const SXElem& e, const std::string& name) {
   return selection(e, name, 0.5).map([this](const Selection& s) { return value(s); });
 }
 
-Expected<SXElem> Recognition::another_step(const SXElem& e, const std::string& name) {
-  return graph.add(e).map([&](int node) { return functions_[at(append(name, e, node, 0.5))].alpha; });
-}
-
 Expected<SXElem> Recognition::sign(const SXElem& e, const std::string& name) {
   return step(e, name).map([](const SXElem& alpha) { return 2.0 * alpha - 1.0; });
 }

@@ -44,8 +44,6 @@ class Recognition {
   SxGraph graph;
 
   [[nodiscard]] Expected<SXElem> step(const SXElem& e, const std::string& name);
-  /// A selection of its own, even where one with the same surface has been met; e is no constant.
-  [[nodiscard]] Expected<SXElem> another_step(const SXElem& e, const std::string& name);
   [[nodiscard]] Expected<SXElem> sign(const SXElem& e, const std::string& name);
   [[nodiscard]] Expected<SXElem> abs(const SXElem& e, const std::string& name);
   /// `name` is the text of a - b.

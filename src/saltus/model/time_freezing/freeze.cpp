@@ -108,7 +108,7 @@ class ContactFreezing {
       add_to(system_.positions, -plan_.stabilisation * response(i) * system_.gap(i) * (1.0 - *gap) * (1.0 - *rate));
     }
     if (plan_.purpose == FrozenFor::optimisation && plan_.numbers.correction > 0.0 && is_curved(system_.gap(i))) {
-      if (auto error = hold(k, *gap)) return error;
+      if (auto error = hold(k, *rate)) return error;
     }
     add_outputs(k, normal, tangential);
     return std::nullopt;
@@ -121,15 +121,18 @@ class ContactFreezing {
     return SX::depends_on(SX::jacobian(gap, moving), moving);
   }
 
-  /// Holds a gap of 0 as it is: the difference of two selections of its surface is a speed of either sign there and 0
-  /// elsewhere. In exact motions it is 0 there, too, so that they stay what they are.
-  std::optional<Error> hold(std::size_t k, const SX& gap) {
+  /// Where the rate is held at 0, the difference of two selections of its surface is a speed of either sign that keeps
+  /// the gap at 0; elsewhere it is 0. In exact motions it is 0 there, too, so that they stay what they are.
+  ///
+  /// NOTE: equal functions, and multiples, have one selection. This one has the same sign and surface, and is none.
+  std::optional<Error> hold(std::size_t k, const SX& rate) {
     const auto i = static_cast<casadi_int>(k);
-    const auto other =
-        recognition_.another_step(SX::densify(system_.gap(i)).scalar(), plan_.made.contacts[k].name + ".held");
+    const SX value = system_.velocity(i), square = value * value;
+    const SX same_surface = value * (1.0 + square / (1.0 + square));
+    const auto other = recognition_.step(SX::densify(same_surface).scalar(), plan_.made.contacts[k].name + ".held");
     if (!other) return other.error();
     const SX inverse_mass = SX::mtimes(system_.rows(i, casadi::Slice()), response(i));
-    add_to(system_.positions, plan_.numbers.correction * (gap - *other) * response(i) / inverse_mass);
+    add_to(system_.positions, plan_.numbers.correction * (rate - SX(*other)) * response(i) / inverse_mass);
     return std::nullopt;
   }
 
