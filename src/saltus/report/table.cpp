@@ -100,10 +100,9 @@ std::string event_table(const result::Result& result, std::size_t shown_at_each_
       rows.push_back(event_row(first ? i + 1 : i + 1 + left_out, events[i], result, states));
     }
   }
-  const auto count = all ? fmt::format("events      {}\n", count_of_all)
-                         : paragraph("events", fmt::format("{}: {}; the first and the last {}", count_of_all,
-                                                           kinds_of(result), shown_at_each_end));
-  return count + aligned(rows);
+  if (all) return fmt::format("events      {}\n", count_of_all) + aligned(rows);
+  return fmt::format("events      {}, the first and the last {}\n", count_of_all, shown_at_each_end) +
+         paragraph("of kinds", kinds_of(result)) + aligned(rows);
 }
 
 /// The first states, as many as fit.

@@ -110,8 +110,9 @@ void add_overview(Json& json, const ModelOverview& overview) {
   json["states"] = quantities_json(overview.states);
   json["parameters"] = quantities_json(overview.parameters);
   json["controls"] = quantities_json(overview.controls);
-  json["equations"] = equations_json(overview.equations);
-  if (!overview.mechanics.empty()) json["mechanics"] = equations_json(overview.mechanics);
+  auto equations = overview.mechanics;
+  equations.insert(equations.end(), overview.equations.begin(), overview.equations.end());
+  json["equations"] = equations_json(equations);
   if (!overview.contacts.empty()) json["contacts"] = equations_json(overview.contacts);
   json["modes"] = modes_json(overview.modes);
   json["definitions"] = equations_json(overview.definitions);
