@@ -88,7 +88,7 @@ saltus.portraitSurfaces = (result, choice, view, palette) => {
 
 saltus.portraitLayout = (result, choice, view, holder, palette) => {
   const axis = (i) => ({
-    title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 24))},
+    title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 32))},
     range: view.box[i],
     gridcolor: palette.axis,
     zerolinecolor: palette.axis,
