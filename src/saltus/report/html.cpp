@@ -67,15 +67,18 @@ std::uint64_t fingerprint(std::string_view text) {
 
 }  // namespace
 
-std::string to_html(const result::Result& result, std::string_view plotly_source,
-                    const std::vector<Overlay>& overlays) {
+std::string to_html(const result::Result& result, std::string_view plotly_source, const std::vector<Overlay>& overlays,
+                    const GoOn& go_on) {
+  bool ended = false;
+  const GoOn more = [&] { return !(ended = ended || (go_on && !go_on())); };
   const std::size_t share = numbers_in_page / (1 + overlays.size());
-  nlohmann::json everything = page_data(result, share);
-  everything["overlays"] = overlays_data(result, overlays, share);
-  Packed packed = pack(std::move(everything));
-  const std::string data = to_script_text(packed.skeleton);
-  const std::string numbers = deflated_base64(shuffled_bytes(packed.numbers));
-  const std::string plotly = deflated_base64(plotly_source);
+  nlohmann::json everything = page_data(result, share, more);
+  if (more()) everything["overlays"] = overlays_data(result, overlays, share);
+  Packed packed = pack(std::move(everything), more);
+  const std::string data = more() ? to_script_text(packed.skeleton) : "";
+  const std::string numbers = deflated_base64(shuffled_bytes(packed.numbers), more);
+  const std::string plotly = deflated_base64(plotly_source, more);
+  if (ended) return "";
   const std::string nonce = fmt::format("{:016x}", fingerprint(data) ^ fingerprint(numbers));
   const std::string title = escape_html(result.model.name.empty() ? "simulation" : result.model.name);
   std::string page;

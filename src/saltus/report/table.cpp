@@ -195,6 +195,18 @@ std::vector<std::string> few_of(std::vector<std::string> pieces) {
   return few;
 }
 
+/// What the model says about states and outputs.
+std::string labels_text(const result::Result& result, const result::Captions& captions) {
+  std::vector<std::string> pieces;
+  for (const auto* names : {&result.states, &result.outputs}) {
+    for (const auto& name : *names) {
+      const auto label = caption_of(captions, name).label;
+      if (!label.empty()) pieces.push_back(fmt::format("{}: {}", name, label));
+    }
+  }
+  return pieces.empty() ? "" : wrapped("where", few_of(pieces));
+}
+
 std::string end_state(const result::Result& result, const result::Captions& captions) {
   std::vector<std::string> pieces;
   for (std::size_t i = 0; i < result.states.size() && i < result.final.x.size(); ++i) {
@@ -228,7 +240,7 @@ std::string end_state(const result::Result& result, const result::Captions& capt
     pieces.push_back(with_unit(result.outputs[i], result.final.outputs[i], captions));
   }
   if (!pieces.empty()) text += wrapped("outputs", few_of(pieces));
-  return text;
+  return text + labels_text(result, captions);
 }
 
 }  // namespace
