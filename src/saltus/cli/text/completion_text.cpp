@@ -59,7 +59,7 @@ _saltus() {{
     COMPREPLY=($(compgen -W "{} help --help --version" -- "$current"))
     return
   fi
-  if [ "$before" = "--set" ] || [ "$before" = "--over" ]; then
+  if [ "$before" = "--set" ] || [ "$before" = "--over" ] || [ "$before" = "--sample" ]; then
     COMPREPLY=($(compgen -S = -W "$(saltus complete-names -- "${{COMP_WORDS[@]:2}}" 2>/dev/null)" -- "$current"))
     compopt -o nospace 2>/dev/null
     return
@@ -97,7 +97,7 @@ _saltus() {{
     compadd -- {} help
     return
   fi
-  if [[ $words[CURRENT-1] == --set || $words[CURRENT-1] == --over ]]; then
+  if [[ $words[CURRENT-1] == --(set|over|sample) ]]; then
     compadd -S = -- $(saltus complete-names -- $words[3,-1] 2>/dev/null)
     return
   fi
@@ -130,7 +130,7 @@ std::string fish_script(const std::vector<ShownCommand>& commands) {
     text += fmt::format("complete -c saltus -n __fish_use_subcommand -f -a {} -d {}\n", command.name,
                         in_single_quotes(command.about));
     for (const auto& [name, about] : command.options) {
-      std::string values = name == "--set" || name == "--over" ? " -x -a '(__saltus_names)'" : "";
+      std::string values = name == "--set" || name == "--over" || name == "--sample" ? " -x -a '(__saltus_names)'" : "";
       for (const auto& [behind, words] : command.values) {
         if (behind == name) values = fmt::format(" -x -a '{}'", words);
       }
