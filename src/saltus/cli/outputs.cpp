@@ -123,8 +123,8 @@ Expected<void> write_one(const std::string& file, const std::string& format, con
 
 /// Makes and writes a page, with a line of progress, until Ctrl-C.
 /// @param again  Ctrl-C has ended the run
-Expected<void> write_page(const std::string& file, ShowProgress show, bool again,
-                          FunctionRef<std::string(const report::GoOn& go_on)> make) {
+Expected<void> write_watched_page(const std::string& file, ShowProgress show, bool again,
+                                  FunctionRef<std::string(const report::GoOn& go_on)> make) {
   if (again) print_error(fmt::format("writing {}; Ctrl-C once more leaves it out", file));
   ProgressLine line(show);
   const auto page = make([&] {
@@ -223,7 +223,7 @@ Expected<Written> Outputs::write(const result::Result& result, ShowProgress show
     keep_first(std::move(written));
   }
   if (!names_.report.empty()) {
-    auto written = write_page(names_.report, show, again, [&](const report::GoOn& go_on) {
+    auto written = write_watched_page(names_.report, show, again, [&](const report::GoOn& go_on) {
       return report::to_html(result, plotly_, overlays, go_on);
     });
     if (interrupted()) return Written::interrupted;
