@@ -126,7 +126,7 @@ std::vector<Chattering> chattering_pixels(const std::vector<double>& t, const st
   for (std::size_t i = 0; i < t.size();) {
     Chattering part{i, i, t[i], t[i], y[i], y[i], 0.0};
     const Place start{t[i], area};
-    auto first = rise && t[i] - rise->t < pixel ? rise : std::nullopt;
+    auto first = rise && t[i] - rise->t < 2.0 * pixel ? rise : std::nullopt;
     int jumps = 0;
     std::size_t k = i;
     for (; k < t.size() && (k == i || t[k] < t[i] + pixel); ++k) {

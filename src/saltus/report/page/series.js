@@ -106,7 +106,7 @@ saltus.chatteringPixels = (t, values, [begin, end], buckets, leastJump) => {
     const pixel = {begin: i, from: t[i], low: Infinity, high: -Infinity};
     const start = {t: t[i], area};
     // The last jump upwards of the pixel before, if it was not long ago.
-    let first = rise !== null && t[i] - rise.t < width ? rise : null;
+    let first = rise !== null && t[i] - rise.t < 2 * width ? rise : null;
     let [jumps, k] = [0, i];
     for (; k < end && (k === i || t[k] < limit); k += 1) {
       const value = values[k];
