@@ -82,6 +82,17 @@ void draw_pieces(Svg& svg, const CurvePieces& pieces, std::string_view color, st
 [[nodiscard]] Range time_range(const result::Result& result);
 [[nodiscard]] std::string heading_of(const result::Result& result);
 
+/// Panels, and bands, of a figure at most: a sheet of paper is no longer. Letters of a line beside them.
+inline constexpr std::size_t most_panels = 24, letters_beside = 18;
+
+/// Switching functions that have a band: all if they are few, else those whose mode changes.
+[[nodiscard]] std::vector<std::size_t> banded(const result::Result& result);
+/// Bands of switching functions: below their middle psi < 0, above it psi > 0, all of them sliding; where they chatter
+/// each half is as full as its part of the time, and the middle is hatched.
+/// @return where the next thing can stand
+double draw_bands(Svg& svg, const result::Result& result, const std::vector<std::size_t>& bands, const Plot& time,
+                  double top);
+
 /// The drawing over time of these columns, one below the other; of none those that move, as the page draws them.
 [[nodiscard]] std::string draw_over_time(const result::Result& result, const std::vector<FigureColumn>& columns);
 /// One column over another one, with the surfaces of the plane, its vector field and the events.

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -14,10 +13,8 @@
 namespace saltus::report {
 namespace {
 
-/// Panels of a figure at most, a sheet of paper is no longer; and curves of one sort, as on the page.
-constexpr std::size_t most_panels = 24, most_curves = 48, single_panels = 6, most_in_a_panel = 4;
-/// Letters of a line beside a panel.
-constexpr std::size_t most_letters = 18;
+/// Curves of one sort at most, as on the page.
+constexpr std::size_t most_curves = 48, single_panels = 6, most_in_a_panel = 4;
 
 using Curves = std::vector<FigureColumn>;
 
@@ -105,58 +102,6 @@ std::size_t count_of(const std::vector<Curves>& panels) {
   return count;
 }
 
-/// One stretch of a band: how much of its time the mode is -1, 0 and 1.
-struct BandCell {
-  double from = 0.0, to = 0.0;  ///< pixels
-  std::array<double, 3> share{};
-  std::size_t mode = 0;  ///< the last one, by its place in `share`
-  int count = 1;         ///< intervals in it
-};
-
-/// Intervals of a mode as they are, those that share a pixel together.
-std::vector<BandCell> band_cells(const result::Trajectory& trajectory, std::size_t j, const Plot& time) {
-  std::vector<BandCell> cells;
-  for (std::size_t i = 0; i + 1 < trajectory.t.size(); ++i) {
-    if (i >= trajectory.mode.size() || j >= trajectory.mode[i].size() || trajectory.t[i] == trajectory.t[i + 1])
-      continue;
-    const double from = time.place(trajectory.t[i], 0.0).x, to = time.place(trajectory.t[i + 1], 0.0).x;
-    const auto mode = static_cast<std::size_t>(trajectory.mode[i][j] + 1);
-    const bool same = !cells.empty() && cells.back().count == 1 && cells.back().mode == mode;
-    const bool near = !cells.empty() && to - cells.back().from < 1.0;
-    if (!same && !near) cells.push_back({from, from, {}, mode, 1});
-    auto& cell = cells.back();
-    if (cell.mode != mode) ++cell.count;
-    cell.mode = mode;
-    cell.share[mode] += to - cell.to;
-    cell.to = to;
-  }
-  return cells;
-}
-
-/// Bands of the switching functions: below their middle psi < 0, above it psi > 0, all of them sliding; where they
-/// chatter each half is as full as its part of the time, and the middle is hatched.
-double draw_bands(Svg& svg, const result::Result& result, const Plot& time, double top) {
-  constexpr double height = 16.0, gap = 2.0, lane = height / 2 - gap;
-  for (std::size_t j = 0; j < std::min(most_panels, result.switching_functions.size()); ++j) {
-    const double middle = top + height / 2;
-    for (const auto& cell : band_cells(result.trajectory, j, time)) {
-      const double wide = cell.to - cell.from;
-      if (!(wide > 0.0)) continue;
-      const double minus = lane * cell.share[0] / wide, plus = lane * cell.share[2] / wide;
-      if (cell.count > 1) svg.rectangle({cell.from, middle - gap}, wide, 2.0 * gap, hatched);
-      if (minus > 0.0) svg.rectangle({cell.from, middle + gap}, wide, minus, paper::minus);
-      if (plus > 0.0) svg.rectangle({cell.from, middle - gap - plus}, wide, plus, paper::plus);
-      const bool whole = cell.count == 1;
-      if (cell.share[1] > 0.0)
-        svg.rectangle({cell.from, whole ? top : middle - gap}, wide, whole ? height : 2.0 * gap, paper::sliding);
-    }
-    svg.text({time.corner.x + time.width + 8.0, top + 12.0}, shortened(result.switching_functions[j], most_letters),
-             "start", paper::text);
-    top += height + 4.0;
-  }
-  return top + 8.0;
-}
-
 /// Events as thin lines from the top to the bottom, of many one for some pixels; those that are not unique always.
 void draw_events(Svg& svg, const result::Result& result, const Plot& time, double top, double bottom) {
   const double apart = result.events.size() > 200 ? 6.0 : 1.0;
@@ -214,7 +159,7 @@ std::vector<std::string> lines_beside(const FigureColumn& column, bool alone) {
   const auto title = title_of(column);
   const auto& [unit, label] = column.caption;
   std::vector<std::string> lines{title};
-  if (alone && !unit.empty() && width(title) > most_letters) lines = {column.name, fmt::format("[{}]", unit)};
+  if (alone && !unit.empty() && width(title) > letters_beside) lines = {column.name, fmt::format("[{}]", unit)};
   if (alone && !label.empty()) lines.push_back(label);
   return lines;
 }
@@ -240,7 +185,7 @@ void draw_panel(Svg& svg, const result::Result& result, const Curves& curves, Pl
   const double step = std::min(16.0, plot.height / static_cast<double>(lines.size()));
   double y = plot.corner.y + plot.height / 2 + 4.0 - step * static_cast<double>(lines.size() - 1) / 2;
   for (const auto& [line, color] : lines) {
-    svg.text({plot.corner.x + plot.width + 8.0, y}, shortened(line, most_letters), "start", color);
+    svg.text({plot.corner.x + plot.width + 8.0, y}, shortened(line, letters_beside), "start", color);
     y += step;
   }
 }
@@ -254,7 +199,7 @@ double room_beside(const result::Result& result, const std::vector<Curves>& pane
       for (const auto& line : lines_beside(column, panel.size() == 1)) letters = std::max(letters, width(line));
     }
   }
-  return 20.0 + 7.5 * static_cast<double>(std::min(letters, most_letters));
+  return 20.0 + 7.5 * static_cast<double>(std::min(letters, letters_beside));
 }
 
 }  // namespace
@@ -267,8 +212,9 @@ std::string draw_over_time(const result::Result& result, const std::vector<Figur
   if (columns.empty()) panels.resize(std::min(panels.size(), most_panels));
   const std::size_t left_out = all - count_of(panels);
   const double gap = 12.0, high = panels.size() > 6 ? 92.0 : 130.0;
-  const double bands = 20.0 * static_cast<double>(std::min(most_panels, result.switching_functions.size()));
-  const double height = 44.0 + bands + static_cast<double>(panels.size()) * (high + gap) + 56.0;
+  const auto bands = banded(result);
+  const double height =
+      44.0 + 20.0 * static_cast<double>(bands.size()) + static_cast<double>(panels.size()) * (high + gap) + 56.0;
   Svg svg(paper::width, height);
   const double wide = paper::width - paper::left - room_beside(result, panels);
   Plot plot{{paper::left, 40.0}, wide, high, time_range(result), {0.0, 1.0}};
@@ -276,7 +222,7 @@ std::string draw_over_time(const result::Result& result, const std::vector<Figur
            fmt::format("{}: {} to t = {:.6g}{}", heading_of(result), result::name(result.status.termination),
                        result.status.time_reached, left_out > 0 ? fmt::format(", {} more columns", left_out) : ""),
            "start", paper::text);
-  plot.corner.y = draw_bands(svg, result, plot, 40.0);
+  plot.corner.y = draw_bands(svg, result, bands, plot, 40.0);
   draw_events(svg, result, plot, 32.0, height - 56.0);
   for (std::size_t i = 0; i < panels.size(); ++i, plot.corner.y += high + gap)
     draw_panel(svg, result, panels[i], plot, i + 1 == panels.size());

@@ -133,6 +133,22 @@ TEST(Figure, OfVeryManyStatesThoseThatMoveAreDrawn) {
   EXPECT_EQ(occurrences(*svg, ">x0<"), 0U);
 }
 
+TEST(Figure, OfVeryManyBandsThoseThatChangeAreDrawn) {
+  result::Result result;
+  result.states = {"x"};
+  for (int j = 0; j < 30; ++j) result.switching_functions.push_back("s" + std::to_string(j));
+  for (int row = 0; row < 3; ++row) {
+    result::Mode mode(30, 0);
+    if (row > 0) mode.back() = 1;
+    report_samples::add_row(result, {static_cast<double>(row), {0.0}, mode, std::vector<double>(30, 0.5)});
+  }
+  report_samples::finish(result);
+  const auto svg = to_svg(result);
+  ASSERT_TRUE(svg);
+  EXPECT_EQ(occurrences(*svg, ">s29<"), 1U);
+  EXPECT_EQ(occurrences(*svg, ">s0<"), 0U);
+}
+
 TEST(Figure, NamesOfColumnsMayContainCommas) {
   auto result = report_samples::stick_slip(4, 5);
   result.states[0] = "max(q,v)";
