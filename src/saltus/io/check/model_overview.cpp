@@ -190,7 +190,7 @@ ModelOverview overview_of(const model::Description& description, const model::Sy
     overview.contacts.push_back({contact.name, contact_text(contact), {}});
   }
   overview.modes = modes_of(description);
-  overview.definitions = equations_of(description.definitions);
+  overview.definitions = equations_of(description.definitions, captions);
   overview.outputs = equations_of(description.outputs, captions);
   overview.surfaces = surfaces_of(description, system);
   for (const auto& cell : system.cells) overview.cells.push_back({cell.name, cell_text(cell)});
