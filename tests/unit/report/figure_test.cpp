@@ -124,7 +124,7 @@ TEST(Figure, AMeanOfChatteringIsOneOfWholePeriods) {
     for (const double value : {1.0, 1.0, 0.0, 0.0}) y.push_back(value);
   }
   const auto pixels = chattering_pixels(t, y, 2.5, 1e-5);
-  ASSERT_GT(pixels.size(), 390U);
+  ASSERT_GT(pixels.size(), 330U);
   for (const auto& pixel : pixels) {
     EXPECT_NEAR(pixel.mean, 0.3, 1e-9);
     EXPECT_EQ(pixel.low, 0.0);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -60,14 +61,15 @@ std::vector<Curves> grouped(const Curves& columns) {
     if (panel.size() == most_in_a_panel) return false;
     if (is_fraction(column)) return true;
     Range hull = range_of(column.values);
-    double smallest = INFINITY;
+    constexpr double none = std::numeric_limits<double>::infinity();
+    double smallest = none;
     for (const auto& one : panel) {
       const Range range = range_of(one.values);
       hull = {std::min(hull.from, range.from), std::max(hull.to, range.to)};
       if (range.to > range.from) smallest = std::min(smallest, range.to - range.from);
     }
     if (const double span = span_of(column); span > 0.0) smallest = std::min(smallest, span);
-    return smallest == INFINITY || hull.to - hull.from <= flattens * smallest;
+    return smallest == none || hull.to - hull.from <= flattens * smallest;
   };
   for (const auto& column : columns) {
     const bool alone = columns.size() <= single_panels && !is_fraction(column);
@@ -104,6 +106,14 @@ std::size_t count_of(const std::vector<Curves>& panels) {
   std::size_t count = 0;
   for (const auto& panel : panels) count += panel.size();
   return count;
+}
+
+/// Columns that move, without the time.
+std::size_t count_of_moving(const result::Result& result) {
+  auto columns = figure_columns(result);
+  columns.pop_back();
+  std::erase_if(columns, [](const FigureColumn& column) { return !moves(column.values); });
+  return columns.size();
 }
 
 /// Events as thin lines from the top to the bottom, of many one for some pixels; those that are not unique always.
@@ -180,7 +190,7 @@ std::vector<std::string> lines_beside(const FigureColumn& column, bool alone) {
 }
 
 void draw_panel(Svg& svg, const result::Result& result, const Curves& curves, Plot plot, bool last) {
-  Range range{INFINITY, -INFINITY};
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const auto& column : curves) {
     const Range one = range_of(column.values);
     range = {std::min(range.from, one.from), std::max(range.to, one.to)};
@@ -223,9 +233,9 @@ std::string draw_over_time(const result::Result& result, const std::vector<Figur
   std::vector<Curves> panels;
   for (const auto& column : columns) panels.push_back({column});
   if (panels.empty()) panels = first_panels(result);
-  const std::size_t all = count_of(panels);
   if (columns.empty()) panels.resize(std::min(panels.size(), most_panels));
-  const std::size_t left_out = all - count_of(panels);
+  const std::size_t moving = columns.empty() ? count_of_moving(result) : 0, drawn = count_of(panels);
+  const std::size_t left_out = moving - std::min(moving, drawn);
   const double gap = 12.0, high = panels.size() > 6 ? 92.0 : 130.0;
   const auto bands = banded(result);
   const double height =
