@@ -85,7 +85,11 @@ class Diff(tool.ToolTest):
         self.write("c.json", "{}")
         self.assertIn("c.json", self.run_tool("diff", a, "c.json", code=2)[1])
         self.assertIn("none.json", self.run_tool("diff", "none.json", a, code=2)[1])
-        self.assertIn("--rtol", self.run_tool("diff", a, a, "--rtol", "-1", code=2)[1])
+        for wrong in ("-1", "nan", "x"):
+            err = self.run_tool("diff", a, a, "--rtol", wrong, code=2)[1]
+            self.assertIn("--rtol", err)
+            self.assertIn("not negative", err)
+            self.assertLess(len(err), 200)
 
 
 class New(tool.ToolTest):
@@ -112,7 +116,28 @@ class New(tool.ToolTest):
         self.assertIn("did you mean 'relay'?", self.run_tool("new", "m", "--like", "relai", code=2)[1])
         self.assertIn("cannot name a model", self.run_tool("new", 'a"b', code=2)[1])
         self.assertIn("NAME", self.run_tool("new", code=2)[1])
-        self.run_tool("new", "no/such/folder", code=2)
+        self.assertIn("there is no folder 'no/such'", self.run_tool("new", "no/such/folder", code=2)[1])
+
+    def test_the_commands_it_names_can_be_typed_and_the_schema_is_there(self):
+        out, _ = self.run_tool("new", "a b", code=0)
+        self.assertIn("next: saltus check 'a b.toml'\n", out)
+        self.assertIn("saltus simulate 'a b.toml' --report 'a b.html'\n", out)
+        self.assertIn("saltus.schema.json", out)
+        schema = self.folder / "saltus.schema.json"
+        self.assertIn("properties", json.loads(schema.read_text(encoding="utf-8")))
+        schema.write_text("{}", encoding="utf-8")
+        self.assertNotIn("saltus.schema.json", self.run_tool("new", "c", code=0)[0])
+        self.assertEqual(schema.read_text(encoding="utf-8"), "{}")
+
+
+class Words(tool.ToolTest):
+    def test_help_is_a_command(self):
+        self.assertEqual(self.run_tool("help", "help", code=0), self.run_tool("help", code=0))
+        self.assertIn("did you mean 'help'?", self.run_tool("hlep", code=2)[1])
+
+    def test_an_unknown_suffix_is_answered_with_all_that_there_are(self):
+        err = self.run_tool("simulate", "stick-slip", "--out", "bb.xyz", code=2)[1]
+        self.assertIn(".json or .csv or .events.csv or .npz", err)
 
 
 class Cite(tool.ToolTest):

@@ -27,12 +27,45 @@ class Figure(tool.ToolTest):
         self.run_tool("report", "r.json", "--figure", "plane.svg", "--phase", "t,alpha(slip)", code=0)
         self.assertIn("stick-slip: alpha(slip) over t", self.words("plane.svg"))
 
+    def marks(self, name, kind, key, value):
+        svg = tree.parse(self.folder / name).getroot()
+        return [mark for mark in svg.iter(f"{{http://www.w3.org/2000/svg}}{kind}") if mark.get(key) == value]
+
+    def test_columns_over_time_can_be_chosen(self):
+        self.run_tool("report", "r.json", "--figure", "a.svg", "--columns", "alpha(slip),q", code=0)
+        words = self.words("a.svg")
+        self.assertLess(words.index("alpha(slip)"), words.index("q"))
+        self.assertNotIn("v", words)
+
+    def test_a_plane_of_two_states_has_its_field_and_the_events(self):
+        self.run_tool("report", "r.json", "--figure", "a.svg", "--phase", "q,v", code=0)
+        self.assertGreater(len(self.marks("a.svg", "path", "stroke", "#b9c0ca")), 100)
+        self.assertGreater(len(self.marks("a.svg", "circle", "fill", "#8d97a5")), 0)
+        self.run_tool("report", "r.json", "--figure", "a.svg", "--phase", "t,v", code=0)
+        self.assertEqual(self.marks("a.svg", "path", "stroke", "#b9c0ca"), [])
+
+    def test_units_and_labels_stand_beside_panels_and_axes(self):
+        self.run_tool("new", "u", "--like", "impact", code=0)
+        self.run_tool("simulate", "u.toml", "--out", "u.json", "--quiet", code=0)
+        self.run_tool("report", "u.json", "--figure", "a.svg", code=0)
+        for word in ("h [m]", "height", "v [m/s]", "velocity", "energy [J/kg]"):
+            self.assertIn(word, self.words("a.svg"))
+        self.run_tool("report", "u.json", "--figure", "a.svg", "--phase", "h,v", code=0)
+        self.assertIn("height h [m]", self.words("a.svg"))
+        self.assertIn("velocity v [m/s]", self.words("a.svg"))
+        out, _ = self.run_tool("simulate", "u.toml", code=0)
+        self.assertRegex(out, r"(?m)^where +h: height  v: velocity$")
+
     def test_what_is_wrong_is_refused_before_anything_is_written(self):
         for arguments, part in ((["--figure", "a.gif"], ".svg, .pdf or .png"),
                                 (["--figure", "a.svg", "--phase", "q,w"], "no column 'w'"),
                                 (["--figure", "a.svg", "--phase", "q"], "two columns"),
                                 (["--figure", "none/a.svg"], "none"),
                                 (["r.json", "--figure", "a.svg"], "draws one result"),
+                                (["--figure", "a.svg", "--columns", "q,w"], "no column 'w'"),
+                                (["--figure", "a.svg", "--columns", "t"], "no column 't'"),
+                                (["--figure", "a.svg", "--columns", "q", "--phase", "q,v"], "one of them"),
+                                (["--columns", "q"], "--figure"),
                                 (["--phase", "q,v"], "--figure")):
             _, err = self.run_tool("report", "r.json", *arguments, code=2)
             self.assertIn(part, err)
@@ -59,7 +92,10 @@ class Figure(tool.ToolTest):
             time.sleep(0.02)
         self.assertEqual((self.folder / "seen").read_text(encoding="utf-8").strip(),
                          str((self.folder / "r.html").resolve()))
-        self.run_tool("report", "r.json", "--open", code=2, environment={"BROWSER": "/none/browser"})
+        out, err = self.run_tool("report", "r.json", "--open", code=0, environment={"BROWSER": "/none/browser"})
+        self.assertEqual(out, "r.html\n")
+        self.assertIn("r.html is written", err)
+        self.assertIn("BROWSER", err)
 
 
 class Overlays(tool.ToolTest):

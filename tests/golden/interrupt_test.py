@@ -82,6 +82,22 @@ class Interrupt(tool.ToolTest):
         self.assertEqual((self.folder / "r.json").read_text(), "precious")
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["m.toml", "r.json"])
 
+    def test_a_page_is_left_out_by_a_second_one(self):
+        # Many events: their page takes seconds.
+        self.write("m.toml", ENDLESS.replace('"-x"', '"-sign(x)"').replace("max_steps", "max_events = 1000000000\nmax_steps"))
+        process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--report", "r.html"], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        time.sleep(6.0)
+        self.assertIsNone(process.poll(), "ended by itself")
+        process.send_signal(signal.SIGINT)
+        said = process.stderr.readline()
+        self.assertIn("writing r.html; Ctrl-C once more leaves it out", said)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 3, err)
+        self.assertIn("writing r.html was interrupted", err)
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["m.toml"])
+
     def test_check_says_what_it_knows(self):
         process = self.start(["check", "--well-posedness"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(2.0)

@@ -133,6 +133,11 @@ class Tried(tool.ToolTest):
         self.assertAlmostEqual(s, result["final"]["x"][0] - 0.5, delta=1e-9)
         self.assertEqual(turns, 2.0)  # 16 / (2 pi) = 2.546
         self.assertAlmostEqual(turn, 16 % 6.283185307179586, delta=1e-6)
+        checked, _ = self.run_tool("check", "m.toml", code=0)
+        self.assertRegex(checked, r"(?m)^  s = .*, recorded$")
+        self.assertNotIn("s = s", checked)
+        stated = [entry for entry in result["model"]["equations"] if entry["left"] == "s"]
+        self.assertEqual(stated, [{"left": "s", "right": "x - 0.5", "where": "output"}])
         same = NAMES.replace('record = ["s", "turn"]', 's = "s"\nturn = "turn"')
         self.assertEqual(self.simulated(same)[0]["final"]["outputs"], result["final"]["outputs"])
         self.write("m.toml", NAMES.replace('record = ["s", "turn"]', 's = "x"'))
@@ -291,6 +296,12 @@ class Editors(tool.ToolTest):
         self.assertEqual(completed("saltus", "sim"), ["simulate"])
         self.assertIn("stick-slip", completed("saltus", "simulate", "stick"))
         self.assertEqual(completed("saltus", "simulate", "m.toml", "--set", "m"), ["mu="])
+        self.assertEqual(completed("saltus", "simulate", "--until", "3", "m.toml", "--set", "m"), ["mu="])
+        self.assertIn("stick-slip", completed("saltus", "sweep", "stick"))
+        self.assertEqual(completed("saltus", "sweep", "m.toml", "--over", "m"), ["mu="])
+        self.assertEqual(completed("saltus", "new", "x", "--like", "g"), ["gene"])
+        self.assertEqual(completed("saltus", "completion", "f"), ["fish"])
+        self.assertIn("final", completed("saltus", "sweep", "m.toml", "--keep", "''"))
         self.assertIn("--rtol", completed("saltus", "simulate", "m.toml", "--rt"))
 
 

@@ -4,61 +4,13 @@ usage: page_in_browser_test.py TOOL SOURCE BROWSER
 """
 
 import json
-import pathlib
-import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-TOOL, SOURCE, BROWSER = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
-sys.path.insert(0, str(SOURCE / "scripts"))
-import look_at_report  # noqa: E402  (the path has to be known first)
+from browser_page import DRAWN, NAMES, PLANE, SELECTED, SOURCE, Page, key
 
 AXE = SOURCE / ".venv/axe/axe.min.js"
-DRAWN = "document.querySelectorAll('.js-plotly-plot').length"
-PLANE = "document.querySelectorAll('.phase-plot')[0]"
-NAMES = PLANE + ".data.filter((trace) => trace.x.length > 0).map((trace) => trace.name)"
-SELECTED = "document.querySelector('.inspector h3').textContent"
-
-
-def key(name):
-    return ("document.querySelector('.scroller').dispatchEvent(new KeyboardEvent('keydown', "
-            f"{{key: '{name}', bubbles: true}}))")
-
-
-class Page(unittest.TestCase):
-    flags = ""
-
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory(prefix="saltus-page-")
-        self.folder = pathlib.Path(self._folder.name)
-        self.browser = look_at_report.Browser(BROWSER, self.flags)
-
-    def tearDown(self):
-        self.browser.close()
-        self._folder.cleanup()
-        self.assertEqual(self.browser.complaints, [])
-
-    def tool(self, *arguments):
-        subprocess.run([TOOL, *arguments], cwd=self.folder, check=True, capture_output=True, timeout=120)
-
-    def show(self, model):
-        self.tool("simulate", model, "--quiet", "--report", "page.html")
-        self.open("page.html")
-
-    def open(self, name):
-        self.browser.open((self.folder / name).as_uri(), 1366, 768, "light")
-
-    def value(self, expression):
-        return self.browser.value(expression)
-
-    def becomes(self, expression, expected):
-        """Waits until an expression has a value: drawing takes its time on a busy machine."""
-        end = time.monotonic() + 30
-        while (found := self.value(expression)) != expected and time.monotonic() < end:
-            time.sleep(0.05)
-        self.assertEqual(found, expected, expression)
 
 
 class TwoStates(Page):
@@ -263,105 +215,6 @@ class Bodies(Page):
         self.assertEqual(self.value("document.querySelectorAll('.bodies').length"), 0)
 
 
-class Source(Page):
-    def test_the_page_has_the_model_the_start_and_its_rows(self):
-        self.tool("simulate", "stick-slip", "--set", "q=0.1", "--quiet", "--report", "page.html")
-        self.open("page.html")
-        source = (SOURCE / "models/stick-slip.toml").read_text(encoding="utf-8")
-        self.assertEqual(self.value("document.querySelector('.info details pre').textContent"), source)
-        cards = "[...document.querySelectorAll('.info .card')].map((card) => card.textContent)"
-        start = [text for text in self.value(cards) if text.startswith("Start")][0]
-        self.assertIn("q0.1", start)
-        self.assertIn("saltus simulate stick-slip --set q=0.1", start)
-        # What the button saves has the columns of the tool's own file.
-        self.tool("simulate", "stick-slip", "--set", "q=0.1", "--quiet", "--out", "r.csv")
-        header = (self.folder / "r.csv").read_text(encoding="utf-8").splitlines()[0]
-        self.assertEqual(self.value("saltus.toCsv(saltus.result).split('\\r\\n')[0]"), header)
-
-
-class Overlays(Page):
-    def test_two_results_over_each_other_with_their_differences(self):
-        self.tool("simulate", "stick-slip", "--quiet", "--out", "a.json")
-        self.tool("simulate", "stick-slip", "--set", "q=0.1", "--rtol", "1e-6", "--quiet", "--out", "b.json")
-        self.tool("report", "a.json", "b.json", "--out", "both.html")
-        self.open("both.html")
-        overlays = "document.querySelector('.timeline').data.filter((trace) => trace.meta === 'overlay').length"
-        self.assertEqual(self.value(overlays), 3)
-        self.assertIn("b.json", self.value(NAMES))
-        self.assertIn("of the range of", self.value("document.querySelector('.overlays').textContent"))
-        self.assertIn("Differences", self.value("[...document.querySelectorAll('.phase h2')].map((e) => e.textContent)"))
-        largest = self.value("Math.max(...document.querySelectorAll('.phase-plot')[1].data[0].y.map(Math.abs))")
-        self.assertGreater(largest, 0.05)
-        self.assertLess(largest, 2)
-
-
-ROTATING = """
-[model]
-name = "entry"
-[states]
-x = 0
-y = -1
-[switching]
-first = "x"
-second = "y"
-[[modes]]
-when = "first < 0 and second < 0"
-dynamics = { x = "0.5223", y = "0.609" }
-[[modes]]
-when = "first < 0 and second > 0"
-dynamics = { x = "-0.194", y = "0.3146" }
-[[modes]]
-when = "first > 0 and second < 0"
-dynamics = { x = "-1.7734", y = "-0.9416" }
-[[modes]]
-when = "first > 0 and second > 0"
-dynamics = { x = "1.011", y = "0.115" }
-[simulate]
-until = 6
-[simulate.event]
-branches = "all"
-"""
-
-
-class Branches(Page):
-    def show_tree(self):
-        (self.folder / "m.toml").write_text(ROTATING, encoding="utf-8")
-        self.show("m.toml")
-
-    def test_are_listed_and_drawn_dashed_and_the_chosen_one_solid(self):
-        self.show_tree()
-        rows = "document.querySelectorAll('.branches tbody tr')"
-        self.assertGreater(self.value(rows + ".length"), 0)
-        drawn = ("document.querySelector('.timeline').data.filter((trace) => trace.meta === 'branches')"
-                 ".map((trace) => trace.line.dash)")
-        self.assertEqual(set(self.value(drawn)), {"dash"})
-        self.assertIn("branches", self.value(NAMES))
-        self.value(rows + "[0].click()")
-        self.becomes(drawn + ".includes('solid')", True)
-        self.becomes(NAMES + ".includes('branch 1')", True)
-        self.value(rows + "[0].click()")
-        self.becomes(drawn + ".includes('solid')", False)
-        self.value("document.querySelector('.branches tbody button').click()")
-        self.becomes("document.querySelector('.inspector').hidden", False)
-
-    def test_the_square_of_a_decision_has_zeros_path_and_points(self):
-        self.show_tree()
-        square = "document.querySelector('.phase-plot.square')"
-        names = self.value(square + ".data.map((trace) => trace.name)")
-        self.assertIn("hidden dynamics", names)
-        self.assertEqual(names[-2:], ["comes from", "goes on with"])
-        for name in ("g₁ = 0 (first)", "g₂ = 0 (second)"):
-            self.assertIn(name, names)
-        # Comes along x = 0 from below y = 0, and rests where both components vanish.
-        come = self.value(square + ".data.at(-2).x[0]"), self.value(square + ".data.at(-2).y[0]")
-        self.assertAlmostEqual(come[0], 0.5223 / (0.5223 + 1.7734), 9)
-        self.assertEqual(come[1], 0)
-        size = self.value("(() => { const data = " + square + ".data, p = data.at(-1);"
-                          " return saltus.normalComponents(saltus.result"
-                          ".events.find((e) => e.intersection).intersection, [p.x[0], p.y[0]]).map(Math.abs); })()")
-        self.assertLess(max(size), 1e-9)
-
-
 class ThreeStates(Page):
     def test_the_portrait_has_curve_and_plane(self):
         self.show("relay-feedback")
@@ -372,64 +225,6 @@ class ThreeStates(Page):
         self.assertEqual(kinds.count("mesh3d"), 1)
         self.assertEqual(self.value("document.querySelectorAll('.phase-plot')[1].data.at(-1).x.every((x) => "
                                     "Math.abs(x) < 1e-15)"), True)
-
-
-def optimised(result):
-    """The result of an optimisation with the trajectory of a simulation without controls, in four intervals."""
-    rows, until = result["trajectory"], result["final"]["t"]
-    zero = {"termination": "completed", "message": "", "end_state_error": 0, "terminal_violation": 0, "amplification": 2}
-    step = {"solver": "ipopt", "iterations": 7, "objective": 3, "primal_infeasibility": 0, "complementarity_residual": 0,
-            "termination": "completed", "seconds": 0}
-    return {
-        **result, "command": "optimize", "objective": 3, "horizon": until, "parameters": {"mass": 2}, "u": [[]] * 4,
-        "objective_terms": {"running": 1, "terminal": 2, "least_squares": 0, "time": 0, "penalties": 0},
-        "grid": [until * k / 4 for k in range(5)], "h": [[until / 8] * 2] * 4,
-        "multipliers": [{"name": "v <= 1", "time": until, "value": 0.5}, {"name": "q == 2", "time": until, "value": -1}],
-        "homotopy": [{**step, "phase": "relaxed", "sigma": 1}, {**step, "phase": "branch", "sigma": 1}],
-        "certificate": {"primal_infeasibility": 1e-12, "complementarity_residual": 0, "stationarity": 1e-10, "biactive": 0,
-                        "stationarity_type": "S", "b_stationary": True, "lpcc_decrease": None},
-        "verification": {"tolerance": 1e-3, "interval_defect": 0.5, "interval": 2, "state": "v", "switch_time_error": 0,
-                         "switches_missed": 0, "switches_extra": 0, "path_violation": 0, "message": "",
-                         "open_loop": {**zero, "t": rows["t"], "x": rows["x"]}},
-        "statistics": {"iterations": 14, "variables": 3, "equations": 2, "pairs": 1, "build_seconds": 0,
-                       "evaluation_seconds": 0, "linear_algebra_seconds": 0, "wall_seconds": 1},
-        "start_values": {"nodes": [], "state_lower": [None, -0.5], "state_upper": [None, 0.3], "control_lower": [],
-                         "control_upper": [], "primal": [], "dual_rows": [], "dual_lower": [], "dual_upper": []},
-    }
-
-
-class Optimisation(Page):
-    def setUp(self):
-        super().setUp()
-        self.tool("simulate", "stick-slip", "--quiet", "--out", "simulated.json")
-        simulated = json.loads((self.folder / "simulated.json").read_text(encoding="utf-8"))
-        (self.folder / "page.json").write_text(json.dumps(optimised(simulated)), encoding="utf-8")
-        # Neither model nor solver: everything is in the result.
-        self.tool("report", "page.json")
-        self.open("page.html")
-
-    def test_words_and_drawings(self):
-        titles = "[...document.querySelectorAll('.phase h2')].map((title) => title.textContent)"
-        self.assertEqual(self.value(titles), ["Phase plane", "Simulated against optimised", "Multipliers of constraints",
-                                              "Lengths of elements", "Path of problems"])
-        self.assertEqual(self.value(DRAWN), 6)
-        self.assertEqual(self.value("document.querySelectorAll('.verdict li.good').length"), 4)
-        self.assertEqual(self.value("[...document.querySelectorAll('.verdict li.bad')].map((said) => "
-                                    "said.textContent.includes('0.5 of the range of `v` in interval 2 (t ='))"), [True])
-        metas = ("document.querySelector('.timeline').data.map((trace) => trace.meta)"
-                 ".filter((meta) => meta && !meta.startsWith('mode'))")
-        self.assertEqual(self.value(metas), ["simulated", "bound", "bound", "simulated"])
-
-    def test_one_constraint_can_be_chosen_and_zooming_is_for_all(self):
-        shown = "document.querySelectorAll('.phase-plot')[2].data.map((trace) => trace.name).filter((name) => name)"
-        self.assertEqual(self.value(shown), ["q == 2", "v &lt;= 1"])
-        self.value("(() => { const list = document.querySelector('select.wide'); list.value = '1';"
-                   " list.dispatchEvent(new Event('change')); })()")
-        self.becomes(shown, ["v &lt;= 1"])
-        self.value("document.querySelectorAll('.phase-plot')[1].emit('plotly_relayout',"
-                   " {'xaxis.range[0]': 5, 'xaxis.range[1]': 6})")
-        self.becomes("document.querySelector('.timeline').layout.xaxis.range", [5, 6])
-        self.becomes("document.querySelectorAll('.phase-plot')[3].layout.xaxis.range", [5, 6])
 
 
 class Accessibility(Page):

@@ -467,6 +467,49 @@ test("at first what moves is drawn, discrete states last, and what rests waits",
   assert.deepEqual(saltus.axes(result).map(saltus.columnLabel), ["rest", "count", "move", "power", "α(s)", "t"]);
 });
 
+test("of very many selections those that change are drawn, the last one too", () => {
+  const result = mixed();
+  result.switching_functions = Array.from({length: 60}, (_, i) => `s${i}`);
+  result.trajectory.alpha = result.switching_functions.map((_, i) => (i < 50 ? [0, 0, 0, 0, 0] : [0, 0, 0, 1, 1]));
+  const {panels} = saltus.firstPanels(result);
+  const drawn = panels.flatMap(({curves}) => curves).map((i) => saltus.columns(result)[i])
+                    .filter(({sort}) => sort === "alpha").map(({name}) => name);
+  assert.deepEqual(drawn, result.switching_functions.slice(50));
+});
+
+test("in space the time stands on the third axis where only two states move and do not step", () => {
+  const result = mixed();
+  result.trajectory.x[0] = [0, 1, 2, 2, 5];
+  assert.deepEqual(saltus.firstChoice(result, 3).map((i) => saltus.axes(result)[i].name), ["rest", "move", "t"]);
+});
+
+test("units and labels stand in tables, beside panels and on axes", () => {
+  const result = {
+    ...mixed(),
+    captions: {move: {unit: "m", label: "position <b>"}, power: {unit: "wibble/fortnight", label: ""}},
+  };
+  assert.deepEqual(saltus.captionedRow(result, "move", 2), ["move", "2 m", "position <b>"]);
+  assert.deepEqual(saltus.captionedRow(result, "rest", 2), ["rest", "2", ""]);
+  const [, , move, power] = saltus.columns(result);
+  assert.deepEqual(saltus.columnLines(move), ["move [m]", "position <b>"]);
+  assert.deepEqual(saltus.columnLines(move, false), ["move [m]"]);
+  assert.deepEqual(saltus.columnLines(power), ["power", "[wibble/fortnight]"]);
+  assert.equal(saltus.axisLabel(result, 2), "position <b> move [m]");
+  const stack = saltus.stackPanels(result, 600);
+  const palette = {curves: ["black"], quiet: "grey", text: "black"};
+  const texts = stack.panels.flatMap((panel) => saltus.panelLabels(panel, stack, palette, result)).map(({text}) => text);
+  assert.ok(texts.includes("move [m]<br>position &lt;b&gt;"), texts.join());
+  assert.ok(texts.includes("power<br>[wibble/fortnight]"), texts.join());
+  // Room for the longest line.
+  assert.ok(saltus.labelWidth(result) >= 18 * 7);
+});
+
+test("lines of jumps are not dotted as the jumps of curves are", () => {
+  const palette = {jump: "teal", mark: "grey"};
+  const [shape] = saltus.markShapes(mixed(), [0], null, palette);
+  assert.equal(shape.line.dash, undefined);
+});
+
 test("of very many states those that move most are drawn, the last one too", () => {
   const t = [0, 1, 2];
   const x = Array.from({length: 300}, (_, i) => (i < 200 ? [i, i, i] : [0, i, 0]));
@@ -543,6 +586,18 @@ test("where a curve chatters its envelope and its mean are drawn instead of line
   const near = saltus.points(t, values, [0, 0.01], 400);
   assert.equal(near.envelope.x.length, 0);
   assert.ok(near.jumps.x.length >= 3 * 19);
+});
+
+test("the mean of chattering is one of whole periods, wherever pixels begin", () => {
+  // 2.5 periods a pixel, and 0.3 of every period above.
+  const [t, values] = [[], []];
+  for (let i = 0; i < 1000; i += 1) {
+    t.push(i, i + 0.3, i + 0.3, i + 1);
+    values.push(1, 1, 0, 0);
+  }
+  const {envelope} = saltus.points(t, values, [0, 1000], 400);
+  assert.ok(envelope.mean.length > 390, String(envelope.mean.length));
+  for (const mean of envelope.mean) assert.ok(Math.abs(mean - 0.3) < 1e-9, String(mean));
 });
 
 test("intervals of modes below a pixel keep their parts of the time", () => {

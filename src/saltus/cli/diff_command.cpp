@@ -1,3 +1,4 @@
+#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -61,6 +62,15 @@ ExitCode run_diff(const DiffArguments& arguments) {
   return difference->is_none() ? ExitCode::done : ExitCode::different;
 }
 
+/// Of a tolerance; CLI11's own check prints the greatest number there is with all its digits.
+std::string not_negative(const std::string& typed) {
+  double value = 0.0;
+  const auto* end = typed.data() + typed.size();
+  const auto read = std::from_chars(typed.data(), end, value);
+  const bool good = read.ec == std::errc() && read.ptr == end && value >= 0.0;
+  return good ? "" : fmt::format("'{}': expected a number that is not negative", typed);
+}
+
 }  // namespace
 
 Command add_diff(CLI::App& app) {
@@ -71,12 +81,12 @@ Command add_diff(CLI::App& app) {
   command->add_option("B", arguments->b, "another one of the same model")->required();
   command->add_option("--rtol", arguments->tolerances.rtol, "relative tolerance (1e-6)")
       ->type_name("R")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative);
   command
       ->add_option("--atol", arguments->tolerances.atol,
                    "absolute tolerance (rtol times the range of each column, and no less than that of the runs)")
       ->type_name("A")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative);
   command->footer(
       "Compares end states, events, and states at the times that both have; of output = \"auto\" between them, too. "
       "Exit code 0: the same, 1: different, 2: "

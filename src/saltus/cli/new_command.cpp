@@ -6,10 +6,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/cli/commands.hpp"
+#include "saltus/cli/model_input.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/atomic_file.hpp"
+#include "saltus/io/check/model_schema.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -162,13 +165,21 @@ ExitCode run_new(const NewArguments& arguments) {
   if (fs::exists(file, ignored)) {
     return refuse(refused_name(file.string(), "this file exists", "choose another name, or remove it"));
   }
+  if (auto possible = io::check_writable(file); !possible) return refuse(possible.error());
+  const auto schema = file.parent_path() / "saltus.schema.json";
   const auto text = fmt::format(
-      "#:schema ./saltus.schema.json\n# (`saltus schema > saltus.schema.json`: an editor with "
-      "TOML support then completes and checks this file)\n\n[model]\nname = \"{}\"\n{}",
+      "#:schema ./saltus.schema.json\n# (made by `saltus schema`: an editor with TOML support completes and checks "
+      "this "
+      "file by it)\n\n[model]\nname = \"{}\"\n{}",
       name, known->text);
   if (auto written = io::write_file(file, text); !written) return refuse(written.error());
-  print(fmt::format("{0}\nnext: saltus check {0}\n      saltus simulate {0} --report {1}.html\n", file.string(),
-                    fs::path(file).replace_extension().string()));
+  print(file.string() + "\n");
+  if (!fs::exists(schema, ignored)) {
+    if (auto written = io::write_file(schema, io::model_schema()); !written) return refuse(written.error());
+    print(fmt::format("{} (for editors)\n", schema.string()));
+  }
+  print(fmt::format("next: {}\n      {}\n", command_line({"check", file.string()}),
+                    command_line({"simulate", file.string(), "--report", fs::path(file).replace_extension(".html")})));
   return ExitCode::done;
 }
 
@@ -179,7 +190,8 @@ Command add_new(CLI::App& app) {
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<NewArguments>();
   command->add_option("NAME", arguments->name, "name of the model; the file is NAME.toml")->required();
-  command->add_option("--like", arguments->like, "relay, gene, friction (without it) or impact")->type_name("KIND");
+  command->add_option("--like", arguments->like, "the model to begin with (friction)")
+      ->type_name(fmt::format("{}", fmt::join(template_names(), "|")));
   command->footer("Example:\n  saltus new my-model --like impact");
   return {"new", [arguments] { return run_new(*arguments); }};
 }

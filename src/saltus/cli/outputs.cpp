@@ -42,8 +42,10 @@ constexpr std::string_view standard_output = "-";
 
 Expected<void> check_suffix(const Output& output) {
   const auto suffix = fs::path(output.file).extension().string();
-  const auto& known = output.suffixes;
+  auto known = output.suffixes;
   if (std::find(known.begin(), known.end(), suffix) != known.end()) return {};
+  if (const auto csv = std::find(known.begin(), known.end(), ".csv"); csv != known.end())
+    known.insert(csv + 1, ".events.csv");
   return tl::unexpected(refused(output.option, output.file,
                                 fmt::format("the name must end in {}", fmt::join(known, " or ")),
                                 "the suffix says what is written"));
@@ -119,6 +121,22 @@ Expected<void> write_one(const std::string& file, const std::string& format, con
   return written;
 }
 
+/// Makes and writes a page, with a line of progress, until Ctrl-C.
+/// @param again  Ctrl-C has ended the run
+Expected<void> write_watched_page(const std::string& file, ShowProgress show, bool again,
+                                  FunctionRef<std::string(const report::GoOn& go_on)> make) {
+  if (again) print_error(fmt::format("writing {}; Ctrl-C once more leaves it out", file));
+  ProgressLine line(show);
+  const auto page = make([&] {
+    line.show([&] { return fmt::format("writing {}", file); });
+    return !interrupted();
+  });
+  line.clear();
+  if (!interrupted()) return io::write_file(file, page);
+  print_error(fmt::format("writing {} was interrupted; an earlier file of that name is as it was", file));
+  return {};
+}
+
 }  // namespace
 
 Expected<Outputs> Outputs::make(const OutputNames& names, const std::string& input) {
@@ -184,6 +202,7 @@ Expected<Written> Outputs::finish(GrowingOutputs& growing, const result::Result&
 
 Expected<Written> Outputs::write(const result::Result& result, ShowProgress show,
                                  const std::vector<report::Overlay>& overlays) const {
+  const bool again = interrupted();
   catch_interrupt();  // anew: one that ended the run does not keep its result from being written
   Expected<void> outcome;
   const auto keep_first = [&](Expected<void> written) {
@@ -197,7 +216,13 @@ Expected<Written> Outputs::write(const result::Result& result, ShowProgress show
     }
     keep_first(std::move(written));
   }
-  if (!names_.report.empty()) keep_first(io::write_file(names_.report, report::to_html(result, plotly_, overlays)));
+  if (!names_.report.empty()) {
+    auto written = write_watched_page(names_.report, show, again, [&](const report::GoOn& go_on) {
+      return report::to_html(result, plotly_, overlays, go_on);
+    });
+    if (interrupted()) return Written::interrupted;
+    keep_first(std::move(written));
+  }
   if (!outcome) return tl::unexpected(outcome.error());
   return Written::all;
 }

@@ -19,7 +19,7 @@ struct ReportArguments {
   std::vector<std::string> results;
   std::string page;
   std::vector<std::string> figures;
-  std::string phase;
+  std::string phase, columns;
   bool open = false;
 };
 
@@ -31,11 +31,17 @@ Expected<void> write_figures(const ReportArguments& arguments, const result::Res
     if (!axes) return tl::unexpected(axes.error());
     phase = std::move(*axes);
   }
+  std::vector<std::string> columns;
+  if (!arguments.columns.empty()) {
+    auto names = report::figure_names(result, arguments.columns);
+    if (!names) return tl::unexpected(names.error());
+    columns = std::move(*names);
+  }
   for (const auto& file : arguments.figures) {
     if (auto possible = check_figure(file); !possible) return possible;
   }
   if (arguments.figures.empty()) return {};
-  const auto svg = report::to_svg(result, phase);
+  const auto svg = report::to_svg(result, phase, columns);
   if (!svg) return tl::unexpected(svg.error());
   for (const auto& file : arguments.figures) {
     if (auto written = write_figure(file, *svg); !written) return written;
@@ -75,10 +81,19 @@ Expected<void> write_page(const std::string& page, const ReportArguments& argume
 }
 
 ExitCode run_report(const ReportArguments& arguments) {
-  if (!arguments.phase.empty() && arguments.figures.empty()) {
+  const bool is_plane = !arguments.phase.empty();
+  if ((is_plane || !arguments.columns.empty()) && arguments.figures.empty()) {
+    return refuse(
+        {ErrorCode::invalid_option,
+         fmt::format("{} chooses the columns of a drawing, and there is none", is_plane ? "--phase" : "--columns"),
+         "add --figure FILE.svg; in a page the columns are chosen with the mouse",
+         {},
+         {}});
+  }
+  if (is_plane && !arguments.columns.empty()) {
     return refuse({ErrorCode::invalid_option,
-                   "--phase chooses the columns of a drawing, and there is none",
-                   "add --figure FILE.svg; in a page the columns are chosen with the mouse",
+                   "--columns chooses what is drawn over time, and --phase draws in a plane",
+                   "give one of them",
                    {},
                    {}});
   }
@@ -99,7 +114,10 @@ ExitCode run_report(const ReportArguments& arguments) {
                         : arguments.page;
   if (auto written = write_page(page, arguments, *result); !written) return refuse(written.error());
   if (!arguments.open) return ExitCode::done;
-  if (auto opened = open_page(page); !opened) return refuse(opened.error());
+  // The page is there, whoever can show it.
+  if (auto opened = open_page(page); !opened) {
+    print_error(fmt::format("note: {} is written; {}\n  {}", page, opened.error().message, opened.error().remedy));
+  }
   return ExitCode::done;
 }
 
@@ -126,6 +144,10 @@ Command add_report(CLI::App& app) {
       ->add_option("--phase", arguments->phase,
                    "draw column Y over column X: states, controls, outputs, alpha(NAME) or t; default: all over time")
       ->type_name("X,Y");
+  command
+      ->add_option("--columns", arguments->columns,
+                   "draw these columns over time, in this order; default: what moves, as in the page")
+      ->type_name("X,Y,…");
   command->add_flag("--open", arguments->open, "show the page with $BROWSER, else xdg-open");
   command->footer(
       "Example:\n  saltus simulate stick-slip --out stick-slip.json && saltus report stick-slip.json --figure "

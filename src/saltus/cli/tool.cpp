@@ -44,7 +44,7 @@ Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
 }
 
 Error unknown_command(const std::string& word, const std::vector<Command>& commands) {
-  std::vector<std::string> known;
+  std::vector<std::string> known{"help"};
   for (const auto& command : commands) {
     const bool hidden =
         command.name == "options-page" || command.name == "complete-names" || command.name == "man-page";
@@ -58,9 +58,10 @@ std::vector<std::string> arguments_of(int argc, char** argv) {
   return argc > 1 ? std::vector<std::string>(argv + 1, argv + argc) : std::vector<std::string>();
 }
 
-/// `help` and `help CMD` as `--help` and `CMD --help`.
+/// `help` and `help CMD` as `--help` and `CMD --help`; help about `help` is the help.
 std::vector<std::string> help_for(std::vector<std::string> typed) {
   typed.erase(typed.begin());
+  if (!typed.empty() && typed.front() == "help") typed.erase(typed.begin());
   if (typed.size() > 1) typed.resize(1);
   typed.emplace_back("--help");
   return typed;

@@ -14,7 +14,7 @@ namespace saltus::report {
 namespace {
 
 /// Components of the end state that fit into a row.
-constexpr std::size_t shown_states = 3;
+constexpr std::size_t states_of_row = 3;
 
 template <class Value>
 std::string or_dash(const std::optional<Value>& value, fmt::string_view form) {
@@ -82,7 +82,7 @@ std::string compared_states(const result::Result& result, const result::Comparis
 }  // namespace
 
 std::string comparison_table(const result::Result& result, const result::Comparison& comparison) {
-  const std::size_t states = std::min(shown_states, result.states.size());
+  const std::size_t states = std::min(states_of_row, result.states.size());
   Row head{"method", ""};
   head.insert(head.end(), result.states.begin(), result.states.begin() + static_cast<std::ptrdiff_t>(states));
   for (const auto* title : {"switches", "last at t", "state differs by", "switches by", "seconds"}) {

@@ -52,6 +52,20 @@ std::vector<std::vector<std::size_t>> families_of(const std::vector<std::string>
   return families;
 }
 
+/// What the model says about what is shown.
+std::string labels_text(const std::vector<std::string>& names, const result::Captions& captions) {
+  std::map<std::string, std::string> labels;
+  for (const auto& [name, caption] : captions) {
+    if (!caption.label.empty()) labels.emplace(name, caption.label);
+  }
+  std::vector<std::string> pieces;
+  for (const auto& name : names) {
+    const auto found = labels.find(name);
+    if (found != labels.end()) pieces.push_back(fmt::format("{}: {}", name, found->second));
+  }
+  return pieces.empty() ? "" : wrapped("where", few_of(std::move(pieces)));
+}
+
 struct Values {
   const std::vector<std::string>& names;
   const std::vector<double>& values;
@@ -156,14 +170,16 @@ std::string contacts_text(const result::Result& result) {
 /// What is named, each by itself.
 std::string named_values(const result::Result& result, const result::Captions& captions,
                          const std::vector<std::string>& names) {
-  std::vector<std::string> pieces;
+  std::vector<std::string> pieces, shown;
   const auto add = [&](const std::vector<std::string>& all, const std::vector<double>& values) {
     const Values list{all, values, captions};
     for (const auto& name : names) {
       const auto found = result::numbers_of({name}, all);
       if (!found) continue;
       for (const std::size_t i : *found) {
-        if (i < values.size()) pieces.push_back(list.piece(i));
+        if (i >= values.size()) continue;
+        pieces.push_back(list.piece(i));
+        shown.push_back(all[i]);
       }
     }
   };
@@ -184,7 +200,8 @@ std::string named_values(const result::Result& result, const result::Captions& c
                                    mode == 0 ? fmt::format(" (alpha {:.6g})", result.final.alpha[j]) : ""));
     }
   }
-  return pieces.empty() ? text : text + wrapped("modes", pieces);
+  if (!pieces.empty()) text += wrapped("modes", pieces);
+  return text + labels_text(shown, captions);
 }
 
 }  // namespace
@@ -194,8 +211,12 @@ std::string end_state(const result::Result& result, const result::Captions& capt
   if (!names.empty()) return named_values(result, captions, names);
   std::string text = values_text("end state", "states", {result.states, result.final.x, captions});
   text += sliding_text(result) + regions_text(result) + contacts_text(result);
-  if (result.outputs.empty() || result.final.outputs.empty()) return text;
-  return text + values_text("outputs", "outputs", {result.outputs, result.final.outputs, captions});
+  auto shown = result.states;
+  if (!result.outputs.empty() && !result.final.outputs.empty()) {
+    text += values_text("outputs", "outputs", {result.outputs, result.final.outputs, captions});
+    shown.insert(shown.end(), result.outputs.begin(), result.outputs.end());
+  }
+  return text + labels_text(shown, captions);
 }
 
 std::vector<std::size_t> shown_states(const result::Result& result, const std::vector<std::string>& names) {

@@ -45,32 +45,36 @@ std::uint64_t fingerprint(std::string_view text) {
 }
 
 /// A page shows what the rows have; all of the others is in the result.
-nlohmann::json everything_shown(const result::Result& result, const std::vector<Overlay>& overlays) {
+/// @param go_on  false ends it, with a part of the data
+nlohmann::json everything_shown(const result::Result& result, const std::vector<Overlay>& overlays, const GoOn& go_on) {
   const auto is_kept = [](const Overlay& overlay) { return overlay.result.kept.has_value(); };
   if (result.kept || std::any_of(overlays.begin(), overlays.end(), is_kept)) {
     std::vector<Overlay> in_rows;
     for (const auto& [label, other] : overlays) in_rows.push_back({label, as_in_rows(other)});
-    auto shown = everything_shown(as_in_rows(result), in_rows);
+    auto shown = everything_shown(as_in_rows(result), in_rows, go_on);
     if (result.kept) {
       shown["kept"] = {{"states", result.states.size()}, {"switching functions", result.switching_functions.size()}};
     }
     return shown;
   }
   const std::size_t share = numbers_in_page / (1 + overlays.size());
-  auto everything = page_data(result, share);
-  everything["overlays"] = overlays_data(result, overlays, share);
+  auto everything = page_data(result, share, go_on);
+  if (go_on()) everything["overlays"] = overlays_data(result, overlays, share);
   everything["kept"] = nullptr;
   return everything;
 }
 
 }  // namespace
 
-std::string to_html(const result::Result& result, std::string_view plotly_source,
-                    const std::vector<Overlay>& overlays) {
-  Packed packed = pack(everything_shown(result, overlays));
-  const std::string data = to_script_text(packed.skeleton);
-  const std::string numbers = deflated_base64(shuffled_bytes(packed.numbers));
-  const std::string plotly = deflated_base64(plotly_source);
+std::string to_html(const result::Result& result, std::string_view plotly_source, const std::vector<Overlay>& overlays,
+                    const GoOn& go_on) {
+  bool ended = false;
+  const GoOn more = [&] { return !(ended = ended || (go_on && !go_on())); };
+  Packed packed = pack(everything_shown(result, overlays, more), more);
+  const std::string data = more() ? to_script_text(packed.skeleton) : "";
+  const std::string numbers = deflated_base64(shuffled_bytes(packed.numbers), more);
+  const std::string plotly = deflated_base64(plotly_source, more);
+  if (ended) return "";
   const std::string nonce = fmt::format("{:016x}", fingerprint(data) ^ fingerprint(numbers));
   const std::string title = escape_html(result.model.name.empty() ? "simulation" : result.model.name);
   std::string page;

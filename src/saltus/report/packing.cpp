@@ -58,19 +58,23 @@ json column(json::array_t values, std::vector<double>& numbers) {
   return {{"$table", values.front().size()}, {"of", put_away(flat, numbers)}};
 }
 
+/// Objects with the keys of the first, which is one.
 bool are_alike(const json& list) {
+  const auto& first = list.front().get_ref<const json::object_t&>();
   return std::all_of(list.begin(), list.end(), [&](const json& entry) {
-    return entry.is_object() && entry.size() == list.front().size() &&
-           std::equal(entry.items().begin(), entry.items().end(), list.front().items().begin(),
-                      [](const auto& a, const auto& b) { return a.key() == b.key(); });
+    const auto* object = entry.get_ptr<const json::object_t*>();
+    return object != nullptr && object->size() == first.size() &&
+           std::equal(object->begin(), object->end(), first.begin(),
+                      [](const auto& a, const auto& b) { return a.first == b.first; });
   });
 }
 
-json by_columns(json list, std::vector<double>& numbers) {
+json by_columns(json list, std::vector<double>& numbers, const GoOn& go_on) {
   json columns = json::object();
   std::vector<std::string> keys;
   for (const auto& item : list.front().items()) keys.push_back(item.key());
   for (const auto& key : keys) {
+    if (go_on && !go_on()) break;
     json::array_t values;
     values.reserve(list.size());
     for (json& entry : list) values.push_back(std::move(entry[key]));
@@ -79,19 +83,21 @@ json by_columns(json list, std::vector<double>& numbers) {
   return {{"$rows", list.size()}, {"columns", std::move(columns)}};
 }
 
-json taken_out(json value, std::vector<double>& numbers) {
+json taken_out(json value, std::vector<double>& numbers, const GoOn& go_on) {
   if (value.is_array() && value.size() >= least_packed) {
     if (all_numbers(value)) return put_away(value, numbers);
     const bool of_points = value.front().is_object() && value.front().contains("$points");
-    if (value.front().is_object() && !of_points && are_alike(value)) return by_columns(std::move(value), numbers);
+    if (value.front().is_object() && !of_points && are_alike(value)) {
+      return by_columns(std::move(value), numbers, go_on);
+    }
   }
   if (value.is_structured()) {
-    for (json& part : value) part = taken_out(std::move(part), numbers);
+    for (json& part : value) part = taken_out(std::move(part), numbers, go_on);
   }
   return value;
 }
 
-std::string deflated(std::string_view bytes) {
+std::string deflated(std::string_view bytes, const GoOn& go_on) {
   z_stream stream{};
   // Negative: raw deflate, without the header and the checksum of zlib.
   if (deflateInit2(&stream, 6, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
@@ -99,7 +105,7 @@ std::string deflated(std::string_view bytes) {
   std::vector<char> buffer(std::size_t{1} << 20U);
   std::size_t read = 0;
   int state = Z_OK;
-  while (state != Z_STREAM_END) {
+  while (state != Z_STREAM_END && (!go_on || go_on())) {
     if (stream.avail_in == 0) {
       const std::size_t part = std::min<std::size_t>(bytes.size() - read, std::size_t{1} << 30U);
       // zlib does not write into its input; its type is from times without const.
@@ -133,9 +139,9 @@ std::string base64(std::string_view bytes) {
 
 }  // namespace
 
-Packed pack(json data) {
+Packed pack(json data, const GoOn& go_on) {
   Packed packed;
-  packed.skeleton = taken_out(std::move(data), packed.numbers);
+  packed.skeleton = taken_out(std::move(data), packed.numbers, go_on);
   return packed;
 }
 
@@ -148,6 +154,6 @@ std::string shuffled_bytes(const std::vector<double>& numbers) {
   return bytes;
 }
 
-std::string deflated_base64(std::string_view bytes) { return base64(deflated(bytes)); }
+std::string deflated_base64(std::string_view bytes, const GoOn& go_on) { return base64(deflated(bytes, go_on)); }
 
 }  // namespace saltus::report

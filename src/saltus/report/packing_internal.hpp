@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "saltus/report/html.hpp"
+
 namespace saltus::report {
 
 /// Arrays of numbers shorter than this stay in the JSON: people can read them, and nothing is gained.
@@ -23,12 +25,14 @@ struct Packed {
   nlohmann::json skeleton;
   std::vector<double> numbers;
 };
-[[nodiscard]] Packed pack(nlohmann::json data);
+/// @param go_on  false ends it, with a part of the data
+[[nodiscard]] Packed pack(nlohmann::json data, const GoOn& go_on = {});
 
 /// The bytes of the numbers (little endian), all first bytes before all second ones and so on, which deflates better.
 [[nodiscard]] std::string shuffled_bytes(const std::vector<double>& numbers);
 
 /// Raw deflate (RFC 1951), then base64 (RFC 4648). Cost: about 30 ns per byte.
-[[nodiscard]] std::string deflated_base64(std::string_view bytes);
+/// @param go_on  false ends it, with a part of the bytes
+[[nodiscard]] std::string deflated_base64(std::string_view bytes, const GoOn& go_on = {});
 
 }  // namespace saltus::report

@@ -333,13 +333,16 @@ json families_data(const std::vector<result::TreeEntry>& tree) {
 }
 
 /// Events with as many values each as fit the limit of the page.
-json events_data(const result::Result& result, std::size_t limit) {
+json events_data(const result::Result& result, std::size_t limit, const GoOn& go_on) {
   // x, mode and alpha on both sides: six lists for every event. Of many columns nobody reads the lists.
   const bool many = result.states.size() + result.switching_functions.size() > many_columns;
   const std::size_t share = (many ? limit / 8 : limit) / (6 * std::max<std::size_t>(1, result.events.size()));
   const std::size_t values_of_event = std::clamp(share, least_values_of_event, columns_in_page);
   json events = json::array();
-  for (const auto& event : result.events) events.push_back(event_data(event, values_of_event));
+  for (const auto& event : result.events) {
+    if (events.size() % 1024 == 0 && go_on && !go_on()) break;
+    events.push_back(event_data(event, values_of_event));
+  }
   return events;
 }
 
@@ -375,7 +378,7 @@ json counts_data(const result::Statistics& statistics) {
 
 }  // namespace
 
-json page_data(const result::Result& result, std::size_t limit) {
+json page_data(const result::Result& result, std::size_t limit, const GoOn& go_on) {
   const auto shown = [](const auto& list) { return head(list, columns_in_page); };
   const auto tree = result::tree(result);
   const std::size_t share_of_trajectory = limit / tree.size();
@@ -402,7 +405,7 @@ json page_data(const result::Result& result, std::size_t limit) {
             {"outputs", result.outputs.size()}}},
           {"sensitivity_parameters", result.sensitivities ? result.sensitivities->parameters.size() : 0},
           {"final", final_data(result.final)},
-          {"events", events_data(result, limit)},
+          {"events", events_data(result, limit, go_on)},
           {"trajectory", trajectory_data(result, share_of_trajectory)},
           {"branches", branches_data(tree, share_of_trajectory)},
           {"not_followed", not_followed},

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "saltus/report/html.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {
@@ -26,7 +27,9 @@ template <class T>
 
 /// The result column by column, modes as intervals; non-finite numbers become null when written.
 /// @param limit  numbers of the trajectory to aim at; see rows_to_draw.
-[[nodiscard]] nlohmann::json page_data(const result::Result& result, std::size_t limit = numbers_in_page);
+/// @param go_on  false ends it, with a part of the events
+[[nodiscard]] nlohmann::json page_data(const result::Result& result, std::size_t limit = numbers_in_page,
+                                       const GoOn& go_on = {});
 
 /// The JSON text in a form that can stand inside a <script> element whatever its strings contain.
 [[nodiscard]] std::string to_script_text(const nlohmann::json& data);

@@ -46,9 +46,10 @@ TEST(Figure, SaysWhatItsLinesMean) {
   result::Surface line{
       "slip", result::SurfaceRole::switching, {"v"}, false, result::AffineSurface{{1.0}, 0.0, -0.2}, {}, {}};
   result.surfaces = {line};
+  result.vector_field.emplace();
   const auto plane = to_svg(result, PhaseAxes{"q", "v"});
   ASSERT_TRUE(plane);
-  for (const char* name : {">solution<", ">sliding<", ">start<", ">end<", ">slip<"}) {
+  for (const char* name : {">solution<", ">sliding<", ">event<", ">start<", ">end<", ">vector field<", ">slip<"}) {
     EXPECT_EQ(occurrences(*plane, name), 1U) << name;
   }
 }
@@ -116,7 +117,69 @@ TEST(Figure, ChatteringFillsBothHalvesOfABand) {
   }
 }
 
+TEST(Figure, AMeanOfChatteringIsOneOfWholePeriods) {
+  std::vector<double> t, y;
+  for (int i = 0; i < 1000; ++i) {
+    for (const double part : {0.0, 0.3, 0.3, 1.0}) t.push_back(i + part);
+    for (const double value : {1.0, 1.0, 0.0, 0.0}) y.push_back(value);
+  }
+  const auto pixels = chattering_pixels(t, y, 2.5, 1e-5);
+  ASSERT_GT(pixels.size(), 330U);
+  for (const auto& pixel : pixels) {
+    EXPECT_NEAR(pixel.mean, 0.3, 1e-9);
+    EXPECT_EQ(pixel.low, 0.0);
+    EXPECT_EQ(pixel.high, 1.0);
+  }
+  result::Trajectory trajectory;
+  trajectory.t = t;
+  const Plot plot{{0.0, 0.0}, 100.0, 100.0, {0.0, 1000.0}, {-1.0, 2.0}};
+  EXPECT_TRUE(curve_pieces(trajectory, t, y, plot, 1.25, false, pixels).jumps.size() < 10);
+  EXPECT_TRUE(chattering_pixels(t, y, 0.1, 1e-5).empty());
+}
+
+TEST(Figure, OfVeryManyStatesThoseThatMoveAreDrawn) {
+  result::Result result;
+  for (int i = 0; i < 60; ++i) result.states.push_back("x" + std::to_string(i));
+  for (int row = 0; row < 3; ++row) {
+    std::vector<double> x(60, 0.0);
+    for (std::size_t i = 54; i < 60; ++i) x[i] = row * (1.0 + static_cast<double>(i));
+    report_samples::add_row(result, {static_cast<double>(row), x, {}, {}});
+  }
+  report_samples::finish(result);
+  const auto svg = to_svg(result);
+  ASSERT_TRUE(svg);
+  for (const char* name : {">x54<", ">x59<"}) EXPECT_EQ(occurrences(*svg, name), 1U) << name;
+  EXPECT_EQ(occurrences(*svg, ">x0<"), 0U);
+}
+
+TEST(Figure, OfVeryManyBandsThoseThatChangeAreDrawn) {
+  result::Result result;
+  result.states = {"x"};
+  for (int j = 0; j < 30; ++j) result.switching_functions.push_back("s" + std::to_string(j));
+  for (int row = 0; row < 3; ++row) {
+    result::Mode mode(30, 0);
+    if (row > 0) mode.back() = 1;
+    report_samples::add_row(result, {static_cast<double>(row), {0.0}, mode, std::vector<double>(30, 0.5)});
+  }
+  report_samples::finish(result);
+  const auto svg = to_svg(result);
+  ASSERT_TRUE(svg);
+  EXPECT_EQ(occurrences(*svg, ">s29<"), 1U);
+  EXPECT_EQ(occurrences(*svg, ">s0<"), 0U);
+}
+
+TEST(Figure, NamesOfColumnsMayContainCommas) {
+  auto result = report_samples::stick_slip(4, 5);
+  result.states[0] = "max(q,v)";
+  const auto names = figure_names(result, "v,max(q,v),alpha(slip)");
+  ASSERT_TRUE(names);
+  EXPECT_EQ(*names, (std::vector<std::string>{"v", "max(q,v)", "alpha(slip)"}));
+  for (const char* wrong : {"", "v,", ",v", "v,t", "w"}) EXPECT_FALSE(figure_names(result, wrong)) << wrong;
+}
+
 TEST(Figure, NumbersOfAxesAreRound) {
+  for (const Range range : {Range{-0.9, 0.9}, Range{-0.3, 2.1}, Range{-60.0, 960.0}, Range{0.11, 0.19}})
+    EXPECT_GE(round_numbers(range, 2).size(), 2U) << range.from;
   EXPECT_EQ(round_numbers({0.0, 1.0}, 5), (std::vector<double>{0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0}));
   EXPECT_EQ(round_numbers({-3.0, 40.0}, 5), (std::vector<double>{0.0, 10.0, 20.0, 30.0, 40.0}));
 }

@@ -48,6 +48,17 @@ TEST(Html, APageOfAnEmptyRunIsSmall) {
   EXPECT_LT(to_html(report_samples::nothing(), source).size(), 1200000U);
 }
 
+TEST(Html, IsEmptyIfItsMakingIsEnded) {
+  const auto result = report_samples::twelve_states();
+  int asked = 0;
+  const auto whole = to_html(result, plotly, {}, [&] { return ++asked > 0; });
+  EXPECT_EQ(whole, to_html(result, plotly));
+  for (int last = 1; last < asked; ++last) {
+    int again = 0;
+    EXPECT_EQ(to_html(result, plotly, {}, [&] { return ++again < last; }), "") << last;
+  }
+}
+
 TEST(Html, DependsOnTheResultOnly) {
   const auto result = report_samples::twelve_states();
   EXPECT_EQ(to_html(result, plotly), to_html(result, plotly));

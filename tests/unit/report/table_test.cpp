@@ -228,9 +228,11 @@ TEST(Table, OfManyStatesItSaysTheirRange) {
 
 TEST(Table, ShowsWhatIsNamed) {
   auto r = many_states();
-  const auto text = to_table(r, events_at_each_end, {}, {"v7*", "total"});
+  const result::Captions captions{{"total", {"", "sum"}}, {"q1", {"", "first"}}};
+  const auto text = to_table(r, events_at_each_end, captions, {"v7*", "total"});
   EXPECT_NE(text.find("end state   v7 = -3.5  v70 = -35"), std::string::npos) << text;
   EXPECT_NE(text.find("total = 7.5"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nwhere       total: sum\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("q1"), std::string::npos);
   EXPECT_TRUE(check_names({"v7*", "total"}, r.states, r.outputs, r.switching_functions));
   const auto unknown = check_names({"w1"}, r.states, r.outputs, r.switching_functions);

@@ -60,6 +60,19 @@ std::string named_text(std::string_view title, const std::vector<io::OverviewEqu
   return equations.empty() ? "" : heading(title, equations.size()) + equations_text(equations, "");
 }
 
+/// Definitions, those that are recorded marked, and the outputs that are none of them.
+std::string definitions_text(const ModelOverview& overview) {
+  auto definitions = overview.definitions;
+  auto outputs = overview.outputs;
+  for (auto& definition : definitions) {
+    const auto count = std::erase_if(outputs, [&](const io::OverviewEquation& output) {
+      return output.name == definition.name && output.text == definition.name;
+    });
+    if (count > 0) definition.text += ", recorded";
+  }
+  return named_text("definitions", definitions) + named_text("outputs", outputs);
+}
+
 std::string mode_text(const io::OverviewMode& mode) {
   std::vector<std::string> rates;
   for (const auto& rate : mode.rates) rates.push_back(fmt::format("{}' = {}", rate.name, rate.text));
@@ -156,12 +169,8 @@ std::string overview_text(const ModelOverview& overview, const std::string& path
   std::string text = fmt::format("{}{}{}\n{}\n", overview.name, colon, overview.description, path);
   text += quantities_text("states", overview.states) + quantities_text("parameters", overview.parameters) +
           quantities_text("controls", overview.controls);
-  if (overview.mechanics.empty() || !overview.equations.empty()) {
-    text += heading("equations", overview.equations.size()) + equations_text(overview.equations, "'");
-  }
-  text += named_text("mechanics, M v' = F", overview.mechanics);
-  text +=
-      modes_text(overview) + named_text("definitions", overview.definitions) + named_text("outputs", overview.outputs);
+  text += heading("equations", overview.equations.size()) + equations_text(overview.equations, "'");
+  text += modes_text(overview) + definitions_text(overview);
   for (std::size_t i = 0; i < overview.contacts.size(); ++i) {
     if (i == 0) text += heading("contacts", overview.contacts.size());
     text += fmt::format("  {}: {}\n", overview.contacts[i].name, overview.contacts[i].text);

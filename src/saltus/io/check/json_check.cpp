@@ -110,9 +110,7 @@ void add_overview(Json& json, const ModelOverview& overview) {
   json["states"] = quantities_json(overview.states);
   json["parameters"] = quantities_json(overview.parameters);
   json["controls"] = quantities_json(overview.controls);
-  auto equations = overview.mechanics;
-  equations.insert(equations.end(), overview.equations.begin(), overview.equations.end());
-  json["equations"] = equations_json(equations);
+  json["equations"] = equations_json(overview.equations);
   if (!overview.contacts.empty()) json["contacts"] = equations_json(overview.contacts);
   json["modes"] = modes_json(overview.modes);
   json["definitions"] = equations_json(overview.definitions);

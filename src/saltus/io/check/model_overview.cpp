@@ -27,6 +27,27 @@ std::vector<OverviewEquation> equations_of(const std::vector<model::NamedExpress
   return equations;
 }
 
+/// q' = v, and for the velocities what is beside M v'.
+void add_motion(const model::MechanicsDescription& mechanics, std::vector<OverviewEquation>& equations) {
+  const std::size_t n = std::min(mechanics.positions.size(), mechanics.velocities.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    equations.push_back({mechanics.positions[i].name, mechanics.velocities[i].name, {}});
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& velocity = mechanics.velocities[i].name;
+    const auto stated = std::find_if(mechanics.force.begin(), mechanics.force.end(),
+                                     [&](const auto& force) { return force.velocity == velocity; });
+    std::string force = stated == mechanics.force.end() ? "" : to_spaced_text(*stated->force);
+    if (mechanics.potential) {
+      force += fmt::format("{}d({})/d{}", force.empty() ? "-" : " - ", to_spaced_text(*mechanics.potential),
+                           mechanics.positions[i].name);
+    }
+    if (force.empty()) force = "0";
+    const bool has_mass = !mechanics.mass.empty();
+    equations.push_back({velocity, has_mass ? fmt::format("(M^-1 F)[{0}], F[{0}] = {1}", velocity, force) : force, {}});
+  }
+}
+
 std::string contact_text(const model::ContactDescription& contact) {
   std::string text = fmt::format("gap {}", to_spaced_text(*contact.gap));
   for (const auto& tangent : contact.tangents) {
@@ -181,16 +202,12 @@ ModelOverview overview_of(const model::Description& description, const model::Sy
   overview.description = system.description;
   take_quantities(system, captions, overview);
   overview.equations = equations_of(description.dynamics);
-  if (description.mechanics) {
-    for (const auto& [left, right, where] : mechanics_equations(*description.mechanics)) {
-      overview.mechanics.push_back({left, right, {}});
-    }
-  }
+  if (description.mechanics) add_motion(*description.mechanics, overview.equations);
   for (const auto& contact : description.contacts) {
     overview.contacts.push_back({contact.name, contact_text(contact), {}});
   }
   overview.modes = modes_of(description);
-  overview.definitions = equations_of(description.definitions);
+  overview.definitions = equations_of(description.definitions, captions);
   overview.outputs = equations_of(description.outputs, captions);
   overview.surfaces = surfaces_of(description, system);
   for (const auto& cell : system.cells) overview.cells.push_back({cell.name, cell_text(cell)});

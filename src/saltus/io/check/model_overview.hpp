@@ -67,8 +67,7 @@ struct OverviewForm {
 struct ModelOverview {
   std::string name, description;
   std::vector<OverviewQuantity> states, parameters, controls;
-  std::vector<OverviewEquation> equations;  ///< of [dynamics]
-  std::vector<OverviewEquation> mechanics;  ///< q' = v, and the parts of M v' = F
+  std::vector<OverviewEquation> equations;  ///< of [dynamics] and [mechanics]
   std::vector<OverviewEquation> contacts;   ///< gap, tangents, friction, restitution
   std::vector<OverviewMode> modes;
   std::vector<OverviewEquation> definitions, outputs;
@@ -91,9 +90,6 @@ enum class Notation { text, latex };
 [[nodiscard]] std::vector<result::StatedEquation> stated_equations(const model::Description& description,
                                                                    std::size_t most,
                                                                    Notation notation = Notation::text);
-
-/// Those of [mechanics]: q' = v, then entries of the mass matrix, potential, forces.
-[[nodiscard]] std::vector<result::StatedEquation> mechanics_equations(const model::MechanicsDescription& mechanics);
 
 /// Reads the two, computes nothing.
 /// @param system  of this description, by model::build

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,13 +94,14 @@ std::string place_of(const model::ModeDescription& mode) {
   return fmt::format("{}where {} is smallest", group, expression::to_spaced_text(*mode.indicator));
 }
 
-}  // namespace
-
-std::vector<StatedEquation> mechanics_equations(const model::MechanicsDescription& mechanics) {
-  EquationList equations(std::numeric_limits<std::size_t>::max(), Notation::text);
-  add_mechanics(mechanics, equations);
-  return equations.take();
+/// Whether an output is a definition under its own name, as `record` makes it.
+bool is_definition(const model::Description& description, const model::NamedExpression& output) {
+  return output.expression && expression::to_spaced_text(*output.expression) == output.name &&
+         std::any_of(description.definitions.begin(), description.definitions.end(),
+                     [&](const auto& definition) { return definition.name == output.name; });
 }
+
+}  // namespace
 
 std::vector<StatedEquation> stated_equations(const model::Description& description, std::size_t most,
                                              Notation notation) {
@@ -110,7 +110,12 @@ std::vector<StatedEquation> stated_equations(const model::Description& descripti
   if (description.mechanics) add_mechanics(*description.mechanics, equations);
   add_contacts(description, equations);
   for (const auto& mode : description.modes) equations.add(mode.dynamics, "'", place_of(mode));
-  equations.add(description.definitions, "");
+  for (const auto& definition : description.definitions) {
+    const bool recorded = std::any_of(description.outputs.begin(), description.outputs.end(), [&](const auto& output) {
+      return output.name == definition.name && is_definition(description, output);
+    });
+    equations.add(std::vector{definition}, "", recorded ? "output" : "");
+  }
   equations.add(description.switching, "", "switching function");
   for (const auto& jump : description.jumps) equations.add(jump.set, " becomes", when_text(jump));
   for (const auto& relay : description.hysteresis) {
@@ -118,7 +123,9 @@ std::vector<StatedEquation> stated_equations(const model::Description& descripti
                   fmt::format("1 from {}, 0 from {}", expression::to_spaced_text(*relay.on),
                               expression::to_spaced_text(*relay.off)));
   }
-  equations.add(description.outputs, "", "output");
+  for (const auto& output : description.outputs) {
+    if (!is_definition(description, output)) equations.add(std::vector{output}, "", "output");
+  }
   return equations.take();
 }
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,7 +41,14 @@ std::vector<FigureColumn> figure_columns(const result::Result& result) {
   const auto& trajectory = result.trajectory;
   const auto add = [&](const std::vector<std::string>& names, const auto& rows, ColumnSort sort) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      FigureColumn column{sort == ColumnSort::alpha ? fmt::format("alpha({})", names[i]) : names[i], sort, i, {}};
+      const bool is_alpha = sort == ColumnSort::alpha, is_theta = sort == ColumnSort::theta;
+      FigureColumn column{is_alpha   ? fmt::format("alpha({})", names[i])
+                          : is_theta ? fmt::format("theta({})", names[i])
+                                     : names[i],
+                          sort,
+                          i,
+                          {}};
+      if (!is_alpha && !is_theta) column.caption = result::caption_of(result.model.captions, names[i]);
       for (std::size_t row = 0; row < trajectory.t.size(); ++row) {
         const bool there = row < rows.size() && i < rows[row].size();
         column.values.push_back(there ? rows[row][i] : std::numeric_limits<double>::quiet_NaN());
@@ -51,8 +60,23 @@ std::vector<FigureColumn> figure_columns(const result::Result& result) {
   add(result.outputs, trajectory.outputs, ColumnSort::output);
   add(result.controls, trajectory.u, ColumnSort::control);
   add(result.switching_functions, trajectory.alpha, ColumnSort::alpha);
+  add(result::region_labels(result.region_groups), trajectory.theta, ColumnSort::theta);
   columns.push_back({"t", ColumnSort::time, 0, trajectory.t});
   return columns;
+}
+
+std::string title_of(const FigureColumn& column) {
+  return column.caption.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.caption.unit);
+}
+
+Range time_range(const result::Result& result) {
+  const auto& t = result.trajectory.t;
+  if (t.empty()) return {0.0, 1.0};
+  return t.front() < t.back() ? Range{t.front(), t.back()} : Range{t.front() - 0.5, t.front() + 0.5};
+}
+
+std::string heading_of(const result::Result& result) {
+  return result.model.name.empty() ? "simulation" : result.model.name;
 }
 
 Range range_of(const std::vector<double>& values) {
@@ -91,16 +115,66 @@ bool slides(const result::Trajectory& trajectory, std::size_t row) {
          std::any_of(regions[row].begin(), regions[row].end(), [](const auto& active) { return active.size() > 1; });
 }
 
+std::vector<Chattering> chattering_pixels(const std::vector<double>& t, const std::vector<double>& y, double pixel,
+                                          double least_jump) {
+  struct Place {
+    double t, area;  ///< the integral up to there
+  };
+  std::vector<Chattering> pixels;
+  double area = 0.0;
+  std::optional<Place> rise;  // the last jump upwards
+  for (std::size_t i = 0; i < t.size();) {
+    Chattering part{i, i, t[i], t[i], y[i], y[i], 0.0};
+    const Place start{t[i], area};
+    auto first = rise && t[i] - rise->t < 2.0 * pixel ? rise : std::nullopt;
+    int jumps = 0;
+    std::size_t k = i;
+    for (; k < t.size() && (k == i || t[k] < t[i] + pixel); ++k) {
+      part.low = std::fmin(part.low, y[k]);
+      part.high = std::fmax(part.high, y[k]);
+      if (k > i && t[k] == t[k - 1] && std::abs(y[k] - y[k - 1]) > least_jump) {
+        ++jumps;
+        if (y[k] > y[k - 1]) rise = Place{t[k], area};
+        if (y[k] > y[k - 1] && !first) first = rise;
+      }
+      const double piece = k + 1 < t.size() ? 0.5 * (y[k] + y[k + 1]) * (t[k + 1] - t[k]) : 0.0;
+      if (std::isfinite(piece)) area += piece;
+    }
+    part.end = k;
+    part.to = t[std::min(k, t.size() - 1)];
+    const Place stop{part.to, area};
+    const bool whole = first && rise->t > first->t;
+    const auto [a, b] = whole ? std::pair(*first, *rise) : std::pair(start, stop);
+    part.mean = (b.area - a.area) / (b.t - a.t);
+    if (jumps > 1 && part.to > part.from && std::isfinite(part.mean)) pixels.push_back(part);
+    i = k;
+  }
+  return pixels;
+}
+
+void draw_pieces(Svg& svg, const CurvePieces& pieces, std::string_view color, std::string_view jump_color,
+                 double wide) {
+  for (const auto& piece : pieces.lines) {
+    const bool marked = piece.sliding && wide > 0.0;
+    svg.path(piece.points, {marked ? paper::sliding : color, marked ? wide : 1.6});
+  }
+  for (const auto& jump : pieces.jumps) svg.path(jump, {jump_color, 1.0, "2 3"});
+}
+
 CurvePieces curve_pieces(const result::Trajectory& trajectory, const std::vector<double>& x,
-                         const std::vector<double>& y, const Plot& plot, double pixel, bool steps) {
+                         const std::vector<double>& y, const Plot& plot, double pixel, bool steps,
+                         const std::vector<Chattering>& left_out) {
   CurvePieces pieces;
   const auto& t = trajectory.t;
   // A hundredth of a pixel; below it are the roundings of states that were put onto a surface.
   const double least_x = 1e-5 * (plot.x.to - plot.x.from), least_y = 1e-5 * (plot.y.to - plot.y.from);
   std::size_t previous = 0;
   bool open = false;
+  auto gap = left_out.begin();
   for (const std::size_t row : rows_of_pixels(t, y, pixel)) {
-    if (!std::isfinite(x[row]) || !std::isfinite(y[row])) {
+    while (gap != left_out.end() && gap->end <= row) ++gap;
+    const bool is_left_out = gap != left_out.end() && gap->begin < row;
+    if (is_left_out || !std::isfinite(x[row]) || !std::isfinite(y[row])) {
       open = false;
       continue;
     }

@@ -26,10 +26,27 @@ void draw_mark(Svg& svg, const LegendEntry& entry, Point at) {
     case LegendEntry::Mark::disc:
       svg.disc({at.x + swatch / 2, at.y}, 5.0, ink, ink);
       break;
+    case LegendEntry::Mark::point:
+      svg.disc({at.x + swatch / 2, at.y}, 3.0, entry.pen.color, "#ffffff");
+      break;
+    case LegendEntry::Mark::cross:
+      draw_cross(svg, {at.x + swatch / 2, at.y}, entry.pen);
+      break;
   }
 }
 
 }  // namespace
+
+bool is_jump(result::EventKind kind) { return kind == result::EventKind::jump || kind == result::EventKind::impact; }
+
+EventSorts sorts_of(const result::Events& events) {
+  EventSorts sorts;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    auto& sort = events.unique(i) == false ? sorts.not_unique : is_jump(events.kind(i)) ? sorts.jumps : sorts.switches;
+    sort = true;
+  }
+  return sorts;
+}
 
 void draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left, double right, double top) {
   constexpr std::size_t most = 24, longest = 40;

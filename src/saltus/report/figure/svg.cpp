@@ -31,6 +31,16 @@ std::string escaped(std::string_view words) {
 
 }  // namespace
 
+void Svg::area(const std::vector<Point>& points, std::string_view fill) {
+  body_ += "<path d=\"";
+  char step = 'M';
+  for (const auto& [x, y] : points) {
+    body_ += fmt::format("{}{:.2f},{:.2f}", step, x, y);
+    step = 'L';
+  }
+  body_ += fmt::format("Z\" fill=\"{}\"/>\n", fill);
+}
+
 void Svg::path(const std::vector<Point>& points, const Pen& pen) {
   if (points.size() < 2) return;
   body_ += "<path d=\"";
@@ -76,12 +86,17 @@ std::string Svg::document(std::string_view title) const {
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
              "font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" font-size=\"12\">\n<title>{2}</title>\n"
+             "<defs><pattern id=\"hatch\" width=\"3\" height=\"3\" patternUnits=\"userSpaceOnUse\" "
+             "patternTransform=\"rotate(45)\"><path d=\"M0,0V3\" stroke=\"#1c2430\" "
+             "stroke-width=\"1\"/></pattern></defs>\n"
              "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
              width_, height_, escaped(title)) +
          body_ + "</svg>\n";
 }
 
-std::vector<double> round_numbers(Range range, int count) {
+namespace {
+
+std::vector<double> multiples(Range range, int count) {
   const double rough = (range.to - range.from) / std::max(1, count);
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   double step = 10.0 * power;
@@ -91,6 +106,21 @@ std::vector<double> round_numbers(Range range, int count) {
   std::vector<double> numbers;
   for (double n = std::ceil(range.from / step); n * step <= range.to + 1e-9 * step && numbers.size() < 100; n += 1.0)
     numbers.push_back(n * step);
+  return numbers;
+}
+
+}  // namespace
+
+void draw_cross(Svg& svg, Point centre, const Pen& pen) {
+  constexpr double half = 5.0;
+  for (const double side : {-half, half})
+    svg.path({{centre.x - half, centre.y - side}, {centre.x + half, centre.y + side}}, pen);
+}
+
+std::vector<double> round_numbers(Range range, int count) {
+  constexpr int most = 8;
+  auto numbers = multiples(range, count);
+  while (numbers.size() < 2 && count < most) numbers = multiples(range, ++count);
   return numbers;
 }
 

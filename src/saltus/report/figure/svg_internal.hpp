@@ -24,9 +24,14 @@ struct Point {
   double x = 0.0, y = 0.0;
 };
 
+/// A fill of fine lines.
+inline constexpr std::string_view hatched = "url(#hatch)";
+
 class Svg {
  public:
   Svg(double width, double height) : width_(width), height_(height) {}
+  /// The inside of a closed line.
+  void area(const std::vector<Point>& points, std::string_view fill);
   /// A connected line; nothing of fewer than two points.
   void path(const std::vector<Point>& points, const Pen& pen);
   void rectangle(Point corner, double width, double height, std::string_view fill, std::string_view stroke = "none");
@@ -45,7 +50,9 @@ class Svg {
   bool clipped_ = false;
 };
 
-/// About `count` round numbers within a range: multiples of 1, 2 or 5 times a power of ten.
+void draw_cross(Svg& svg, Point centre, const Pen& pen);
+
+/// About `count` round numbers within a range, two at least: multiples of 1, 2 or 5 times a power of ten.
 [[nodiscard]] std::vector<double> round_numbers(Range range, int count);
 
 /// A rectangle on paper with a range along each of its sides.

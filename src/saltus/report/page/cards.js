@@ -97,13 +97,17 @@ saltus.pairTable = (pairs) => {
       saltus.element(
           "tbody", {},
           ...shown.map(
-              ([name, value]) => saltus.element(
-                  "tr", {}, saltus.element("td", {title: name}, name), saltus.element("td", {class: "digits"}, value))),
+              ([name, value, about = ""]) => saltus.element(
+                  "tr", {}, saltus.element("td", {title: name}, name), saltus.element("td", {class: "digits"}, value),
+                  about === "" ? null : saltus.element("td", {class: "quiet"}, about))),
           ...(left === 0 ? [] : [saltus.element("tr", {}, saltus.element("td", {class: "quiet"}, `and ${left} more`))])));
 };
 
-/** A value with the unit of its name. */
-saltus.inUnit = (result, name, value) => `${saltus.exact(value)} ${saltus.captionOf(result, name).unit}`.trim();
+/** A row of a table: a name, its value with the unit, and what the model says about the name. */
+saltus.captionedRow = (result, name, value) => {
+  const {unit, label} = saltus.captionOf(result, name);
+  return [name, `${saltus.exact(value)} ${unit}`.trim(), label];
+};
 
 /** Places of the first names that match. */
 saltus.firstOf = (names, matches) => {
@@ -121,7 +125,7 @@ saltus.finalCard = (result) => {
   // Of many the first ones, and a search for the others.
   const valueTable = (matches) => saltus.pairTable([
     ["t", saltus.exact(final.t)],
-    ...saltus.firstOf(names, matches).map((i) => [names[i], saltus.inUnit(result, names[i], values[i])])
+    ...saltus.firstOf(names, matches).map((i) => saltus.captionedRow(result, names[i], values[i]))
   ]);
   const functions = result.switching_functions;
   const surfaces = (matches) => saltus.plainTable(["ψ", "mode", "α"], saltus.firstOf(functions, matches).map((i) => [
@@ -188,7 +192,7 @@ saltus.infoCards = (result) => {
     saltus.card(
         "Parameters",
         model.parameters.length > 0 ?
-            saltus.pairTable(model.parameters.map(([name, value]) => [name, saltus.exact(value)])) :
+            saltus.pairTable(model.parameters.map(([name, value]) => saltus.captionedRow(result, name, value))) :
             quiet("The model has none.")),
     result.options.length > 0 ? saltus.optionsCard(result) : saltus.card("Options", quiet("None are recorded.")),
     saltus.card("Statistics", saltus.pairTable(result.optimization ? saltus.optimizationStatistics(result) : numbers)),
@@ -211,7 +215,8 @@ saltus.notes = (result) => {
     "Curves are drawn with the least and greatest value per pixel and, up to 2,000 events in view, both rows",
     "of every event; zoom in for every row. With more than 400 events in view one line per stretch is drawn. Where modes",
     "change more than once per pixel their lanes are as full as their part of the time, the middle is hatched, and curves",
-    "that jump are drawn by their envelope and mean. Jumps are dotted lines."
+    "that jump are drawn by their envelope and their mean over whole periods. Jumps are dotted lines, those of discrete",
+    "states solid steps."
   ].join(" ");
   const names = {
     states: result.states,

@@ -10,6 +10,17 @@ saltus.columnLabel = ({name, sort}) => ({alpha: `α(${name})`, theta: `θ(${name
 /** The same on an axis: with its unit. */
 saltus.columnTitle = (column) => `${saltus.columnLabel(column)}${column.caption?.unit ? ` [${column.caption.unit}]` : ""}`;
 
+/** Letters of a line beside a panel. */
+saltus.lineLetters = 18;
+
+/** The same beside a panel: the unit on a line of its own if it is long, and behind it what the model says. */
+saltus.columnLines = (column, alone = true) => {
+  const title = saltus.columnTitle(column);
+  const {unit = "", label = ""} = column.caption ?? {};
+  const fits = title.length <= saltus.lineLetters || unit === "" || !alone;
+  return [...(fits ? [title] : [saltus.columnLabel(column), `[${unit}]`]), ...(alone && label !== "" ? [label] : [])];
+};
+
 /** Unit and label of a name, as the model states them. */
 saltus.captionOf = (result, name) => result.captions?.[name] ?? {unit: "", label: ""};
 
@@ -104,9 +115,7 @@ saltus.firstPanels = (result) => {
   const groups = ["state", "output", "input"].flatMap((sort) => saltus.groupCurves(saltus.movingFirst(of(sort))));
   for (const sort of ["alpha", "theta"]) {
     const selections = of(sort);
-    const moving = selections.filter((column) => saltus.isWide(column.range));
-    const few = saltus.firstBands(selections);
-    const all = (selections.length > few && moving.length > 0 ? moving : selections).slice(0, few);
+    const all = saltus.movingFirst(selections).slice(0, saltus.firstBands(selections));
     for (let i = 0; i < all.length; i += saltus.perPanel) groups.push(all.slice(i, i + saltus.perPanel));
   }
   const isLast = (group) => group.every((column) => column.discrete);

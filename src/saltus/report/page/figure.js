@@ -169,9 +169,9 @@ saltus.panelAxis = (panel, stack, palette) => {
 
 /** Names of the curves and switching functions at the right border, in the colour of the curve. */
 saltus.panelLabels = (panel, stack, palette, result) => {
-  const label = (name, fromTop, color) => ({
-    text: saltus.plain(saltus.shorten(name, 18)),
-    hovertext: saltus.plain(name),
+  const label = (lines, fromTop, color) => ({
+    text: lines.map((line) => saltus.plain(saltus.shorten(line, saltus.lineLetters))).join("<br>"),
+    hovertext: saltus.plain(lines.join(" ")),
     xref: "paper",
     yref: "paper",
     x: 1,
@@ -183,17 +183,17 @@ saltus.panelLabels = (panel, stack, palette, result) => {
     align: "left",
     font: {size: 12, color},
   });
-  if (panel.kind === "events") return [label("events", panel.height / 2, palette.quiet)];
+  if (panel.kind === "events") return [label(["events"], panel.height / 2, palette.quiet)];
   if (panel.kind === "modes") {
     const bands = saltus.bands(result);
     const row = panel.height / panel.bands.length;
-    return panel.bands.map((band, i) => label(bands[band], (i + 0.5) * row, palette.text));
+    return panel.bands.map((band, i) => label([bands[band]], (i + 0.5) * row, palette.text));
   }
   const step = Math.min(17, panel.height / panel.curves.length);
   const first = panel.height / 2 - ((panel.curves.length - 1) / 2) * step;
   return panel.curves.map((curve, i) => {
     const colour = saltus.curveColour(panel, i, palette);
-    return label(saltus.columnTitle(curve), first + i * step, colour);
+    return label(saltus.columnLines(curve, panel.curves.length === 1), first + i * step, colour);
   });
 };
 
@@ -205,11 +205,8 @@ saltus.frameShapes = (stack, palette) => stack.panels.filter((panel) => panel.ki
 });
 
 saltus.labelWidth = (result) => {
-  const longest = (names, extra = 0) =>
-      names.reduce((most, name) => Math.max(most, Math.min(18, name.length + extra)), 0);
-  const letters = Math.max(
-      6, longest(result.states), longest(result.output_names), longest(result.controls),
-      longest(saltus.bands(result), 3));
+  const names = [...saltus.bands(result), ...saltus.columns(result).flatMap((column) => saltus.columnLines(column))];
+  const letters = names.reduce((most, name) => Math.max(most, Math.min(saltus.lineLetters, name.length)), 6);
   return 12 + Math.round(7.2 * letters);
 };
 

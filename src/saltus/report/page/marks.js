@@ -42,7 +42,8 @@ saltus.markShapes = (result, marks, selected, palette) => {
     const alike = calm.filter((i) => saltus.kinds[result.events[i].kind]?.look === look);
     if (alike.length === 0) continue;
     const style = {
-      jump: {color: palette.jump, width: dense ? 0.5 : 1, dash: "dot"},
+      // Not dotted: together with the dots of a curve that jumps there it would look like a solid line.
+      jump: {color: palette.jump, width: dense ? 0.5 : 1},
       accumulation: {color: palette.accumulation, width: 2, dash: "dashdot"},
     }[look] ??
         {color: palette.mark, width: dense ? 0.5 : 1};
@@ -51,7 +52,7 @@ saltus.markShapes = (result, marks, selected, palette) => {
       layer: "below",
       xref: "x",
       yref: "paper",
-      opacity: dense && look !== "accumulation" ? 0.5 : 1,
+      opacity: look === "jump" ? 0.3 : dense && look !== "accumulation" ? 0.5 : 1,
       path: alike.map((i) => `M${time(i)},0L${time(i)},1`).join(""),
       line: style,
     });

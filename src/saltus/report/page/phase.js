@@ -108,15 +108,16 @@ saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
 };
 
 /**
- * States to begin with: those of the first surface of moving states, filled up with the first ones that move, then with
- * any; in their order. A counter or a phase of a cycle shows little on an axis.
+ * Columns to begin with: the states of the first surface of moving states, filled up with the first states that move, in
+ * space with the time, then with any state; in their order. A counter or a phase of a cycle shows little on an axis.
  */
 saltus.firstChoice = (result, size) => {
   const columns = saltus.columns(result).slice(0, result.states.length);
   const moves = (state) => saltus.isWide(columns[state].range) && !columns[state].discrete;
   const first = result.surfaces.find((surface) => surface.states.every(moves));
   const states = columns.map((_, i) => i);
-  const ranked = [...(first?.states ?? []), ...states.filter(moves), ...states];
+  const time = size > 2 ? [saltus.axes(result).length - 1] : [];
+  const ranked = [...(first?.states ?? []), ...states.filter(moves), ...time, ...states];
   return [...new Set(ranked)].slice(0, size).sort((a, b) => a - b);
 };
 
@@ -130,7 +131,11 @@ saltus.eventCoordinate = (result, i, axis) => {
   return values[saltus.rowsAtOneTime(t, saltus.nearestRow(t, event.t))[1]];
 };
 
-saltus.axisLabel = (result, axis) => saltus.columnTitle(saltus.axes(result)[axis]);
+/** What stands on an axis: what the model says about the column, and its name with the unit. */
+saltus.axisLabel = (result, axis) => {
+  const column = saltus.axes(result)[axis];
+  return `${column.caption?.label ?? ""} ${saltus.columnTitle(column)}`.trim();
+};
 
 /** A choice of one column per axis; `changed` is called after every change of `choice`. */
 saltus.axisPickers = (result, choice, changed) => {

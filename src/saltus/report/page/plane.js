@@ -114,7 +114,7 @@ saltus.scaleOf = (range, values, log) => {
 
 saltus.planeLayout = (result, choice, view, holder, palette, {equal, logs}) => {
   const axis = (i) => ({
-    title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 30)), standoff: 6},
+    title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 48)), standoff: 6},
     ...saltus.scaleOf(view.box[i], view.rows.map((row) => view.columns[i][row]), logs[i]),
     gridcolor: palette.grid,
     zerolinecolor: palette.axis,

@@ -87,8 +87,13 @@ saltus.portraitSurfaces = (result, choice, view, palette) => {
 };
 
 saltus.portraitLayout = (result, choice, view, holder, palette) => {
+  // In space plotly reads no entities, and long titles leave the picture.
+  const title = (i) => {
+    const [long, short] = [saltus.axisLabel(result, i), saltus.columnTitle(saltus.axes(result)[i])];
+    return saltus.shorten(long.length > 24 ? short : long, 24).replaceAll("<", "‹").replaceAll(">", "›");
+  };
   const axis = (i) => ({
-    title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 24))},
+    title: {text: title(choice[i])},
     range: view.box[i],
     gridcolor: palette.axis,
     zerolinecolor: palette.axis,

@@ -92,26 +92,39 @@ saltus.leastJump = (values) => {
 
 /**
  * Pixels of [begin, end) in which a curve jumps more than once, to and fro: lines would show something slower. Each with
- * its rows, its ends in time, the least and greatest value and the mean over time.
+ * its rows, its ends in time, the least and greatest value and the mean over time of whole periods, from a jump upwards
+ * to another one: that of a part of a period would depend on where the pixel begins.
  */
 saltus.chatteringPixels = (t, values, [begin, end], buckets, leastJump) => {
   const pixels = [];
   const width = (t[end - 1] - t[begin]) / buckets;
   if (!(width > 0) || end - begin < 200) return pixels;
+  let area = 0;
+  let rise = null;
   for (let i = begin; i < end;) {
     const limit = t[begin] + width * (Math.floor((t[i] - t[begin]) / width) + 1);
     const pixel = {begin: i, from: t[i], low: Infinity, high: -Infinity};
-    let [jumps, area, k] = [0, 0, i];
+    const start = {t: t[i], area};
+    // The last jump upwards of the pixel before, if it was not long ago.
+    let first = rise !== null && t[i] - rise.t < 2 * width ? rise : null;
+    let [jumps, k] = [0, i];
     for (; k < end && (k === i || t[k] < limit); k += 1) {
       const value = values[k];
       if (value === null) continue;
       pixel.low = Math.min(pixel.low, value);
       pixel.high = Math.max(pixel.high, value);
-      if (k > i && t[k] === t[k - 1] && Math.abs(value - values[k - 1]) > leastJump) jumps += 1;
+      if (k > i && t[k] === t[k - 1] && Math.abs(value - values[k - 1]) > leastJump) {
+        jumps += 1;
+        if (value > values[k - 1]) rise = {t: t[k], area};
+        if (value > values[k - 1]) first ??= rise;
+      }
       if (k + 1 < end && values[k + 1] !== null) area += 0.5 * (value + values[k + 1]) * (t[k + 1] - t[k]);
     }
     const to = t[Math.min(k, end - 1)];
-    if (jumps > 1 && to > pixel.from) pixels.push({...pixel, end: k, to, mean: area / (to - pixel.from), jumps});
+    if (jumps > 1 && to > pixel.from) {
+      const [a, b] = first !== null && rise.t > first.t ? [first, rise] : [start, {t: to, area}];
+      pixels.push({...pixel, end: k, to, mean: (b.area - a.area) / (b.t - a.t), jumps});
+    }
     i = k;
   }
   return pixels;

@@ -1,0 +1,259 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "saltus/report/figure/figure_columns_internal.hpp"
+#include "saltus/report/figure/figure_legend_internal.hpp"
+#include "saltus/report/text_columns_internal.hpp"
+
+namespace saltus::report {
+namespace {
+
+/// Curves of one sort at most, as on the page.
+constexpr std::size_t most_curves = 48, single_panels = 6, most_in_a_panel = 4;
+
+/// Of events. Jumps are pale and not dotted: the dots of a curve that jumps there would fill the gaps.
+constexpr Pen event_line{paper::mark, 0.6}, jump_line{"#b6d5da", 0.6}, alarm_line{paper::alarm, 1.5, "5 3"};
+
+using Curves = std::vector<FigureColumn>;
+
+bool is_step(const result::Result& result, const FigureColumn& column) {
+  return column.sort == ColumnSort::state && is_discrete(result.trajectory.t, column.values);
+}
+
+bool is_fraction(const FigureColumn& column) {
+  return column.sort == ColumnSort::alpha || column.sort == ColumnSort::theta;
+}
+
+double span_of(const FigureColumn& column) {
+  const Range range = range_of(column.values);
+  return range.to - range.from;
+}
+
+/// Columns of a sort that move, all if none does; of very many those that move most.
+Curves moving_of(const Curves& all, ColumnSort sort) {
+  Curves columns, moving;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(columns), [&](const auto& one) { return one.sort == sort; });
+  std::copy_if(columns.begin(), columns.end(), std::back_inserter(moving),
+               [](const auto& one) { return moves(one.values); });
+  if (!moving.empty()) columns = std::move(moving);
+  const std::size_t most = sort == ColumnSort::alpha || sort == ColumnSort::theta ? most_panels : most_curves;
+  if (columns.size() <= most) return columns;
+  std::vector<double> spans;
+  for (const auto& column : columns) spans.push_back(span_of(column));
+  std::sort(spans.begin(), spans.end(), std::greater());
+  std::erase_if(columns, [&](const FigureColumn& column) { return span_of(column) < spans[most - 1]; });
+  columns.resize(std::min(columns.size(), most));
+  return columns;
+}
+
+/// Few curves have a panel each; many share them as long as none flattens another one, selections always.
+std::vector<Curves> grouped(const Curves& columns) {
+  constexpr double flattens = 20.0;
+  std::vector<Curves> panels;
+  const auto fits = [&](const Curves& panel, const FigureColumn& column) {
+    if (panel.size() == most_in_a_panel) return false;
+    if (is_fraction(column)) return true;
+    Range hull = range_of(column.values);
+    constexpr double none = std::numeric_limits<double>::infinity();
+    double smallest = none;
+    for (const auto& one : panel) {
+      const Range range = range_of(one.values);
+      hull = {std::min(hull.from, range.from), std::max(hull.to, range.to)};
+      if (range.to > range.from) smallest = std::min(smallest, range.to - range.from);
+    }
+    if (const double span = span_of(column); span > 0.0) smallest = std::min(smallest, span);
+    return smallest == none || hull.to - hull.from <= flattens * smallest;
+  };
+  for (const auto& column : columns) {
+    const bool alone = columns.size() <= single_panels && !is_fraction(column);
+    const auto panel =
+        alone ? panels.end()
+              : std::find_if(panels.begin(), panels.end(), [&](const Curves& one) { return fits(one, column); });
+    if (panel == panels.end()) {
+      panels.push_back({column});
+    } else {
+      panel->push_back(column);
+    }
+  }
+  return panels;
+}
+
+/// What the page draws first: what moves, by sort, discrete states last.
+std::vector<Curves> first_panels(const result::Result& result) {
+  const auto all = figure_columns(result);
+  std::vector<Curves> panels;
+  Curves steps;
+  for (const auto sort :
+       {ColumnSort::state, ColumnSort::output, ColumnSort::control, ColumnSort::alpha, ColumnSort::theta}) {
+    auto columns = moving_of(all, sort);
+    std::copy_if(columns.begin(), columns.end(), std::back_inserter(steps),
+                 [&](const auto& one) { return is_step(result, one); });
+    std::erase_if(columns, [&](const auto& one) { return is_step(result, one); });
+    for (auto& group : grouped(columns)) panels.push_back(std::move(group));
+  }
+  for (auto& group : grouped(steps)) panels.push_back(std::move(group));
+  return panels;
+}
+
+std::size_t count_of(const std::vector<Curves>& panels) {
+  std::size_t count = 0;
+  for (const auto& panel : panels) count += panel.size();
+  return count;
+}
+
+/// Columns that move, without the time.
+std::size_t count_of_moving(const result::Result& result) {
+  auto columns = figure_columns(result);
+  columns.pop_back();
+  std::erase_if(columns, [](const FigureColumn& column) { return !moves(column.values); });
+  return columns.size();
+}
+
+/// Events as thin lines from the top to the bottom, of many one for some pixels; those that are not unique always.
+void draw_events(Svg& svg, const result::Result& result, const Plot& time, double top, double bottom) {
+  const double apart = result.events.size() > 200 ? 6.0 : 1.0;
+  double last = -apart;
+  for (const auto& event : result.events) {
+    const double x = time.place(event.t, 0.0).x;
+    const bool alarming = event.unique == false;
+    if (x - last < apart && !alarming) continue;
+    last = x;
+    svg.path({{x, top}, {x, bottom}}, alarming ? alarm_line : is_jump(event.kind) ? jump_line : event_line);
+  }
+}
+
+/// Of the bands and the lines of events.
+std::vector<LegendEntry> legend_over_time(const result::Result& result, bool with_bands) {
+  std::vector<LegendEntry> entries;
+  if (with_bands) {
+    entries.push_back({"psi < 0", {paper::minus}, LegendEntry::Mark::box});
+    entries.push_back({"sliding", {paper::sliding}, LegendEntry::Mark::box});
+    entries.push_back({"psi > 0", {paper::plus}, LegendEntry::Mark::box});
+  }
+  const auto sorts = sorts_of(result.events);
+  if (sorts.switches) entries.push_back({"event", {event_line.color, 1.0}});
+  if (sorts.jumps) entries.push_back({"jump", {jump_line.color, 1.0}});
+  if (sorts.not_unique) entries.push_back({"not unique", alarm_line});
+  return entries;
+}
+
+std::string paler(std::string_view color) {
+  std::string pale = "#";
+  for (std::size_t i = 1; i + 1 < color.size(); i += 2) {
+    const int part = std::stoi(std::string(color.substr(i, 2)), nullptr, 16);
+    pale += fmt::format("{:02x}", 255 - 3 * (255 - part) / 10);
+  }
+  return pale;
+}
+
+/// Where a curve jumps to and fro within pixels: between which values, and its mean there.
+void draw_chattering(Svg& svg, const std::vector<Chattering>& pixels, const Plot& plot, std::string_view color) {
+  std::vector<Point> mean;
+  const auto fill = paler(color);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto& [begin, end, from, to, low, high, middle] = pixels[i];
+    svg.area({plot.place(from, low), plot.place(to, low), plot.place(to, high), plot.place(from, high)}, fill);
+    mean.push_back(plot.place(from, middle));
+    mean.push_back(plot.place(to, middle));
+    if (i + 1 < pixels.size() && pixels[i + 1].from == to) continue;
+    svg.path(mean, {color, 1.6});
+    mean.clear();
+  }
+}
+
+void draw_curve(Svg& svg, const result::Result& result, const FigureColumn& column, const Plot& plot,
+                std::string_view color) {
+  const double pixel = (plot.x.to - plot.x.from) / plot.width;
+  const auto& t = result.trajectory.t;
+  const auto chattering = chattering_pixels(t, column.values, pixel, 1e-5 * span_of(column));
+  draw_chattering(svg, chattering, plot, color);
+  const bool steps = is_step(result, column);
+  draw_pieces(svg, curve_pieces(result.trajectory, t, column.values, plot, pixel / 2, steps, chattering), color, color,
+              0.0);
+}
+
+/// Beside a panel: the unit on a line of its own if it is long, and behind it what the model says.
+std::vector<std::string> lines_beside(const FigureColumn& column, bool alone) {
+  const auto title = title_of(column);
+  const auto& [unit, label] = column.caption;
+  std::vector<std::string> lines{title};
+  if (alone && !unit.empty() && width(title) > letters_beside) lines = {column.name, fmt::format("[{}]", unit)};
+  if (alone && !label.empty()) lines.push_back(label);
+  return lines;
+}
+
+void draw_panel(Svg& svg, const result::Result& result, const Curves& curves, Plot plot, bool last) {
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const auto& column : curves) {
+    const Range one = range_of(column.values);
+    range = {std::min(range.from, one.from), std::max(range.to, one.to)};
+  }
+  const bool fractions = std::all_of(curves.begin(), curves.end(), is_fraction);
+  plot.y = fractions ? Range{-0.06, 1.06} : roomy(range);
+  draw_axes(svg, plot, last);
+  std::vector<std::pair<std::string, std::string_view>> lines;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::size_t place = curves.size() == 1 ? static_cast<std::size_t>(curves[i].sort) : i;
+    const auto color = paper::curves[place % paper::curves.size()];
+    svg.clip(plot.corner, plot.width, plot.height);
+    draw_curve(svg, result, curves[i], plot, color);
+    svg.clip(std::nullopt);
+    for (const auto& line : lines_beside(curves[i], curves.size() == 1)) lines.emplace_back(line, color);
+  }
+  const double step = std::min(16.0, plot.height / static_cast<double>(lines.size()));
+  double y = plot.corner.y + plot.height / 2 + 4.0 - step * static_cast<double>(lines.size() - 1) / 2;
+  for (const auto& [line, color] : lines) {
+    svg.text({plot.corner.x + plot.width + 8.0, y}, shortened(line, letters_beside), "start", color);
+    y += step;
+  }
+}
+
+/// Room for the longest line.
+double room_beside(const result::Result& result, const std::vector<Curves>& panels) {
+  std::size_t letters = 9;
+  for (const auto& name : result.switching_functions) letters = std::max(letters, width(name));
+  for (const auto& panel : panels) {
+    for (const auto& column : panel) {
+      for (const auto& line : lines_beside(column, panel.size() == 1)) letters = std::max(letters, width(line));
+    }
+  }
+  return 20.0 + 7.5 * static_cast<double>(std::min(letters, letters_beside));
+}
+
+}  // namespace
+
+std::string draw_over_time(const result::Result& result, const std::vector<FigureColumn>& columns) {
+  std::vector<Curves> panels;
+  for (const auto& column : columns) panels.push_back({column});
+  if (panels.empty()) panels = first_panels(result);
+  if (columns.empty()) panels.resize(std::min(panels.size(), most_panels));
+  const std::size_t moving = columns.empty() ? count_of_moving(result) : 0, drawn = count_of(panels);
+  const std::size_t left_out = moving - std::min(moving, drawn);
+  const double gap = 12.0, high = panels.size() > 6 ? 92.0 : 130.0;
+  const auto bands = banded(result);
+  const double height =
+      44.0 + 20.0 * static_cast<double>(bands.size()) + static_cast<double>(panels.size()) * (high + gap) + 56.0;
+  Svg svg(paper::width, height);
+  const double wide = paper::width - paper::left - room_beside(result, panels);
+  Plot plot{{paper::left, 40.0}, wide, high, time_range(result), {0.0, 1.0}};
+  svg.text({paper::left, 22.0},
+           fmt::format("{}: {} to t = {:.6g}{}", heading_of(result), result::name(result.status.termination),
+                       result.status.time_reached, left_out > 0 ? fmt::format(", {} more columns", left_out) : ""),
+           "start", paper::text);
+  plot.corner.y = draw_bands(svg, result, bands, plot, 40.0);
+  draw_events(svg, result, plot, 32.0, height - 56.0);
+  for (std::size_t i = 0; i < panels.size(); ++i, plot.corner.y += high + gap)
+    draw_panel(svg, result, panels[i], plot, i + 1 == panels.size());
+  svg.text({paper::left + plot.width / 2, height - 14.0}, "t", "middle", paper::text);
+  draw_legend(svg, legend_over_time(result, !bands.empty()), paper::left, paper::width - 20.0, height + 2.0);
+  return svg.document(heading_of(result));
+}
+
+}  // namespace saltus::report
