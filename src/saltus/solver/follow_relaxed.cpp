@@ -177,7 +177,6 @@ class Path {
     if (is_refused) return accept_refused();
     if (sides == infeasible_sides_ && !is_last && sigma > retry_factor * infeasible_sigma_) return false;
     crossover::Branch branch = run_.solve_branch(sides, w_, is_last ? whole_limit : trial_limit);
-    if (!is_last && is_promising(branch)) branch = run_.solve_branch(sides, branch.w, whole_limit);
     const bool is_near = norm(branch.w) <= far_away * std::max(1.0, norm(w_));
     const bool is_feasible = branch.is_feasible(run_.options.tolerance) && std::isfinite(branch.objective) && is_near &&
                              branch.optimality_error <= stationary;
@@ -196,12 +195,6 @@ class Path {
     step.message = fmt::format("refused: the relaxed objective is {:.6g}", run_.problem.objective(w_));
     if (!run_.refused || branch.objective < run_.refused->objective) run_.refused = std::move(branch);
     return false;
-  }
-
-  /// It has a solution, it seems, and only the iterations of a trial were too few.
-  [[nodiscard]] bool is_promising(const crossover::Branch& branch) const {
-    return branch.report.termination == Termination::iteration_limit && branch.is_feasible(nearly_feasible) &&
-           branch.optimality_error > stationary;
   }
 
   [[nodiscard]] bool is_good(const crossover::Branch& branch) {
