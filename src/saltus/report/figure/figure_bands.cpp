@@ -50,8 +50,7 @@ std::vector<std::size_t> banded(const result::Result& result) {
     return false;
   });
   if (all.size() > most_panels && !changing.empty()) all = std::move(changing);
-  all.resize(std::min(all.size(), most_panels));
-  return all;
+  return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most_panels))};
 }
 
 double draw_bands(Svg& svg, const result::Result& result, const std::vector<std::size_t>& bands, const Plot& time,
