@@ -141,14 +141,10 @@ class StoredModels(tool.ToolTest):
             err = self.run_tool("simulate", "changed.json", code=2)[1]
             self.assertIn(message, err)
         self.run_tool("report", "r.json", code=0)
-        for change, message in (
-                (lambda edited: edited["model"].update(text="# edited\n"), "at /model/text: the model in this result is not"),
-                (lambda edited: edited["trajectory"]["t"].__setitem__(1, -1.0), "at /trajectory/t/1: expected a time")):
-            changed = json.loads(json.dumps(result))
-            change(changed)
-            self.write("changed.json", json.dumps(changed))
-            for command in (("report", "changed.json"), ("diff", "r.json", "changed.json")):
-                self.assertIn(message, self.run_tool(*command, code=2)[1])
+        result["model"]["text"] = "# edited\n"
+        self.write("changed.json", json.dumps(result))
+        for command in (("report", "changed.json"), ("diff", "r.json", "changed.json")):
+            self.assertIn("at /model/text: the model in this result is not", self.run_tool(*command, code=2)[1])
         self.write("cut.json", json.dumps(result)[:1500])
         self.assertIn("cut.json:1:", self.run_tool("simulate", "cut.json", code=2)[1])
 

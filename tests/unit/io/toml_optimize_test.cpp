@@ -237,7 +237,7 @@ TEST(TomlOptimize, MistakesInTheProblemAreFoundWithTheirPlace) {
       {"[optimize]\nelements = 0\n", 2, "expected a whole number >= 1", ""},
       {"[optimize]\nelements = [2, 0]\n", 2, "expected a whole number >= 1", ""},
       {"[optimize]\nelements = []\n", 2, "expected a whole number >= 1", ""},
-      {"[optimize]\nelements = ['2']\n", 2, "expected a number", ""},
+      {"[optimize]\nelements = ['2']\n", 2, "expected a whole number >= 1", ""},
       {"[optimize]\nstages = 0\n", 2, "expected a whole number >= 1", ""},
       {"[optimize]\nscheme = 'radau'\n", 2, "scheme: expected \"radau_iia\"", ""},
       {"[optimize.mpcc]\nsigma_factor = 1\n", 2, "a number > 0 and < 1, found 1", ""},

@@ -110,7 +110,7 @@ TEST(Table, LongListsShowTheFirstAndTheLastTen) {
   EXPECT_EQ(to_table(r).find("…"), std::string::npos);
   r.events.push_back(crossing(20, "a"));
   const auto text = to_table(r);
-  EXPECT_NE(text.find("events      21: 21 crossing; the first and the last 10\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("events      21, the first and the last 10\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("\n  11 "), std::string::npos);
   EXPECT_NE(text.find("\n  10 "), std::string::npos);
   EXPECT_NE(text.find("\n  12 "), std::string::npos);

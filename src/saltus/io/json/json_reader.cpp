@@ -1,6 +1,5 @@
 // JSON -> Result.
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -134,14 +133,6 @@ void read_trajectory(JsonReader& reader, const Json& json, const std::string& pa
   reader.read_if_there(json, path, "regions", trajectory.regions);
   reader.read_if_there(json, path, "theta", trajectory.theta);
   reader.read_if_there(json, path, "contact_modes", trajectory.contact_modes);
-  constexpr double rounded = 1e-9;  // of physical time where it is a state
-  for (std::size_t i = 1; i < trajectory.t.size(); ++i) {
-    const double before = trajectory.t[i - 1], t = trajectory.t[i];
-    if (!(t < before - rounded * (1.0 + std::abs(before)))) continue;
-    reader.fail(fmt::format("{}/t/{}", path, i),
-                fmt::format("expected a time that is not before {}, found {}", before, t));
-    return;
-  }
 }
 
 result::AffineSurface read_affine(JsonReader& reader, const Json& json, const std::string& path) {

@@ -75,7 +75,14 @@ saltus.formOver = (form, states, axes, at) => {
   return {coefficients, constant};
 };
 
-saltus.affineOver = (surface, axes, at) => saltus.formOver(surface.affine, surface.states, axes, at);
+/** An affine surface over `axes`; one that no axis changes asks for no state. */
+saltus.affineOver = (surface, axes, at) => {
+  const {gradient, rate} = surface.affine;
+  const changes = surface.states.some((state, i) => gradient[i] !== 0 && axes.includes(state)) ||
+                  (rate !== 0 && axes.includes(at.timeAxis));
+  return changes ? saltus.formOver(surface.affine, surface.states, axes, at) :
+                   {coefficients: axes.map(() => 0), constant: Number.NaN};
+};
 
 /** Where an affine surface ends: [a, b, …, c] over the states of `axes`. */
 saltus.endsOver = (surface, axes, at) => (surface.within ?? []).map((form) => {
