@@ -1,4 +1,6 @@
 // More than ten thousand random systems: what random_systems_test.cpp does with a few hundred.
+#include <utility>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,6 +22,16 @@ TEST_P(TenThousandSystems, AreSolvedOrRefusedWithAStatus) {
 
 INSTANTIATE_TEST_SUITE_P(Families, TenThousandSystems, testing::ValuesIn(families),
                          [](const auto& instance) { return name(instance.param); });
+
+/// Systems that were got wrong once and take long.
+TEST(LongRandomSystems, OnesThatFailedOnceAreSolvedOrRefused) {
+  constexpr std::pair<Family, std::uint64_t> systems[] = {
+      {Family::affine, 86747}, {Family::nested, 9661}, {Family::nested, 23032}};
+  for (const auto& [family, seed] : systems) {
+    const Tally tally = run_campaign(family, seed, 1);
+    for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
+  }
+}
 
 }  // namespace
 }  // namespace saltus::robustness
