@@ -45,7 +45,7 @@ def rod(n, _):
         outflow = f" + {scale!r}*(u{i + 1} - u{i})" if i < n else ""
         dynamics.append(f"{inflow}{outflow} - 2*u{i}")
     return model_file(f"rod-{n}", f"heated rod of {n} cells with one thermostat", states, dynamics, 5.0,
-                      ["", "[simulate.event]", 'integrator = "radau5"'])
+                      ["", "[simulate.event]", 'integrator = "radau13"'])
 
 
 def network(n, rng):

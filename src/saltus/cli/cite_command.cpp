@@ -47,6 +47,9 @@ Citation cite_integrator(pipeline::Integrator integrator) {
       return {"hairer1993", "the integrators dopri5 and dop853"};
     case pipeline::Integrator::radau5:
       return {"hairer1996", "the integrator radau5"};
+    case pipeline::Integrator::radau9:
+    case pipeline::Integrator::radau13:
+      return {"hairer1999", "the integrators radau9 and radau13"};
     case pipeline::Integrator::taylor:
       return {"jorba2005", "the integrator taylor"};
   }

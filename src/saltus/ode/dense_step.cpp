@@ -138,6 +138,10 @@ void DenseStep::add_nested(std::size_t i, double factor, NestedPolynomial& sum) 
       break;
     case Method::radau5:
       return add_component<3>(own, n, factor, sum);
+    case Method::radau9:
+      return add_component<5>(own, n, factor, sum);
+    case Method::radau13:
+      return add_component<7>(own, n, factor, sum);
   }
   SALTUS_ASSERT(!is_series());
 }
@@ -153,6 +157,10 @@ BernsteinCoefficients DenseStep::bernstein(std::size_t i) const {
       break;
     case Method::radau5:
       return bernstein_form<3>(coefficients_.data(), n, i, end_[i]);
+    case Method::radau9:
+      return bernstein_form<5>(coefficients_.data(), n, i, end_[i]);
+    case Method::radau13:
+      return bernstein_form<7>(coefficients_.data(), n, i, end_[i]);
   }
   SALTUS_ASSERT(!is_series());
   __builtin_unreachable();
@@ -169,6 +177,10 @@ void DenseStep::bounds(double* low, double* high) const {
       return series_bounds(coefficients_.data(), n, low, high);
     case Method::radau5:
       return polynomial_bounds<3>(coefficients_.data(), end_.data(), n, low, high);
+    case Method::radau9:
+      return polynomial_bounds<5>(coefficients_.data(), end_.data(), n, low, high);
+    case Method::radau13:
+      return polynomial_bounds<7>(coefficients_.data(), end_.data(), n, low, high);
   }
 }
 
@@ -188,6 +200,10 @@ void DenseStep::evaluate(double theta, double* x) const {
       return series_values(coefficients_.data(), n, theta, x);
     case Method::radau5:
       return evaluate_nearer<3>(coefficients_.data(), end_.data(), n, theta, x);
+    case Method::radau9:
+      return evaluate_nearer<5>(coefficients_.data(), end_.data(), n, theta, x);
+    case Method::radau13:
+      return evaluate_nearer<7>(coefficients_.data(), end_.data(), n, theta, x);
   }
 }
 
@@ -202,6 +218,10 @@ void DenseStep::derivative(double theta, double* xdot) const {
       return series_slopes(coefficients_.data(), n, theta, h, xdot);
     case Method::radau5:
       return evaluate_slope<3>(coefficients_.data(), n, theta, h, xdot);
+    case Method::radau9:
+      return evaluate_slope<5>(coefficients_.data(), n, theta, h, xdot);
+    case Method::radau13:
+      return evaluate_slope<7>(coefficients_.data(), n, theta, h, xdot);
   }
 }
 

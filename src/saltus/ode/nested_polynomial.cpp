@@ -140,6 +140,9 @@ PlainZero plain_zero(const NestedPolynomial& polynomial, int sign, int zero_orde
     case 4:
       zero = search<4>(polynomial, sign, zero_order, noise);
       break;
+    case 5:
+      zero = search<5>(polynomial, sign, zero_order, noise);
+      break;
     case 7:
       zero = search<7>(polynomial, sign, zero_order, noise);
       break;

@@ -11,7 +11,7 @@ namespace saltus::ode {
 struct NestedPolynomial {
   static constexpr std::size_t most = 8;
   std::array<double, most> c{};  ///< the first degree + 1 of them
-  int degree = 0;                ///< 3, 4 or 7, those of the methods
+  int degree = 0;                ///< 3, 4, 5 or 7, those of the methods
   double end = 0.0;              ///< p(1), which is c0 + c1 but for a rounding
 };
 

@@ -11,6 +11,10 @@
 namespace saltus::ode {
 namespace {
 
+/// Power of h in the error norm, about: what the exponents of the controllers are made for. The estimate of a Radau
+/// method is of the order of its stages, as its dense output.
+int error_order(Method method) { return (is_implicit(method) ? dense_degree(method) : order(method)) + 1; }
+
 /// Constants of the codes DOPRI5, DOP853 and RADAU5 of Hairer & Wanner.
 struct Gains {
   double exponent;  ///< of the error of this step
@@ -26,16 +30,15 @@ Gains gains(Method method) {
     case Method::dop853:
       return {.exponent = 0.125, .beta = 0.0, .smallest = 0.333, .largest = 6.0};
     case Method::radau5:
-      return {.exponent = 0.25, .beta = 0.0, .smallest = 0.2, .largest = 8.0};
+    case Method::radau9:
+    case Method::radau13:
+      return {.exponent = 1.0 / error_order(method), .beta = 0.0, .smallest = 0.2, .largest = 8.0};
     // Another length from the same start costs a sum, and entire functions have no poles: steps may change by more.
     case Method::taylor:
       return {.exponent = 1.0 / series_degree, .beta = 0.0, .smallest = 0.05, .largest = 10.0};
   }
   __builtin_unreachable();
 }
-
-/// Power of h in the error norm, about: what the exponents above are made for.
-int error_order(Method method) { return method == Method::radau5 ? 4 : order(method) + 1; }
 
 constexpr double safety = 0.9;
 // An error far below the tolerance says nothing about the next step: it counts as this much.
@@ -111,6 +114,9 @@ double StepControl::factor(double error_norm) {
       return 1.0 / std::sqrt(std::sqrt(std::sqrt(error_norm)));
     case Method::radau5:
       return 1.0 / std::sqrt(std::sqrt(error_norm));
+    case Method::radau9:
+    case Method::radau13:
+      return std::pow(error_norm, -gains(method_).exponent);
     case Method::taylor:
       static_assert(series_degree == 16);
       return 1.0 / std::sqrt(std::sqrt(std::sqrt(std::sqrt(error_norm))));
@@ -122,7 +128,9 @@ double StepControl::factor(double error_norm) {
 /// Hairer & Wanner, (IV.8.25)), the next one has to be shorter by as much, at most 1. Before the first rejection steps
 /// are short enough for other reasons: there it would cost a few per cent, behind it saves a tenth to a fifth.
 double StepControl::growth(double error_norm) {
-  const double root = std::sqrt(std::sqrt(std::sqrt(std::max(error_norm, least_error))));
+  const double least = std::max(error_norm, least_error);
+  const double root =
+      method_ == Method::dop853 ? std::sqrt(std::sqrt(std::sqrt(least))) : std::pow(least, gains(method_).exponent);
   const bool known = any_rejected_ && previous_root_ > 0.0;
   const double share = known ? std::clamp(change_ * previous_root_ / root, gains(method_).smallest, 1.0) : 1.0;
   previous_root_ = root;
@@ -134,13 +142,11 @@ double StepControl::accepted(double error_norm) {
   const double raw = safety * factor(error_norm);
   const double largest = last_rejected_ ? 1.0 : gain.largest;
   last_rejected_ = false;
-  if (method_ == Method::dop853) {
-    change_ = std::clamp(raw * growth(error_norm), gain.smallest, largest);
-    return change_;
-  }
+  const bool predicts = method_ == Method::dop853 || method_ == Method::radau9 || method_ == Method::radau13;
+  change_ = std::clamp(predicts ? raw * growth(error_norm) : raw, gain.smallest, largest);
   // An increase that is worth less than a factorisation.
-  if (method_ == Method::radau5 && raw >= 1.0 && raw <= 1.2) return 1.0;
-  return std::clamp(raw, gain.smallest, largest);
+  if (is_implicit(method_) && raw >= 1.0 && change_ >= 1.0 && change_ <= 1.2) change_ = 1.0;
+  return change_;
 }
 
 double StepControl::rejected(double error_norm) {

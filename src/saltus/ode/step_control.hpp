@@ -31,7 +31,7 @@ class StepControl {
 
   Method method_;
   std::optional<double> previous_logarithm_;  ///< of the error of the step before; nullopt: that of the next one
-  double previous_root_ = 0.0;                ///< dop853: eighth root of that error, 0 = none
+  double previous_root_ = 0.0;                ///< dop853, radau9, radau13: that error to their power, 0 = none
   double change_ = 1.0;                       ///< of the step since
   bool any_rejected_ = false;
   bool last_rejected_ = false;

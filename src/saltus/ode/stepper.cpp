@@ -7,7 +7,7 @@
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/explicit/explicit_method_internal.hpp"
-#include "saltus/ode/radau5_internal.hpp"
+#include "saltus/ode/radau_internal.hpp"
 #include "saltus/ode/series_internal.hpp"
 #include "saltus/ode/step_checks_internal.hpp"
 
@@ -23,6 +23,8 @@ const ExplicitMethod* explicit_method(Method method, std::size_t n) {
     case Method::taylor:
       return &(few ? dop853_for_few(n) : dop853_for_any());
     case Method::radau5:
+    case Method::radau9:
+    case Method::radau13:
       return nullptr;
   }
   __builtin_unreachable();
@@ -38,6 +40,10 @@ int order(Method method) {
       return 8;
     case Method::radau5:
       return 5;
+    case Method::radau9:
+      return 9;
+    case Method::radau13:
+      return 13;
     case Method::taylor:
       return series_degree;
   }
@@ -52,6 +58,10 @@ int dense_degree(Method method) {
       return 7;
     case Method::radau5:
       return 3;
+    case Method::radau9:
+      return 5;
+    case Method::radau13:
+      return 7;
     case Method::taylor:
       return series_degree;
   }
@@ -68,7 +78,7 @@ Stepper::Stepper(Method method, int n)
   for (auto* vector : {&start_, &x_new_, &argument_}) vector->resize(size);
   stages_.resize(size * (explicit_ != nullptr ? explicit_->stages : 2));
   slope_new_ = size * (explicit_ != nullptr ? explicit_->last_stage : 1);
-  if (method == Method::radau5 && n > 0) radau_ = std::make_unique<Radau5>(n);
+  if (n > 0) radau_ = make_radau(method, n);
   if (method == Method::taylor) series_ = std::make_unique<Series>(size);
 }
 
@@ -93,6 +103,8 @@ StagesFunction Stepper::stages_function(const StagesFunctions& functions) const 
       return functions.dop853;
     case Method::taylor:
     case Method::radau5:
+    case Method::radau9:
+    case Method::radau13:
       return nullptr;
   }
   __builtin_unreachable();

@@ -13,11 +13,17 @@
 
 namespace saltus::ode {
 
-/// Explicit methods of Dormand and Prince; for stiff problems the implicit three-stage Radau IIA method; the Taylor
-/// series of the solution where the right-hand side is affine and its linear part is known, and dop853 elsewhere.
-enum class Method { dopri5, dop853, radau5, taylor };
+/// Explicit methods of Dormand and Prince; for stiff problems the implicit Radau IIA methods with three, five and seven
+/// stages; the Taylor series of the solution where the right-hand side is affine and its linear part is known, and
+/// dop853 elsewhere.
+enum class Method { dopri5, dop853, radau5, radau9, radau13, taylor };
 
-/// Order of the propagated solution (5, 8, 5, 16) and degree in theta of the dense output (4, 7, 3, 16).
+/// Whether a method is one of Radau's.
+[[nodiscard]] constexpr bool is_implicit(Method method) {
+  return method == Method::radau5 || method == Method::radau9 || method == Method::radau13;
+}
+
+/// Order of the propagated solution (5, 8, 5, 9, 13, 16) and degree in theta of the dense output (4, 7, 3, 5, 7, 16).
 [[nodiscard]] int order(Method method);
 [[nodiscard]] int dense_degree(Method method);
 
@@ -67,10 +73,11 @@ class DenseStep {
 
 enum class Attempt {
   finite,     ///< error_norm() is valid
-  undefined,  ///< some stage, or the result, is not finite, or radau5 does not find its stages: shorten the step
+  undefined,  ///< some stage, or the result, is not finite, or a Radau method does not find its stages: shorten the
+              ///< step
 };
 
-class Radau5;
+class Radau;
 class Series;
 struct ExplicitMethod;
 struct ExplicitStep;
@@ -87,9 +94,9 @@ class Stepper {
   /// Tries a step of length h != 0 from (t, x) with slope = f(t, x).
   ///
   /// x and slope are copied first: they may be x_new() and slope_new() of the attempt before.
-  /// With radau5 the same start may be tried with other lengths; a start at the end of the last attempt continues it
-  /// (its polynomial gives starting values, its Jacobian is kept while that pays).
-  /// So it may with taylor, which then takes no further products with the linear part.
+  /// With a Radau method the same start may be tried with other lengths; a start at the end of the last attempt
+  /// continues it (its polynomial gives starting values, its Jacobian is kept while that pays). So it may with taylor,
+  /// which then takes no further products with the linear part.
   /// @param stages  f's stages in one function, if there is one: used in place of f, with the same result bit for bit;
   ///                its linear part, if it has one: used by taylor only, up to the next restart() the same for one
   ///                start
@@ -115,7 +122,7 @@ class Stepper {
   [[nodiscard]] const double* slope_new() const { return stages_.data() + slope_new_; }
 
   /// Bounds of every component of the dense output of the last attempt, which was finite, without computing it; n
-  /// doubles each. False where a method has none (radau5). With dop853 they rest on the slopes of the stages: right for
+  /// doubles each. False where a method has none (Radau). With dop853 they rest on the slopes of the stages: right for
   /// right-hand sides that these resolve, which is what the error estimate assumes too.
   [[nodiscard]] bool bounds(double* low, double* high) const;
   /// Bounds of the mean slopes (x_i(t + theta h) - x_i(t)) / (theta h) of that dense output over 0 < theta <= 1,
@@ -128,13 +135,13 @@ class Stepper {
   /// finite, and `output` is then no more than the cubic through both ends with their slopes).
   Attempt dense(RightHandSide f, DenseStep& output);
 
-  /// The right-hand side has changed: radau5 and taylor keep nothing of the steps before. No effect on the explicit
-  /// pairs.
+  /// The right-hand side has changed: Radau methods and taylor keep nothing of the steps before. No effect on the
+  /// explicit pairs.
   void restart();
 
   /// Length of the last attempt, which was finite, over the one at which an explicit method becomes unstable, from its
   /// two last stages (Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2): about 1 or more in step after
-  /// step means that stability, not accuracy, limits the steps. 0 where that is not known, and for radau5.
+  /// step means that stability, not accuracy, limits the steps. 0 where that is not known, and for Radau methods.
   [[nodiscard]] double stability_ratio() const;
 
   [[nodiscard]] long evaluations() const { return evaluations_; }  ///< of f, since construction
@@ -146,7 +153,7 @@ class Stepper {
   Method method_;
   Method pair_;  ///< method_, of taylor the one in its place
   int n_;
-  const ExplicitMethod* explicit_;  ///< null: radau5
+  const ExplicitMethod* explicit_;  ///< null: Radau
   std::size_t slope_new_ = 0;       ///< its place in stages_
   double t_ = 0.0;
   double h_ = 0.0;
@@ -155,8 +162,8 @@ class Stepper {
   std::vector<double> start_;  ///< x
   std::vector<double> x_new_;
   std::vector<double> argument_;  ///< of the stage being evaluated
-  std::vector<double> stages_;    ///< k_1, k_2, ..., n doubles each; radau5: the slopes at both ends
-  std::unique_ptr<Radau5> radau_;
+  std::vector<double> stages_;    ///< k_1, k_2, ..., n doubles each; Radau: the slopes at both ends
+  std::unique_ptr<Radau> radau_;
   std::unique_ptr<Series> series_;
   bool took_series_ = false;
   bool series_known_ = false;  ///< of start_

@@ -31,14 +31,14 @@ struct PlannedRun {
   std::string refusal;  ///< why it is not worth trying
 };
 
-bool is_stiff(const SimulateOptions& options) { return options.event.integrator == Integrator::radau5; }
+bool is_stiff(const SimulateOptions& options) { return ode::is_implicit(options.event.integrator); }
 
 PlannedRun event_run(SimulateOptions options, Integrator integrator, std::string variant) {
-  const bool hopeless = is_stiff(options) && integrator != Integrator::radau5;
+  const bool hopeless = is_stiff(options) && !ode::is_implicit(integrator);
   options.method = Method::event;
   options.event.integrator = integrator;
   return {"event", std::move(variant), std::move(options),
-          hopeless ? "the model asks for radau5: it is stiff, and this method is explicit" : ""};
+          hopeless ? "the model is stiff by its integrator, and this method is explicit" : ""};
 }
 
 PlannedRun reference_run(const SimulateOptions& options) {

@@ -117,22 +117,8 @@ Expected<std::vector<double>> surface_scaling(const model::System& system, const
 Expected<IntegrationOptions> integration_options(const model::System& system, const SimulateOptions& options) {
   if (const auto problem = find_problem(options)) return tl::unexpected(problem->error);
   IntegrationOptions integration;
-  switch (options.event.integrator) {
-    case Integrator::dopri5:
-      integration.method = ode::Method::dopri5;
-      break;
-    case Integrator::dop853:
-      integration.method = ode::Method::dop853;
-      break;
-    case Integrator::radau5:
-      integration.method = ode::Method::radau5;
-      break;
-    case Integrator::taylor:
-      integration.method = ode::Method::taylor;
-      break;
-  }
   // The layers make every model stiff.
-  if (options.method == Method::smoothed) integration.method = ode::Method::radau5;
+  integration.method = options.method == Method::smoothed ? Integrator::radau5 : options.event.integrator;
   integration.from = options.from;
   integration.until = *options.until;
   integration.tolerances = {options.rtol, options.atol};

@@ -44,8 +44,8 @@ TEST_P(DenseOutput, is_exact_at_both_ends) {
   std::vector<double> slope(x.size());
   std::vector<double> expected(x.size());
   dense.derivative(1.0, slope.data());
-  EXPECT_LT(distance(stepper.slope_new(), slope), 64 * epsilon / dense.h);
-  if (GetParam() == Method::radau5) return;  // a collocation polynomial, from the start's value and the stages' slopes
+  EXPECT_LT(distance(stepper.slope_new(), slope), rounding_growth(GetParam()) * 64 * epsilon / dense.h);
+  if (is_implicit(GetParam())) return;  // a collocation polynomial, from the start's value and the stages' slopes
   dense.derivative(0.0, slope.data());
   Kepler{}(0.3, start.data(), expected.data());
   EXPECT_LT(distance(expected.data(), slope), 64 * epsilon / dense.h);
@@ -55,7 +55,7 @@ TEST_P(DenseOutput, is_exact_at_both_ends) {
 template <class Visit>
 void for_steps_along_the_orbit(Method method, Visit&& visit) {
   for (const double h : {1e-3, 0.1, 0.5, 1.0}) {
-    if (method == Method::radau5 && h > 0.5) continue;  // its stages are not found at every t
+    if (is_implicit(method) && h > 0.5) continue;  // its stages are not found at every t
     for (double t = 0.0; t < 6.0; t += 0.37) {
       Stepper stepper(method, Kepler::n);
       const auto start = Kepler::exact(t);
@@ -68,8 +68,8 @@ TEST_P(DenseOutput, leaves_its_start_with_slopes_within_their_bounds) {
   for_steps_along_the_orbit(GetParam(), [](Stepper& stepper, const auto& start, const DenseStep& dense, double t) {
     const double h = dense.h;
     std::vector<double> low(start.size()), high(start.size()), x(start.size());
-    ASSERT_EQ(stepper.mean_slopes(low.data(), high.data()), GetParam() != Method::radau5);
-    if (GetParam() == Method::radau5) return;
+    ASSERT_EQ(stepper.mean_slopes(low.data(), high.data()), !is_implicit(GetParam()));
+    if (is_implicit(GetParam())) return;
     for (int k = 1; k <= 200; ++k) {
       const double passed = h * k / 200.0;
       dense.evaluate(k / 200.0, x.data());
@@ -95,7 +95,7 @@ TEST_P(DenseOutput, stays_within_its_bounds) {
     std::vector<double> low(start.size()), high(start.size()), early_low(start.size()), early_high(start.size());
     dense.bounds(low.data(), high.data());
     const bool early = stepper.bounds(early_low.data(), early_high.data());
-    EXPECT_EQ(early, GetParam() != Method::radau5);
+    EXPECT_EQ(early, !is_implicit(GetParam()));
     std::vector<double> x(start.size());
     for (int k = 0; k <= 200; ++k) {
       dense.evaluate(k / 200.0, x.data());
@@ -144,7 +144,7 @@ double slope_error(Method method, double h) {
 }
 
 TEST_P(DenseOutput, interior_error_of_one_step_is_of_order_degree_plus_one) {
-  const double h = 0.1;
+  const double h = GetParam() == Method::radau13 ? 0.25 : 0.1;  // far from rounding
   EXPECT_NEAR(std::log2(interior_error(GetParam(), h) / interior_error(GetParam(), h / 2)),
               dense_degree(GetParam()) + 1, 0.3);
   EXPECT_NEAR(std::log2(slope_error(GetParam(), h) / slope_error(GetParam(), h / 2)), dense_degree(GetParam()), 0.3);

@@ -12,7 +12,12 @@
 
 namespace saltus::ode::trial {
 
-inline constexpr std::array all_methods{Method::dopri5, Method::dop853, Method::radau5};
+inline constexpr std::array all_methods{Method::dopri5, Method::dop853, Method::radau5, Method::radau9, Method::radau13};
+inline constexpr std::array radau_methods{Method::radau5, Method::radau9, Method::radau13};
+/// How much more of a rounding the transformation of many stages leaves.
+inline double rounding_growth(Method method) {
+  return method == Method::radau13 ? 16.0 : method == Method::radau9 ? 4.0 : 1.0;
+}
 inline constexpr std::array explicit_methods{Method::dopri5, Method::dop853};
 
 /// Motion of two bodies with eccentricity e, from the closest point: (q1, q2, v1, v2), period 2 pi.

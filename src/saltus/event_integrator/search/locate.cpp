@@ -24,7 +24,7 @@ constexpr double flat_zero = 1e-9;
 
 Locator::Locator(ode::Method method, int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
                  const ode::Tolerances& tolerances)
-    : explicit_(method != ode::Method::radau5),
+    : explicit_(!ode::is_implicit(method)),
       stepper_(stepper),
       field_(field),
       search_(search),

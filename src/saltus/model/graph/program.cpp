@@ -34,6 +34,7 @@ std::shared_ptr<const Program> Program::of(const casadi::Function& function) {
   return program;
 }
 
+/// The usual operations here, the others by CasADi's function: a call costs as much as several of them.
 void Program::operator()(const double* const* arguments, double* const* results, double* work) const {
   for (const Instruction& instruction : instructions_) {
     const auto [first, second] = instruction.operands;
@@ -46,6 +47,24 @@ void Program::operator()(const double* const* arguments, double* const* results,
         break;
       case casadi::OP_OUTPUT:
         if (results[instruction.target] != nullptr) results[instruction.target][second] = work[first];
+        break;
+      case casadi::OP_ADD:
+        work[instruction.target] = work[first] + work[second];
+        break;
+      case casadi::OP_SUB:
+        work[instruction.target] = work[first] - work[second];
+        break;
+      case casadi::OP_MUL:
+        work[instruction.target] = work[first] * work[second];
+        break;
+      case casadi::OP_DIV:
+        work[instruction.target] = work[first] / work[second];
+        break;
+      case casadi::OP_NEG:
+        work[instruction.target] = -work[first];
+        break;
+      case casadi::OP_SQ:
+        work[instruction.target] = work[first] * work[first];
         break;
       default:
         casadi::casadi_math<double>::fun(static_cast<unsigned char>(instruction.operation), work[first], work[second],

@@ -38,7 +38,7 @@ bool RadauSystems::use(const JacobianPattern* pattern) {
   sparse_real_matrix_ = with_pattern<double>(*pattern);
   sparse_complex_matrix_ = with_pattern<std::complex<double>>(*pattern);
   sparse_real_.analyzePattern(sparse_real_matrix_);
-  sparse_complex_.analyzePattern(sparse_complex_matrix_);
+  for (Pair& pair : pairs_) pair.sparse.analyzePattern(sparse_complex_matrix_);
   return true;
 }
 
@@ -70,18 +70,23 @@ void RadauSystems::shift(const Scalar& diagonal, Eigen::SparseMatrix<Scalar>& ma
 bool RadauSystems::factorize(const Shifts& shifts) {
   if (pattern_ != nullptr) {
     shift(shifts.real, sparse_real_matrix_);
-    shift(shifts.complex, sparse_complex_matrix_);
     sparse_real_.factorize(sparse_real_matrix_);
     if (sparse_real_.info() != Eigen::Success) return false;
-    sparse_complex_.factorize(sparse_complex_matrix_);
-    return sparse_complex_.info() == Eigen::Success;
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      shift(shifts.pairs[k], sparse_complex_matrix_);
+      pairs_[k].sparse.factorize(sparse_complex_matrix_);
+      if (pairs_[k].sparse.info() != Eigen::Success) return false;
+    }
+    return true;
   }
   real_matrix_ = -jacobian_;
   real_matrix_.diagonal().array() += shifts.real;
-  complex_matrix_ = -jacobian_.cast<std::complex<double>>();
-  complex_matrix_.diagonal().array() += shifts.complex;
   real_.compute(real_matrix_);
-  complex_.compute(complex_matrix_);
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    complex_matrix_ = -jacobian_.cast<std::complex<double>>();
+    complex_matrix_.diagonal().array() += shifts.pairs[k];
+    pairs_[k].dense.compute(complex_matrix_);
+  }
   return true;
 }
 
@@ -93,11 +98,11 @@ void RadauSystems::solve(const Vector& right, Vector& solution) {
   }
 }
 
-void RadauSystems::solve(const ComplexVector& right, ComplexVector& solution) {
+void RadauSystems::solve(std::size_t pair, const ComplexVector& right, ComplexVector& solution) {
   if (pattern_ != nullptr) {
-    solution = sparse_complex_.solve(right);
+    solution = pairs_[pair].sparse.solve(right);
   } else {
-    solution = complex_.solve(right);
+    solution = pairs_[pair].dense.solve(right);
   }
 }
 

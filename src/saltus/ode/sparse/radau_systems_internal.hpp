@@ -1,7 +1,9 @@
-// The linear systems of radau5's iteration: dense, or sparse where the Jacobian has few entries.
+// The linear systems of the iterations of Radau methods: dense, or sparse where the Jacobian has few entries.
 #pragma once
 
 #include <complex>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,18 +15,18 @@
 
 namespace saltus::ode {
 
-/// (real / h - J) x = b and ((re + i im) / h - J) x = b. The sparse ones are analysed once per pattern; all storage is
-/// kept.
+/// (real / h - J) x = b and ((re + i im) / h - J) x = b, one of these for each pair of eigenvalues. The sparse ones are
+/// analysed once per pattern; all storage is kept.
 class RadauSystems {
  public:
   using Vector = Eigen::VectorXd;
   using ComplexVector = Eigen::VectorXcd;
   struct Shifts {
     double real;
-    std::complex<double> complex;
+    std::span<const std::complex<double>> pairs;
   };
 
-  explicit RadauSystems(Eigen::Index n) : n_(n) {}
+  RadauSystems(Eigen::Index n, std::size_t pairs) : n_(n), pairs_(pairs) {}
 
   /// Null: dense. The same address is the same pattern. Returns whether it is another one than before, whose Jacobian
   /// and factors are not known.
@@ -38,7 +40,7 @@ class RadauSystems {
   /// False where a matrix is singular.
   [[nodiscard]] bool factorize(const Shifts& shifts);
   void solve(const Vector& right, Vector& solution);
-  void solve(const ComplexVector& right, ComplexVector& solution);
+  void solve(std::size_t pair, const ComplexVector& right, ComplexVector& solution);
 
  private:
   template <class Scalar>
@@ -52,13 +54,16 @@ class RadauSystems {
   Eigen::MatrixXd jacobian_, real_matrix_;
   Eigen::MatrixXcd complex_matrix_;
   Eigen::PartialPivLU<Eigen::MatrixXd> real_;
-  Eigen::PartialPivLU<Eigen::MatrixXcd> complex_;
   // Sparse: entries of J in the order of the pattern.
   std::vector<double> entries_;
   Eigen::SparseMatrix<double> sparse_real_matrix_;
   Eigen::SparseMatrix<std::complex<double>> sparse_complex_matrix_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_real_;
-  Eigen::SparseLU<Eigen::SparseMatrix<std::complex<double>>> sparse_complex_;
+  struct Pair {
+    Eigen::PartialPivLU<Eigen::MatrixXcd> dense;
+    Eigen::SparseLU<Eigen::SparseMatrix<std::complex<double>>> sparse;
+  };
+  std::vector<Pair> pairs_;
 };
 
 }  // namespace saltus::ode

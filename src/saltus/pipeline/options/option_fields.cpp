@@ -35,9 +35,9 @@ void record_until(const SimulateOptions& options, std::string_view key, OptionRe
 
 constexpr Choices<Method, 4> methods{{"event", "smoothed", "fesd", "timestepping"},
                                      {Method::event, Method::smoothed, Method::fesd, Method::timestepping}};
-constexpr Choices<Integrator, 4> integrators{
-    {"dopri5", "dop853", "radau5", "taylor"},
-    {Integrator::dopri5, Integrator::dop853, Integrator::radau5, Integrator::taylor}};
+constexpr Choices<Integrator, 6> integrators{{"dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"},
+                                             {Integrator::dopri5, Integrator::dop853, Integrator::radau5,
+                                              Integrator::radau9, Integrator::radau13, Integrator::taylor}};
 constexpr Choices<Native, 3> natives{{"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
 constexpr Choices<Selection, 4> selections{
     {"active_dominant", "passive_dominant", "scaled", "report"},
@@ -247,8 +247,8 @@ constexpr std::array fields{
                 "Force the side of a switching function at the start (0: slide on it), or a mode by `indicator`.",
                 set_initial_mode, record_initial_mode},
     OptionField{
-        "event.integrator", "dopri5, dop853, radau5, taylor",
-        "Runge-Kutta of order 5, of order 8, of order 5 for stiff models; Taylor series where modes are affine.",
+        "event.integrator", "dopri5, dop853, radau5, radau9, radau13, taylor",
+        "Runge-Kutta of order 5, of order 8, of order 5, 9, 13 for stiff models; Taylor series where modes are affine.",
         set_choice<integrator_of, integrators>, record_choice<integrator_of, integrators>},
     OptionField{"event.max_step", "none, or a number > 0", "Longest step.", set_max_step, record_max_step},
     OptionField{"event.selection", "active_dominant, passive_dominant, scaled, report",

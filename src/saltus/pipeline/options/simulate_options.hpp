@@ -7,10 +7,12 @@
 #include <variant>
 #include <vector>
 
+#include "saltus/ode/stepper.hpp"
+
 namespace saltus::pipeline {
 
 enum class Method { event, fesd, timestepping, smoothed };
-enum class Integrator { dopri5, dop853, radau5, taylor };
+using Integrator = ode::Method;
 enum class Native { automatic, on, off };
 enum class Selection { active_dominant, passive_dominant, scaled, report };
 

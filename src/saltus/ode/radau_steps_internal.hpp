@@ -1,50 +1,43 @@
-// One step of the three-stage Radau IIA method: Hairer & Wanner, Solving Ordinary Differential Equations II, IV.8.
+// The steps of a Radau IIA method: what is kept between them.
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "saltus/base/at.hpp"
+#include "saltus/ode/radau_internal.hpp"
 #include "saltus/ode/sparse/radau_systems_internal.hpp"
-#include "saltus/ode/stepper.hpp"
 
 namespace saltus::ode {
 
-/// The step under trial; `x` and `slope` stay as they are during it.
-struct RadauTrial {
-  RightHandSide f;
-  double t;
-  double h;
-  const double* x;
-  const double* slope;
-  Tolerances tolerances;
-  const JacobianPattern* pattern;  ///< null: dense
-};
-
 /// Simplified Newton iteration for the increments z_j = x(t + c_j h) - x(t) of the stages, in the variables that split
-/// it into a real and a complex system of size n.
+/// it into real and complex systems of size n.
 ///
 /// The iteration ends at rounding level, not at a share of the tolerance: steps of different lengths from one start
 /// then end on one smooth curve, on which events are located. The Jacobian (forward differences) belongs to the start
 /// of this or an earlier step; it is kept over steps while the iteration converges fast, and for all lengths of a
 /// retaken step. Where its pattern is known, columns without a common row are differenced together.
-class Radau5 {
+template <class Tableau>
+class RadauSteps final : public Radau {
  public:
-  explicit Radau5(int n);
+  explicit RadauSteps(int n);
 
-  /// `x_new` and `slope_new` are results, n doubles each; `evaluations` of f are counted up.
-  Attempt attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations);
-  [[nodiscard]] double error_norm() const { return error_norm_; }
-  /// Coefficients 1 to 3 of the nested form of the collocation polynomial of the last attempt, 3 n doubles.
-  void dense(double* coefficients) const;
-  /// Forgets the Jacobian and the steps before: the right-hand side has changed.
-  void restart();
+  Attempt attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) override;
+  [[nodiscard]] double error_norm() const override { return error_norm_; }
+  void dense(double* coefficients) const override;
+  void restart() override;
 
  private:
   enum class Outcome { converged, failed, undefined };
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
+  static constexpr std::size_t stages = Tableau::stages;
+  static constexpr auto last = static_cast<Eigen::Index>(stages) - 1;
 
   void begin(const RadauTrial& trial);
   Outcome solve(const RadauTrial& trial);
@@ -53,6 +46,7 @@ class Radau5 {
   [[nodiscard]] bool factorize(double h);
   Outcome iterate(const RadauTrial& trial);
   bool stage_slopes(const RadauTrial& trial);
+  void solve_systems(double h);
   double correct(const RadauTrial& trial);
   bool differentiate(const RadauTrial& trial);
   [[nodiscard]] double increment(const RadauTrial& trial, Eigen::Index column, double largest) const;
@@ -92,7 +86,8 @@ class Radau5 {
   double largest_ = 0.0;  ///< component of start_
   std::vector<std::size_t> one_column_;
 
-  Matrix z_, w_, slopes_;  ///< n x 3: increments, transformed increments, f at the stages
+  Matrix z_, w_, slopes_;  ///< n x stages: increments, transformed increments, f at the stages
+  Matrix corrections_;     ///< of w_
   Vector argument_, difference_slope_, right_, solution_;
   Eigen::VectorXcd complex_right_, complex_solution_;
 };

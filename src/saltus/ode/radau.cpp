@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "saltus/base/at.hpp"
+#include "saltus/ode/radau_internal.hpp"
+#include "saltus/ode/radau_iteration_internal.hpp"
+#include "saltus/ode/radau_steps_internal.hpp"
+#include "saltus/ode/radau_tableau.hpp"
+#include "saltus/ode/step_checks_internal.hpp"
+
+namespace saltus::ode {
+
+template <class Tableau>
+RadauSteps<Tableau>::RadauSteps(int n)
+    : n_(n),
+      start_(n),
+      previous_{false, 0.0, std::vector<double>(stages * static_cast<std::size_t>(n))},
+      systems_(n, stages / 2),
+      z_(n, last + 1),
+      w_(n, last + 1),
+      slopes_(n, last + 1),
+      corrections_(n, last + 1),
+      argument_(n),
+      difference_slope_(n),
+      right_(n),
+      solution_(n),
+      complex_right_(n),
+      complex_solution_(n) {}
+
+template <class Tableau>
+void RadauSteps<Tableau>::restart() {
+  started_ = converged_ = previous_.known = jacobian_known_ = factors_.known = false;
+  rate_ = 0.0;
+}
+
+template <class Tableau>
+Attempt RadauSteps<Tableau>::attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) {
+  evaluations_ = &evaluations;
+  if (systems_.use(trial.pattern)) jacobian_known_ = factors_.known = false;
+  begin(trial);
+  h_ = trial.h;
+  converged_ = solve(trial) == Outcome::converged;
+  if (!converged_) return Attempt::undefined;
+  for (Eigen::Index i = 0; i < n_; ++i) x_new[i] = trial.x[i] + z_(i, last);
+  converged_ = all_finite(x_new, static_cast<std::size_t>(n_));
+  if (!converged_) return Attempt::undefined;
+  error_norm_ = estimate(trial, x_new);
+  argument_ = Eigen::Map<const Vector>(x_new, n_);
+  return evaluate(trial, trial.t + trial.h, argument_, slope_new) ? Attempt::finite : Attempt::undefined;
+}
+
+/// Tells a retaken step from a new one, which may continue the polynomial of the last.
+template <class Tableau>
+void RadauSteps<Tableau>::begin(const RadauTrial& trial) {
+  const bool retaken = started_ && trial.t == t_ && std::equal(trial.x, trial.x + n_, start_.data());
+  if (retaken) return;
+  // NOTE: the state may have been projected onto a sliding surface in between, the time is that of the step's end.
+  const double end = t_ + h_;
+  const bool follows = started_ && converged_ && std::abs(trial.t - end) <= 8.0 * radau_epsilon * std::abs(end);
+  previous_.known = follows;
+  if (follows) {
+    previous_.h = h_;
+    dense(previous_.polynomial.data());
+  }
+  if (rate_ > keep_rate || !follows) jacobian_known_ = false;
+  jacobian_here_ = false;
+  started_ = true;
+  t_ = trial.t;
+  start_ = Eigen::Map<const Vector>(trial.x, n_);
+}
+
+template <class Tableau>
+auto RadauSteps<Tableau>::solve(const RadauTrial& trial) -> Outcome {
+  if (!jacobian_known_ && !differentiate(trial)) return Outcome::undefined;
+  if (!factorize(trial.h)) return Outcome::undefined;
+  start_values(trial.h);
+  Outcome outcome = iterate(trial);
+  if (outcome != Outcome::converged && (previous_.known || !jacobian_here_)) {
+    // What came from earlier steps did not help: once more without it.
+    if (!jacobian_here_ && !differentiate(trial)) return Outcome::undefined;
+    if (!factorize(trial.h)) return Outcome::undefined;
+    z_.setZero();
+    w_.setZero();
+    outcome = iterate(trial);
+  }
+  if (outcome != Outcome::undefined) return outcome;
+  // The domain of f may move with t, and a state that stays behind be outside of it.
+  for (Eigen::Index j = 0; j <= last; ++j) {
+    z_.col(j) = Tableau::c[at(j)] * trial.h * Eigen::Map<const Vector>(trial.slope, n_);
+  }
+  transform_start();
+  return iterate(trial);
+}
+
+/// The polynomial of the step before, beyond its end; zero at a restart.
+template <class Tableau>
+void RadauSteps<Tableau>::start_values(double h) {
+  if (!previous_.known) {
+    z_.setZero();
+    w_.setZero();
+    return;
+  }
+  const Eigen::Map<const Matrix> p(previous_.polynomial.data(), n_, last + 1);
+  for (Eigen::Index j = 0; j <= last; ++j) {
+    const double beyond = Tableau::c[at(j)] * (h / previous_.h);
+    // The nested form from its end: x(t + h) - r (p1 - s (p2 + s (p3 + r (p4 + s (p5 + ...))))), r = -beyond.
+    const double s = 1.0 + beyond;
+    auto column = z_.col(j);
+    column = p.col(last);
+    for (Eigen::Index k = last - 1; k >= 1; --k) column = p.col(k) + (k % 2 == 1 ? s : -beyond) * column;
+    column = beyond * (p.col(0) - s * column);
+  }
+  transform_start();
+}
+
+template <class Tableau>
+void RadauSteps<Tableau>::transform_start() {
+  for (Eigen::Index j = 0; j <= last; ++j) {
+    const auto& row = Tableau::t_inverse[at(j)];
+    w_.col(j) = row[0] * z_.col(0);
+    for (Eigen::Index k = 1; k <= last; ++k) w_.col(j) += row[at(k)] * z_.col(k);
+  }
+}
+
+template <class Tableau>
+bool RadauSteps<Tableau>::factorize(double h) {
+  if (factors_.known && std::abs(h - factors_.h) <= same_length * std::abs(h)) return true;
+  std::array<std::complex<double>, stages / 2> pairs;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairs[k] = std::complex<double>(Tableau::pairs[k].alpha, Tableau::pairs[k].beta) / h;
+  }
+  factors_.known = systems_.factorize({Tableau::gamma / h, pairs});
+  factors_.h = h;
+  return factors_.known;
+}
+
+/// The estimate (IV.8.19), largest component in units of its scale. Not filtered once more (IV.8.20) where it asks for
+/// a rejection: that passes over fast transients, and an event engine has to see what happens in them.
+template <class Tableau>
+double RadauSteps<Tableau>::estimate(const RadauTrial& trial, const double* x_new) {
+  const auto& e = Tableau::error;
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    double sum = e[0] * z_(i, 0);
+    for (std::size_t j = 1; j < stages; ++j) sum += e[j] * z_(i, static_cast<Eigen::Index>(j));
+    right_[i] = trial.slope[i] + sum / trial.h;
+  }
+  systems_.solve(right_, solution_);
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    const double ratio = std::abs(solution_[i]) / error_scale(trial.tolerances, trial.x[i], x_new[i]);
+    if (std::isnan(ratio)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, ratio);
+  }
+  return largest;
+}
+
+template <class Tableau>
+bool RadauSteps<Tableau>::evaluate(const RadauTrial& trial, double t, const Vector& x, double* slope) {
+  const auto n = static_cast<std::size_t>(n_);
+  if (!all_finite(x.data(), n)) return false;
+  trial.f(t, x.data(), slope);
+  ++*evaluations_;
+  return all_finite(slope, n);
+}
+
+/// By divided differences of (z(theta) / theta - z(1)) / (1 - theta), whose Newton form with the nodes c is then
+/// written with the nodes 0, 1, 0, ... of the nested form: a node at a time, the last one first.
+template <class Tableau>
+void RadauSteps<Tableau>::dense(double* coefficients) const {
+  constexpr auto& c = Tableau::c;
+  constexpr std::size_t inner = stages - 1;
+  Eigen::Map<Matrix> p(coefficients, n_, last + 1);
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    const double end = z_(i, last);
+    std::array<double, inner> d;
+    std::array<double, inner> nodes;
+    for (std::size_t k = 0; k < inner; ++k) {
+      nodes[k] = c[k];
+      d[k] = (z_(i, static_cast<Eigen::Index>(k)) / c[k] - end) / (1.0 - c[k]);
+    }
+    for (std::size_t distance = 1; distance < inner; ++distance) {
+      for (std::size_t k = inner - 1; k >= distance; --k) d[k] = (d[k] - d[k - 1]) / (c[k] - c[k - distance]);
+    }
+    for (std::size_t next = inner - 1; next-- > 0;) {
+      const double node = next % 2 == 0 ? 0.0 : 1.0;
+      for (std::size_t k = inner - 1; k-- > 0;) d[k] += (node - nodes[k]) * d[k + 1];
+      for (std::size_t k = inner - 1; k > 0; --k) nodes[k] = nodes[k - 1];
+      nodes[0] = node;
+    }
+    p(i, 0) = end;
+    // A factor 1 - theta where the Newton form has theta - 1, from the third one on, every second time.
+    for (std::size_t k = 0; k < inner; ++k) p(i, static_cast<Eigen::Index>(k + 1)) = k / 2 % 2 == 0 ? d[k] : -d[k];
+  }
+}
+
+std::unique_ptr<Radau> make_radau(Method method, int n) {
+  switch (method) {
+    case Method::radau5:
+      return std::make_unique<RadauSteps<Radau5Tableau>>(n);
+    case Method::radau9:
+      return std::make_unique<RadauSteps<Radau9Tableau>>(n);
+    case Method::radau13:
+      return std::make_unique<RadauSteps<Radau13Tableau>>(n);
+    case Method::dopri5:
+    case Method::dop853:
+    case Method::taylor:
+      return nullptr;
+  }
+  __builtin_unreachable();
+}
+
+}  // namespace saltus::ode

@@ -1,0 +1,167 @@
+// The simplified Newton iteration of a Radau IIA method, and its Jacobian.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <vector>
+
+#include "saltus/ode/radau_steps_internal.hpp"
+#include "saltus/ode/step_checks_internal.hpp"
+
+namespace saltus::ode {
+
+inline constexpr double radau_epsilon = std::numeric_limits<double>::epsilon();
+inline constexpr double smallest_normal = std::numeric_limits<double>::min();
+
+/// From half the significant digits on, iterates may be rounding: their ratio says nothing about the convergence.
+inline constexpr double half_digits = 0x1p-26;
+/// A Jacobian with which the iteration converges at least this fast is kept (THET of the code RADAU5).
+inline constexpr double keep_rate = 1e-3;
+/// With a Jacobian of an earlier step: slower than this, a new one is cheaper than the iterations.
+inline constexpr double renew_rate = 0.1;
+inline constexpr int most_iterations = 30;
+/// Lengths of two steps that share their factors: the rate of convergence is changed by as much.
+inline constexpr double same_length = 0x1p-20;
+
+inline double natural_size(const Tolerances& tolerances) {
+  return tolerances.rtol > 0.0 ? tolerances.atol / tolerances.rtol : 0.0;
+}
+
+/// Until the next correction would be a rounding, or corrections are rounding and no longer fall.
+template <class Tableau>
+auto RadauSteps<Tableau>::iterate(const RadauTrial& trial) -> Outcome {
+  const double stagnation = std::clamp(1e-2 * trial.tolerances.rtol, 1e3 * radau_epsilon, 1e-8);
+  double previous = 0.0;
+  rate_ = 0.0;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    if (!stage_slopes(trial)) return Outcome::undefined;
+    const double size = correct(trial);
+    if (!std::isfinite(size)) return Outcome::undefined;
+    if (size <= radau_epsilon) return Outcome::converged;
+    if (iteration > 0) {
+      const double rate = size / previous;
+      if (previous > half_digits) rate_ = std::max(rate_, rate);
+      if (rate < 1.0 && size * rate <= radau_epsilon * (1.0 - rate)) return Outcome::converged;
+      if (rate > 0.5 && size <= stagnation) return Outcome::converged;
+      if (rate >= 2.0 || (rate >= 1.0 && iteration > 2)) return Outcome::failed;
+      if (rate > renew_rate && !jacobian_here_ && size > stagnation) return Outcome::failed;
+    }
+    previous = size;
+  }
+  return Outcome::failed;
+}
+
+template <class Tableau>
+bool RadauSteps<Tableau>::stage_slopes(const RadauTrial& trial) {
+  for (Eigen::Index j = 0; j <= last; ++j) {
+    argument_ = start_ + z_.col(j);
+    const double t = trial.t + Tableau::c[at(j)] * trial.h;
+    if (!evaluate(trial, t, argument_, slopes_.col(j).data())) return false;
+  }
+  return true;
+}
+
+/// The corrections of the transformed increments (IV.8.4).
+template <class Tableau>
+void RadauSteps<Tableau>::solve_systems(double h) {
+  const auto mixed = [&](std::size_t row, Eigen::Index i) {
+    const auto& weights = Tableau::t_inverse[row];
+    double sum = weights[0] * slopes_(i, 0);
+    for (std::size_t j = 1; j < stages; ++j) sum += weights[j] * slopes_(i, static_cast<Eigen::Index>(j));
+    return sum;
+  };
+  for (Eigen::Index i = 0; i < n_; ++i) right_[i] = mixed(0, i) - Tableau::gamma / h * w_(i, 0);
+  systems_.solve(right_, solution_);
+  corrections_.col(0) = solution_;
+  for (std::size_t k = 0; k < stages / 2; ++k) {
+    const auto [alpha, beta] = Tableau::pairs[k];
+    const auto real = static_cast<Eigen::Index>(2 * k + 1);
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      const double u = w_(i, real);
+      const double v = w_(i, real + 1);
+      complex_right_[i] = std::complex<double>(mixed(2 * k + 1, i) - (alpha * u - beta * v) / h,
+                                               mixed(2 * k + 2, i) - (beta * u + alpha * v) / h);
+    }
+    systems_.solve(k, complex_right_, complex_solution_);
+    corrections_.col(real) = complex_solution_.real();
+    corrections_.col(real + 1) = complex_solution_.imag();
+  }
+}
+
+/// One Newton correction; returns its largest component relative to the size of the component.
+template <class Tableau>
+double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
+  solve_systems(trial.h);
+  const double floor = natural_size(trial.tolerances);
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    double change = 0.0;
+    double size = std::abs(start_[i]) + floor;
+    for (Eigen::Index j = 0; j <= last; ++j) {
+      const auto& row = Tableau::t[at(j)];
+      double dz = row[0] * corrections_(i, 0);
+      for (std::size_t k = 1; k < stages; ++k) dz += row[k] * corrections_(i, static_cast<Eigen::Index>(k));
+      w_(i, j) += corrections_(i, j);
+      z_(i, j) += dz;
+      change = std::max(change, std::abs(dz));
+      size = std::max(size, std::abs(z_(i, j)));
+      if (!std::isfinite(dz)) return std::numeric_limits<double>::infinity();
+    }
+    largest = std::max(largest, change / std::max(size, smallest_normal));
+  }
+  return largest;
+}
+
+/// Forward differences, each into the direction in which the solution goes: a domain that ends at the start is not
+/// left.
+template <class Tableau>
+bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
+  largest_ = start_.cwiseAbs().maxCoeff();
+  const auto either_way = [&](const std::vector<std::size_t>& columns) {
+    return difference(trial, columns, +1.0) || difference(trial, columns, -1.0);
+  };
+  for (const auto& columns : systems_.groups()) {
+    if (!either_way(columns)) return false;
+  }
+  for (Eigen::Index j = 0; !systems_.is_sparse() && j < n_; ++j) {
+    one_column_.assign(1, static_cast<std::size_t>(j));
+    if (!either_way(one_column_)) return false;
+  }
+  jacobian_known_ = jacobian_here_ = true;
+  factors_.known = false;
+  return true;
+}
+
+template <class Tableau>
+double RadauSteps<Tableau>::increment(const RadauTrial& trial, Eigen::Index column, double largest) const {
+  const auto& tolerances = trial.tolerances;
+  const double natural = half_digits * natural_size(tolerances);
+  const double floor = tolerances.rtol > 0.0 ? std::min(tolerances.atol, natural) : tolerances.atol;
+  const double reach = trial.h * trial.slope[column];
+  double increment = std::max(half_digits * std::max(std::abs(start_[column]), std::abs(reach)), floor);
+  if (!(increment >= smallest_normal)) increment = half_digits * (largest > 0.0 ? largest : 1.0);
+  return std::copysign(increment, reach);
+}
+
+/// Columns that have no row in common, all at once.
+template <class Tableau>
+bool RadauSteps<Tableau>::difference(const RadauTrial& trial, const std::vector<std::size_t>& columns,
+                                     double direction) {
+  argument_ = start_;
+  for (const std::size_t column : columns) {
+    const auto j = static_cast<Eigen::Index>(column);
+    argument_[j] += direction * increment(trial, j, largest_);
+  }
+  if (!evaluate(trial, trial.t, argument_, difference_slope_.data())) return false;
+  difference_slope_ -= Eigen::Map<const Vector>(trial.slope, n_);
+  bool finite = true;
+  for (const std::size_t column : columns) {
+    const auto j = static_cast<Eigen::Index>(column);
+    finite = systems_.set_column(j, difference_slope_, argument_[j] - start_[j]) && finite;
+  }
+  return finite;
+}
+
+}  // namespace saltus::ode
