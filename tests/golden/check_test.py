@@ -79,6 +79,20 @@ until = 1e9
 """
 
 
+JUMP = """
+[model]
+name = "m"
+[states]
+x = 1
+[dynamics]
+x = "-x"
+[[jumps]]
+when = "x < k"
+set = { y = "z", x = "3*w" }
+delay = "d"
+"""
+
+
 class Mistakes(tool.ToolTest):
     def check(self, text, *arguments):
         out, err = self.run_tool("check", self.write("m.toml", text), *arguments, code=2)
@@ -109,6 +123,17 @@ class Mistakes(tool.ToolTest):
                     "26",  # a guard without direction
                     "28"]  # [simulat]
         self.assertEqual(places, expected, err)
+
+    def test_all_of_one_jump(self):
+        _, err = self.check(JUMP)
+        places = [line.split(":")[1:3] for line in err.splitlines() if ": error: " in line]
+        self.assertEqual(places, [["9", "11"], ["10", "7"], ["10", "12"], ["10", "28"], ["11", "10"]], err)
+        self.assertEqual(err.count("in [[jumps]]"), 5)
+
+    def test_options_that_do_not_fit(self):
+        _, err = self.check("[model]\nname = 'm'\n[states]\nx = 1\n[dynamics]\nx = '-x'\n[simulate]\nuntil = -1\n")
+        self.assertIn("until (-1) is not after from (0)", err)
+        self.assertIn("until = -1\n", err)
 
     def test_a_mistake_in_a_setting_is_told_as_before(self):
         path = self.write("m.toml", FRICTION)

@@ -124,6 +124,11 @@ class StoredModels(tool.ToolTest):
         first, again = self.computed("r.json"), self.computed("again.json")
         for key in ("objective", "u", "events", "trajectory", "final", "model"):
             self.assertEqual(first[key], again[key], key)
+        _, err = self.run_tool("simulate", "r.json", "--quiet", code=0)
+        self.assertIn("note: the controls are those of the model; for those that were found add --set "
+                      "simulate.inputs.u.result=r.json", err)
+        _, err = self.run_tool("simulate", "r.json", "--quiet", "--set", "simulate.inputs.u.result=r.json", code=0)
+        self.assertEqual(err, "")
         # Its open form, too: the options of both commands are there.
         self.run_tool("check", "r.json", code=0)
 

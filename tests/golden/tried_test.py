@@ -105,6 +105,24 @@ set = { on = 1 }
 until = 6.5
 """
 
+# The switching function does not see the control's current at once.
+SLIDING_CONTROL = """
+[model]
+name = "position control with an armature"
+[states]
+theta = 0
+omega = 0
+cur = 0
+[definitions]
+s = "omega + 8*(theta - 1)"
+[dynamics]
+theta = "omega"
+omega = "(0.01*cur - 0.1*omega - 0.002*sin(3*t))/0.01"
+cur = "(-24*sign(s) - cur - 0.01*omega)/0.5"
+[simulate]
+until = 10
+"""
+
 
 class Tried(tool.ToolTest):
     def simulated(self, text, *arguments, code=0):
@@ -162,6 +180,13 @@ class Tried(tool.ToolTest):
         _, _, err = self.simulated(FEEDBACK, "--method", "smoothed", "--set", "simulate.smoothed.epsilon=1e-9", code=3)
         self.assertIn("a wider layer: simulate.smoothed.epsilon = ", err)
         self.assertNotIn('method = "smoothed"', err)
+
+    def test_the_layer_that_is_advised_is_not_too_thin(self):
+        _, _, err = self.simulated(SLIDING_CONTROL, code=3)
+        epsilon = err.split("simulate.smoothed.epsilon = ")[1].split(",")[0]
+        result, _, _ = self.simulated(SLIDING_CONTROL, "--method", "smoothed", "--set",
+                                      f"simulate.smoothed.epsilon={epsilon}")
+        self.assertLess(result["statistics"]["steps"], 100_000)
 
     def test_a_puck_comes_to_rest(self):
         result, _, _ = self.simulated(PUCK)

@@ -16,6 +16,7 @@
 #include "saltus/cli/text/source_excerpt.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/check/json_check.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 
 namespace saltus::cli {
@@ -62,6 +63,10 @@ ExitCode run_check(const CheckArguments& arguments) {
   if (!input) return refuse_model(arguments, input.error(), *text);
   const auto system = model::build(input->file.description, input->overrides);
   if (!system) return refuse_model(arguments, io::located(system.error(), input->file), *text);
+  // Without an end time the file is no mistake: --until gives it.
+  if (const auto fit = io::check_options(input->file); !fit && input->file.simulate.until) {
+    return refuse_model(arguments, fit.error(), *text);
+  }
   const auto optimization = optimize_overview(*input);
   if (!optimization) return refuse_model(arguments, optimization.error(), *text);
   auto overview = io::overview_of(input->file.description, *system, input->file.captions);

@@ -210,6 +210,18 @@ std::string call_of(const char* command, const RunArguments& arguments) {
   return command_line(call);
 }
 
+/// A stored optimum holds its model, and that its first guess of the controls.
+void tell_whose_controls(const ModelInput& input) {
+  const auto& description = input.file.description;
+  const bool stored = input.path != description.file;
+  if (!stored || !input.file.optimize || description.controls.empty()) return;
+  if (!description.inputs.empty() || !description.sampled_inputs.empty()) return;
+  print_error(
+      fmt::format("note: the controls are those of the model; for those that were found add --set "
+                  "simulate.inputs.{}.result={}",
+                  description.controls.front().name, input.path));
+}
+
 ExitCode run_model(const char* command, const RunArguments& arguments, Compute compute) {
   const auto shown = shown_events(arguments.events);
   if (!shown) return refuse(shown.error());
@@ -225,6 +237,7 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
 
   if (arguments.methods == RunMethods::chosen)
     for (const auto& warning : options_without_effect(input->file)) print_error(fmt::format("warning: {}", warning));
+  tell_whose_controls(*input);
   auto growing = outputs->growing(*shown);
   auto result = compute_all(arguments, *input, *outputs, growing ? &*growing : nullptr, compute);
   if (!result) return refuse_with_source(io::located(result.error(), input->file), *text);

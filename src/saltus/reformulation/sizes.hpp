@@ -18,6 +18,8 @@ struct Counts {
   int algebraic = 0;          ///< n_alg:  step n_f + 3 n_psi + n_beta;  Stewart 2 n_f + 1
   int complementarities = 0;  ///< n_comp: step 2 n_psi;                 Stewart n_f
   int equations = 0;          ///< n_eq:   step n_psi + n_beta + n_f;    Stewart n_f + 1
+
+  [[nodiscard]] bool operator==(const Counts&) const = default;
 };
 
 /// One group of switching functions that occur in common products.

@@ -51,10 +51,19 @@ const model::System& of_elements(const model::System& system) {
   return system.frozen && system.frozen->system ? *system.frozen->system : system;
 }
 
+/// A line for each group of surfaces, and one for all that follow each other with the same numbers.
 std::string groups_text(const Sizes& sizes) {
   if (sizes.groups.size() < 2) return "";
   std::string text;
-  for (const auto& group : sizes.groups) text += line("  " + shortened(group.surfaces), group.counts);
+  for (auto first = sizes.groups.begin(); first != sizes.groups.end();) {
+    const auto end =
+        std::find_if(first, sizes.groups.end(), [&](const auto& group) { return !(group.counts == first->counts); });
+    const auto alike = end - first;
+    text += line(alike == 1 ? "  " + shortened(first->surfaces)
+                            : fmt::format("  {} … ({} alike)", shortened(first->surfaces), alike),
+                 first->counts);
+    first = end;
+  }
   return text;
 }
 

@@ -13,11 +13,13 @@ namespace {
 /// Of fewer events no power can be told.
 constexpr long fewest_shrinking = 64;
 
-/// What to smooth such laps with: a layer that is far wider than they are now has far fewer of them outside.
-std::string resolving_layer(double farthest, bool smoothed) {
-  constexpr double wider = 100.0;
-  if (!(farthest > 0.0) || !std::isfinite(farthest)) return "method = \"smoothed\"";
-  const double epsilon = std::pow(10.0, std::ceil(std::log10(wider * farthest)));
+/// What to smooth such laps with: a layer that is far wider than they are now has far fewer of them outside. Below a
+/// hundred thousandth of the function's size a run takes as many steps as there would be laps.
+std::string resolving_layer(double farthest, double size, bool smoothed) {
+  constexpr double wider = 100.0, least = 1e-5;
+  const double wanted = std::max(wider * farthest, least * size);
+  if (!(wanted > 0.0) || !std::isfinite(wanted)) return "method = \"smoothed\"";
+  const double epsilon = std::pow(10.0, std::ceil(std::log10(wanted)));
   return smoothed ? fmt::format("a wider layer: simulate.smoothed.epsilon = {:g}", epsilon)
                   : fmt::format("method = \"smoothed\" with simulate.smoothed.epsilon = {:g}", epsilon);
 }
@@ -114,10 +116,9 @@ std::string ContractingCycles::describe() {
                       : std::string("they have no limit, and their number grows without bound");
   return fmt::format(
       "laps of {} shrink like the power -{:.2g} of their number (relative degree 2: the derivative of the function is "
-      "the "
-      "same on both sides, so that nothing slides): {}; give the switch a hysteresis, use {}, or start "
+      "the same on both sides, so that nothing slides): {}; give the switch a hysteresis, use {}, or start "
       "at rest where function and derivative are 0, which is held",
-      names, *exponent, limit, resolving_layer(farthest, smoothed));
+      names, *exponent, limit, resolving_layer(farthest, rounding / rounding_unit, smoothed));
 }
 
 }  // namespace saltus::event_integrator

@@ -33,14 +33,26 @@ class JumpTranslation {
     stated_.delay_location = jump.delay ? jump.delay->location : jump.location;
   }
 
-  [[nodiscard]] Expected<JumpStatement> run() {
-    for (const auto step : {&JumpTranslation::trigger, &JumpTranslation::set, &JumpTranslation::execution}) {
-      if (auto error = (this->*step)()) return tl::unexpected(*error);
+  /// Null: there are mistakes, all of which the scope collects (ModelScope::end_at).
+  [[nodiscard]] Expected<std::optional<JumpStatement>> run() {
+    auto error = end_at(trigger());
+    for (const auto& entry : jump_.set) {
+      if (!error) error = end_at(target(entry));
+      if (!error) error = end_at(value(entry));
     }
+    if (!error) error = end_at(execution());
+    if (error) return tl::unexpected(*error);
+    if (broken_) return std::nullopt;
     return std::move(stated_);
   }
 
  private:
+  std::optional<Error> end_at(std::optional<Error> error) {
+    if (!error) return std::nullopt;
+    broken_ = true;
+    return scope_.end_at(with_context(std::move(*error), "in [[jumps]]"));
+  }
+
   std::optional<Error> trigger() {
     if (jump_.trigger == JumpTrigger::times) return times();
     if (jump_.when == nullptr) {
@@ -87,14 +99,16 @@ class JumpTranslation {
     return std::nullopt;
   }
 
-  std::optional<Error> set() {
-    for (const auto& entry : jump_.set) {
-      const Meaning* meaning = scope_.names().find(entry.name);
-      if (meaning == nullptr || meaning->kind != NameKind::state) return no_such_state(entry, meaning);
-      auto value = scope_.expression(*entry.expression);
-      if (!value) return with_context(value.error(), fmt::format("in set {}", entry.name));
-      stated_.set.push_back({meaning->index, *value, entry.location});
-    }
+  std::optional<Error> target(const NamedExpression& entry) const {
+    const Meaning* meaning = scope_.names().find(entry.name);
+    if (meaning == nullptr || meaning->kind != NameKind::state) return no_such_state(entry, meaning);
+    return std::nullopt;
+  }
+
+  std::optional<Error> value(const NamedExpression& entry) {
+    auto taken = scope_.expression(*entry.expression);
+    if (!taken) return with_context(taken.error(), fmt::format("in set {}", entry.name));
+    if (!broken_) stated_.set.push_back({scope_.names().find(entry.name)->index, *taken, entry.location});
     return std::nullopt;
   }
 
@@ -122,6 +136,7 @@ class JumpTranslation {
   const JumpDescription& jump_;
   ModelScope& scope_;
   JumpStatement stated_;
+  bool broken_ = false;
 };
 
 std::optional<Error> fill_times(const JumpStatement& stated, Jump& jump) {
@@ -214,11 +229,8 @@ std::optional<Error> fill_execution(Recognition& recognition, const JumpStatemen
 std::optional<Error> state_jumps(const Description& description, ModelScope& scope, Statement& statement) {
   for (const auto& jump : description.jumps) {
     auto stated = JumpTranslation(jump, scope).run();
-    if (stated) {
-      statement.jumps.push_back(std::move(*stated));
-    } else if (auto error = scope.end_at(with_context(stated.error(), "in [[jumps]]"))) {
-      return error;
-    }
+    if (!stated) return stated.error();
+    if (*stated) statement.jumps.push_back(std::move(**stated));
   }
   return std::nullopt;
 }
