@@ -22,6 +22,7 @@ _shared = _pathlib.Path(__file__).parent / "share"
 if _shared.is_dir():
     _core.set_shared_folder(str(_shared))
 
+from ._array import Array, array  # noqa: E402
 from ._builder import Builder  # noqa: E402
 from ._expression import (  # noqa: E402
     Expression,
@@ -58,6 +59,7 @@ from ._sweep import Sweep  # noqa: E402
 
 __version__: str = _core.version
 __all__ = [
+    "Array",
     "Builder",
     "Event",
     "Expression",
@@ -69,6 +71,7 @@ __all__ = [
     "Status",
     "Stopped",
     "Sweep",
+    "array",
     "catalogue",
     "compare",
     "load",

@@ -6,6 +6,9 @@ import collections.abc
 import json
 import typing
 
+import numpy as np
+
+from . import _array
 from ._expression import Expression, Operand, expression, owner_of, refuse
 from ._model import Model
 from ._result import Result
@@ -13,6 +16,7 @@ from ._settings import Value
 from ._sweep import Sweep
 
 Rates = typing.Mapping[typing.Any, Operand]
+Entries = typing.Union[np.ndarray, list[typing.Any], tuple[typing.Any, ...]]
 
 
 class Builder:
@@ -71,6 +75,14 @@ class Builder:
         """A state with its initial value; bounds matter to optimisation only. `unit` and `label` are for axes."""
         return self._declare("states", name, self._bounded(initial, lower, upper, _given({"unit": unit, "label": label})))
 
+    def states(self, name: str, initial: typing.Sequence[Operand]) -> _array.Array:
+        """Several states as an array, NAME1, NAME2, …, with a list of initial values.
+
+        >>> saltus.Builder("m").states("x", [1, 0, 0])
+        Array([x1, x2, x3], dtype=object)
+        """
+        return _array.array([self.state(f"{name}{i + 1}", value) for i, value in enumerate(initial)])
+
     def control(self, name: str, initial: Operand = 0, *, lower: Operand = None, upper: Operand = None) -> Expression:
         """A control, constant unless it has an :meth:`input`."""
         return self._declare("controls", name, self._bounded(initial, lower, upper))
@@ -103,8 +115,22 @@ class Builder:
 
     # What happens --------------------------------------------------------------------------------------------------
 
-    def rate(self, state: Expression | str, value: Operand) -> None:
-        """The derivative of a state with respect to time; once for every state."""
+    def rate(self, state: Expression | str | Entries, value: Operand) -> None:
+        """The derivative of a state with respect to time; once for every state. Of an array entry by entry.
+
+        >>> m = saltus.Builder("chain")
+        >>> X = m.states("x", [1, 0, 0])
+        >>> m.rate(X, np.roll(X, 1) - X)
+        >>> m.simulate(until=1).final["x3"] > 0.1
+        True
+        """
+        if isinstance(state, (np.ndarray, list, tuple)):
+            states, values = _array.array(state), _array.array(value)
+            if values.shape not in ((), states.shape):
+                raise refuse(f"rates of shape {values.shape} for states of shape {states.shape}", "one for every state")
+            for one, its in zip(states.flat, np.broadcast_to(values, states.shape).flat):
+                self.rate(one, its)
+            return
         name = self._state(state)
         if name in self._parts["dynamics"]:
             raise refuse(f"the state '{name}' has two rates", "add them: m.rate(x, a + b)")

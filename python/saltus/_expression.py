@@ -12,6 +12,7 @@ import typing
 
 import numpy as np
 
+from . import _array
 from ._errors import ModelError
 
 OR, AND, NOT, COMPARISON, SUM, PRODUCT, SIGN, POWER, PRIMARY = range(1, 10)
@@ -87,6 +88,15 @@ class Expression:
     def __mod__(self, other: Operand) -> typing.Any:
         return mod(self, other)
 
+    def __rmod__(self, other: Operand) -> typing.Any:
+        return mod(other, self)
+
+    def __floordiv__(self, other: Operand) -> typing.Any:
+        return floor(self / other)
+
+    def __rfloordiv__(self, other: Operand) -> typing.Any:
+        return floor(other / self)
+
     def __neg__(self) -> Expression:
         return _make("-" + _inside(self, SIGN), SIGN, False, self)
 
@@ -139,7 +149,8 @@ class Expression:
             raise refuse(
                 f"Python cannot decide whether {self.text} holds: that changes during the simulation",
                 "write saltus.if_(condition, a, b) for `if`, & | ~ for `and or not`, (a < x) & (x < b) for a < x < b, "
-                "saltus.max, saltus.min and saltus.sign for those of Python and numpy",
+                "saltus.max, saltus.min and saltus.sign for those of Python and numpy, and compare arrays that are made by "
+                "saltus.array: saltus.array([x, v]) > 0",
             )
         raise refuse(f"{self.text} is no condition", "compare it: x > 0")
 
@@ -152,7 +163,7 @@ class Expression:
     __int__ = __index__ = __float__
 
     def __iter__(self) -> typing.Iterator[Expression]:
-        raise refuse(f"{self.text} is one number", "arrays of expressions: np.array([x, v])")
+        raise refuse(f"{self.text} is one number", "arrays of expressions: saltus.array([x, v])")
 
 
 def _functions_for_numpy() -> None:
@@ -174,7 +185,10 @@ def expression(value: Operand) -> Expression:
     if type(value).__module__.startswith("casadi"):
         return _of_casadi(value)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
-        raise refuse(f"expected a number or an expression, found {value!r}", "expressions are scalar, entry by entry")
+        raise refuse(
+            f"expected a number or an expression, found {value!r}",
+            'expressions are scalar; of arrays: m.states("x", [1, 0]), m.rate(X, A @ X), or entry by entry',
+        )
     if isinstance(value, numbers.Integral):
         text = str(int(value))
     else:
@@ -253,7 +267,7 @@ def _entry_by_entry(make: Made) -> Made:
         if not any(isinstance(operand, np.ndarray) and operand.ndim > 0 for operand in operands):
             return make(*operands)
         entries = [operand if isinstance(operand, np.ndarray) else _one(operand) for operand in operands]
-        return np.frompyfunc(make, len(operands), 1)(*entries)
+        return _array.own(np.frompyfunc(make, len(operands), 1)(*entries))
 
     return typing.cast(Made, made)
 
@@ -360,3 +374,7 @@ def if_(condition: Operand, a: Operand, b: Operand) -> Expression:
 t = Expression("t")
 pi = Expression("pi")
 _functions_for_numpy()
+_array.instead(
+    maximum=max, minimum=min, fmax=max, fmin=min, sign=sign, where=if_, clip=lambda x, low, high: min(max(x, low), high),
+    logical_and=lambda a, b: a & b, logical_or=lambda a, b: a | b, logical_not=lambda a: ~a,
+)  # fmt: skip

@@ -161,6 +161,7 @@ def test_what_python_must_not_decide(m):
     refused(lambda: float(x), "saltus.sin")
     refused(lambda: x > 0 & y > 0, "(x > 0) & (y > 0)")
     refused(lambda: list(x), "arrays")
+    refused(lambda: np.array([x, y]) > 0, "saltus.array([x, v]) > 0")
     refused(lambda: x + "1", "'1'")
     refused(lambda: x + float("nan"), "finite")
     refused(lambda: saltus.max(x), "2 arguments")
