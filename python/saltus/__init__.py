@@ -24,6 +24,7 @@ if _shared.is_dir():
 
 from ._array import Array, array  # noqa: E402
 from ._builder import Builder  # noqa: E402
+from ._events import Event, Events  # noqa: E402
 from ._expression import (  # noqa: E402
     Expression,
     abs,
@@ -54,7 +55,7 @@ from ._expression import (  # noqa: E402
     tanh,
 )
 from ._model import Model, catalogue, compare, models, order  # noqa: E402
-from ._result import Event, Final, Result, Status, load  # noqa: E402
+from ._result import Final, Result, Status, load  # noqa: E402
 from ._sweep import Sweep  # noqa: E402
 
 __version__: str = _core.version
@@ -62,6 +63,7 @@ __all__ = [
     "Array",
     "Builder",
     "Event",
+    "Events",
     "Expression",
     "Final",
     "Model",

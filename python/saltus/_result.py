@@ -12,9 +12,9 @@ import numpy as np
 
 from . import _card, _core, _data, _plot
 from ._errors import Stopped
+from ._events import Event, Events
 
 Array = np.ndarray
-Event = _core.Event
 
 
 _OF_OPTIMUM = (
@@ -62,24 +62,6 @@ class Final:
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:.6g}" for name, value in self._named.items())
         return f"<t = {self.t:.6g}: {values}>"
-
-
-class Events(list[_core.Event]):
-    """The events of a run, in their order."""
-
-    def table(self) -> typing.Any:
-        """A table of pandas: a row for every event."""
-        pandas = needed("pandas", "data")
-        return pandas.DataFrame(
-            {
-                "t": [event.t for event in self],
-                "kind": [event.kind for event in self],
-                "name": [event.name for event in self],
-                "surfaces": [", ".join(event.surfaces) for event in self],
-                "unique": [event.unique for event in self],
-                "reason": [event.reason for event in self],
-            }
-        )
 
 
 class Sensitivities(typing.NamedTuple):
