@@ -152,5 +152,5 @@ def _region_groups(event: Json) -> list[Json]:
     ]
 
 
-copyreg.pickle(_core.Event, lambda event: (_restored_event, (_stored_event(event),)))  # type: ignore[arg-type]
-copyreg.pickle(_core.Alternative, lambda other: (_restored_alternative, (_stored_alternative(other),)))  # type: ignore[arg-type]
+copyreg.pickle(_core.Event, lambda event: (_restored_event, (_stored_event(event),)))
+copyreg.pickle(_core.Alternative, lambda other: (_restored_alternative, (_stored_alternative(other),)))

@@ -221,10 +221,10 @@ class Model:
                 found = self._core.sweep(*arguments, jobs, (1, 1), tell, warned)
             except BaseException as stopped:
                 if isinstance(getattr(stopped, "result", None), tuple):
-                    stopped.result = Sweep(with_results(stopped.result), shape)  # type: ignore[attr-defined]
+                    stopped.result = Sweep(with_results(stopped.result, self, arguments), shape)  # type: ignore[attr-defined]
                 raise
         _warn(warned)
-        return Sweep(with_results(found), shape)
+        return Sweep(with_results(found, self, arguments), shape)
 
     def equations(self, *, latex: bool = False) -> list[tuple[str, str, str]]:
         """The equations as they were read: left side, right side, and where or when they hold; at most 1000.

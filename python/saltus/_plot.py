@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typing
 
+from ._data import need_rows
 from ._shape import broken_at_jumps, slides, sliding_spans
 
 if typing.TYPE_CHECKING:
@@ -36,7 +37,7 @@ def _matplotlib() -> typing.Any:
 
 def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typing.Any:
     """A row of axes for every name; sliding is shaded, every event marked at its value."""
-    _need_rows(r)
+    need_rows(r, 2)
     pyplot = _matplotlib()
     wanted = list(names) if names is not None else [*r.states, *r.controls, *r.output_names]
     columns = {name: r[name] for name in wanted}
@@ -60,14 +61,6 @@ def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typ
     return axes
 
 
-def _need_rows(r: Result) -> None:
-    if len(r.t) < 2:
-        raise ValueError(
-            'this result has no trajectory to draw: of a sweep ask for it with keep="trajectory", or simulate its '
-            "parameters once more"
-        )
-
-
 def _mark_events(axis: typing.Any, r: Result, column: typing.Any) -> None:
     for kind, (mark, colour) in MARKS.items():
         rows = [_row_before(r, event.t) for event in r.events if event.kind == kind]
@@ -81,7 +74,7 @@ def _row_before(r: Result, t: float) -> int:
 
 def phase(r: Result, x: str, y: str, axis: typing.Any) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
-    _need_rows(r)
+    need_rows(r, 2)
     pyplot = _matplotlib()
     if axis is None:
         _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")

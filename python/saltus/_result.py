@@ -6,6 +6,7 @@ import contextlib
 import functools
 import json
 import os
+import re
 import typing
 
 import numpy as np
@@ -76,6 +77,13 @@ class Sensitivities(typing.NamedTuple):
 Again = tuple[typing.Any, list[str], list[tuple[str, str, str]]]
 
 
+class Kept(typing.NamedTuple):
+    """What a sweep kept of a run ("final" or "events"), and how many events happened."""
+
+    what: str
+    events: int
+
+
 class Result:
     """What a run computed: rows, events, the end, and why it ended.
 
@@ -88,9 +96,10 @@ class Result:
     False
     """
 
-    def __init__(self, run: _core.Run, again: Again | None = None) -> None:
+    def __init__(self, run: _core.Run, again: Again | None = None, kept: Kept | None = None) -> None:
         self._run = run
         self._again = again
+        self._kept = kept
 
     # What was computed ---------------------------------------------------------------------------------------------
 
@@ -191,8 +200,22 @@ class Result:
 
     @functools.cached_property
     def events(self) -> Events:
-        """All events, in their order; ``events.table()`` is a table of pandas."""
+        """All events, in their order; ``events.table()`` is a table of pandas.
+
+        >>> r = saltus.catalogue("stick-slip").simulate(until=2)
+        >>> r.events[0]
+        <enter_sliding of slip at t = 0.244688802>
+        """
+        if self._lost_events:
+            raise ValueError(
+                f'events not kept; {self._lost_events} happened: sweep(…, keep="events") or keep="trajectory" keeps them'
+            )
         return Events(self._run.events)
+
+    @property
+    def _lost_events(self) -> int:
+        """How many events happened that are not here."""
+        return self._kept.events if self._kept is not None and self._kept.what == "final" else 0
 
     @functools.cached_property
     def status(self) -> Status:
@@ -255,8 +278,23 @@ class Result:
 
     @property
     def span(self) -> tuple[float, float]:
-        """First and last time of the solution."""
-        return float(self.t[0]), float(self.status.time_reached)
+        """First and last time of the solution.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=2).span
+        (0.0, 2.0)
+        """
+        return self._begin, float(self.status.time_reached)
+
+    @functools.cached_property
+    def _begin(self) -> float:
+        """The first time; of a run whose rows were not kept that of its first step, taken once more."""
+        if len(self.t):
+            return float(self.t[0])
+        if self._again is None:
+            raise ValueError('the rows of this run were not kept: sweep(…, keep="trajectory") keeps them')
+        model, settings, options = self._again
+        first = [*options, ("simulate.max_steps", "1", "max_steps=1")]
+        return float(model._core.simulate(settings, first, None, []).t[0])
 
     def __call__(self, t: typing.Any, side: str = "right") -> Array:
         """The state at any time, or at several, from the polynomials of the steps; at an event `side` says which of both.
@@ -283,7 +321,7 @@ class Result:
         if self._again is None:
             raise ValueError(
                 "this result has its rows only (it was loaded, optimised, or is one of several): simulate its model to "
-                "have it at other times"
+                "have values at other times"
             )
         model, settings, options = self._again
         with own_results():
@@ -353,17 +391,24 @@ class Result:
         return _card.card(self)
 
     def __repr__(self) -> str:
-        return (
-            f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, "
-            f"{len(self.events)} events, {len(self.t)} rows>"
-        )
+        return f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, {self._counts}>"
+
+    @property
+    def _counts(self) -> str:
+        """How many events and rows there are."""
+        if self._lost_events:
+            return f"events not kept; {self._lost_events} happened"
+        return f"{len(self.events)} events, " + ("rows not kept" if self._kept else f"{len(self.t)} rows")
 
     def __str__(self) -> str:
         """The table of the tool."""
-        return self._run.table()
+        table = self._run.table()
+        if not self._lost_events:
+            return table
+        return re.sub(r"(?m)^(events +)none$", rf"\1not kept; {self._lost_events} happened", table)
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
-        return _restored, (self._run.json(True), self._again)
+        return _restored, (self._run.json(True), self._again, self._kept)
 
 
 @contextlib.contextmanager
@@ -395,8 +440,8 @@ def load(path: str | os.PathLike[str]) -> Result:
     return Result(_core.load(os.fspath(path)))
 
 
-def _restored(text: str, again: Again | None = None) -> Result:
-    return Result(_core.parse_result(text), again)
+def _restored(text: str, again: Again | None = None, kept: Kept | None = None) -> Result:
+    return Result(_core.parse_result(text), again, kept)
 
 
 def _unknown(name: str, known: list[str]) -> KeyError:

@@ -8,7 +8,8 @@ import typing
 import numpy as np
 
 from . import _core
-from ._result import Result, needed
+from ._result import Kept, Result, needed
+from ._settings import text_of
 
 Array = np.ndarray
 
@@ -20,15 +21,35 @@ SweepArguments = tuple[
 ]
 
 
-def with_results(found: tuple[dict[str, typing.Any], list[_core.Run], list[str]]) -> Found:
-    """What the library found, with its runs as results."""
+def with_results(
+    found: tuple[dict[str, typing.Any], list[_core.Run], list[str]], model: typing.Any, arguments: SweepArguments
+) -> Found:
+    """What the library found, with its runs as results that know how they can be run once more."""
     columns, runs, names = found
-    return columns, [Result(run) for run in runs], names
+    settings, options, keep = arguments[0], arguments[1], arguments[7]
+    swept = [(name, columns[column]) for name, column in zip(names, list(columns)[1:])]
+    results = []
+    row = 0
+    for run in runs:
+        rows = 1 if keep == "final" else len(run.events) if keep == "events" else len(run.t)
+        again = None
+        if rows > 0:  # of a run without a row the values are not known here
+            again = (model, [*settings, *(f"{name}={_text(column[row])}" for name, column in swept)], options)
+        events = int(columns["events"][row]) if keep == "final" else rows
+        results.append(Result(run, again, None if keep == "trajectory" else Kept(keep, events)))
+        row += rows
+    return columns, results, names
+
+
+def _text(value: typing.Any) -> str:
+    """A value of the table, as it was stated: whole numbers without a point."""
+    whole = not isinstance(value, str) and value != 0 and abs(value) < 1e15 and value == int(value)
+    return text_of(int(value) if whole else value)
 
 
 def share_of(model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]) -> Found:
     """One share of a sweep, in whatever process."""
-    return with_results(model._core.sweep(*arguments, jobs, share, None, []))
+    return with_results(model._core.sweep(*arguments, jobs, share, None, []), model, arguments)
 
 
 def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments, jobs: int) -> Found:
@@ -61,7 +82,7 @@ class Sweep:
 
     def __init__(self, found: Found, shape: tuple[int, ...]) -> None:
         columns, results, names = found
-        self.table: dict[str, Array] = {name: np.asarray(values) for name, values in columns.items()}
+        self.table: dict[str, Array] = {name: _column(name, values) for name, values in columns.items()}
         self.results: list[Result] = results
         self.names: list[str] = names
         self._shape = shape
@@ -81,7 +102,13 @@ class Sweep:
         return all(result.status.done for result in self.results)
 
     def frame(self) -> typing.Any:
-        """The table as one of pandas."""
+        """The table as one of pandas.
+
+        >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5).frame()[["run", "belt", "events"]]
+           run  belt  events
+        0    1   0.1       1
+        1    2   0.2       2
+        """
         return needed("pandas", "data").DataFrame(self.table)
 
     def dataset(self) -> typing.Any:
@@ -109,3 +136,12 @@ class Sweep:
         return f"<saltus.Sweep of {len(self)} runs over {', '.join(self.names)}: " + ", ".join(
             f"{count} {status}" for status, count in sorted(counts.items())
         ) + ">"
+
+
+def _column(name: str, values: typing.Any) -> Array:
+    """Numbers of runs, of events and of modes are whole."""
+    column = np.asarray(values)
+    counts = name in ("run", "event", "events") or name.startswith("mode(")
+    if counts and column.dtype == float and np.all(np.mod(column, 1) == 0):
+        return column.astype(np.int64)
+    return column
