@@ -24,9 +24,10 @@ if _shared.is_dir():
 
 from ._array import Array, array  # noqa: E402
 from ._builder import Builder  # noqa: E402
-from ._events import Event, Events  # noqa: E402
-from ._expression import (  # noqa: E402
-    Expression,
+from ._catalogue import catalogue, compare, models, order  # noqa: E402
+from ._events import Alternative, Event, Events  # noqa: E402
+from ._expression import Expression  # noqa: E402
+from ._functions import (  # noqa: E402
     abs,
     acos,
     asin,
@@ -54,12 +55,14 @@ from ._expression import (  # noqa: E402
     tan,
     tanh,
 )
-from ._model import Model, catalogue, compare, models, order  # noqa: E402
-from ._result import Final, Result, Status, load  # noqa: E402
+from ._model import Model  # noqa: E402
+from ._outcome import Final, Sensitivities, Status  # noqa: E402
+from ._result import Result, load  # noqa: E402
 from ._sweep import Sweep  # noqa: E402
 
 __version__: str = _core.version
 __all__ = [
+    "Alternative",
     "Array",
     "Builder",
     "Event",
@@ -72,6 +75,7 @@ __all__ = [
     "Result",
     "Status",
     "Stopped",
+    "Sensitivities",
     "Sweep",
     "array",
     "catalogue",

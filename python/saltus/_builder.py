@@ -275,7 +275,14 @@ class Builder(Structure):
     # What becomes of it --------------------------------------------------------------------------------------------
 
     def model(self) -> Model:
-        """The model, to be simulated. Raises :class:`ModelError` for what is missing."""
+        """The model, to be simulated. Raises :class:`ModelError` for what is missing.
+
+        >>> m = saltus.Builder("decay")
+        >>> x = m.state("x", 1)
+        >>> m.rate(x, -x)
+        >>> m.model()
+        <saltus.Model 'decay'>
+        """
         moved = {name for entry in self._lists["modes"] for name in entry["dynamics"]}
         moved.update(self._mechanics.get("positions", []), self._mechanics.get("velocities", []))
         for name in self._parts["states"]:
@@ -284,29 +291,72 @@ class Builder(Structure):
         return Model.from_text(self.to_toml(), f"<{self.name}>")
 
     def simulate(self, until: float | None = None, **options: typing.Any) -> Result:
-        """:meth:`Model.simulate` of :meth:`model`."""
+        """:meth:`Model.simulate` of :meth:`model`.
+
+        >>> m = saltus.Builder("decay")
+        >>> x = m.state("x", 1)
+        >>> m.rate(x, -x)
+        >>> round(m.simulate(until=1).final["x"], 6)
+        0.367879
+        """
         return self.model().simulate(until, **options)
 
     def optimize(self, **options: typing.Any) -> Result:
-        """:meth:`Model.optimize` of :meth:`model`, whose problem is :meth:`optimal_control`."""
+        """:meth:`Model.optimize` of :meth:`model`, whose problem is :meth:`optimal_control`.
+
+        >>> m = saltus.Builder("car")
+        >>> q, u = m.state("q", 0), m.control("u", lower=-1, upper=1)
+        >>> m.rate(q, u)
+        >>> m.optimal_control(horizon=2, running_cost=u**2, terminal_constraints=[q == 1], control_intervals=4)
+        >>> m.optimize().u[:, 0].round(6).tolist()[0]
+        0.5
+        """
         if not self._optimize:
             raise refuse("no problem of optimal control is stated", "state it: m.optimal_control(horizon=…, …)")
         return self.model().optimize(**options)
 
     def sweep(self, over: typing.Mapping[str, typing.Any] | None = None, **arguments: typing.Any) -> Sweep:
-        """:meth:`Model.sweep` of :meth:`model`."""
+        """:meth:`Model.sweep` of :meth:`model`.
+
+        >>> m = saltus.Builder("decay")
+        >>> x = m.state("x", 1)
+        >>> m.rate(x, -x)
+        >>> m.sweep(x=[1, 2], until=1)["x"].round(6).tolist()
+        [0.367879, 0.735759]
+        """
         return self.model().sweep(over, **arguments)
 
     def compare(self, until: float | None = None, **options: typing.Any) -> Result:
-        """:meth:`Model.compare` of :meth:`model`."""
+        """:meth:`Model.compare` of :meth:`model`.
+
+        >>> m = saltus.Builder("decay")
+        >>> x = m.state("x", 1)
+        >>> m.rate(x, -x)
+        >>> m.compare(until=1).comparison["runs"][0]["method"]
+        'event'
+        """
         return self.model().compare(until, **options)
 
     def order(self, until: float | None = None, **options: typing.Any) -> Result:
-        """:meth:`Model.order` of :meth:`model`."""
+        """:meth:`Model.order` of :meth:`model`.
+
+        >>> m = saltus.Builder("decay")
+        >>> x = m.state("x", 1)
+        >>> m.rate(x, -x)
+        >>> m.order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]).order["series"][0]["stages"]
+        2
+        """
         return self.model().order(until, **options)
 
     def check(self) -> str:
-        """:meth:`Model.check` of :meth:`model`."""
+        """:meth:`Model.check` of :meth:`model`.
+
+        >>> m = saltus.Builder("decay")
+        >>> x = m.state("x", 1)
+        >>> m.rate(x, -x)
+        >>> "x' = -x" in m.check()
+        True
+        """
         return self.model().check()
 
     def _repr_html_(self) -> str:

@@ -81,7 +81,15 @@ class ModelError(ValueError):
 
 
 class Stopped(RuntimeError):
-    """Raised by :meth:`Result.require` for a run that stopped early; ``result`` has what was computed."""
+    """Raised by :meth:`Result.require` for a run that stopped early; ``result`` has what was computed.
+
+    >>> import saltus
+    >>> try:
+    ...     saltus.catalogue("stick-slip").simulate(until=5, max_steps=9).require()
+    ... except saltus.Stopped as stopped:
+    ...     print(stopped.result.status)
+    iteration_limit
+    """
 
     def __init__(self, text: str, result: Result | None = None) -> None:
         super().__init__(text, result)
@@ -92,4 +100,12 @@ class Stopped(RuntimeError):
 
 
 class ModelWarning(UserWarning):
-    """What the tool prints as a warning: unused names, options without effect."""
+    """What the tool prints as a warning: unused names, options without effect.
+
+    >>> import saltus, warnings
+    >>> with warnings.catch_warnings(record=True) as warned:
+    ...     warnings.simplefilter("always")
+    ...     r = saltus.catalogue("stick-slip").simulate(until=1, epsilon=0.1)
+    >>> warned[0].category.__name__
+    'ModelWarning'
+    """

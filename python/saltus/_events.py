@@ -13,6 +13,27 @@ Event = _core.Event
 Alternative = _core.Alternative
 Json = dict[str, typing.Any]
 
+Event.__doc__ = """A change of mode, a jump, an impact, or an event of the user, at time ``t``.
+
+``kind`` is "start", "crossing", "enter_sliding", "leave_sliding", "change_sliding", "jump", "impact", "accumulation",
+"contact", "lift_off", "stick", "slip" or "user"; ``name`` of a jump or an event, ``surfaces`` that changed. ``x`` and
+``x_after`` are the state on both sides, so are ``mode_before`` and ``mode_after``, ``alpha_…``, ``regions_…`` and
+``contact_modes_…``; ``impulse`` of an impact by contact. ``unique`` says whether the solution goes on in one way only
+(None: not decided), ``alternatives`` how else, ``reason`` why it went on as it did.
+
+>>> event = saltus.catalogue("bouncing-ball").simulate(until=2).events[0]
+>>> event
+<jump of bounce at t = 1.42857143>
+>>> event.x[1].round(6).item(), event.x_after[1].round(6).item()
+(-14.0, 12.6)
+"""
+Alternative.__doc__ = """A continuation that was possible at an event: ``mode``, ``alpha`` and ``regions`` behind it.
+
+>>> event = saltus.catalogue("part-ways").simulate().events[0]
+>>> event.unique, event.mode_after, event.alternatives[0].mode
+(False, [0, 0], [-1, 0])
+"""
+
 _OF_EVENT = "t kind name surfaces mode_before mode_after alpha_before alpha_after x x_after unique reason".split()
 _IF_THERE = "regions_before regions_after contact_modes_before contact_modes_after impulse".split()
 
@@ -47,6 +68,11 @@ class Events(list[_core.Event]):
         )
 
     def __getitem__(self, which: typing.Any) -> typing.Any:
+        """An event by its number, or several of them as a list of this kind.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=10).events[:1].table()["name"].tolist()
+        [None]
+        """
         found = super().__getitem__(which)
         return Events(found) if isinstance(which, slice) else found
 

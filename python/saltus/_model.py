@@ -62,7 +62,12 @@ class Model:
 
     @classmethod
     def from_text(cls, text: str, name: str = "model.toml") -> Model:
-        """A model from the text of a file. `name` is used in messages, and its folder to find files it names."""
+        """A model from the text of a file. `name` is used in messages, and its folder to find files it names.
+
+        >>> m = saltus.Model.from_text('[model]\\nname = "decay"\\n[states]\\nx = 1\\n[dynamics]\\nx = "-x"')
+        >>> round(m.simulate(until=1).final["x"], 6)
+        0.367879
+        """
         model = cls.__new__(cls)
         model._core = _core.Model(text, name)
         model._made = (Model.from_text, (text, name))
@@ -70,17 +75,29 @@ class Model:
 
     @property
     def name(self) -> str:
-        """The name that the file states."""
+        """The name that the file states.
+
+        >>> saltus.catalogue("stick-slip").name
+        'stick-slip'
+        """
         return self._core.name
 
     @property
     def description(self) -> str:
-        """One sentence of the file, or an empty text."""
+        """One sentence of the file, or an empty text.
+
+        >>> saltus.catalogue("stick-slip").description
+        'a block on a moving belt sticks and slips'
+        """
         return self._core.description
 
     @property
     def path(self) -> str:
-        """The file it was read from."""
+        """The file it was read from.
+
+        >>> saltus.catalogue("stick-slip").path.endswith("stick-slip.toml")
+        True
+        """
         return self._core.path
 
     def simulate(
@@ -126,7 +143,13 @@ class Model:
         set: Settings | None = None,
         **options: Value,
     ) -> Result:
-        """Measures how errors fall with the step; ``order`` of the result has a series for every scheme."""
+        """Measures how errors fall with the step; ``order`` of the result has a series for every scheme.
+
+        >>> m = saltus.catalogue("stick-slip")
+        >>> series = m.order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]).order["series"]
+        >>> series[0]["stages"]
+        2
+        """
         more = (",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps))
         return Result(self._run("order", until, set, options, None, more)[0])
 
@@ -143,6 +166,25 @@ class Model:
         `options` are the keys of [optimize] (docs/optimal-control.md): ``control_intervals=20``, ``time_limit=60``,
         ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file. ``optimization`` of the result
         has costs, parameters, multipliers and what was verified.
+
+        >>> m = saltus.Model.from_text('''
+        ... [model]
+        ... name = "car"
+        ... [states]
+        ... q = 0
+        ... v = 0
+        ... [controls]
+        ... u = { lower = -1, upper = 1 }
+        ... [dynamics]
+        ... q = "v"
+        ... v = "u"
+        ... [optimize]
+        ... horizon = { free = true, initial = 2.5, lower = 1, upper = 5 }
+        ... minimize_time = true
+        ... terminal_constraints = ["q == 1", "v == 0"]
+        ... ''')
+        >>> round(m.optimize(control_intervals=4).optimization["horizon"], 6)
+        2.0
         """
         typed, chosen = optimize_options(options)
         warned: list[str] = []
@@ -329,31 +371,3 @@ def _warn(messages: list[str]) -> None:
         depth, frame = depth + 1, frame.f_back
     for message in messages:
         warnings.warn(in_python(message), ModelWarning, stacklevel=depth)
-
-
-def models() -> list[str]:
-    """Names of the shipped models.
-
-    >>> "stick-slip" in saltus.models()
-    True
-    """
-    return _core.models()
-
-
-def catalogue(name: str) -> Model:
-    """A shipped model.
-
-    >>> saltus.catalogue("stick-slip")
-    <saltus.Model 'stick-slip'>
-    """
-    return Model(_core.find_catalogue(name))
-
-
-def compare(model: Model, until: float | None = None, **options: Value) -> Result:
-    """:meth:`Model.compare` as a function."""
-    return model.compare(until, **options)
-
-
-def order(model: Model, until: float | None = None, **options: Value) -> Result:
-    """:meth:`Model.order` as a function."""
-    return model.order(until, **options)

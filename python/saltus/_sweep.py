@@ -8,7 +8,8 @@ import typing
 import numpy as np
 
 from . import _core
-from ._result import Kept, Result, needed
+from ._outcome import Kept, unknown
+from ._result import Result, needed
 from ._settings import text_of
 
 Array = np.ndarray
@@ -78,6 +79,14 @@ class Sweep:
 
     ``table`` has a column for the number of the run, for what was changed (``"v(0)"`` for the initial value of a state
     v), for the status, and what was kept of the runs: values at the end, events, or rows of trajectories.
+
+    >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)
+    >>> s
+    <saltus.Sweep of 2 runs over belt: 2 completed>
+    >>> list(s.table)
+    ['run', 'belt', 'status', 't', 'q', 'v', 'events']
+    >>> s.results[1]
+    <saltus.Result 'stick-slip': completed at t = 5, events not kept; 2 happened>
     """
 
     def __init__(self, found: Found, shape: tuple[int, ...]) -> None:
@@ -91,14 +100,22 @@ class Sweep:
         return len(self.results)
 
     def __getitem__(self, name: str) -> Array:
-        """A column of the table."""
+        """A column of the table.
+
+        >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)["events"].tolist()
+        [1, 2]
+        """
         if name not in self.table:
-            raise KeyError(f"{name!r} is no column; there are {', '.join(self.table)}")
+            raise unknown(name, list(self.table), "the table")
         return self.table[name]
 
     @property
     def done(self) -> bool:
-        """Whether all runs did what was asked."""
+        """Whether all runs did what was asked.
+
+        >>> saltus.catalogue("stick-slip").sweep(max_steps=[3, 1000], until=5).done
+        False
+        """
         return all(result.status.done for result in self.results)
 
     def frame(self) -> typing.Any:
@@ -112,7 +129,12 @@ class Sweep:
         return needed("pandas", "data").DataFrame(self.table)
 
     def dataset(self) -> typing.Any:
-        """A data set of xarray: of a grid with its axes as dimensions, else over ``run``. Needs ``keep="final"``."""
+        """A data set of xarray: of a grid with its axes as dimensions, else over ``run``. Needs ``keep="final"``.
+
+        >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], q=[0, 0.1, 0.2], until=5)
+        >>> s.dataset()["events"].dims
+        ('belt', 'q(0)')
+        """
         xarray = needed("xarray", "data")
         columns = dict(self.table)
         if len(columns["run"]) != len(self) or len(columns["run"]) and columns["run"][-1] != len(self):
