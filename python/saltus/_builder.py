@@ -7,7 +7,7 @@ import typing
 import numpy as np
 
 from . import _array
-from ._expression import Expression, Operand, refuse
+from ._expression import Expression, Operand, number, refuse
 from ._model import Model
 from ._result import Result
 from ._statement import Rates, given
@@ -184,7 +184,7 @@ class Builder(Structure):
         name = self._state(state)
         if name in self._parts["dynamics"]:
             raise refuse(f"the state '{name}' has two rates", "add them: m.rate(x, a + b)")
-        self._parts["dynamics"][name] = self._own(value)
+        self._parts["dynamics"][name] = self._own(number(value))
 
     def output(self, name: str, value: Operand = None, *, unit: str | None = None, label: str | None = None) -> None:
         """A quantity that results have beside the states; without a value one that is defined, under its name.
@@ -299,6 +299,7 @@ class Builder(Structure):
         >>> round(m.simulate(until=1).final["x"], 6)
         0.367879
         """
+        self._need_end(until, options)
         return self.model().simulate(until, **options)
 
     def optimize(self, **options: typing.Any) -> Result:
@@ -335,6 +336,7 @@ class Builder(Structure):
         >>> m.compare(until=1).comparison["runs"][0]["method"]
         'event'
         """
+        self._need_end(until, options)
         return self.model().compare(until, **options)
 
     def order(self, until: float | None = None, **options: typing.Any) -> Result:
@@ -346,6 +348,7 @@ class Builder(Structure):
         >>> m.order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]).order["series"][0]["stages"]
         2
         """
+        self._need_end(until, options)
         return self.model().order(until, **options)
 
     def check(self) -> str:
@@ -358,6 +361,10 @@ class Builder(Structure):
         True
         """
         return self.model().check()
+
+    def _need_end(self, until: float | None, options: typing.Mapping[str, typing.Any]) -> None:
+        if until is None and "until" not in self._simulate and "simulate.until" not in (options.get("set") or {}):
+            raise refuse("no end time", "say how long: m.simulate(until=10), or m.simulation(until=10) for all runs")
 
     def _repr_html_(self) -> str:
         return self.model()._repr_html_()

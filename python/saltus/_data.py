@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 import typing
 
 import numpy as np
@@ -16,8 +17,9 @@ def frame(r: Result, grid: typing.Any = None) -> typing.Any:
 
     pandas = needed("pandas", "data")
     if grid is not None:
-        span = r.span
-        r = r.at(np.linspace(*span, int(grid)) if np.ndim(grid) == 0 else grid)
+        if np.ndim(grid) == 0 and (not isinstance(grid, numbers.Integral) or grid < 2):
+            raise ValueError(f"grid={grid!r}: expected a whole number of rows from 2 on, or a list of times")
+        r = r.at(np.linspace(*r.span, int(grid)) if np.ndim(grid) == 0 else grid)
     need_rows(r)
     columns = {name: np.array(r[name]) for name in r.names if name != "t"}
     return pandas.DataFrame(columns, index=pandas.Index(np.array(r.t), name="t"))

@@ -98,10 +98,10 @@ class Expression:
         return call("floor", other / self)
 
     def __neg__(self) -> Expression:
-        return make("-" + _inside(self, SIGN), SIGN, False, self)
+        return make("-" + _inside(number(self), SIGN), SIGN, False, self)
 
     def __pos__(self) -> Expression:
-        return make("+" + _inside(self, SIGN), SIGN, False, self)
+        return make("+" + _inside(number(self), SIGN), SIGN, False, self)
 
     def __abs__(self) -> typing.Any:
         return call("abs", self)
@@ -162,6 +162,9 @@ class Expression:
 
     __int__ = __index__ = __float__
 
+    def __round__(self, digits: int = 0) -> typing.NoReturn:
+        raise refuse(f"{self.text} has no value before the simulation", "write saltus.floor(x + 0.5), of times only")
+
     def __iter__(self) -> typing.Iterator[Expression]:
         raise refuse(f"{self.text} is one number", "arrays of expressions: saltus.array([x, v])")
 
@@ -177,10 +180,7 @@ def expression(value: Operand) -> Expression:
 
         return of_casadi(value)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
-        raise refuse(
-            f"expected a number or an expression, found {value!r}",
-            'expressions are scalar; of arrays: m.states("x", [1, 0]), m.rate(X, A @ X), or entry by entry',
-        )
+        raise refuse(f"expected a number or an expression, found {value!r}", _instead_of(value))
     if isinstance(value, numbers.Integral):
         text = str(int(value))
     else:
@@ -189,6 +189,25 @@ def expression(value: Operand) -> Expression:
             raise refuse(f"{number} is no number of a model", "write a finite number")
         text = repr(number).replace("e-0", "e-").replace("e+", "e")
     return Expression(text, SIGN if text.startswith("-") else PRIMARY)
+
+
+def _instead_of(value: typing.Any) -> str:
+    """What to write for what is no expression."""
+    if isinstance(value, str):
+        return "write what was given for the name, without quotes: x = m.state(\"x\", 0), then -x"
+    if isinstance(value, (bool, np.bool_)):
+        return "write 1 or 0; a condition of the model is a comparison: x > 0"
+    if np.ndim(value) > 0:
+        return 'expressions are scalar; of arrays: m.states("x", [1, 0]), m.rate(X, A @ X), or entry by entry'
+    return "numbers are real: int, float, or a scalar of numpy"
+
+
+def number(value: Operand) -> Expression:
+    """An expression that is no condition."""
+    made = expression(value)
+    if made.is_condition:
+        raise refuse(f"{made.text} is a condition, not a number", f"write saltus.if_({made.text}, 1, 0)")
+    return made
 
 
 def owner_of(*operands: Operand) -> Owner:
@@ -235,19 +254,19 @@ def _one(operand: Operand) -> np.ndarray:
 
 @entry_by_entry
 def _binary(sign: str, left: Operand, right: Operand, level: int) -> Expression:
-    a, b = expression(left), expression(right)
+    a, b = number(left), number(right)
     return make(_inside(a, level) + sign + _inside(b, level + 1), level, False, a, b)
 
 
 @entry_by_entry
 def _power(base: Operand, exponent: Operand) -> Expression:
-    a, b = expression(base), expression(exponent)
+    a, b = number(base), number(exponent)
     return make(f"{_inside(a, PRIMARY)}^{_inside(b, SIGN)}", POWER, False, a, b)
 
 
 @entry_by_entry
 def _comparison(sign: str, left: Operand, right: Operand) -> Expression:
-    a, b = expression(left), expression(right)
+    a, b = number(left), number(right)
     return make(_inside(a, SUM) + sign + _inside(b, SUM), COMPARISON, True, a, b)
 
 
@@ -269,5 +288,5 @@ def _logical(word: str, left: Operand, right: Operand, level: int) -> Expression
 @entry_by_entry
 def call(function: str, *arguments: Operand) -> typing.Any:
     """A function of the language; of arrays entry by entry."""
-    made = [expression(argument) for argument in arguments]
+    made = [number(argument) for argument in arguments]
     return make(f"{function}({','.join(argument.text for argument in made)})", PRIMARY, False, *made)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import typing
 
 from . import _array
-from ._expression import PRIMARY, Expression, Operand, call, entry_by_entry, expression, make, refuse
+from ._expression import PRIMARY, Expression, Operand, call, entry_by_entry, make, number, refuse
 
 
 def _function(name: str, count: int, text: str, argument: str = "x") -> typing.Callable[..., typing.Any]:
@@ -62,7 +62,7 @@ def if_(condition: Operand, a: Operand, b: Operand) -> Expression:
     """
     if not isinstance(condition, Expression) or not condition.is_condition:
         raise refuse(f"if_ needs a condition, found {condition!r}", "compare: saltus.if_(x > 0, a, b)")
-    made = [condition, expression(a), expression(b)]
+    made = [condition, number(a), number(b)]
     return make(f"if({','.join(part.text for part in made)})", PRIMARY, False, *made)
 
 
@@ -93,7 +93,7 @@ def _method_for_numpy(name: str, own: str, count: int) -> None:
 
 for _name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log10", "sqrt", "floor", "sign"):
     _method_for_numpy(_name, _name, 1)
-for _name, _own in (("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan")):
+for _name, _own in (("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan"), ("fabs", "abs")):
     _method_for_numpy(_name, _own, 1)
 for _name, _own in (("arctan2", "atan2"), ("hypot", "hypot")):
     _method_for_numpy(_name, _own, 2)

@@ -11,7 +11,7 @@ import warnings
 
 from . import _core
 from ._card import model_card
-from ._errors import ModelWarning, in_python
+from ._errors import ModelWarning
 from ._expression import refuse
 from ._progress import progress_line, progress_of_runs
 from ._result import Result, own_results
@@ -20,8 +20,11 @@ from ._settings import (
     Value,
     axis,
     check_path,
+    check_sweep,
+    check_text,
+    check_together,
     count_of,
-    is_list,
+    is_several,
     is_option,
     once,
     optimize_options,
@@ -29,8 +32,8 @@ from ._settings import (
     settings_of,
     simulate_options,
     sweep_name,
-    whole,
 )
+from ._spelling import in_python
 from ._sweep import Sweep, SweepArguments, sweep_by, with_results
 
 Settings = typing.Mapping[str, Value]
@@ -68,6 +71,7 @@ class Model:
         >>> round(m.simulate(until=1).final["x"], 6)
         0.367879
         """
+        check_text(text)
         model = cls.__new__(cls)
         model._core = _core.Model(text, name)
         model._made = (Model.from_text, (text, name))
@@ -150,7 +154,12 @@ class Model:
         >>> series[0]["stages"]
         2
         """
-        more = (",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps))
+        try:
+            more = (",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps))
+        except (TypeError, ValueError):
+            raise refuse(
+                f"schemes={schemes!r}, steps={steps!r}: expected lists", 'e.g. schemes=[("radau_iia", 2)], steps=[50, 100]'
+            ) from None
         return Result(self._run("order", until, set, options, None, more)[0])
 
     def optimize(
@@ -206,7 +215,7 @@ class Model:
         keep: str = "final",
         jobs: int = 0,
         yes: bool = False,
-        until: float | None = None,
+        until: Value = None,
         set: Settings | None = None,
         progress: bool = False,
         executor: typing.Any = None,
@@ -228,18 +237,12 @@ class Model:
         >>> len(s), s.done, s["belt"].tolist()
         (3, True, [0.1, 0.2, 0.3])
         """
-        whole("jobs", jobs, 0)
-        whole("seed", seed, 0)
-        if runs is not None:
-            whole("runs", runs, 1)
-        if sample is not None and not isinstance(sample, typing.Mapping):
-            raise refuse(f"sample={sample!r}: expected a dict", 'e.g. sample={"v": "normal(3, 0.1)"}')
-        lists = {name: options.pop(name) for name in list(options) if is_list(options[name]) and name != "times"}
-        swept = {sweep_name(name, self._core.method): values for name, values in (over or {}).items()}
-        for name, values in lists.items():
-            swept[once(sweep_name(name, self._core.method), [*swept, *(set or {})])] = values
-        self._refuse_parameters(options)
-        typed, chosen = simulate_options({"until": until, **options}, self._core.method)
+        check_sweep(over, sample, runs, seed, jobs)
+        options = {"until": until, **options}
+        swept = self._swept(over or {}, set or {}, options)
+        if not swept and not sample:
+            raise refuse("nothing is changed from run to run", "e.g. m.sweep(mu=np.linspace(0.1, 0.5, 50), until=10)")
+        typed, chosen = simulate_options(options, self._core.method)
         axes = {name: axis(name, values) for name, values in swept.items()}
         # Of values that the tool counts the shape is not known here.
         counts = tuple(count_of(values) for values in swept.values())
@@ -267,6 +270,15 @@ class Model:
                 raise
         _warn(warned)
         return Sweep(with_results(found, self, arguments), shape)
+
+    def _swept(self, over: Settings, set: Settings, options: dict[str, Value]) -> dict[str, Value]:
+        """All that is swept, by the names of settings; keywords that have several values leave the options."""
+        method = self._core.method
+        swept = {sweep_name(name, method): values for name, values in over.items()}
+        for name in [name for name, value in options.items() if is_several(value) and name != "times"]:
+            swept[once(sweep_name(name, method), [*swept, *set])] = options.pop(name)
+        self._refuse_parameters(options)
+        return swept
 
     def equations(self, *, latex: bool = False) -> list[tuple[str, str, str]]:
         """The equations as they were read: left side, right side, and where or when they hold; at most 1000.
@@ -327,6 +339,7 @@ class Model:
 
     def _refuse_parameters(self, options: Settings) -> None:
         """Of keywords that are no options those that the model knows; the rest is the tool's to say."""
+        check_together(options)
         if any(not is_option(name, self._core.method) for name in options):
             parameters_among(options, {**self.states, **self.parameters}, self._core.method)
 
@@ -348,6 +361,8 @@ class _started_at:
         if self._start is None:
             return ""
         if not isinstance(self._start, Result):
+            if not isinstance(self._start, (str, os.PathLike)):
+                raise refuse(f"start={self._start!r}: expected a result, or the file of one", 'start=r, or start="r.json"')
             return os.fspath(self._start)
         handle, name = tempfile.mkstemp(suffix=".json")
         os.close(handle)

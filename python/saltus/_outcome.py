@@ -8,6 +8,7 @@ import typing
 import numpy as np
 
 from . import _core
+from ._spelling import in_python, keywords
 
 Array = np.ndarray
 
@@ -29,7 +30,8 @@ class Status(str):
     @classmethod
     def _of(cls, run: _core.Run) -> Status:
         status = cls(run.termination)
-        status.message, status.time_reached, status.done = run.message, run.time_reached, run.done
+        status.message = keywords(in_python(run.message))
+        status.time_reached, status.done = run.time_reached, run.done
         return status
 
 

@@ -39,6 +39,7 @@ def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typ
     """A row of axes for every name; sliding is shaded, every event marked at its value."""
     need_rows(r, 2)
     pyplot = _matplotlib()
+    names = [names] if isinstance(names, str) else names
     wanted = list(names) if names is not None else [*r.states, *r.controls, *r.output_names]
     columns = {name: r[name] for name in wanted}
     if axes is None:

@@ -15,6 +15,7 @@ from . import _card, _core, _data, _plot
 from ._columns import Columns
 from ._errors import Stopped
 from ._events import Event, Events
+from ._expression import refuse
 from ._outcome import Final, Kept, Sensitivities, Status
 
 Array = np.ndarray
@@ -229,7 +230,10 @@ class Result(Columns):
         """
         if side not in ("left", "right"):
             raise ValueError(f"side={side!r}: expected 'left' or 'right', of an event at this time")
-        times = np.atleast_1d(np.asarray(t, dtype=float)).ravel()
+        try:
+            times = np.atleast_1d(np.asarray(t, dtype=float)).ravel()
+        except (TypeError, ValueError):
+            raise ValueError(f"t={t!r}: expected a time, or a list of times") from None
         if self._again is None:
             raise ValueError(
                 "this result has its rows only (it was loaded, optimised, or is one of several): simulate its model to "
@@ -273,6 +277,8 @@ class Result(Columns):
         >>> file.exists()
         True
         """
+        if path is not None and not os.fspath(path).lower().endswith((".html", ".htm")):
+            raise refuse(f"{os.fspath(path)}: the name of a page must end in .html", "pictures for papers: r.plot()")
         page = self._run.page()
         if path is None:
             return Page(page)

@@ -9,7 +9,6 @@ import typing
 import numpy as np
 
 from . import _core
-from ._errors import ModelError
 from ._expression import Expression, refuse
 
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
@@ -49,11 +48,23 @@ def settings_of(values: typing.Mapping[str, Value] | None) -> list[str]:
     """NAME=VALUE of `set`; tables inside become dotted names."""
     if values is not None and not isinstance(values, typing.Mapping):
         raise TypeError(f'set={values!r}: expected a dict, e.g. set={{"mu": 0.5}}')
-    return [f"{name}={text_of(value, name)}" for name, value in _flat(values or {})]
+    return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(values or {})]
+
+
+def _one_value(name: str, value: Value) -> Value:
+    """What a setting can be: of a name of the model one number or expression."""
+    if value is None:
+        raise refuse(f"{name}=None: that is no value", f"leave {name} out, or write a number or an expression")
+    if "." not in name and not isinstance(value, str) and np.ndim(value) > 0:
+        raise refuse(f"{name}={_shown(value)}: expected one value", f"many values are for a sweep: m.sweep({name}=[…])")
+    return value
 
 
 def _flat(values: typing.Mapping[str, Value], before: str = "") -> typing.Iterator[tuple[str, Value]]:
-    for name, value in values.items():
+    for key, value in values.items():
+        name = key.text if isinstance(key, Expression) else key
+        if not isinstance(name, str) or not name:
+            raise refuse(f"{key!r} is no name of a model or option", 'names are texts: {"mu": 0.5}')
         if isinstance(value, typing.Mapping):
             yield from _flat(value, f"{before}{name}.")
         else:
@@ -79,6 +90,15 @@ def simulate_options(
         key = next((key for key in keys if key in _SIMULATE), by_surface)
         options.append((f"simulate.{key}", text_of(value, name), f"{name}={_shown(value)}"))
     return settings, options
+
+
+def check_together(keywords: typing.Mapping[str, Value]) -> None:
+    """What keywords cannot be, or cannot be beside each other."""
+    if not isinstance(keywords.get("inputs") or {}, typing.Mapping):
+        raise refuse(f"inputs={keywords['inputs']!r}: expected a dict", 'e.g. inputs={"u": "sin(t)"}')
+    grids = [name for name in ("every", "points", "times") if keywords.get(name) is not None]
+    if len(grids) > 1:
+        raise refuse(f"{' and '.join(grids)} say twice when there are rows", "give one of every, points and times")
 
 
 def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], list[Option]]:
@@ -111,6 +131,8 @@ def axis(name: str, values: Value) -> str:
     """The values of a swept name, as the tool reads them: a list, or the text FROM:TO:NUMBER."""
     if isinstance(values, str):
         return values
+    if np.ndim(values) > 1:
+        raise refuse(f"{name}: expected a list of values, found an array of shape {np.shape(values)}", "values.ravel()")
     if not is_list(values):
         raise refuse(f"{name}: expected a list of values, found {values!r}", f"{name}=[0.1, 0.2], or set={{...}} for one")
     if len(values) == 0:
@@ -118,10 +140,27 @@ def axis(name: str, values: Value) -> str:
     return text_of(values, name)[1:-1]
 
 
+def is_several(value: Value) -> bool:
+    """Whether a keyword of a sweep is swept; arrays of several axes are, to be refused."""
+    return is_list(value) or isinstance(value, np.ndarray) and value.ndim > 1
+
+
+def check_sweep(over: Value, sample: Value, runs: Value, seed: Value, jobs: Value) -> None:
+    """What a sweep is asked for has the right kind."""
+    whole("jobs", jobs, 0)
+    whole("seed", seed, 0)
+    if runs is not None:
+        whole("runs", runs, 1)
+    if sample is not None and not isinstance(sample, typing.Mapping):
+        raise refuse(f"sample={sample!r}: expected a dict", 'e.g. sample={"v": "normal(3, 0.1)"}')
+    if over is not None and not isinstance(over, typing.Mapping):
+        raise refuse(f"over={over!r}: expected a dict", 'e.g. over={"mu": [0.1, 0.2]}, or mu=[0.1, 0.2]')
+
+
 def whole(name: str, value: Value, least: int) -> None:
     """Refuses what is no whole number from `least` on."""
     if not isinstance(value, numbers.Integral) or value < least:
-        raise refuse(f"{name}={value!r}: expected a whole number", f"at least {least}")
+        raise refuse(f"{name}={value!r}: expected a whole number >= {least}", f"e.g. {name}={max(least, 1)}")
 
 
 def count_of(values: Value) -> int:
@@ -159,5 +198,12 @@ def _shown(value: Value) -> str:
 def check_path(value: typing.Any, what: str) -> None:
     """A mistake that is easily made: a text where a file is expected."""
     if isinstance(value, str) and "\n" in value:
-        message, remedy = f"{what} expects the name of a file, found a text of several lines", "write saltus.Model.from_text(text)"
-        raise ModelError(f"{message}; {remedy}", message, remedy)
+        raise refuse(f"{what} expects the name of a file, found a text of several lines", "write saltus.Model.from_text(text)")
+
+
+def check_text(text: typing.Any) -> None:
+    """The opposite mistake."""
+    if not isinstance(text, str):
+        raise TypeError(f"expected the text of a model file, found {type(text).__name__}")
+    if "\n" not in text and text.endswith(".toml"):
+        raise refuse(f"'{text}' is the name of a file, not its text", f'write saltus.Model("{text}")')

@@ -5,11 +5,15 @@ from __future__ import annotations
 import json
 import typing
 
-from ._expression import Expression, Operand, expression, owner_of, refuse
+from ._expression import Expression, Operand, expression, number, owner_of, refuse
 
 Rates = typing.Mapping[typing.Any, Operand]
 Entries = dict[str, typing.Any]
-Words = typing.Optional[str]
+#: Names that the language has already.
+RESERVED = frozenset(
+    "t pi and or not if step sign abs max min floor mod sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 "
+    "sqrt hypot pow".split()
+)
 
 
 class Statement:
@@ -70,6 +74,8 @@ class Statement:
     def _take(self, name: str) -> None:
         if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
             raise refuse(f"{name!r} is no name", "letters, digits and _, with a letter first: \"x1\"")
+        if name in RESERVED:
+            raise refuse(f"'{name}' is a word of the language", f"choose another name, e.g. {name}_")
         if name in self._taken:
             raise refuse(f"the name '{name}' is taken", "every name of a model is declared once")
         self._taken.add(name)
@@ -118,7 +124,7 @@ class Statement:
         return self._name_in("states", state)
 
     def _rates(self, rates: Rates) -> dict[str, Expression]:
-        return {self._state(state): self._own(value) for state, value in rates.items()}
+        return {self._state(state): self._own(number(value)) for state, value in rates.items()}
 
     def _rates_or_none(self, rates: Rates | None) -> dict[str, Expression] | None:
         return None if rates is None else self._rates(rates)

@@ -38,6 +38,10 @@ class Structure(Statement):
         >>> m.simulate(until=0.5).events[0]
         <jump of bounce at t = 0.451523641>
         """
+        if not set:
+            raise refuse("the jump changes nothing", "say which states get which values: m.jump(x > 1, {x: 0})")
+        if sum(cause is not None for cause in (when, at, every)) != 1:
+            raise refuse("when the jump happens is not clear", "give one of: a condition, at=[t1, t2], every=T")
         entry = {
             "when": self._own_or_none(when),
             "direction": direction,
